@@ -15,6 +15,10 @@ from .bearing import Bearing
 from .part import LENGTH_TOLERANCE, Part, dimension
 from .shaft import Shaft
 
+THICKEST = 10.0
+"""Thickest wall of a housing, in diameters of its raceway: real ones have 0.1 to 0.3, and one in
+millimetres has a hundred."""
+
 
 class HousingSolid(NamedTuple):
     """Tags in the open gmsh model of what a housing consists of."""
@@ -160,7 +164,7 @@ class Housing(Part):
         ------
         InputError
             The bore does not match the bearing, breaks out of the block, or leaves no room for
-            the shaft.
+            the shaft, or the wall is in millimetres.
         """
         name = f"{bearing.name}.housing"
         raceway, radius = bearing.raceway_diameter, bearing.raceway_diameter / 2
@@ -170,6 +174,12 @@ class Housing(Part):
                 f"parts {bearing.name!r} and {name!r} {fault}: bore_diameter is "
                 f"{self.bore_diameter:g} m but must equal the bearing's raceway_diameter, "
                 f"{raceway:g} m: leave bore_diameter out or make the two equal"
+            )
+        if self.wall > THICKEST * raceway:
+            raise InputError(
+                f"{name}: wall is {self.wall:g} m but must be at most {THICKEST * raceway:g} m, "
+                f"{THICKEST:g} diameters of the raceway: lengths are in metres, "
+                f"{self.wall / 1000:g} m if this was in millimetres"
             )
         if self.centre_height <= radius + LENGTH_TOLERANCE:
             raise InputError(

@@ -11,6 +11,7 @@ from fe_drivetrain.bearing.catalogue import catalogue_bearing, read_catalogue
 from fe_drivetrain.bearing.distribution import effective_centre
 from fe_drivetrain.bearing.rating import ratings
 from fe_drivetrain.bearing.rolling import equilibrium
+from fe_drivetrain.bearing.seats import check_seat
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.scene.reading import library_scene
 
@@ -101,3 +102,39 @@ def test_every_step_of_the_speed_case_converges(quick_run: QuickRun) -> None:
     results = quick_run("performance/bearing_equilibrium")
     assert all(verdict.passed for verdict in results.verdicts)
     assert len(results.verdicts) >= 2
+
+
+def test_bores_are_compared_with_shafts() -> None:
+    entry = read_catalogue()["three_point_main"]
+    assert check_seat("a", "three_point_main", entry, 0.6) is None
+    assert check_seat("a", "three_point_main", entry, 0.62) is None  # rounded, or assumed
+    thin = check_seat("a", "three_point_main", entry, 0.4)
+    assert thin is not None
+    assert "entry three_point_main is 600 mm, the shaft at its seat 400 mm" in thin
+    with pytest.raises(InputError, match=r"600 mm, the shaft at its seat 640 mm.* at most 630 mm"):
+        check_seat("a", "three_point_main", entry, 0.64)
+
+
+def test_a_shaft_stays_inside_the_rollers_where_no_bore_is_given() -> None:
+    entry = read_catalogue()["iea_15mw_upwind"]
+    assert entry.bore is None
+    assert check_seat("a", "iea_15mw_upwind", entry, 3.0) is None
+    assert "is 3372 mm, the shaft" in str(check_seat("a", "iea_15mw_upwind", entry, 0.9))
+    with pytest.raises(InputError, match=r"circle inside the rolling elements .* 3372 mm"):
+        check_seat("a", "iea_15mw_upwind", entry, 3.4)
+
+
+def test_a_bore_that_reaches_into_the_rollers_is_refused(tmp_path: Path) -> None:
+    text = MINE.replace("  law: iso", "  bore: 0.28\n  law: iso")
+    (tmp_path / "mine.yaml").write_text(text.replace("{elements", "{bore: plan, elements"))
+    with pytest.raises(InputError, match=r"'Mine' is 0.28 m but must be less than 0.27"):
+        read_catalogue(tmp_path / "mine.yaml")
+
+
+@pytest.mark.parametrize("name", ["nrel_750kw_low_speed_shaft", "three_point_suspension"])
+def test_bearings_of_library_scenes_fit_their_seats(name: str) -> None:
+    scene = library_scene(name)
+    (unit,) = scene.bearing_units
+    seat = scene.shaft.seat_diameter(unit.bearing.x, unit.bearing.width, unit.bearing.name)
+    assert unit.catalogue is not None
+    assert check_seat("a", unit.catalogue, read_catalogue()[unit.catalogue], seat) is None

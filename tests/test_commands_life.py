@@ -80,6 +80,9 @@ def test_lives_of_constant_loads_are_those_of_one_step(
     assert float(lives["L10r [years]"]) == pytest.approx(at_site, rel=1e-6)
     ratio = float(lives["C [kN]"]) / float(lives["P_ref [kN]"])
     assert ratio ** (10 / 3) == pytest.approx(float(lives["L10r [Mrev]"]), rel=1e-6)
+    covered, years_here = float(shares.sum()), float(lives["L10mr [years]"])
+    assert f"blow {100 * covered:.3g} % of the time and the rest is taken to do no" in printed
+    assert f"blew all the time it would live {covered * years_here:.3g} years" in printed
     places = rows_of(out / "places.csv")
     laminae = rows_of(out / "laminae.csv")
     assert len(places) == 72
@@ -95,9 +98,15 @@ def test_lives_of_constant_loads_are_those_of_one_step(
     assert answer.computed == pytest.approx(float(lives["L10mr [years]"]), rel=1e-5)
     assert answer.band is None  # each wind has one file
     assert any("ISO" in note for note in results.notes)
+    # bearing S stands on the thesis's shaft, which is thinner than its bore
+    misfit = "entry bearing_s_o20 is 635 mm, the shaft at its seat 400 mm"
+    assert misfit in printed
+    assert any(misfit in note for note in results.notes)
     charts = [i.caption for s in results.sections for i in s.items if i.kind == "chart"]
     assert sum("looking downwind" in caption for caption in charts) == 1
     assert sum("pressure along" in caption for caption in charts) == 1
+    shown = {i.caption for s in results.sections for i in s.items if i.kind == "table"}
+    assert "Bearings on their seats" in shown
 
 
 CHOICES_REST = (True, "rollers", "rigid", True)
@@ -173,6 +182,15 @@ def test_a_bearing_that_stands_is_said_to_stand(
         (["--bearing", "main_bearing"], "NAME=ENTRY"),
         (["--bearing", "rear=bearing_s"], "has no bearing 'rear'"),
         (["--bearing", "main_bearing=nothing"], "in no catalogue"),
+        (
+            ["--bearing", "main_bearing=planet_nj2232"],
+            "planet_nj2232 is 160 mm, the shaft at its seat 400 mm",
+        ),
+        (
+            ["--bearing", "main_bearing=bearing_s", "--bearing", "main_bearing=bearing_s_o20"],
+            "--bearing main_bearing is given twice",
+        ),
+        (["--channel", "rotor speed=a", "--channel", "rotor speed=b"], "speed is given twice"),
         (["--lubricant", "honey"], "VG 460"),
         (["--supply", "water"], "oil bath"),
         (["--cleanliness", "dirty"], "very severe"),

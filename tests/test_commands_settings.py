@@ -53,6 +53,7 @@ def test_a_file_pattern_is_a_word() -> None:
         (["hub.Fz=true"], "--load hub.Fz: True must be a number"),
         (["hub.Fz=.nan"], "must be a number"),
         (["hub.Fz=0", "hub.My=0"], "all loads are zero"),
+        (["hub.Fz=1", "hub.Fz=2"], "--load hub.Fz is given twice, but must be given once"),
     ],
 )
 def test_wrong_loads_are_refused(texts: list[str], message: str) -> None:
@@ -60,9 +61,13 @@ def test_wrong_loads_are_refused(texts: list[str], message: str) -> None:
         parse_loads(texts, LOADS)
 
 
+def test_of_a_setting_that_is_given_twice_the_last_counts() -> None:
+    assert parse_settings(["mesh.shaft=0.1", "mesh.shaft=0.2"]) == {"mesh.shaft": 0.2}
+
+
 def test_loads_are_factors_of_the_unit_loads() -> None:
     assert parse_loads([], LOADS) is None
-    factors = parse_loads(["hub.Fz=-3e5", "gearbox.weight=4", "hub.Fz=-2e5"], LOADS)
+    factors = parse_loads(["gearbox.weight=4", "hub.Fz=-2e5"], LOADS)
     expected = {"hub.Fz": -2e5, "gearbox.weight": 4.0}
     np.testing.assert_array_equal(factors, [expected.get(name, 0.0) for name in LOADS])
 

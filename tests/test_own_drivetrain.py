@@ -17,6 +17,7 @@ from tiny_case import Result
 
 from fe_drivetrain.commands import study_loads
 from fe_drivetrain.commands.app import main
+from fe_drivetrain.commands.scene_page import catalogue_warnings, describe
 from fe_drivetrain.commands.study_errors import slight_reactions
 from fe_drivetrain.commands.study_loads import own_loads
 from fe_drivetrain.common.arrays import Floats
@@ -44,6 +45,7 @@ from fe_drivetrain.scene.arrangements import (
 )
 from fe_drivetrain.scene.reading import change_scene, is_component, library_scene, parse_scene
 from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.suite.page import Page
 
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
 
@@ -134,6 +136,15 @@ def test_new_writes_a_scene_with_its_schema_and_never_over_another(
     assert invoke("new", "other.yml")[0] == 0
     assert invoke("new", "my.yaml", "--overwrite")[0] == 0
     assert parse_scene(file.read_text("utf-8")) == library_scene("three_point_suspension")
+
+
+def test_what_is_to_be_typed_next_can_be_typed(invoke: Callable[..., Result]) -> None:
+    for words, file in ((("new",), "Mühle Größe.yaml"), (("validate", "--new"), "my project.yaml")):
+        status, out, _ = invoke(*words, file)
+        assert status == 0
+        (line,) = [line for line in out.splitlines() if line.startswith("Edit it, then: ")]
+        typed = shlex.split(line.removeprefix("Edit it, then: "))
+        assert typed == ["fe-drivetrain", {"new": "check"}.get(words[0], words[0]), file]
 
 
 def test_new_does_not_replace_a_schema_of_another_kind(
@@ -244,6 +255,32 @@ def test_check_says_that_a_bonded_bearing_takes_torque(invoke: Callable[..., Res
     status, out, _ = invoke("check", "main_bearing_bonded", "--out", "page", *QUICK)
     assert status == 0
     assert "main_bearing: bonded, so held against turning, too" in out
+
+
+def test_check_shows_the_point_that_hub_loads_are_about(bonded_model: Model) -> None:
+    scene = bonded_model.scene
+    for x, shown in ((None, []), (scene.shaft.front - 0.5, [scene.shaft.front - 0.5])):
+        page = Page()
+        describe(page, replace(bonded_model, scene=change_scene(scene, {"hub.loads_at": x})))
+        found = [i for section in page.sections for i in section.items if isinstance(i, Table)]
+        rows = [row for table in found for row in table.rows]
+        assert [row[1] for row in rows if "hub.loads_at" in str(row[0])] == shown
+
+
+@pytest.mark.parametrize(
+    ("entry", "words"),
+    [
+        ("nosuch", "Catalogue entry 'nosuch' of bearing 'main_bearing' is none of the program's"),
+        ("planet_nj2232", "planet_nj2232 is 160 mm, the shaft at its seat 600 mm"),
+        ("bearing_s", "bearing_s is 635 mm, the shaft at its seat 600 mm"),
+        ("three_point_main", None),
+    ],
+)
+def test_check_says_what_life_will_say_of_catalogue_entries(entry: str, words: str | None) -> None:
+    scene = library_scene("three_point_suspension")
+    found = catalogue_warnings(change_scene(scene, {"bearing_units.main_bearing.catalogue": entry}))
+    assert len(found) == (words is not None)
+    assert words is None or words in found[0]
 
 
 def test_forecast_is_of_the_systems_that_are_solved(

@@ -2,9 +2,11 @@
 
 import base64
 import hashlib
+import html
 import json
 import math
 import re
+import shlex
 import subprocess
 from html.parser import HTMLParser
 from pathlib import Path
@@ -25,6 +27,7 @@ from fe_drivetrain.report.charts import density_chart, heat_map
 from fe_drivetrain.report.index import write_index
 from fe_drivetrain.report.number_text import error_text, formatted, safe_range, tolerance_text
 from fe_drivetrain.report.page import write_page
+from fe_drivetrain.report.rendering import templates
 from fe_drivetrain.report.results import (
     AssumptionRow,
     Chart,
@@ -553,3 +556,8 @@ def test_a_density_has_all_of_the_time_and_points_the_right_way() -> None:
     # most of the plane that is shown is of the cloud, however far from zero it is
     assert max(heat["x"]) - min(heat["x"]) < 1.1 * np.ptp(right)
     assert np.isfinite(density_chart("nothing", [0.0], [0.0], "kN").figure["data"][0]["x"]).all()
+
+
+def test_names_in_commands_are_quoted() -> None:
+    template = templates().from_string("{{ name | as_word }}")
+    assert shlex.split(html.unescape(template.render(name="life/a b's"))) == ["life/a b's"]

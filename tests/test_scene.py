@@ -88,6 +88,36 @@ def test_round_trip_through_a_change():
         ({"bearing_units.0.bearing.kind": "ring"}, "cannot have the spherical-joint interface"),
         ({"bearing_units.7.interface": "bonded"}, "there is no '7'"),
         (
+            {"uncertainty": {"shaft.nosuch": {"uniform": 0.1}}},
+            "uncertainty of 'shaft.nosuch': the scene has no number there",
+        ),
+        (
+            {"uncertainty": {"gearbox.stiffness.5": {"uniform": 0.1}}},
+            "'gearbox.stiffness.5': the value is 0, and a spread is relative",
+        ),
+        (
+            {"bearing_units.0.housing.wall": -0.1},
+            "bearing unit 'main_bearing': Housing: wall is -0.1 but must be at least",
+        ),
+        (
+            {"bearing_units.0.housing.wall": 150},
+            "main_bearing.housing: wall is 150 m but must be at most 6 m, .* 0.15 m if this was",
+        ),
+        (
+            {"bearing_units.0.bedplate": [-1, 1e9, 1e9, 1e9, 1e9, 1e9]},
+            "bearing_units.main_bearing.bedplate: -1 must be a number from 1e-06 to 1e.16 .*rigid",
+        ),
+        (
+            {"bearing_units.0.bedplate": [0, 1e9, 1e9, 1e9, 1e9, 1e9]},
+            "bearing_units.main_bearing.bedplate: 0 must be a number from 1e-06 to 1e.16 .*rigid",
+        ),
+        (
+            {"bearing_units.frnt.housing.wall": 0.1},
+            "there is no 'frnt'; there are main_bearing, or by number 0 to 0: use a key",
+        ),
+        ({"hub.loads_at": 50}, "hub.loads_at is 50 m but must be from -11 to 9 m, at most 5 len"),
+        ({"hub.loads_at": -11.5}, "hub.loads_at is -11.5 m but must be from -11 to 9 m"),
+        (
             {"materials": {"m": {"youngs_modulus": 210, "poisson_ratio": 0.3, "density": 1}}},
             "youngs",
         ),
@@ -145,3 +175,25 @@ def test_file_limits_and_absence(tmp_path):
     binary.write_bytes(b"\xff\xfe\x00")
     with pytest.raises(InputError, match="cannot read"):
         read_scene(binary)
+
+
+def test_uncertain_values_may_be_of_materials_that_come_with_the_program():
+    spreads = {"materials.steel.youngs_modulus": {"normal": 0.02}}
+    assert set(parse_scene(TEXT, {"uncertainty": spreads}).uncertainty) == set(spreads)
+
+
+def test_hub_loads_may_be_about_the_rotor_or_the_axis_of_the_tower():
+    for x in (-2.5, 0.0, 9.0):
+        assert parse_scene(TEXT, {"hub.loads_at": x}).loads_at == x
+
+
+@pytest.mark.parametrize(
+    "change", [{"housing.wall": -0.1}, {"bearing.width": -1}, {"housing.foot_thickness": 2}]
+)
+def test_the_bearing_unit_that_is_wrong_is_named_once(change):
+    ((key, value),) = change.items()
+    with pytest.raises(InputError, match="bearing unit 'rear': ") as caught:
+        change_scene(library_scene("two_bearings"), {f"bearing_units.rear.{key}": value})
+    assert str(caught.value).count("rear") == 1
+    with pytest.raises(InputError, match=r"bearing_units\.rear\.interface is 'glued'"):
+        change_scene(library_scene("two_bearings"), {"bearing_units.rear.interface": "glued"})

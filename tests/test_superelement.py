@@ -9,15 +9,17 @@ from coarse_scenes import coarse_scene
 from fe_drivetrain import export
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import largest_difference
+from fe_drivetrain.export.from_component import component_superelement
 from fe_drivetrain.export.from_scene import (
     shaft_superelement,
     supported_superelement,
     unit_superelement,
 )
+from fe_drivetrain.export.scene_export import superelement_of
 from fe_drivetrain.export.superelement import Origin, Superelement
 from fe_drivetrain.fidelity.ladder import shaft_level
 from fe_drivetrain.fidelity.shafts import beam_shaft, meridian_shaft
-from fe_drivetrain.scene.reading import library_scene
+from fe_drivetrain.scene.reading import library_component, library_scene
 from fe_drivetrain.solve.condensation import keep_points
 
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
@@ -117,6 +119,21 @@ def test_what_is_no_stiffness_is_refused(change, message: str) -> None:  # type:
     element = random_element(7)
     with pytest.raises(InputError, match=message):
         Superelement("bad", element.points, element.positions, change(element.stiffness))
+
+
+@pytest.mark.parametrize("level", [1, 2, 3])
+def test_a_free_shaft_has_no_stiffness_at_one_point(level: int) -> None:
+    scene = coarse_scene("bonded")
+    words = r"a free shaft has no stiffness at one point, hub, .*\(.*gearbox\), .*--what drivetrain"
+    with pytest.raises(InputError, match=words):
+        superelement_of(scene, "shaft", ["hub"], level)
+
+
+def test_a_free_component_has_no_stiffness_at_one_point() -> None:
+    component = library_component("gearbox_housing")
+    name = component.attachments[0].name
+    with pytest.raises(InputError, match=rf"free gearbox housing .* {name}, .*--what supported"):
+        component_superelement(component, "body", [name], 1)
 
 
 def test_shaft_of_a_scene_is_free_and_has_its_mass() -> None:

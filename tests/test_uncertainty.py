@@ -163,9 +163,8 @@ def test_a_scene_without_uncertainty_says_how_to_add_some(scene: Scene) -> None:
 
 
 def test_a_spread_of_zero_is_refused() -> None:
-    scene = uncertain({"bearing_units.main_bearing.bearing.x": {"uniform": 0.1}})
     with pytest.raises(InputError, match="the value is 0"):
-        sample(scene, torsion)
+        uncertain({"bearing_units.main_bearing.bearing.x": {"uniform": 0.1}})
 
 
 def test_a_sample_that_is_no_scene_names_what_is_wrong() -> None:

@@ -6,6 +6,7 @@ name.
 
 from __future__ import annotations
 
+import math
 from functools import cache
 from importlib.resources import files as package_files
 from pathlib import Path
@@ -44,6 +45,7 @@ _SOURCED = (
     "pitch_diameter",
     "contact_angle",
     "spread",
+    "bore",
     "ratings",
 )
 
@@ -82,6 +84,7 @@ class Entry(BaseModel):
     pitch_diameter: float = Field(description="circle of the elements' middles [m]")
     contact_angle: float | None = Field(default=None, description="[deg]")
     spread: float | None = Field(default=None, description="distance of the rows' middles [m]")
+    bore: float | None = Field(default=None, gt=0, description="of the inner ring [m]")
     law: Literal["houpert", "iso"] | None = Field(default=None, description="contact law")
     clearance: float = Field(default=0.0, description="along the contact normal [m]")
     laminae: int = Field(default=LAMINAE, description="of a roller; 0 is the closed form")
@@ -109,7 +112,18 @@ class Entry(BaseModel):
                 f"sources of {self.title!r} must name each number that is given, and no other; see "
                 f"{wrong}: say where it comes from, or 'assumed: why'"
             )
+        if self.bore is not None and self.bore >= self.inside:
+            raise InputError(
+                f"bore of {self.title!r} is {self.bore:g} m but must be less than {self.inside:g} "
+                "m, the diameter inside its rolling elements: correct one of them"
+            )
         return self
+
+    @property
+    def inside(self) -> float:
+        """Diameter of the circle that the rolling elements touch from outside, about [m]."""
+        angle = math.radians(self.contact_angle or 0.0)
+        return self.pitch_diameter - self.element_diameter * math.cos(angle)
 
     @property
     def assumed(self) -> list[str]:

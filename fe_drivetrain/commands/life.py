@@ -21,7 +21,7 @@ from fe_drivetrain.commands.options import (
 from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.run import results_text
 from fe_drivetrain.commands.scenes import named_scene
-from fe_drivetrain.commands.settings import SceneSettings, parse_settings
+from fe_drivetrain.commands.settings import SceneSettings, parse_settings, refuse_again
 from fe_drivetrain.commands.terminal import FAILED, PASSED, as_typed, guarded, write
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import scheduled_by
@@ -272,12 +272,13 @@ def _a_1(percent: float) -> float:
 
 def _pairs(texts: Iterable[str]) -> dict[str, str]:
     """Entries by name of ``--bearing NAME=ENTRY``."""
-    found = {}
+    found: dict[str, str] = {}
     for text in texts:
         name, equals, entry = (part.strip() for part in text.partition("="))
         if not equals or not name or not entry:
             raise InputError(
                 f"--bearing {text}: write NAME=ENTRY, as in --bearing main_bearing=bearing_s"
             )
+        refuse_again("--bearing", name, found)
         found[name] = entry
     return found

@@ -9,6 +9,7 @@ from typing import Any
 
 from fe_drivetrain.bearing.catalogue import Entry, read_catalogue
 from fe_drivetrain.bearing.geometry import RollerRow
+from fe_drivetrain.bearing.seats import check_seat
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.coupled.load_paths import PINNED, LoadPath
@@ -71,6 +72,10 @@ class OneBearing:
         With ratings.
     path : LoadPath
         From the hub to its rollers.
+    seat : float
+        Diameter of the shaft there [m].
+    misfit : str or None
+        What does not fit there, though it may be meant, as a sentence.
     """
 
     name: str
@@ -78,6 +83,8 @@ class OneBearing:
     entry: Entry
     rated: RatedBearing
     path: LoadPath
+    seat: float
+    misfit: str | None = None
 
 
 def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
@@ -98,7 +105,8 @@ def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
     Raises
     ------
     InputError
-        A bearing has no entry, an entry is unknown, or a choice is none.
+        A bearing has no entry, an entry is unknown or does not go on the shaft, or a choice is
+        none.
     """
     stiffness = _stiffness(choices.support)
     if choices.rings not in RINGS_OF:
@@ -115,6 +123,11 @@ def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
         )
     known = read_catalogue(*choices.catalogues)
     found: dict[str, tuple[str, Entry, RatedBearing]] = {}
+    seats = {
+        name: scene.shaft.seat_diameter(unit.bearing.x, unit.bearing.width, name)
+        for name, unit in units.items()
+    }
+    misfits: dict[str, str | None] = {}
     for name, unit in units.items():
         entry_name = choices.named.get(name) or unit.catalogue
         if entry_name is None:
@@ -126,6 +139,7 @@ def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
         changes = _profile(known.get(entry_name), choices.profiled)
         rated = rated_from_catalogue(entry_name, *choices.catalogues, **changes)
         found[name] = entry_name, known[entry_name], rated
+        misfits[name] = check_seat(name, entry_name, known[entry_name], seats[name])
     rolling = {name: rated.bearing for name, (_, _, rated) in found.items()}
     body = scene_body(scene, 1)
     result = []
@@ -148,7 +162,8 @@ def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
             scene.gearbox.weight if choices.weight else 0.0,
             GRAVITY if choices.weight else 0.0,
         )
-        result.append(OneBearing(name, entry_name, entry, rated, path))
+        one = OneBearing(name, entry_name, entry, rated, path, seats[name], misfits[name])
+        result.append(one)
     return result
 
 

@@ -93,6 +93,9 @@ def lived(
         for one in bearings:
             found.append(_of_bearing(one, list(islice(made, len(files))), files, site))
     _answer(page, found, rules, site)
+    for one in bearings:
+        if one.misfit is not None:
+            page.note(one.misfit)
     page.note(UNVERIFIED)
     _lives(page, found)
     _limits(page, found, rules)
@@ -139,12 +142,13 @@ def _years(value: float) -> str:
 
 
 def _answer(page: Page, found: Sequence[BearingLife], rules: LifeRules, site: Site | None) -> None:
-    at = (
-        "if these files followed each other for ever"
-        if site is None
-        else f"at a mean wind of {site.mean_wind:g} m/s"
-    )
     for life in found:
+        at = "if these files followed each other for ever"
+        if site is not None and life.site is not None:
+            at = (
+                f"at a mean wind of {site.mean_wind:g} m/s, where the winds of these files blow "
+                f"{100 * life.site.covered:.3g} % of the time and the rest is taken to do no damage"
+            )
         years, parts = life.years, life.damage.of_rows(rules.lubricant is not None)
         row, ring = np.unravel_index(int(np.argmax(parts)), parts.shape)
         whole = parts.sum()
@@ -166,6 +170,9 @@ def _answer(page: Page, found: Sequence[BearingLife], rules: LifeRules, site: Si
             shares = life.site.of_winds("L10mr")
             most = life.site.speeds[np.argmax(shares)]
             words += f", winds about {most:g} m/s {100 * shares.max():.0f} %"
+            if whole:
+                always = _years(years["L10mr"] * life.site.covered)
+                words += f"; if these winds blew all the time it would live {always}"
         page.answer(words + ".")
 
 
@@ -253,6 +260,17 @@ def _lives(page: Page, found: Sequence[BearingLife]) -> None:
         "The m stands for lubricant and contamination."
     )
     page.data("lives", rows)
+    seats: list[Record] = [
+        {
+            "bearing": life.one.name,
+            "entry": life.one.entry_name,
+            "bore [mm]": None if life.one.entry.bore is None else 1e3 * life.one.entry.bore,
+            "inside of its rolling elements [mm]": 1e3 * life.one.entry.inside,
+            "shaft at its seat [mm]": 1e3 * life.one.seat,
+        }
+        for life in found
+    ]
+    page.table("Bearings on their seats", seats)
     sources: list[Record] = [
         {"bearing": life.one.name, "rating": name, "source": text}
         for life in found

@@ -110,7 +110,7 @@ def winds(page: Page, life: BearingLife) -> list[Record]:
             "share of the damage [%]",
         )
     )
-    covered = 100.0 * float(life.site.shares.sum())
+    covered = 100.0 * life.site.covered
     page.text(
         f"The winds of these files stand for {covered:.3g} % of the time at the site; the rest "
         "does no damage here."

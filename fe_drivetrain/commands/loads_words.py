@@ -8,6 +8,7 @@ from pathlib import Path
 
 from fe_drivetrain.commands.loads_digest import LOADS, UNITS
 from fe_drivetrain.commands.loads_page import Target
+from fe_drivetrain.commands.settings import refuse_again
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.histories.sites import Site, site_of_class
 from fe_drivetrain.hub_loads.channel_map import NAMES
@@ -26,13 +27,14 @@ def parse_channels(texts: Iterable[str]) -> dict[str, str]:
     Raises
     ------
     InputError
-        One has no equals sign, or no such name.
+        One has no equals sign, no such name, or a name that another has.
     """
-    found = {}
+    found: dict[str, str] = {}
     for text in texts:
         name, equals, column = (part.strip() for part in text.partition("="))
         if not equals or not column or name not in NAMES:
             raise InputError(f"--channel {text}: write NAME=COLUMN, NAME one of {', '.join(NAMES)}")
+        refuse_again("--channel", name, found)
         found[name] = column
     return found
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -58,7 +59,7 @@ def new_command(
         write(
             sys.stdout,
             f"{file}: {ARRANGEMENTS[arrangement].title}\n"
-            f"Edit it, then: fe-drivetrain check {file}\n",
+            f"Edit it, then: fe-drivetrain check {shlex.quote(str(file))}\n",
         )
         return PASSED
 

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from fe_drivetrain.bearing.catalogue import read_catalogue
+from fe_drivetrain.bearing.seats import check_seat
 from fe_drivetrain.common.components import MOTIONS
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.fidelity.level_costs import forecast
 from fe_drivetrain.geometry import FurtherPart
 from fe_drivetrain.report.pictures import NoPictureError, picture_of_model
@@ -132,6 +136,17 @@ def describe(page: Page, model: Model) -> None:
         }
         for point in scene.load_points
     ]
+    if scene.loads_at != scene.shaft.front:
+        points.insert(
+            1,
+            {
+                "point": "what hub loads of files are about (hub.loads_at), moved to the hub",
+                "x [m]": scene.loads_at,
+                "coupling": None,
+                "weight [N]": None,
+                "held by": "nothing",
+            },
+        )
     page.table("Where loads enter the shaft", points)
     page.text(
         "Frame: x downwind along the shaft, z up, y = z cross x. Lengths in m, forces in N, "
@@ -195,7 +210,39 @@ def _bearing_row(unit: BearingUnit) -> Record:
         if unit.interface == "bonded"
         else "as its stiffness says",
         "stands on": "the ground" if unit.bedplate is None else _springs(unit.bedplate),
+        "rolling bearing": unit.catalogue,
     }
+
+
+def catalogue_warnings(scene: Scene) -> list[str]:
+    """What ``life`` will refuse, or say, of the catalogue entries that a scene names.
+
+    They are no faults of the scene: a catalogue of the user, which only ``life`` is given, may have
+    the entry.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    """
+    known, found = read_catalogue(), []
+    for unit in scene.bearing_units:
+        name, entry = unit.bearing.name, unit.catalogue
+        if entry is None:
+            continue
+        if entry not in known:
+            found.append(
+                f"Catalogue entry {shown(entry)} of bearing {name!r} is none of the program's: give"
+                f" life a file that has it (--catalogue FILE), or use one of {', '.join(known)}."
+            )
+            continue
+        seat = scene.shaft.seat_diameter(unit.bearing.x, unit.bearing.width, name)
+        try:
+            sentence = check_seat(name, entry, known[entry], seat)
+        except InputError as error:
+            sentence = f"life will refuse this: {error}."
+        found += [sentence] if sentence else []
+    return found
 
 
 def _nose_bearing_row(scene: Scene, bearing: NoseBearing) -> Record:
@@ -292,6 +339,7 @@ def checked(run: Run, page: Page, scene: Scene) -> None:
         f"bearing{'s' if count > 1 else ''}{on_nose}, {mass:,.0f} kg in all, "
         f"{model.n_dofs:,} degrees of freedom; it is held, and can be solved.",
         *model.warnings,
+        *catalogue_warnings(scene),
     )
     page.section("Scene")
     picture(run, page, model)

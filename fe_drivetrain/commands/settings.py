@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -60,18 +60,18 @@ def parse_settings(texts: Iterable[str], option: str = "--set") -> dict[str, Any
     Returns
     -------
     dict
-        Values by key; of a repeated key the last.
+        Values by key; of a repeated ``--set`` the last, so that a script's can be changed.
 
     Raises
     ------
     InputError
-        There is no "=", no key, or the value is not plain YAML.
+        There is no "=", no key, a load is given twice, or the value is not plain YAML.
     """
     import yaml
 
     from fe_drivetrain.common.strict_yaml import PlainLoader, shown
 
-    settings = {}
+    settings: dict[str, Any] = {}
     for text in texts:
         key, equals, value = text.partition("=")
         key = key.strip()
@@ -96,8 +96,31 @@ def parse_settings(texts: Iterable[str], option: str = "--set") -> dict[str, Any
                 f"{option} {key}: value {shown(value)} must be a number, a word or a list of "
                 "them: give the keys below it one by one"
             )
+        if option == "--load":
+            refuse_again(option, key, settings)
         settings[key] = parsed
     return settings
+
+
+def refuse_again(option: str, key: str, given: Container[str]) -> None:
+    """Refuse a name that an option was given for already: which of the two counts is a guess.
+
+    Parameters
+    ----------
+    option, key : str
+        As in "--load" and "hub.Fz".
+    given : container of str
+        Names before it.
+
+    Raises
+    ------
+    InputError
+    """
+    if key in given:
+        raise InputError(
+            f"{option} {key} is given twice, but must be given once: values are not added, so "
+            "leave one out"
+        )
 
 
 def _is_plain(value: object) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -68,7 +69,9 @@ def validate_command(
                 project.with_name(PROJECT_SCHEMA_FILE): project_schema(),
             }
             write_all(texts, overwrite)
-            write(sys.stdout, f"Edit it, then: fe-drivetrain validate {project}\n")
+            write(
+                sys.stdout, f"Edit it, then: fe-drivetrain validate {shlex.quote(str(project))}\n"
+            )
             return PASSED
         return _validated(project, out)
 

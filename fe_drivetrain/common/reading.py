@@ -5,6 +5,7 @@ Every mistake becomes one sentence with the object, the value, the allowed range
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
 from pathlib import Path
@@ -165,7 +166,7 @@ def validated(model: type[_Model], data: Any, source: str) -> _Model:
     except InputError as error:  # from a part, whose message is a sentence already
         raise InputError(f"{source}: {error}") from error
     except ValidationError as error:
-        raise InputError(f"{source}: {fault_sentence(error, model)}") from error
+        raise InputError(f"{source}: {fault_sentence(error, model, data)}") from error
 
 
 def changed(instance: _Model, changes: Mapping[str, Any], source: str) -> _Model:
@@ -267,18 +268,26 @@ def _entry(target: Any, part: str) -> int | None:
     number = _numbered(target, part)
     if number is not None or not isinstance(target, list):
         return number
-    for k, entry in enumerate(target):
-        if isinstance(entry, dict):
-            inner = (value for value in entry.values() if isinstance(value, dict))
-            if part in (holder.get("name") for holder in (entry, *inner)):
-                return k
-    return None
+    return next((k for k, entry in enumerate(target) if part in _names(entry)), None)
+
+
+def _names(entry: Any) -> list[str]:
+    """Names that an entry of a list goes by: its own, or those of mappings in it."""
+    if not isinstance(entry, dict):
+        return []
+    inner = (value for value in entry.values() if isinstance(value, dict))
+    names = (holder.get("name") for holder in (entry, *inner))
+    return [name for name in names if isinstance(name, str)]
 
 
 def _no_entry(key: str, part: str, target: Any) -> InputError:
-    numbers = f"; there are 0 to {len(target) - 1}" if isinstance(target, list) and target else ""
+    there = ""
+    if isinstance(target, list) and target:
+        names = [name for entry in target for name in _names(entry)[:1]]
+        named = f"{', '.join(names)}, or by number " if names else ""
+        there = f"; there are {named}0 to {len(target) - 1}"
     return InputError(
-        f"key {shown(key)}: there is no {shown(part)}{numbers}: use a key that the file has"
+        f"key {shown(key)}: there is no {shown(part)}{there}: use a key that the file has"
     )
 
 
@@ -305,7 +314,7 @@ _RULES = {
 }
 
 
-def fault_sentence(error: ValidationError, model: type[BaseModel]) -> str:
+def fault_sentence(error: ValidationError, model: type[BaseModel], data: Any = None) -> str:
     """The first fault that pydantic found, as key, value, allowed range and fix.
 
     Parameters
@@ -314,6 +323,8 @@ def fault_sentence(error: ValidationError, model: type[BaseModel]) -> str:
         From a validation of `model`.
     model : type
         Its fields, and those of the models in it, give meanings and known keys.
+    data : Any
+        What was validated: entries of its lists go by their names, where they have any.
 
     Returns
     -------
@@ -323,7 +334,7 @@ def fault_sentence(error: ValidationError, model: type[BaseModel]) -> str:
     faults: Sequence[Any] = error.errors(include_url=False)
     # A misspelt key first: what is missing is often the same key, spelt right.
     fault = min(faults, key=lambda f: f["type"] != "extra_forbidden")
-    kind, key = fault["type"], _key(fault)
+    kind, key = fault["type"], _key(fault, data)
     owner, field = _field(model, fault["loc"])
     if kind == "extra_forbidden":
         known = list(owner.model_fields)
@@ -342,16 +353,26 @@ def fault_sentence(error: ValidationError, model: type[BaseModel]) -> str:
     words = [
         f["ctx"]["expected"]
         for f in faults
-        if f["type"] == "literal_error" and f is not fault and _key(f) == key
+        if f["type"] == "literal_error" and f is not fault and _key(f, data) == key
     ]
     rule = ", or ".join([rule, *words])
     return f"{key}{value}{' but' if value else ''} must {rule}{meaning}: correct it"
 
 
-def _key(fault: Any) -> str:
+def _key(fault: Any, data: Any) -> str:
     """Dotted key of a fault, without pydantic's marks of the members of a union."""
-    parts = (str(part) for part in fault["loc"])
-    key = ".".join(part for part in parts if part != "float" and "[" not in part)
+    parts = []
+    for part in fault["loc"]:
+        if part == "float" or "[" in str(part):
+            continue
+        names: list[str] = []
+        if isinstance(data, list | tuple) and isinstance(part, int) and part < len(data):
+            data = data[part]
+            names = [name for name in _names(data) if re.fullmatch(r"[A-Za-z][\w-]*", name)]
+        elif isinstance(data, dict):
+            data = data.get(part)
+        parts.append(names[0] if names else str(part))
+    key = ".".join(parts)
     return key if len(key) <= _LONGEST_KEY else f"{key[: _LONGEST_KEY - 3]}..."
 
 

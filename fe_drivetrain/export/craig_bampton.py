@@ -26,7 +26,7 @@ from scipy.sparse.linalg import LinearOperator, eigsh, splu
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.export.from_scene import scene_hash
-from fe_drivetrain.export.superelement import Origin, Superelement
+from fe_drivetrain.export.superelement import Origin, Superelement, refuse_one_point
 from fe_drivetrain.fidelity.shafts import (
     harmonic_mass,
     meridian_shaft,
@@ -136,17 +136,18 @@ def craig_bampton_shaft(
     Raises
     ------
     InputError
-        The number of modes is negative, or more than the mesh has.
+        The number of modes is negative, or more than the mesh has, or there is one point alone.
     """
     if modes < 0:
         raise InputError(f"number of modes is {modes} but must be 0 or more: give a count")
+    names, _ = reference_points(scene)
+    refuse_one_point("shaft", at or (), names, "drivetrain")
     body = meridian_shaft(scene, size, order, rings)
     body = body if at is None else keep_points(body, at)
     assert body.mass is not None
     n = len(body.names)
     mesh, sides = shaft_meridian(scene, size, order, rings)
     material = scene.material_of("shaft")
-    names, _ = reference_points(scene)
     here = [sides[names.index(name)] for name in body.names]
     found: list[tuple[float, list[Floats]]] = []
     if modes:

@@ -8,7 +8,7 @@ from importlib.metadata import version
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import largest_difference
-from fe_drivetrain.export.superelement import Origin, Superelement
+from fe_drivetrain.export.superelement import Origin, Superelement, refuse_one_point
 from fe_drivetrain.fidelity.component_frames import carrier_frame, housing_frame
 from fe_drivetrain.fidelity.component_levels import motions_on_supports, stiffness_on_supports
 from fe_drivetrain.fidelity.component_solid import (
@@ -54,7 +54,8 @@ def component_superelement(
     Raises
     ------
     InputError
-        There is no such part, level or point, or a point is given twice or held rigidly.
+        There is no such part, level or point, a point is given twice or held rigidly, or the free
+        body is asked for at one point.
     """
     if what not in (BODY, SUPPORTED):
         raise InputError(f"{what!r} of a component cannot be exported: use {BODY} or {SUPPORTED}")
@@ -68,6 +69,9 @@ def component_superelement(
     for name in at:
         if name not in names:
             raise InputError(f"point {name!r} is unknown: use {', '.join(names)}")
+    kind = "gearbox_housing" if isinstance(component, HousingComponent) else "planet_carrier"
+    if what == BODY:
+        refuse_one_point(kind.replace("_", " "), at, names, SUPPORTED)
     if level == 1:
         bodies = [_frame(component)]
         level_title, mesh = "1 frame of beams", "none"
@@ -94,7 +98,6 @@ def component_superelement(
             band = max(band, change / (ratio**ORDER - 1.0))
     program = f"fe-drivetrain {version('fe-drivetrain')}"
     origin = Origin(component.title, component_hash(component), level_title, mesh, program)
-    kind = "gearbox_housing" if isinstance(component, HousingComponent) else "planet_carrier"
     return Superelement(
         kind,
         fine.names,

@@ -10,7 +10,7 @@ import numpy as np
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import largest_difference
-from fe_drivetrain.export.superelement import Origin, Superelement
+from fe_drivetrain.export.superelement import Origin, Superelement, refuse_one_point
 from fe_drivetrain.fidelity.bearing_units import banded_unit, unit_matrices
 from fe_drivetrain.fidelity.ladder import LevelModel
 from fe_drivetrain.fidelity.shaft_bands import banded_meridian, banded_solid, meridian_order
@@ -41,8 +41,9 @@ def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None
     Raises
     ------
     InputError
-        There is no such level or point.
+        There is no such level or point, or one point alone.
     """
+    refuse_one_point("shaft", at or (), reference_points(scene)[0], "drivetrain")
     if level == 1:
         band: float | None
         body = beam_shaft(scene)

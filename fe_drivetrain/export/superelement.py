@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -22,6 +23,31 @@ UNITS = "N/m, N, N m/rad; kg, kg m, kg m^2; m, rad"
 #: What a matrix may be off: of symmetry, of a rigid motion's forces, of a negative eigenvalue;
 #: relative to the largest entry of a unit diagonal.
 ALLOWED = 1e-9
+
+
+def refuse_one_point(part: str, at: Sequence[str], points: Sequence[str], held: str) -> None:
+    """Refuse a free body at one point, where no motion strains it: all its stiffness is round-off.
+
+    Parameters
+    ----------
+    part : str
+        What it is, for the message.
+    at, points : Sequence[str]
+        Points that are kept, and all there are.
+    held : str
+        What has its supports: the name for ``--what``.
+
+    Raises
+    ------
+    InputError
+    """
+    if len(at) != 1 or at[0] not in points:
+        return
+    others = [name for name in points if name != at[0]]
+    raise InputError(
+        f"a free {part} has no stiffness at one point, {at[0]}, for nothing holds it: add a point "
+        f"to --at ({', '.join(others)}), or export it on its supports with --what {held}"
+    )
 
 
 @dataclass(frozen=True)

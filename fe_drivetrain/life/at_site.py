@@ -36,6 +36,11 @@ class SiteLife:
     a_year: Damage
 
     @property
+    def covered(self) -> float:
+        """Share of time in which one of the winds blows."""
+        return float(self.shares.sum())
+
+    @property
     def years(self) -> dict[str, float]:
         """Life [years] by each of `KINDS`; time outside of all winds does no damage."""
         return {kind: 1.0 / d if d else np.inf for kind, d in self.a_year.totals.items()}

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import shlex
 from collections.abc import Callable
 from pathlib import Path
 from urllib.parse import quote
@@ -53,6 +54,7 @@ def templates() -> jinja2.Environment:
         "page_of": lambda case: Markup(f"{quote(case)}/report.html"),
         "address": lambda path: Markup(quote(path)),  # of a scheme as javascript: a file's name
         "as_typed": escape,
+        "as_word": lambda text: escape(shlex.quote(text)),
         "plain": lambda text: escape(typeset(text.replace("`", ""))),  # in attributes
     }
     environment.filters |= shared

@@ -1,6 +1,7 @@
 """A bearing unit: bearing, housing, and the joint between the two; typed and validated."""
 
-from typing import Annotated, Any, Literal
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import (
@@ -9,13 +10,14 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
+    ModelWrapValidatorHandler,
     field_validator,
     model_validator,
 )
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
-from fe_drivetrain.common.strict_yaml import no_truth_value
+from fe_drivetrain.common.strict_yaml import no_truth_value, shown
 from fe_drivetrain.geometry import (
     AnyHousing,
     Bearing,
@@ -32,6 +34,8 @@ SPHERICAL_JOINTS = ("sliding", "averaged", "rigid")
 
 _STIFFEST = 1e16  # beyond it a spring is rigid, and only harms the conditioning
 _SOFTEST = 1e-6  # below it round-off of the smallest turbine's shaft is stiffer
+
+_A_SPRING = f"a number from {_SOFTEST:g} to {_STIFFEST:g} [N/m, N m/rad], or 'rigid'"
 
 
 class Keys(BaseModel):
@@ -57,10 +61,20 @@ def within_range(value: tuple[float | Literal["rigid"], ...]) -> Any:
     """
     for k in value:
         if k != "rigid" and k != 0 and not _SOFTEST <= k <= _STIFFEST:
-            raise ValueError(
-                f"{k:g} must be 0, a number from {_SOFTEST:g} to {_STIFFEST:g} [N/m, N m/rad], or "
-                "'rigid'"
-            )
+            raise ValueError(f"{k:g} must be 0, {_A_SPRING}")
+    return value
+
+
+def above_zero(value: tuple[float | Literal["rigid"], ...]) -> Any:
+    """Refuse springs that are neither rigid nor of a size that is one: none is free.
+
+    Raises
+    ------
+    ValueError
+    """
+    for k in value:
+        if k != "rigid" and not _SOFTEST <= k <= _STIFFEST:
+            raise ValueError(f"{k:g} must be {_A_SPRING}")
     return value
 
 
@@ -70,6 +84,13 @@ Springs = Annotated[
     Field(min_length=6, max_length=6),
     BeforeValidator(_no_booleans),
     AfterValidator(within_range),
+]
+#: The same, where nothing is free.
+_Held = Annotated[
+    tuple[float | Literal["rigid"], ...],
+    Field(min_length=6, max_length=6),
+    BeforeValidator(_no_booleans),
+    AfterValidator(above_zero),
 ]
 #: The same, or six rows of a full matrix.
 _Spring = Annotated[
@@ -117,7 +138,7 @@ class BearingUnit(Keys):
     interface: Interface
     stiffness: _Spring | None = None
     rollers: Rollers | None = None
-    bedplate: Springs | None = None
+    bedplate: _Held | None = None
     parts: tuple[FurtherPart, ...] = Field(
         default=(), max_length=50, description="further parts from files, tied to the housing"
     )
@@ -171,12 +192,20 @@ class BearingUnit(Keys):
         """Its housing, where that is a stiffness alone."""
         return self.housing if isinstance(self.housing, CondensedHousing) else None
 
-    @field_validator("bedplate")
+    @model_validator(mode="wrap")
     @classmethod
-    def _stands(cls, value: Springs | None) -> Springs | None:
-        if value is not None and 0 in value:
-            raise ValueError("each stiffness must be greater than 0, or 'rigid'")
-        return value
+    def _named(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        """Say which unit is wrong, where its part does not."""
+        try:
+            return handler(data)
+        except InputError as error:
+            bearing = data.get("bearing") if isinstance(data, Mapping) else None
+            name = bearing.get("name") if isinstance(bearing, Mapping) else None
+            if not isinstance(name, str) or any(
+                word in str(error) for word in (repr(name), f"{name}.housing")
+            ):
+                raise
+            raise InputError(f"bearing unit {shown(name)}: {error}") from None
 
     @model_validator(mode="after")
     def _has_what_its_interface_needs(self) -> "BearingUnit":

@@ -1,7 +1,7 @@
 """A scene: shaft, bearing units, supports and mesh sizes; typed, validated, and sound."""
 
-from collections.abc import Mapping
-from typing import Literal
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal
 
 from pydantic import (
     Field,
@@ -9,6 +9,7 @@ from pydantic import (
 )
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.reading import value_by_key
 from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.geometry import (
     Band,
@@ -22,7 +23,7 @@ from fe_drivetrain.geometry import (
 )
 from fe_drivetrain.scene.bearing_unit import SPHERICAL_JOINTS, BearingUnit, Keys, Springs
 from fe_drivetrain.scene.joint_springs import as_numbers
-from fe_drivetrain.scene.materials import Material, known_materials
+from fe_drivetrain.scene.materials import MATERIALS, Material, known_materials
 from fe_drivetrain.scene.nose import Nose, NoseBearing
 from fe_drivetrain.scene.shared_parts import check_shared, coupled_units
 from fe_drivetrain.scene.standing import check_standing
@@ -32,6 +33,11 @@ Coupling = Literal["averaged", "rigid"]
 
 #: Largest weight of a part [N]: a hundred times the nacelle of the largest turbines.
 HEAVIEST = 1e9
+
+#: Farthest point that hub loads are about from the front face, in lengths of the shaft: the rotor's
+#: centre is ahead of it by less than one, the tower's axis behind it by up to five (12 m in the
+#: IEA 15 MW turbine, whose shaft is 2.4 m long). Beyond it a force's moment is of another machine.
+FARTHEST = 5.0
 
 #: Names that load points cannot have: loads and points of every scene.
 _RESERVED = ("hub", "gearbox", "gravity", "shaft", "nose")
@@ -73,7 +79,8 @@ class Hub(Keys):
         default=None,
         ge=-1e3,
         le=1e3,
-        description="x of what files of hub loads are about [m]; left out, the front face",
+        description="x of what files of hub loads are about [m], at most five lengths of the "
+        "shaft from its front face, which it is if left out",
     )
 
 
@@ -190,10 +197,23 @@ class Scene(Keys):
             self.nose.check_fits(self.shaft)
         check_shared(self.bearing_units)
         check_bands(self.shaft, self.seats, [unit.bearing for unit in self.bearing_units])
+        self._check_hub()
+        check_spreads(self)
         gearbox = as_numbers(self.gearbox.stiffness)
         modulus = self.material_of("shaft").youngs_modulus
         check_standing(self.shaft, self.bearing_units, gearbox, modulus, self.nose_bearings)
         return self
+
+    def _check_hub(self) -> None:
+        """Refuse hub loads about a point that is on no machine with such a shaft."""
+        front, reach = self.shaft.front, FARTHEST * self.shaft.length
+        if abs(self.loads_at - front) > reach:
+            raise InputError(
+                f"hub.loads_at is {self.loads_at:g} m but must be from {front - reach:g} to "
+                f"{front + reach:g} m, at most {FARTHEST:g} lengths of the shaft from its front "
+                f"face at {front:g} m: give x of the point that your hub loads are about, in m, or "
+                "leave it out where that is the front face"
+            )
 
     def material_of(self, part: str) -> Material:
         """The material of a part, by the part's name in the mesh."""
@@ -263,6 +283,71 @@ class Scene(Keys):
     def bearing_unit(self, name: str) -> BearingUnit:
         """The bearing unit of that name."""
         return next(unit for unit in self.bearing_units if unit.bearing.name == name)
+
+
+def with_materials(scene: Scene) -> Scene:
+    """The scene with materials of the program that it uses among its own, where they have keys."""
+    used = {scene.shaft.material}
+    if scene.nose is not None:
+        used.add(scene.nose.body.material)
+    for unit in scene.bearing_units:
+        solids = (unit.bearing, *unit.housing_parts.values())
+        used |= {solid.material for solid in solids}
+    own = {name: MATERIALS[name] for name in used if name in MATERIALS}
+    return scene.model_copy(update={"materials": own | dict(scene.materials)})
+
+
+def nominal_values(scene: Scene, keys: Sequence[str]) -> list[float]:
+    """The numbers that dotted keys lead to; a bearing unit is addressed by its bearing's name.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    keys : Sequence[str]
+        As for `fe_drivetrain.scene.change_scene`.
+
+    Raises
+    ------
+    InputError
+        There is none, or it is no number.
+    """
+    data = with_materials(scene).model_dump(mode="json")
+    return [_number(data, key) for key in keys]
+
+
+def _number(data: Any, key: str) -> float:
+    value = value_by_key(data, key)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InputError(
+            f"uncertainty of {shown(key)}: the scene has no number there: name a value that it "
+            "gives, as in shaft.sections.0.outer_diameter"
+        )
+    return float(value)
+
+
+def check_spreads(scene: Scene) -> None:
+    """Refuse uncertain values that cannot be uncertain.
+
+    Parameters
+    ----------
+    scene : Scene
+        With spreads, or without any.
+
+    Raises
+    ------
+    InputError
+        A key leads to no number, or to zero, which has no relative spread.
+    """
+    if not scene.uncertainty:
+        return
+    keys = list(scene.uncertainty)
+    for key, value in zip(keys, nominal_values(scene, keys), strict=True):
+        if value == 0.0:
+            raise InputError(
+                f"uncertainty of {shown(key)}: the value is 0, and a spread is relative to it: "
+                "leave it out, or shift the frame so that the value differs from 0"
+            )
 
 
 def coarser_scene(scene: Scene, factor: float, elements_per_turn: int) -> Scene:

@@ -20,12 +20,11 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.fidelity.quantities import carried_root, unit_numbers
-from fe_drivetrain.scene.scene import Coupling, Scene, Spread
+from fe_drivetrain.scene.scene import Coupling, Scene, Spread, nominal_values
 from fe_drivetrain.uncertainty.resolver import Resolver, unit_content
 from fe_drivetrain.uncertainty.sampling import (
     distribution,
     nominal_value,
-    nominal_values,
     with_values,
 )
 

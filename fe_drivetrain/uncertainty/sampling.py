@@ -15,10 +15,8 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.reading import value_by_key
-from fe_drivetrain.scene.materials import MATERIALS
 from fe_drivetrain.scene.reading import change_scene
-from fe_drivetrain.scene.scene import Scene, Spread
+from fe_drivetrain.scene.scene import Scene, Spread, nominal_values, with_materials
 from fe_drivetrain.uncertainty.kept_rows import evaluated_rows
 
 Evaluate = Callable[[Scene], Mapping[str, float]]
@@ -156,45 +154,24 @@ def nominal_value(scene: Scene, key: str) -> float:
     return nominal_values(scene, [key])[0]
 
 
-def nominal_values(scene: Scene, keys: Sequence[str]) -> list[float]:
-    """The numbers that dotted keys lead to; see `nominal_value`."""
-    data = _with_materials(scene).model_dump(mode="json")
-    return [_number(data, key) for key in keys]
-
-
-def _number(data: Any, key: str) -> float:
-    value = value_by_key(data, key)
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise InputError(
-            f"uncertainty of {key!r}: the scene has no number there: name a value that it gives"
-        )
-    return float(value)
-
-
 def with_values(scene: Scene, values: Mapping[str, float]) -> Scene:
     """The scene with other values by dotted key, materials that come with the program included."""
-    return change_scene(_with_materials(scene), values)
+    return change_scene(with_materials(scene), values)
 
 
 def check_spreads(scene: Scene) -> None:
-    """Refuse a scene without uncertain values, or with one that cannot be uncertain.
+    """Refuse a scene without uncertain values; those that it has were checked as it was read.
 
     Raises
     ------
     InputError
-        Nothing is uncertain; a key leads to no number, or to zero, which has no relative spread.
+        Nothing is uncertain.
     """
     if not scene.uncertainty:
         raise InputError(
             f"scene {scene.title!r} has no uncertain values: add some under "
             "'uncertainty', as in shaft.sections.0.outer_diameter: {uniform: 0.01}"
         )
-    for key in scene.uncertainty:
-        if nominal_value(scene, key) == 0.0:
-            raise InputError(
-                f"uncertainty of {key!r}: the value is 0, and a spread is relative to it: leave it "
-                "out, or shift the frame so that the value differs from 0"
-            )
 
 
 def sensitivities(
@@ -409,12 +386,3 @@ def _evaluated(
             f"a value within its uncertainty gives no valid scene: {error} (or make the spread of "
             f"{', '.join(keys)} smaller)"
         ) from error
-
-
-def _with_materials(scene: Scene) -> Scene:
-    used = {scene.shaft.material}
-    for unit in scene.bearing_units:
-        solids = (unit.bearing, *unit.housing_parts.values())
-        used |= {solid.material for solid in solids}
-    own = {name: MATERIALS[name] for name in used if name in MATERIALS}
-    return scene.model_copy(update={"materials": own | dict(scene.materials)})
