@@ -22,7 +22,8 @@ def collect_lasting_seldom() -> None:
 
     For a program, whose modules and compiled loops last to its end: to go through all of them each
     time that a quarter has been added took a twentieth of `advise` in a first run, and at the end
-    a few tenths of a second. What is young is collected as before, so that an array in a cycle does not stay.
+    some tenths of a second. What is young is collected as before, so that an array in a cycle does
+    not stay.
     """
     young, middle, _ = gc.get_threshold()
     gc.set_threshold(young, middle, _SELDOM)
