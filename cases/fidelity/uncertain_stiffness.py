@@ -271,7 +271,7 @@ def _exact_volume(scene: Scene, part: str) -> float:
         (s,) = scene.shaft.sections
         return float(np.pi / 4 * (s.outer_diameter**2 - s.inner_diameter**2) * s.length)
     unit = scene.bearing_units[0]
-    seat = scene.shaft.seat_diameter(unit.bearing.x, unit.bearing.width, BEARING)
+    seat = scene.seat_diameter(BEARING)
     return float(unit_solids(unit.bearing, unit.block, seat)[1].volume)
 
 

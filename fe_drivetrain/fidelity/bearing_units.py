@@ -21,7 +21,6 @@ from fe_drivetrain.fidelity.unit_faces import (
     attached,
     face_of,
     parts_left_out,
-    seat,
     without_shaft,
 )
 from fe_drivetrain.foreign.assembly import Tied, base_centre, bolt_springs
@@ -323,7 +322,7 @@ def _kept(
     """What was solved of a scene's bearing unit before, or, where one of it is missing, is now."""
     rooms = {"fe_drivetrain.fidelity": {"bearing_units.py"}}
     # of the shaft the seat alone, so that other lengths, bores and overhangs find what is kept
-    depends = solved_content(scene) | {"shaft": seat(scene, name)}
+    depends = solved_content(scene) | {"shaft": scene.seat_diameter(name)}
     found = kept_together(
         scene, contents, rooms, lambda: [{"0": a} for a in solve()], cache, depends
     )

@@ -16,7 +16,6 @@ from fe_drivetrain.fidelity.unit_faces import (
     attached,
     face_of,
     parts_left_out,
-    seat,
     without_shaft,
 )
 from fe_drivetrain.interfaces import constraints
@@ -55,7 +54,7 @@ def coupled_stiffness(
     """
     ways = {name: face_of(scene, name, ring, coupling) for name in group}
     content = {"coupled stiffness of": list(group), "ways": ways, "method": method}
-    depends = solved_content(scene) | {"shaft": [seat(scene, name) for name in group]}
+    depends = solved_content(scene) | {"shaft": [scene.seat_diameter(name) for name in group]}
     rooms = {"fe_drivetrain.fidelity": {"bearing_units.py", "coupled_units.py"}}
 
     def solved() -> list[dict[str, Floats]]:

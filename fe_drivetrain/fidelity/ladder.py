@@ -312,7 +312,7 @@ class _Weighed(Mapping[str, Floats]):
         found, scene = dict(self._bare), self._scene
         for unit in scene.bearing_units:
             bearing = unit.bearing
-            bore = scene.shaft.seat_diameter(bearing.x, bearing.width, bearing.name)
+            bore = scene.seat_diameter(bearing.name)
             solids = solids_of_unit(unit, bore, scene.mesh)
             ring = solids.pop(bearing.name)
             if bearing.name not in self._on_shaft:

@@ -37,18 +37,6 @@ def face_of(scene: Scene, name: str, ring: bool, coupling: Coupling) -> tuple[bo
     return with_ring, _PRESCRIBED.get(unit.interface, coupling)
 
 
-def seat(scene: Scene, name: str) -> float:
-    """Diameter of the shaft under a bearing [m]: all of the shaft that its unit knows of.
-
-    Parameters
-    ----------
-    scene, name : Scene, str
-        The scene, and which bearing of it.
-    """
-    bearing = scene.bearing_unit(name).bearing
-    return scene.shaft.seat_diameter(bearing.x, bearing.width, name)
-
-
 def without_shaft(scene: Scene, rings: Mapping[str, bool]) -> tuple[Tied, list[str]]:
     """Bearing units without the shaft: their mesh and ties, and the parts in it that give.
 
@@ -62,7 +50,7 @@ def without_shaft(scene: Scene, rings: Mapping[str, bool]) -> tuple[Tied, list[s
     units, parts = [], []
     for name, with_ring in rings.items():
         unit = scene.bearing_unit(name)
-        bearing = unit.bearing.model_copy(update={"bore_diameter": seat(scene, name)})
+        bearing = unit.bearing.model_copy(update={"bore_diameter": scene.seat_diameter(name)})
         units.append(unit.model_copy(update={"bearing": bearing}))
         parts += [*([name] if with_ring else []), *unit.housing_parts]
     giving = [name for name, with_ring in rings.items() if with_ring]

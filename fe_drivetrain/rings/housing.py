@@ -183,7 +183,7 @@ def housing_solid(scene: Scene, name: str, bearing: Bearing) -> HousingSolid:
         The bearing does not fit the bore.
     """
     unit = scene.bearing_unit(name)
-    seat = scene.shaft.seat_diameter(unit.bearing.x, unit.bearing.width, name)
+    seat = scene.seat_diameter(name)
     inner = unit.bearing.model_copy(update={"bore_diameter": seat})
     bolts = unit.foreign.bolts if unit.foreign is not None else None
     if bolts is not None and bolts.hold != "washers":

@@ -284,6 +284,11 @@ class Scene(Keys):
         """The bearing unit of that name."""
         return next(unit for unit in self.bearing_units if unit.bearing.name == name)
 
+    def seat_diameter(self, name: str) -> float:
+        """Diameter of the shaft under the bearing of a unit [m]: all that the unit knows of it."""
+        bearing = self.bearing_unit(name).bearing
+        return self.shaft.seat_diameter(bearing.x, bearing.width, name)
+
 
 def with_materials(scene: Scene) -> Scene:
     """The scene with materials of the program that it uses among its own, where they have keys."""

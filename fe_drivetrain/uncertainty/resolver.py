@@ -30,7 +30,7 @@ def unit_content(scene: Scene, name: str) -> str:
     return repr(
         (
             unit.model_copy(update={"bearing": bearing.model_copy(update={"x": 0.0})}),
-            scene.shaft.seat_diameter(bearing.x, bearing.width, name),
+            scene.seat_diameter(name),
             scene.material_of(name),
             [scene.material_of(part) for part in unit.housing_parts],
             scene.mesh,

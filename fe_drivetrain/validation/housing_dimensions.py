@@ -149,7 +149,7 @@ def housed(scene: Scene, form: Form, x: Floats) -> Scene:
 def stub(scene: Scene, mesh: MeshSizes) -> Scene:
     """The bearing unit on a short piece of its shaft, without gearbox: what K_R needs."""
     bearing = scene.bearing_units[0].bearing
-    seat = scene.shaft.seat_diameter(bearing.x, bearing.width, bearing.name)
+    seat = scene.seat_diameter(bearing.name)
     shaft = Shaft(
         front=bearing.x - _STUB,
         sections=(Section(length=2 * _STUB, outer_diameter=seat),),
@@ -366,7 +366,7 @@ def mass(scene: Scene) -> float:
     """Of the housing [kg], outer ring included, exact."""
     unit = scene.bearing_units[0]
     bearing = unit.bearing
-    bore = scene.shaft.seat_diameter(bearing.x, bearing.width, bearing.name)
+    bore = scene.seat_diameter(bearing.name)
     volume = unit_solids(bearing, unit.block, bore)[1].volume
     return float(volume * scene.material_of(f"{bearing.name}.housing").density)
 

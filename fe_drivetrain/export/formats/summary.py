@@ -163,8 +163,7 @@ def _parts(scene: Scene) -> dict[str, PartFile]:
     # the bare shaft: rings are parts of their own
     found = {"shaft": _body(np.asarray(_bare_inertia(scene)), scene.shaft.front)}
     for unit in scene.bearing_units:
-        bearing = unit.bearing
-        bore = scene.shaft.seat_diameter(bearing.x, bearing.width, bearing.name)
+        bore = scene.seat_diameter(unit.bearing.name)
         for part, solid in solids_of_unit(unit, bore, scene.mesh).items():
             density = scene.material_of(part).density
             found[part] = PartFile(

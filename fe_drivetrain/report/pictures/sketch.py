@@ -136,7 +136,7 @@ def shaft_with_rings(scene: Scene) -> tuple[Shaft, ...]:
     rings = []
     for unit in scene.bearing_units:
         own = unit.bearing
-        seat = own.bore_diameter or scene.shaft.seat_diameter(own.x, own.width, own.name)
+        seat = own.bore_diameter or scene.seat_diameter(own.name)
         section = Section(
             length=own.width, outer_diameter=own.raceway_diameter, inner_diameter=seat
         )
