@@ -122,12 +122,7 @@ def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
             f"--only {choices.only}: the scene has no such bearing; name one of {', '.join(units)}"
         )
     known = read_catalogue(*choices.catalogues)
-    found: dict[str, tuple[str, Entry, RatedBearing]] = {}
-    seats = {
-        name: scene.shaft.seat_diameter(unit.bearing.x, unit.bearing.width, name)
-        for name, unit in units.items()
-    }
-    misfits: dict[str, str | None] = {}
+    found: dict[str, tuple[str, Entry, RatedBearing, float, str | None]] = {}
     for name, unit in units.items():
         entry_name = choices.named.get(name) or unit.catalogue
         if entry_name is None:
@@ -138,12 +133,12 @@ def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
             )
         changes = _profile(known.get(entry_name), choices.profiled)
         rated = rated_from_catalogue(entry_name, *choices.catalogues, **changes)
-        found[name] = entry_name, known[entry_name], rated
-        misfits[name] = check_seat(name, entry_name, known[entry_name], seats[name])
-    rolling = {name: rated.bearing for name, (_, _, rated) in found.items()}
+        entry, seat = known[entry_name], scene.seat_diameter(name)
+        found[name] = entry_name, entry, rated, seat, check_seat(name, entry_name, entry, seat)
+    rolling = {name: rated.bearing for name, (_, _, rated, _, _) in found.items()}
     body = scene_body(scene, 1)
     result = []
-    for name, (entry_name, entry, rated) in found.items():
+    for name, (entry_name, entry, rated, seat, misfit) in found.items():
         if choices.only not in (None, name):
             continue
         model = None
@@ -162,8 +157,7 @@ def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
             scene.gearbox.weight if choices.weight else 0.0,
             GRAVITY if choices.weight else 0.0,
         )
-        one = OneBearing(name, entry_name, entry, rated, path, seats[name], misfits[name])
-        result.append(one)
+        result.append(OneBearing(name, entry_name, entry, rated, path, seat, misfit))
     return result
 
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from fe_drivetrain.bearing.catalogue import read_catalogue
-from fe_drivetrain.bearing.seats import check_seat
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.strict_yaml import shown
@@ -225,20 +223,23 @@ def catalogue_warnings(scene: Scene) -> list[str]:
     scene : Scene
         The scene.
     """
+    named = {u.bearing.name: u.catalogue for u in scene.bearing_units if u.catalogue is not None}
+    if not named:
+        return []
+    # late, since it loads the compiled loops of bearings, which no other command here needs
+    from fe_drivetrain.bearing.catalogue import read_catalogue
+    from fe_drivetrain.bearing.seats import check_seat
+
     known, found = read_catalogue(), []
-    for unit in scene.bearing_units:
-        name, entry = unit.bearing.name, unit.catalogue
-        if entry is None:
-            continue
+    for name, entry in named.items():
         if entry not in known:
             found.append(
                 f"Catalogue entry {shown(entry)} of bearing {name!r} is none of the program's: give"
                 f" life a file that has it (--catalogue FILE), or use one of {', '.join(known)}."
             )
             continue
-        seat = scene.shaft.seat_diameter(unit.bearing.x, unit.bearing.width, name)
         try:
-            sentence = check_seat(name, entry, known[entry], seat)
+            sentence = check_seat(name, entry, known[entry], scene.seat_diameter(name))
         except InputError as error:
             sentence = f"life will refuse this: {error}."
         found += [sentence] if sentence else []

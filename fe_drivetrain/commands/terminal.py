@@ -55,7 +55,10 @@ def guarded(work: Callable[[], int], kept: str = KEPT) -> int:
             return work()
     except InputError as error:
         message, status = str(error), MISTAKE
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, SystemError) as error:
+        # Python makes the second of Ctrl-C in compiled code of a library, as numba's
+        if not any(isinstance(e, KeyboardInterrupt) for e in (error, error.__cause__)):
+            raise
         message, status = f"stopped; {kept}", STOPPED
     except OSError as error:
         sentence = sentence_about(error)
@@ -67,11 +70,6 @@ def guarded(work: Callable[[], int], kept: str = KEPT) -> int:
         if "Symlink loop" not in str(error):
             raise
         message, status = f"cannot write: {error}: give another folder with --out", MISTAKE
-    except SystemError as error:
-        # what Python makes of Ctrl-C in compiled code of a library, as numba's that loads loops
-        if not isinstance(error.__cause__, KeyboardInterrupt):
-            raise
-        message, status = f"stopped; {kept}", STOPPED
     write(sys.stderr, f"fe-drivetrain: {message}\n")
     return status
 

@@ -14,6 +14,7 @@ STATUS = Path("/proc/self/status")
 _OPTIONS = {"MALLOC_MMAP_THRESHOLD_": -3, "MALLOC_TRIM_THRESHOLD_": -1}
 _MOST = 2**30
 
+# Of gc.set_threshold: passes through what is younger before one through all; 10 is Python's own.
 _SELDOM = 100
 
 

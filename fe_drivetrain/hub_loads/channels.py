@@ -87,6 +87,11 @@ def _plain(unit: str) -> str:
     return re.sub(r"[\s·⋅*.\-]", "", unit)
 
 
+def not_utf8(kind: str, file: Path) -> InputError:
+    """The sentence about a table that is not text."""
+    return InputError(f"{kind} '{file}': it is not UTF-8 text: save it as UTF-8 CSV")
+
+
 def existing_file(path: str | os.PathLike[str], kind: str = "hub loads") -> Path:
     """The path of a file that exists and may be read; `InputError` where it does not."""
     file = Path(path)

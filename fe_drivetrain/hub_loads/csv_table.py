@@ -24,6 +24,7 @@ from fe_drivetrain.hub_loads.channels import (
     Channel,
     existing_file,
     in_si,
+    not_utf8,
     parse_number,
 )
 from fe_drivetrain.hub_loads.histories import UNITS, Attribute, LoadHistory, require_sound
@@ -53,9 +54,7 @@ def read_csv(path: str | os.PathLike[str]) -> LoadHistory:
         with file.open(encoding="utf-8-sig") as stream:
             channels, rows, unread = _channels(file, stream, attributes)
     except UnicodeDecodeError as error:
-        raise InputError(
-            f"hub loads '{file}': it is not UTF-8 text: save it as UTF-8 CSV"
-        ) from error
+        raise not_utf8("hub loads", file) from error
     except csv.Error as error:
         raise InputError(f"hub loads '{file}': {error}; correct the table") from error
 

@@ -23,6 +23,7 @@ from fe_drivetrain.hub_loads.channels import (
     Channel,
     existing_file,
     in_si,
+    not_utf8,
     without_unit,
 )
 from fe_drivetrain.hub_loads.csv_table import is_of_point, point_loads, read_csv
@@ -144,7 +145,7 @@ def read_recorded(
     if is_table and not loads_mapped:
         history = read_csv(file)
         if azimuth is not None:
-            history = _turned_back(history, _read_of(history), azimuth, mapping)
+            history = _turned_back(history, azimuth, mapping)
     else:
         history = _of_channels(file, channels, named, mapping)
         if is_table:
@@ -235,8 +236,8 @@ def _with_points(
     read = f"{_read_of(history)}; {', '.join(f'{c.name} [{c.unit}]' for c in own)}"
     at = point_loads(str(history.attributes["source"]), own)
     if azimuth is not None:  # those at the hub are turned already
-        there = replace(history, at=at)
-        at = dict(_turned_back(there, read, azimuth, mapping).at)
+        angle = _angle(history, azimuth, mapping)
+        at = {point: _of_fixed_frame(loads, angle) for point, loads in at.items()}
         read += " turned back, too"
     return replace(history, at=at, attributes={**history.attributes, "channels": read})
 
@@ -285,20 +286,24 @@ def _azimuth(file: Path, channels: Mapping[str, Channel], named: Mapping[str, Ch
     return found
 
 
-def _turned_back(
-    history: LoadHistory, read: str, azimuth: Channel, mapping: ChannelMap
-) -> LoadHistory:
+def _angle(history: LoadHistory, azimuth: Channel, mapping: ChannelMap) -> Floats:
+    """Angle by which the rotor has turned since blade 1 pointed up [rad]."""
+    source = str(history.attributes["source"])
+    angle = in_si(source, azimuth, ANGLE_UNITS)
+    require_sound(f"hub loads '{source}'", history.time, {azimuth.name: angle})
+    return np.asarray(angle - np.radians(mapping.azimuth_blade1_up))
+
+
+def _turned_back(history: LoadHistory, azimuth: Channel, mapping: ChannelMap) -> LoadHistory:
     """Loads of a rotating frame, at the hub and at load points, in the frame that does not turn."""
-    source, back = f"hub loads '{history.attributes['source']}'", mapping.azimuth_blade1_up
-    angle = in_si(str(history.attributes["source"]), azimuth, ANGLE_UNITS)
-    require_sound(source, history.time, {azimuth.name: angle})
-    words = f"; Fy, Fz, My, Mz turned back by {azimuth.name} [{azimuth.unit}]"
-    words += f" less {back:g} deg" if back else ""
-    read = read.removesuffix(_NOTHING_TURNED) + words
+    angle, back = _angle(history, azimuth, mapping), mapping.azimuth_blade1_up
+    read = _read_of(history).removesuffix(_NOTHING_TURNED)
+    read += f"; Fy, Fz, My, Mz turned back by {azimuth.name} [{azimuth.unit}]"
+    read += f" less {back:g} deg" if back else ""
     return replace(
         history,
-        loads=_of_fixed_frame(history.loads, angle - np.radians(back)),
-        at={p: _of_fixed_frame(own, angle - np.radians(back)) for p, own in history.at.items()},
+        loads=_of_fixed_frame(history.loads, angle),
+        at={point: _of_fixed_frame(own, angle) for point, own in history.at.items()},
         attributes={**history.attributes, "channels": read},
     )
 
@@ -357,7 +362,7 @@ def csv_channels(
             encoding="utf-8-sig",
         )
     except UnicodeDecodeError as error:
-        raise _not_utf8(file) from error
+        raise not_utf8("table", file) from error
     except ValueError as error:
         raise InputError(
             f"table '{file}': {error}, counted below the header: correct the cell, or remove "
@@ -378,12 +383,8 @@ def _header(file: Path) -> tuple[int, list[str]]:
                     titles = line
                     break
     except UnicodeDecodeError as error:
-        raise _not_utf8(file) from error
+        raise not_utf8("table", file) from error
     return before, [title.strip() for title in next(csv.reader([titles]), [])]
-
-
-def _not_utf8(file: Path) -> InputError:
-    return InputError(f"table '{file}': it is not UTF-8 text: save it as UTF-8 CSV")
 
 
 def _named(file: Path, channels: Mapping[str, Channel], column: str, sign: float = 1.0) -> Channel:

@@ -1,6 +1,7 @@
 """A bearing unit: bearing, housing, and the joint between the two; typed and validated."""
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
@@ -35,8 +36,6 @@ SPHERICAL_JOINTS = ("sliding", "averaged", "rigid")
 _STIFFEST = 1e16  # beyond it a spring is rigid, and only harms the conditioning
 _SOFTEST = 1e-6  # below it round-off of the smallest turbine's shaft is stiffer
 
-_A_SPRING = f"a number from {_SOFTEST:g} to {_STIFFEST:g} [N/m, N m/rad], or 'rigid'"
-
 
 class Keys(BaseModel):
     """A mapping of a scene file: known keys only, and no truth values where numbers stand."""
@@ -52,46 +51,31 @@ def _no_booleans(value: Any) -> Any:
     return value
 
 
-def within_range(value: tuple[float | Literal["rigid"], ...]) -> Any:
-    """Refuse springs that are neither 0, nor rigid, nor of a size that is one.
+def within_range(value: tuple[float | Literal["rigid"], ...], *, free: bool = True) -> Any:
+    """Refuse springs that are neither rigid, nor of a size that is one, nor 0 where that is free.
 
     Raises
     ------
     ValueError
     """
     for k in value:
-        if k != "rigid" and k != 0 and not _SOFTEST <= k <= _STIFFEST:
-            raise ValueError(f"{k:g} must be 0, {_A_SPRING}")
+        if k != "rigid" and not (free and k == 0) and not _SOFTEST <= k <= _STIFFEST:
+            raise ValueError(
+                f"{k:g} must be {'0, ' if free else ''}a number from {_SOFTEST:g} to "
+                f"{_STIFFEST:g} [N/m, N m/rad], or 'rigid'"
+            )
     return value
 
 
-def above_zero(value: tuple[float | Literal["rigid"], ...]) -> Any:
-    """Refuse springs that are neither rigid nor of a size that is one: none is free.
-
-    Raises
-    ------
-    ValueError
-    """
-    for k in value:
-        if k != "rigid" and not _SOFTEST <= k <= _STIFFEST:
-            raise ValueError(f"{k:g} must be {_A_SPRING}")
-    return value
-
-
+_Six = Annotated[
+    tuple[float | Literal["rigid"], ...],
+    Field(min_length=6, max_length=6),
+    BeforeValidator(_no_booleans),
+]
 #: Along x, y, z [N/m] and about them [N m/rad]: each a number, or "rigid", or 0 for free.
-Springs = Annotated[
-    tuple[float | Literal["rigid"], ...],
-    Field(min_length=6, max_length=6),
-    BeforeValidator(_no_booleans),
-    AfterValidator(within_range),
-]
+Springs = Annotated[_Six, AfterValidator(within_range)]
 #: The same, where nothing is free.
-_Held = Annotated[
-    tuple[float | Literal["rigid"], ...],
-    Field(min_length=6, max_length=6),
-    BeforeValidator(_no_booleans),
-    AfterValidator(above_zero),
-]
+_Held = Annotated[_Six, AfterValidator(partial(within_range, free=False))]
 #: The same, or six rows of a full matrix.
 _Spring = Annotated[
     tuple[float | Literal["rigid"] | tuple[float, ...], ...],
