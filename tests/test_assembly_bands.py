@@ -8,13 +8,14 @@ from coarse_scenes import coarse_scene
 
 from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.compare.convergence import grid_convergence, scattered_band
-from fe_drivetrain.fidelity.adviser import Quantity, recovered_errors
+from fe_drivetrain.fidelity.adviser import recovered_errors
 from fe_drivetrain.fidelity.assembly_bands import (
     assembly_band,
     cached_reaction_errors,
     motion_error,
     reaction_error,
 )
+from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.geometry import MeshSizes
 from fe_drivetrain.response.influence_fields import (
     influences_of_all_reactions,

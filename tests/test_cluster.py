@@ -30,8 +30,8 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import AT_ONCE, mapped, pool, scheduled_by
 from fe_drivetrain.common.progress import silent
 from fe_drivetrain.common.threads import CORES_VARIABLE
-from fe_drivetrain.fidelity.adviser import Quantity
 from fe_drivetrain.fidelity.designs import compare_designs
+from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.histories.farm import Counting, counted_histories, piece
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.scene.reading import scene_text

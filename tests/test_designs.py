@@ -14,8 +14,8 @@ from fe_drivetrain.commands.designs import parse_values
 from fe_drivetrain.commands.studies import run_on_scene
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.fidelity import designs as designs_module
-from fe_drivetrain.fidelity.adviser import Quantity
 from fe_drivetrain.fidelity.designs import Difference, Value, compare_designs, scene_changes
+from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.report.results import Chart, read_results
 from fe_drivetrain.scene.reading import change_scene
 from fe_drivetrain.scene.units import unit_of_key

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain.fidelity.adviser import Quantity
 from fe_drivetrain.fidelity.ladder import shaft_level, statics_level
+from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.scene.reading import library_scene
 from fe_drivetrain.suite.case import find_cases
 

@@ -9,7 +9,7 @@ from fe_drivetrain.commands.app import app
 from fe_drivetrain.commands.terminal import MISTAKE, PASSED
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import wrench_transport
-from fe_drivetrain.fidelity.adviser import Quantity, advise
+from fe_drivetrain.fidelity.adviser import advise
 from fe_drivetrain.fidelity.ladder import (
     LevelModel,
     assembly_level,
@@ -17,6 +17,7 @@ from fe_drivetrain.fidelity.ladder import (
     shaft_level,
     statics_level,
 )
+from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.scene.scene import Scene

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain.commands.study_measures import sentence
+from fe_drivetrain.commands.study_measures import failure, sentence
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.histories.model_errors import (
     damage_ratio,
@@ -72,7 +72,17 @@ def test_a_load_that_never_changes_has_no_ratio_of_ranges() -> None:
 
 
 def test_the_answer_names_a_level_for_each_use() -> None:
-    found = sentence({"means": "1 beam", "extremes": "2 meridian", "fatigue": None}, 0.05)
-    assert "for means 1 beam; for extremes 2 meridian; for fatigue none" in found
-    none = sentence(dict.fromkeys(("means", "extremes", "fatigue")), 0.05)
+    errors = {
+        "1 beam": {"front, Fz": {"DEL, m = 3": 0.2, "DEL, m = 8": -0.4, "mean": 0.5}},
+        "2 meridian": {
+            "front, Fz": {"DEL, m = 3": 0.1, "DEL, m = 8": float("nan"), "mean": 0.0},
+            "rear, My": {"DEL, m = 3": -0.3, "DEL, m = 8": 0.2, "mean": 0.0},
+        },
+    }
+    worst = failure(errors, "fatigue")
+    assert worst == "rear, My: -30 % in the DEL, m = 3 at 2 meridian"
+    uses = {"means": "1 beam", "extremes": "2 meridian", "fatigue": None}
+    found = sentence(uses, {"fatigue": worst}, 0.05)
+    assert f"for means 1 beam; for extremes 2 meridian; for fatigue none ({worst})" in found
+    none = sentence(dict.fromkeys(uses), dict.fromkeys(uses, worst), 0.05)
     assert "no level below the assembly has the mean, extreme, or" in none

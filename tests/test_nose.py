@@ -10,7 +10,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.coupled.of_scene import scene_body
 from fe_drivetrain.export.calculix_plan import plan_deck
 from fe_drivetrain.export.formats.summary import summary
-from fe_drivetrain.fidelity.adviser import Quantity, advise
+from fe_drivetrain.fidelity.adviser import advise
 from fe_drivetrain.fidelity.energy_sensitivities import energy_slopes, total
 from fe_drivetrain.fidelity.ladder import (
     LevelModel,
@@ -20,6 +20,7 @@ from fe_drivetrain.fidelity.ladder import (
 )
 from fe_drivetrain.fidelity.level_costs import forecast
 from fe_drivetrain.fidelity.over_loads import imbalance
+from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.response.influence_fields import (
     influences_of_all_reactions,
     reaction_influences,

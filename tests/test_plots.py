@@ -5,8 +5,9 @@ import pytest
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.export.superelement import Superelement
-from fe_drivetrain.fidelity.adviser import Advice, LevelResult, Quantity
+from fe_drivetrain.fidelity.adviser import Advice, LevelResult
 from fe_drivetrain.fidelity.ladder import Cost, LevelModel
+from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.plots.figures import LEAST, figure, load_lines, stiffness_map
 from fe_drivetrain.plots.style import PALETTE

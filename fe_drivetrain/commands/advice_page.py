@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.fidelity.ablation import Effect, effects
-from fe_drivetrain.fidelity.adviser import Advice, LevelResult, Quantity, advise
+from fe_drivetrain.fidelity.adviser import Advice, LevelResult, advise
+from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.report.charts import chart, rounded, trace
 from fe_drivetrain.report.pictures.sketch import shaft_with_rings
 from fe_drivetrain.report.results import Cell, Chart, Section, Table, Text

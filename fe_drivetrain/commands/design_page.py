@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.fidelity.adviser import Quantity
 from fe_drivetrain.fidelity.designs import Difference, compare_designs, scene_changes
 from fe_drivetrain.fidelity.ladder import TITLES
+from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.report.charts import bars
 from fe_drivetrain.report.results import Cell
 from fe_drivetrain.scene.scene import Scene

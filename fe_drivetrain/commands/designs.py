@@ -78,7 +78,7 @@ def compare_command(
         varied = None if vary is None else parse_values(vary)
         designs = _designs(scenes, changes, varied)
         from fe_drivetrain.commands.design_page import compared
-        from fe_drivetrain.fidelity.adviser import Quantity
+        from fe_drivetrain.fidelity.quantity import Quantity
         from fe_drivetrain.response.model import scene_loads
 
         names = scene_loads(next(iter(designs.values())))

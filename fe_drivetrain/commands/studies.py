@@ -165,7 +165,7 @@ def advise_command(
         hold_threads()
         found = named_scene(scene, parse_settings(set_ or ()))
         from fe_drivetrain.commands.advice_page import advised
-        from fe_drivetrain.fidelity.adviser import Quantity
+        from fe_drivetrain.fidelity.quantity import Quantity
         from fe_drivetrain.response.model import scene_loads
 
         name = quantity or f"{found.bearing_names[0]}.Fz"

@@ -16,6 +16,7 @@ from fe_drivetrain.fidelity.over_loads import (
     reaction_history,
 )
 from fe_drivetrain.histories.model_errors import (
+    USES,
     Measured,
     damage_ratio,
     good_enough_for,
@@ -69,6 +70,7 @@ def measures(
         return [reaction_history(model, name, one, weight, loads.gravity) for one in driving]
 
     worst: dict[str, dict[str, float]] = {level: {} for level in bounds}
+    seen: dict[str, dict[str, Mapping[str, float]]] = {level: {} for level in bounds}
     rows: list[Record] = []
     for name in levels.reference.reaction_matrices:
         reference = of(levels.reference, name)
@@ -88,6 +90,7 @@ def measures(
             for level, own in bounds.items():
                 errors = _larger([model_errors(counted(models[m]), truth) for m in own])
                 worst[level] = _larger([worst[level], errors])
+                seen[level][f"{name}, {FORCES[c]}"] = errors
                 rows.append(
                     {
                         "reaction": f"{name}, {FORCES[c]}",
@@ -108,16 +111,47 @@ def measures(
         rows,
     )
     page.data("design_measures", rows)
-    page.answer(sentence(good_enough_for(worst, within), within))
+    found = good_enough_for(worst, within)
+    failures = {use: failure(seen, use) for use, model in found.items() if model is None}
+    page.answer(sentence(found, failures, within))
 
 
-def sentence(found: Mapping[str, str | None], within: float) -> str:
+def failure(seen: Mapping[str, Mapping[str, Mapping[str, float]]], use: str) -> str:
+    """What keeps every level from being good enough for a use: the reaction, and its error.
+
+    Parameters
+    ----------
+    seen : mapping
+        By level and reaction: errors by measure, as shares; NaN where there is no such load.
+    use : str
+        Of `fe_drivetrain.histories.model_errors.USES`.
+
+    Returns
+    -------
+    str
+        The worst error of the level whose worst error is least.
+    """
+    found = [
+        max(
+            (abs(error), f"{reaction}: {100 * error:+.2g} % in the {measure} at {level}")
+            for reaction, errors in reactions.items()
+            for measure, error in errors.items()
+            if measure.startswith(USES[use]) and not np.isnan(error)
+        )
+        for level, reactions in seen.items()
+    ]
+    return min(found)[1]
+
+
+def sentence(found: Mapping[str, str | None], failures: Mapping[str, str], within: float) -> str:
     """Which model is good enough for means, extremes and fatigue.
 
     Parameters
     ----------
     found : mapping
         Of `good_enough_for`.
+    failures : mapping
+        By use for which there is none: see `failure`.
     within : float
         The tolerance, as a share.
     """
@@ -126,9 +160,9 @@ def sentence(found: Mapping[str, str | None], within: float) -> str:
         return (
             "Of the component across the shaft that varies most in each reaction, no level below "
             f"the assembly has the mean, extreme, or damage-equivalent load within {share}: none "
-            "is good enough for means, extremes or fatigue."
+            f"is good enough for means, extremes or fatigue ({failures['fatigue']})."
         )
-    words = [f"for {use} {model or 'none'}" for use, model in found.items()]
+    words = [f"for {use} {model or f'none ({failures[use]})'}" for use, model in found.items()]
     return (
         f"Of the component across the shaft that varies most in each reaction, the cheapest level "
         f"within {share} of the assembly is {'; '.join(words)} (fatigue: damage-equivalent loads "

@@ -1,5 +1,4 @@
 from .ablation import simplified as simplified
-from .adviser import Quantity as Quantity
 from .adviser import advise as advise
 from .adviser import banded_assembly as banded_assembly
 from .assembly_bands import LEAST_ORDER as LEAST_ORDER
@@ -52,6 +51,7 @@ from .over_loads import levels_of as levels_of
 from .over_loads import reaction_history as reaction_history
 from .over_loads import relative_errors as relative_errors
 from .quantities import unit_numbers as unit_numbers
+from .quantity import Quantity as Quantity
 from .shaft_bands import banded_meridian as banded_meridian
 from .shaft_bands import banded_solid as banded_solid
 from .shafts import beam_shaft as beam_shaft

@@ -9,8 +9,8 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.fidelity.adviser import Quantity
 from fe_drivetrain.fidelity.ladder import housing_springs, shaft_level
+from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.fidelity.shafts import beam_shaft, condensed_shaft, meridian_shaft, ringed_shaft
 from fe_drivetrain.scene.scene import Scene
 

@@ -27,6 +27,7 @@ from fe_drivetrain.fidelity.assembly_bands import (
     reaction_error,
 )
 from fe_drivetrain.fidelity.bearing_units import UnitSolid
+from fe_drivetrain.fidelity.judgement import SLIGHT, is_within
 from fe_drivetrain.fidelity.ladder import (
     TITLES,
     LevelModel,
@@ -35,6 +36,7 @@ from fe_drivetrain.fidelity.ladder import (
     solved_assembly,
     statics_level,
 )
+from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.fidelity.shafts import condensed_shaft
 from fe_drivetrain.mesh.measures import mean_size
 from fe_drivetrain.plots.figures import error_against_time
@@ -44,69 +46,6 @@ from fe_drivetrain.scene.scene import Scene
 
 #: Nothing is taken from the cache: times are part of the answer.
 UNCACHED = Cache(None)
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """A requested quantity, as a row of numbers that is linear in the loads, or a stiffness.
-
-    Attributes
-    ----------
-    name : str
-        "NAME.Fx" to "NAME.Mz", a reaction of a bearing or of the gearbox; "hub.stiffness.ux" to
-        "hub.stiffness.rz", force over motion of the hub, all others of its loads zero.
-    load : Floats or None
-        (n,) factors of `model.scene_loads`; None for a reaction to all hub loads, one at a time.
-    """
-
-    name: str
-    load: Floats | None = None
-
-    def check(self, scene: Scene) -> None:
-        """Refuse what the scene does not have.
-
-        Raises
-        ------
-        InputError
-            The name is none of the scene's.
-        """
-        names = [*scene.bearing_names, "gearbox"]
-        known = [f"{name}.{c}" for name in names for c in FORCES]
-        known += [f"hub.stiffness.{motion}" for motion in MOTIONS]
-        if self.name not in known:
-            raise InputError(f"quantity {self.name!r} is unknown: use one of {', '.join(known)}")
-
-    @property
-    def unit(self) -> str:
-        """Unit of the value."""
-        component = self.name.rpartition(".")[2]
-        if self.name.startswith("hub.stiffness"):
-            return "N/m" if component[0] == "u" else "N m/rad"
-        return "N" if component[0] == "F" else "N m"
-
-    def columns(self, length: float, n: int) -> Floats:
-        """(n, k) factors of the n unit loads of the scene that each value is of, see `of`."""
-        if self.name.startswith("hub.stiffness"):
-            return np.eye(n)[:, [MOTIONS.index(self.name.rpartition(".")[2])]]
-        if self.load is not None:
-            return self.load[:, None]
-        scale = np.array([1.0, 1.0, 1.0, length, length, length])
-        return np.asarray(np.eye(n)[:, :6] * scale)
-
-    def of(self, model: LevelModel, length: float) -> Floats:
-        """(k,) its values: one, or one for each hub load, moments counting as length times 1 N."""
-        owner, _, component = self.name.partition(".")
-        if owner == "hub":
-            motion = MOTIONS.index(component.rpartition(".")[2])
-            if "hub" not in model.points:
-                return np.array([np.nan])
-            row = 6 * model.points.index("hub") + motion
-            return np.array([1.0 / model.compliance[row, row]])
-        row = model.reaction_matrices[owner][FORCES.index(component)]
-        if self.load is not None:
-            # 0 times what is not known is 0
-            return np.array([row[self.load != 0] @ self.load[self.load != 0]])
-        return np.asarray(row[:6] * np.array([1.0, 1.0, 1.0, length, length, length]))
 
 
 @dataclass(frozen=True)
@@ -156,6 +95,8 @@ class Advice:
         Index of the cheapest result that is within the tolerance; None where none is.
     springs : Mapping[str, Floats]
         Stiffness of the bearing units, faces held in shape, where the ladder went so far.
+    share : float
+        Size of a reaction over that of the largest of its kind (force or moment); 1 of a stiffness.
     """
 
     quantity: Quantity
@@ -163,6 +104,7 @@ class Advice:
     results: Sequence[LevelResult]
     chosen: int | None
     springs: Mapping[str, Floats] = field(default_factory=dict)
+    share: float = 1.0
 
     @property
     def top(self) -> LevelResult:
@@ -194,6 +136,19 @@ class Advice:
 
     def sentence(self) -> str:
         """The answer."""
+        return self._answer() + self._slight()
+
+    def _slight(self) -> str:
+        """Note on a reaction by which a study would judge no level."""
+        if not self.share < SLIGHT:
+            return ""
+        kind = "force" if self.quantity.unit == "N" else "moment"
+        return (
+            f" {self.quantity.name} is {100 * self.share:.2g} % of the largest {kind}: a study "
+            f"judges no level by less than {100 * SLIGHT:g} %."
+        )
+
+    def _answer(self) -> str:
         share = f"{100 * self.tolerance:g} %"
         if self.chosen is None:
             return (
@@ -287,7 +242,7 @@ def advise(
         # its time is a result, so it is solved
         model, seconds, (band,) = banded_assembly(scene, [quantity], report, UNCACHED)
         add(model, seconds, band.half_width, band)
-    return _judged(quantity, tolerance, results, springs)
+    return _judged(quantity, tolerance, results, springs, length)
 
 
 def _run_on_springs(
@@ -461,6 +416,7 @@ def _judged(
     tolerance: float,
     results: Sequence[LevelResult],
     springs: Mapping[str, Floats],
+    length: float,
 ) -> Advice:
     top = results[-1]
     if not np.linalg.norm(top.values) > 0:
@@ -475,11 +431,25 @@ def _judged(
     for number, result in enumerate(judged):
         # the uncertainty of the top counts against all levels below it
         uncertain = 0.0 if result is judged[-1] else result.error
-        known = result.estimate == 0.0 or uncertain + top.estimate <= tolerance
+        known = result.estimate == 0.0 or is_within(uncertain, top.estimate, tolerance)
         if known and np.isfinite(result.values).all():
             chosen = number
             break
-    return Advice(quantity, tolerance, judged, chosen, springs)
+    return Advice(quantity, tolerance, judged, chosen, springs, _share(quantity, top.model, length))
+
+
+def _share(quantity: Quantity, model: LevelModel, length: float) -> float:
+    """Size of a reaction over that of the largest of its kind; 1 of a stiffness."""
+    owner, _, component = quantity.name.partition(".")
+    if owner == "hub":
+        return 1.0
+    kind = FORCES[:3] if component in FORCES[:3] else FORCES[3:]
+    alike = [
+        replace(quantity, name=f"{name}.{c}") for name in model.reaction_matrices for c in kind
+    ]
+    sizes = [float(np.linalg.norm(other.of(model, length))) for other in alike]
+    own = float(np.linalg.norm(quantity.of(model, length)))
+    return own / max(own, *(size for size in sizes if np.isfinite(size)))
 
 
 def _difference(values: Floats, reference: Floats) -> float:

@@ -18,9 +18,10 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.reading import value_changes
-from fe_drivetrain.fidelity.adviser import Quantity, banded_assembly, parts_of_band
+from fe_drivetrain.fidelity.adviser import banded_assembly, parts_of_band
 from fe_drivetrain.fidelity.ladder import housing_springs, shaft_level, statics_level
 from fe_drivetrain.fidelity.quantities import NOISE
+from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.fidelity.shafts import condensed_shaft
 from fe_drivetrain.response.model import scene_loads
 from fe_drivetrain.scene.scene import Scene, coarser_scene

@@ -14,8 +14,8 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.fidelity.adviser import Quantity
 from fe_drivetrain.fidelity.ladder import LevelModel
+from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.response.model import LOADS, scene_loads
 from fe_drivetrain.scene.bearing_unit import SPHERICAL_JOINTS
 from fe_drivetrain.scene.scene import Scene

@@ -114,6 +114,15 @@ def damage_ratio(error: float, slope: float) -> float:
     return float((1.0 + error) ** slope)
 
 
+USES: Mapping[str, str] = {
+    "means": MEAN,
+    "load durations": DURATION,
+    "extremes": EXTREME,
+    "fatigue": "DEL",
+}
+"""What a level may be good enough for, with the beginning of the measures that it asks for."""
+
+
 def good_enough_for(
     errors: Mapping[str, Mapping[str, float]], within: float
 ) -> dict[str, str | None]:
@@ -132,7 +141,6 @@ def good_enough_for(
         "means", "load durations" (of bearings and gears), "extremes", "fatigue": the model, None
         where none is.
     """
-    uses = {"means": MEAN, "load durations": DURATION, "extremes": EXTREME, "fatigue": "DEL"}
     return {
         use: next(
             (
@@ -142,7 +150,7 @@ def good_enough_for(
             ),
             None,
         )
-        for use, measures in uses.items()
+        for use, measures in USES.items()
     }
 
 

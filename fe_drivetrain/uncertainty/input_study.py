@@ -19,7 +19,7 @@ from fe_drivetrain.common.jobs import Pool, pool
 from fe_drivetrain.common.made_by import program_hash
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.threads import cores
-from fe_drivetrain.fidelity.adviser import Advice, LevelResult, Quantity, advise
+from fe_drivetrain.fidelity.adviser import Advice, LevelResult, advise
 from fe_drivetrain.fidelity.quantities import (
     Number,
     Solved,
@@ -28,6 +28,7 @@ from fe_drivetrain.fidelity.quantities import (
     stiffness_names,
     without_zeros,
 )
+from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.fidelity.shafts import condensed_shaft, meridian_shaft
 from fe_drivetrain.response.makers import solved_by
 from fe_drivetrain.scene.scene import Coupling, Scene, Spread

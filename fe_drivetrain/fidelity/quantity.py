@@ -1,0 +1,76 @@
+"""A quantity that a level is asked for: a reaction, or a stiffness at the hub."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES, MOTIONS
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.fidelity.ladder import LevelModel
+from fe_drivetrain.scene.scene import Scene
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A requested quantity, as a row of numbers that is linear in the loads, or a stiffness.
+
+    Attributes
+    ----------
+    name : str
+        "NAME.Fx" to "NAME.Mz", a reaction of a bearing or of the gearbox; "hub.stiffness.ux" to
+        "hub.stiffness.rz", force over motion of the hub, all others of its loads zero.
+    load : Floats or None
+        (n,) factors of `model.scene_loads`; None for a reaction to all hub loads, one at a time.
+    """
+
+    name: str
+    load: Floats | None = None
+
+    def check(self, scene: Scene) -> None:
+        """Refuse what the scene does not have.
+
+        Raises
+        ------
+        InputError
+            The name is none of the scene's.
+        """
+        names = [*scene.bearing_names, "gearbox"]
+        known = [f"{name}.{c}" for name in names for c in FORCES]
+        known += [f"hub.stiffness.{motion}" for motion in MOTIONS]
+        if self.name not in known:
+            raise InputError(f"quantity {self.name!r} is unknown: use one of {', '.join(known)}")
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value."""
+        component = self.name.rpartition(".")[2]
+        if self.name.startswith("hub.stiffness"):
+            return "N/m" if component[0] == "u" else "N m/rad"
+        return "N" if component[0] == "F" else "N m"
+
+    def columns(self, length: float, n: int) -> Floats:
+        """(n, k) factors of the n unit loads of the scene that each value is of, see `of`."""
+        if self.name.startswith("hub.stiffness"):
+            return np.eye(n)[:, [MOTIONS.index(self.name.rpartition(".")[2])]]
+        if self.load is not None:
+            return self.load[:, None]
+        scale = np.array([1.0, 1.0, 1.0, length, length, length])
+        return np.asarray(np.eye(n)[:, :6] * scale)
+
+    def of(self, model: LevelModel, length: float) -> Floats:
+        """(k,) its values: one, or one for each hub load, moments counting as length times 1 N."""
+        owner, _, component = self.name.partition(".")
+        if owner == "hub":
+            motion = MOTIONS.index(component.rpartition(".")[2])
+            if "hub" not in model.points:
+                return np.array([np.nan])
+            row = 6 * model.points.index("hub") + motion
+            return np.array([1.0 / model.compliance[row, row]])
+        row = model.reaction_matrices[owner][FORCES.index(component)]
+        if self.load is not None:
+            # 0 times what is not known is 0
+            return np.array([row[self.load != 0] @ self.load[self.load != 0]])
+        return np.asarray(row[:6] * np.array([1.0, 1.0, 1.0, length, length, length]))
