@@ -22,6 +22,7 @@ from fe_drivetrain.fidelity import (
     LevelModel,
     Quantity,
     banded_assembly,
+    compare_designs,
     solved_assembly,
     statics_level,
 )
@@ -43,7 +44,13 @@ FINER, APART = (0.75, 0.55, 0.45, 0.4), 1.15
 #: Order of the reference: that of energy at a crack, where it converges most slowly.
 ORDER = 1.0
 
-STIFFNESS, REACTION = "stiffness at the hub", "reaction"
+STIFFNESS, REACTION, CHANGE = "stiffness at the hub", "reaction", "change to a like design"
+
+#: Every so many scenes are compared with one of another bore: a tenth more, or where there is none
+#: this share of the smallest diameter.
+CHANGED, BORE = 3, 0.25
+#: A tolerance that no level but the assembly is within.
+NEVER = 1e-12
 
 
 def quantities(scene: Scene) -> list[Quantity]:
@@ -98,8 +105,56 @@ def reference(scene: Scene, asked: list[Quantity]) -> list[tuple[Floats, Floats]
     return found
 
 
-def judged(run: Run, seed: int, scene: Scene) -> list[Record]:
-    """Bands and errors of one scene's quantities."""
+def of_another_bore(scene: Scene) -> Scene:
+    """The scene with a wider bore all along its shaft, or with one where it has none."""
+    sections = scene.shaft.sections
+    smallest = min(min(s.outer_diameter, s.outer_diameter_end or np.inf) for s in sections)
+    has = sections[0].inner_diameter
+    bore = 1.1 * has if has > 0.0 else BORE * smallest
+    bored = tuple(s.model_copy(update={"inner_diameter": bore}) for s in sections)
+    return scene.model_copy(update={"shaft": scene.shaft.model_copy(update={"sections": bored})})
+
+
+def changes(
+    run: Run, seed: int, scene: Scene, asked: list[Quantity], exact: list[tuple[Floats, Floats]]
+) -> list[Record]:
+    """Bands and errors of the changes of one scene's quantities to those of a like design."""
+    other = of_another_bore(scene)
+    exact_after = run.clocked("references", reference, other, asked)
+    found = run.clocked(
+        "changes with bands", compare_designs, {"first": scene, "other": other}, asked, NEVER
+    )
+    by_name = {one.quantity.name: one for one in found}
+    rows: list[Record] = []
+    for quantity, (first, left), (after, left_after) in zip(asked, exact, exact_after, strict=True):
+        one = by_name[quantity.name]
+        size = float(np.linalg.norm(first))
+        change = one.values[1].values - one.values[0].values
+        error = float(np.linalg.norm(change - (after - first))) / size
+        missing = float(np.linalg.norm(left_after - left)) / size
+        band = float(one.bands[0])
+        rows.append(
+            {
+                "seed": seed,
+                "interface": ", ".join(unit.interface for unit in scene.bearing_units),
+                "quantity": quantity.name,
+                "kind": CHANGE,
+                ERROR: error,
+                BAND: band,
+                "bands of both values, relative": sum(
+                    value.band * abs(value.size) for value in one.values
+                )
+                / size,
+                RATIO: band / error,
+                LEFT: missing,
+                HOLDS: error + missing <= band,
+            }
+        )
+    return rows
+
+
+def judged(run: Run, seed: int, scene: Scene, with_changes: bool) -> list[Record]:
+    """Bands and errors of one scene's quantities, and of their changes to a like design."""
     asked, length = quantities(scene), scene.shaft.length
     level, _, bands = run.clocked("assemblies with bands", banded_assembly, scene, asked)
     exact = run.clocked("references", reference, scene, asked)
@@ -125,14 +180,18 @@ def judged(run: Run, seed: int, scene: Scene) -> list[Record]:
                 "series": band.words,
             }
         )
-    return rows
+    return rows + (changes(run, seed, scene, asked, exact) if with_changes else [])
 
 
-def kept(run: Run, seed: int) -> list[Record]:
+def kept(run: Run, seed: int, with_changes: bool) -> list[Record]:
     """As `judged`, or what an earlier run found."""
     scene = random_scene(seed)
-    content = {"case": "band_coverage_scenes", "scene": scene.model_dump(mode="json")}
-    return run.kept(content, partial(judged, run, seed, scene))
+    content = {
+        "case": "band_coverage_scenes",
+        "scene": scene.model_dump(mode="json"),
+        "with changes": with_changes,
+    }
+    return run.kept(content, partial(judged, run, seed, scene, with_changes))
 
 
 @case(
@@ -147,7 +206,10 @@ def run(run: Run, page: Page) -> None:
     rows: list[Record] = []
     with run.side_by_side(1 if run.quick else count) as jobs:
         # the first are at work while others are meshed
-        started = [(scene, jobs.start(kept, seed)) for seed, scene in drawn(run, count)]
+        started = [
+            (scene, jobs.start(kept, seed, number % CHANGED == 0))
+            for number, (seed, scene) in enumerate(drawn(run, count))
+        ]
         for number, (_, job) in enumerate(started, 1):
             run.report(f"scenes ({number} of {count})")
             rows += job.result()
@@ -201,7 +263,9 @@ def run(run: Run, page: Page) -> None:
         f"more than {MOST_CELLS:,} elements are left out. The reference is half way from "
         f"a mesh of sizes times {FINER[1]:g}, or finer, to the limit at first order, and half of "
         "that way is added to the error where a band is judged. Of a reaction, error and band are "
-        "of the norm over the hub's loads."
+        "of the norm over the hub's loads. Every "
+        f"{CHANGED}rd scene is compared with one of another bore, as `compare` does: what both "
+        "meshes get wrong cancels in the change, and so it does in its band."
     )
     page.image(
         "The last of the random shafts, with the rings of its bearings",

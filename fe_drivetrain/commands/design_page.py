@@ -89,9 +89,9 @@ def compared(
         "largest band of a change, relative to the larger value [%]",
         100 * largest,
         100 * tolerance,
-        why="the tolerance that was requested, of both values together, relative to the larger",
-        source="the adviser's bands: half of what two bounds of the housings differ by and the "
-        "change from beam to meridian; of the assembly, its discretization error",
+        why="the tolerance that was requested, relative to the larger of the two values",
+        source="the adviser's rule, applied to the change: half of what two bounds of the housings "
+        "differ by and the change from beam to meridian; of the assembly, its discretization error",
     )
     page.section("What comes of it")
     if varied is None:
@@ -110,8 +110,10 @@ def compared(
             [what_level_two_lacks(one, names) for one in solid],
         )
     page.text(
-        "A change is relative to the value of the first design. Its band is what both values may "
-        "be wrong by together; a change inside its band may be none. Without a load, a reaction is "
+        "A change is relative to the value of the first design. Its band is found as that of a "
+        "value, from the change itself (errors that both designs have cancel), and holds a share "
+        "of the bands of both values as large as the change; a change inside its band may be none. "
+        "Without a load, a reaction is "
         "compared by its response to each of the six hub loads, moments scaled to forces by the "
         "length of the shaft, and its change has no sign."
     )
@@ -180,7 +182,7 @@ def why_solid(one: Difference, names: Sequence[str], tolerance: float) -> str:
     names : sequence of str
         Of the designs.
     tolerance : float
-        Of a change, half for each of its two values.
+        Allowed error of a change.
     """
     name, housing, shaft = _at_level_two(one, names)
     cause = (
@@ -191,8 +193,8 @@ def why_solid(one: Difference, names: Sequence[str], tolerance: float) -> str:
     )
     return (
         f"{one.quantity.name} needs level 4, since level 2 may be wrong by {housing + shaft:.2g} % "
-        f"in {name}, and {50 * tolerance:.2g} % is allowed, half of the tolerance for each of two "
-        f"designs. Most of that: {cause}."
+        f"in {name}, and the change by more than {100 * tolerance:.2g} %, the tolerance. Most of "
+        f"that: {cause}."
     )
 
 

@@ -22,11 +22,11 @@ from fe_drivetrain.common.progress import silent
 from fe_drivetrain.fidelity.assembly_bands import (
     COARSER,
     AssemblyBand,
-    assembly_band,
     motion_error,
     reaction_error,
 )
 from fe_drivetrain.fidelity.bearing_units import UnitSolid
+from fe_drivetrain.fidelity.change_bands import OnMeshes, OnSprings
 from fe_drivetrain.fidelity.judgement import SLIGHT, is_within
 from fe_drivetrain.fidelity.ladder import (
     TITLES,
@@ -306,12 +306,7 @@ def band_on_springs(values: Floats, bound: Floats, cheaper: Floats) -> float:
     float
         Half of what the bounds differ by, and the change from the level before.
     """
-    return sum(parts_of_band(values, bound, cheaper))
-
-
-def parts_of_band(values: Floats, bound: Floats, cheaper: Floats) -> tuple[float, float]:
-    """Both parts of `band_on_springs`: of the housings, and of the shaft."""
-    return _difference(bound, values) / 2, _difference(cheaper, values)
+    return OnSprings(values, bound, cheaper).half_width / float(np.linalg.norm(values))
 
 
 def banded_assembly(
@@ -321,6 +316,29 @@ def banded_assembly(
     cache: Cache | None = None,
 ) -> tuple[LevelModel, float, list[AssemblyBand]]:
     """Solve the assembly, and two on coarser meshes that give its values their bands.
+
+    For the arguments see `assembly_series`.
+
+    Returns
+    -------
+    LevelModel
+        The assembly on the finest mesh.
+    float
+        Wall time of that alone [s]; of reading it, where it was kept.
+    list[AssemblyBand]
+        Of each quantity.
+    """
+    level, seconds, series = assembly_series(scene, quantities, report, cache)
+    return level, seconds, [of.band for of in series]
+
+
+def assembly_series(
+    scene: Scene,
+    quantities: Sequence[Quantity],
+    report: Callable[[str], object] = silent,
+    cache: Cache | None = None,
+) -> tuple[LevelModel, float, list[OnMeshes]]:
+    """Solve the assembly on its mesh and on two coarser ones, and estimate its errors.
 
     Parameters
     ----------
@@ -339,11 +357,11 @@ def banded_assembly(
         The assembly on the finest mesh.
     float
         Wall time of that alone [s]; of reading it, where it was kept.
-    list[AssemblyBand]
-        Of each quantity.
+    list[OnMeshes]
+        Each quantity on all meshes.
     """
     length = scene.shaft.length
-    sizes, levels = [], []
+    sizes, levels, factors = [], [], []
     for number, factor in enumerate(COARSER, 1):
         report(f"level 4: assembly of solids ({number} of {len(COARSER) + 1})")
         coarser = scene.model_copy(update={"mesh": scene.mesh.scaled(factor)})
@@ -353,19 +371,26 @@ def banded_assembly(
             continue
         sizes.append(mean_size(coarse.mesh))
         levels.append(level)
+        factors.append(factor)
     report(f"level 4: assembly of solids ({len(COARSER) + 1} of {len(COARSER) + 1})")
     start = time.perf_counter()
     level, model, response = solved_assembly(scene, cache)
     seconds = time.perf_counter() - start
     sizes.append(mean_size(model.mesh))
     levels.append(level)
+    factors.append(1.0)
     report("level 4: errors estimated from recovered stresses")
     errors = recovered_errors(quantities, model, response, length)
-    bands = [
-        assembly_band(sizes, [quantity.of(level, length) for level in levels], error)
+    series = [
+        OnMeshes(
+            tuple(sizes),
+            tuple(quantity.of(level, length) for level in levels),
+            error,
+            tuple(factors),
+        )
         for quantity, error in zip(quantities, errors, strict=True)
     ]
-    return level, seconds, bands
+    return level, seconds, series
 
 
 def recovered_errors(

@@ -18,7 +18,8 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.reading import value_changes
-from fe_drivetrain.fidelity.adviser import banded_assembly, parts_of_band
+from fe_drivetrain.fidelity.adviser import assembly_series
+from fe_drivetrain.fidelity.change_bands import OnMeshes, OnSprings, change_band
 from fe_drivetrain.fidelity.ladder import housing_springs, shaft_level, statics_level
 from fe_drivetrain.fidelity.quantities import NOISE
 from fe_drivetrain.fidelity.quantity import Quantity
@@ -42,12 +43,15 @@ class Value:
     cheaper : tuple[float, float] or None
         The two parts of the band at level 2: half of what the bounds of the housings differ by, and
         the change from beam to meridian; None of what statics decides.
+    rests_on : OnSprings or OnMeshes, or None
+        The values that the band was found from; None of what statics decides.
     """
 
     values: Floats
     band: float
     level: int
     cheaper: tuple[float, float] | None = None
+    rests_on: OnSprings | OnMeshes | None = None
 
     @property
     def size(self) -> float:
@@ -81,7 +85,10 @@ class Difference:
 
     @property
     def bands(self) -> Floats:
-        """(n,) what each change may be wrong by: the bands of its two values together."""
+        """(n,) what each change may be wrong by: see `fe_drivetrain.fidelity.change_bands`.
+
+        The bands of its two values together where nothing is known of what they have in common.
+        """
         return self._over(self._uncertain, self._first)
 
     @property
@@ -111,7 +118,11 @@ class Difference:
         return max(abs(self.values[0].size), abs(other.size))
 
     def _uncertain(self, other: Value) -> float:
-        return sum(value.band * abs(value.size) for value in (self.values[0], other))
+        first = self.values[0]
+        band = change_band(first.rests_on, other.rests_on, (first.size, other.size))
+        if band is not None:
+            return band
+        return sum(value.band * abs(value.size) for value in (first, other))
 
     def _absolute(self, other: Value) -> float:
         first = self.values[0].values
@@ -199,8 +210,7 @@ def compare_designs(
     if quantities is None:
         something = [_not_zero(found[name], scene) for name, scene in designs.items()]
         common = [q for q in common if any(q in some for some in something)]
-    # half of the tolerance for each of the two values of a change
-    short = [q for q in common if any(not found[d][q].band <= tolerance / 2 for d in designs)]
+    short = [q for q in common if not _is_within(found, q, tolerance)]
     if short:
         items = [(name, scene, _chosen(asked[name], short)) for name, scene in designs.items()]
         for name, better in zip(designs, mapped(_as_assembly, items, 1, report), strict=True):
@@ -248,14 +258,20 @@ def _not_zero(found: Mapping[str, Value], scene: Scene) -> list[str]:
     return [name for name in found if sizes.get(name, np.inf) > least]
 
 
+def _is_within(found: Mapping[str, Mapping[str, Value]], name: str, tolerance: float) -> bool:
+    """Whether the band of each change of a quantity is within the tolerance."""
+    changes = Difference(Quantity(name), tuple(of[name] for of in found.values()))
+    return bool((changes.rank_bands <= tolerance).all())
+
+
 def _as_assembly(
     report: Progress, name: str, scene: Scene, quantities: Sequence[Quantity]
 ) -> dict[str, Value]:
     """Values of the assembly of solids, by name of the quantity."""
-    level, _, bands = banded_assembly(scene, quantities, _named(report, name))
+    level, _, series = assembly_series(scene, quantities, _named(report, name))
     return {
-        quantity.name: Value(quantity.of(level, scene.shaft.length), band.half_width, level.level)
-        for quantity, band in zip(quantities, bands, strict=True)
+        quantity.name: Value(of.values[-1], of.band.half_width, level.level, rests_on=of)
+        for quantity, of in zip(quantities, series, strict=True)
     }
 
 
@@ -289,6 +305,8 @@ def _on_springs(
         if not values.any():
             found[one.name] = Value(values, 0.0, 2)
             continue
-        parts = parts_of_band(values, one.of(bound, length), one.of(beam, length))
-        found[one.name] = Value(values, sum(parts), 2, parts)
+        on = OnSprings(values, one.of(bound, length), one.of(beam, length))
+        size = float(np.linalg.norm(values))
+        housing, shaft = (part / size for part in on.parts)
+        found[one.name] = Value(values, housing + shaft, 2, (housing, shaft), on)
     return found

@@ -1,0 +1,139 @@
+"""Bands of the change of a quantity from one design to another.
+
+What two designs have in common errs alike in both: a mesh that makes one 2 % too stiff makes one
+that is nearly equal 2 % too stiff, too, and their change is not 4 % uncertain. So the rule that
+gives a value its band is applied to the change itself: on both bounds of the housings, from beam to
+meridian, over the same series of meshes, from the difference of the recovered errors.
+
+Designs have less in common the more they differ. Of the sum of their own bands, the share that they
+differ by is added, up to the whole of that sum: a quantity that doubles has the band of two values
+that know nothing of each other.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.fidelity.assembly_bands import AssemblyBand, assembly_band
+
+
+@dataclass(frozen=True)
+class OnSprings:
+    """A quantity of the shaft on housings as springs.
+
+    Attributes
+    ----------
+    values, bound : Floats
+        (k,) of the meridian on housings whose faces keep their shape, and on the softest.
+    cheaper : Floats
+        (k,) of the beam on the first.
+    """
+
+    values: Floats
+    bound: Floats
+    cheaper: Floats
+
+    @property
+    def parts(self) -> tuple[float, float]:
+        """Half of what the bounds differ by, and the change from the beam, in the unit of it."""
+        housing = float(np.linalg.norm(self.bound - self.values)) / 2.0
+        return housing, float(np.linalg.norm(self.cheaper - self.values))
+
+    @property
+    def half_width(self) -> float:
+        """Half width of the band of the values' norm, in the unit of the quantity."""
+        return sum(self.parts)
+
+    def __sub__(self, other: OnSprings) -> OnSprings:
+        """The change from another design, on each of the three models."""
+        return OnSprings(
+            self.values - other.values, self.bound - other.bound, self.cheaper - other.cheaper
+        )
+
+
+@dataclass(frozen=True)
+class OnMeshes:
+    """A quantity of an assembly on a series of meshes.
+
+    Attributes
+    ----------
+    sizes : tuple[float, ...]
+        Mean size of the elements of each mesh, coarse first [m].
+    values : tuple[Floats, ...]
+        (k,) of each mesh.
+    recovered : Floats
+        (k,) errors of the values of the finest mesh, estimated from recovered stresses.
+    factors : tuple[float, ...]
+        Of each mesh, its sizes as asked for over those of the finest.
+    """
+
+    sizes: tuple[float, ...]
+    values: tuple[Floats, ...]
+    recovered: Floats
+    factors: tuple[float, ...]
+
+    @property
+    def band(self) -> AssemblyBand:
+        """The band of the values of the finest mesh, relative to their norm."""
+        return assembly_band(self.sizes, self.values, self.recovered)
+
+    @property
+    def half_width(self) -> float:
+        """Half width of the band of the values' norm, in the unit of the quantity."""
+        size = float(np.linalg.norm(self.values[-1]))
+        return self.band.half_width * size if size > 0.0 else 0.0
+
+    def __sub__(self, other: OnMeshes) -> OnMeshes:
+        """The change from another design, on meshes that both have."""
+        both = [f for f in self.factors if f in other.factors]
+        one, two = ([of.factors.index(f) for f in both] for of in (self, other))
+        return OnMeshes(
+            tuple((self.sizes[a] + other.sizes[b]) / 2.0 for a, b in zip(one, two, strict=True)),
+            tuple(self.values[a] - other.values[b] for a, b in zip(one, two, strict=True)),
+            self.recovered - other.recovered,
+            tuple(both),
+        )
+
+    @property
+    def is_series(self) -> bool:
+        """Whether its meshes say something of each other: see `assembly_band`."""
+        return len(self.band.sizes) > 1
+
+
+def change_band(
+    first: OnSprings | OnMeshes | None,
+    other: OnSprings | OnMeshes | None,
+    sizes: tuple[float, float],
+) -> float | None:
+    """Half width of the band of a change, in the unit of the quantity.
+
+    Parameters
+    ----------
+    first, other : OnSprings or OnMeshes, or None
+        What the values of both designs rest on.
+    sizes : tuple[float, float]
+        The values of both, or the norms of several.
+
+    Returns
+    -------
+    float or None
+        None where nothing is known of what the two have in common: levels differ, or there is no
+        series of meshes, so that the scatter of one mesh is not known.
+    """
+    change: OnSprings | OnMeshes
+    if isinstance(first, OnSprings) and isinstance(other, OnSprings):
+        change, difference = other - first, other.values - first.values
+    elif isinstance(first, OnMeshes) and isinstance(other, OnMeshes):
+        change, difference = other - first, other.values[-1] - first.values[-1]
+    else:
+        return None
+    if not difference.any():
+        return 0.0
+    if isinstance(change, OnMeshes) and not change.is_series:
+        return None
+    whole = first.half_width + other.half_width
+    apart = float(np.linalg.norm(difference)) / max(map(abs, sizes))
+    return min(whole, change.half_width + apart * whole)
