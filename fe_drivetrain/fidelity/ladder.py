@@ -44,6 +44,8 @@ TITLES = (
     "assembly of solids",
 )
 
+#: Wall over radius below which a tube gives way noticeably where a load enters.
+_THIN = 0.02
 _ROUND_A_NOSE = "rings of bearings on the nose, and the bedplate that holds it"  # left out
 
 
@@ -194,9 +196,12 @@ def shaft_level(
     if on_shaft != everywhere:
         neglects.append("what the rings of bearings do to the shaft")
     if level == 1:
-        if any(piece.fillet > 0 for piece in scene.shaft.pieces):
+        pieces = scene.shaft.pieces
+        if any(piece.fillet > 0 for piece in pieces):
             neglects.append("fillets")
         neglects.append("sections that do not stay plane near steps and seats")
+        if any(p.outer_diameter - p.inner_diameter < _THIN * p.outer_diameter for p in pieces):
+            neglects.append("bending of the shaft's thin wall where loads enter")
     if scene.nose is not None:
         neglects.append(_ROUND_A_NOSE)
     if not scene.bearing_units:
