@@ -307,7 +307,7 @@ ARRAYS = {f"face {k}": np.arange(k * 5.0, k * 5 + 4) for k in range(4)}
 def entry(tmp_path_factory: pytest.TempPathFactory) -> tuple[Cache, Path, bytes]:
     folder = tmp_path_factory.mktemp("entry")
     Cache(folder).keep("meshes", CONTENT, ARRAYS)
-    (file,) = folder.rglob("*.npz")
+    (file,) = folder.rglob("*.kept")
     return Cache(folder), file, file.read_bytes()
 
 
@@ -327,10 +327,7 @@ def test_a_cache_damaged_anywhere_gives_no_other_numbers(
     else:
         changed[place:place] = bytes([flip]) * 7
     file.write_bytes(changed)
-    loaded = cache.load("meshes", CONTENT)
-    if loaded is not None:
-        for name in set(loaded) & set(ARRAYS):
-            np.testing.assert_array_equal(loaded[name], ARRAYS[name])
+    assert (cache.load("meshes", CONTENT) is not None) == (bytes(changed) == content)
 
 
 def test_a_kill_at_any_moment_of_keeping_leaves_a_sound_cache(tmp_path: Path) -> None:
