@@ -24,7 +24,7 @@ import numpy as np
 import rich.progress  # noqa: F401 - once here, not in each of the forked children
 
 from fe_drivetrain.commands import run_and_print, show_steps
-from fe_drivetrain.common import CACHE_VARIABLE, Cache, rigid_motions
+from fe_drivetrain.common import CACHE_VARIABLE, Cache, rigid_motions, until_stopped
 from fe_drivetrain.geometry import NO_BANDS, MeshSizes, Shaft
 from fe_drivetrain.geometry import Section as ShaftSection
 from fe_drivetrain.interfaces import dofs
@@ -391,4 +391,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(until_stopped(main))

@@ -190,4 +190,6 @@ _ACTIONS = {
 }
 
 if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:]))
+    from fe_drivetrain.common.stopped import until_stopped
+
+    sys.exit(until_stopped(lambda: main(*sys.argv[1:])))
