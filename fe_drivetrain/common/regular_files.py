@@ -11,6 +11,9 @@ import stat
 from pathlib import Path
 from typing import BinaryIO
 
+MOST_BYTES = 300_000_000
+"""Of a file that is read whole, where nothing else is said."""
+
 _KINDS = {
     stat.S_IFIFO: "a pipe",
     stat.S_IFCHR: "a device",
@@ -24,7 +27,10 @@ class NotRegularError(OSError):
 
 
 class TooLargeError(OSError):
-    """A file that is read whole is larger than may be; the message says how large that is."""
+    """A file that is read whole has more bytes than it may have, which it is made of."""
+
+    def __init__(self, most: int) -> None:
+        super().__init__(f"it has more than {most} bytes, the most that is read of such a file")
 
 
 def opened(path: str | os.PathLike[str]) -> BinaryIO:
@@ -57,8 +63,15 @@ def opened(path: str | os.PathLike[str]) -> BinaryIO:
     return file
 
 
-def require_regular(path: str | os.PathLike[str]) -> None:
+def require_regular(path: str | os.PathLike[str], most: int | None = None) -> None:
     """Refuse what is no regular file, before a library opens it by its name.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file.
+    most : int or None
+        Bytes that it may have.
 
     Raises
     ------
@@ -66,11 +79,16 @@ def require_regular(path: str | os.PathLike[str]) -> None:
         It cannot be looked at, or is a folder.
     NotRegularError
         It is a pipe, a device or a socket.
+    TooLargeError
+        It has more bytes.
     """
-    _require_regular(os.stat(path), path)
+    status = os.stat(path)
+    _require_regular(status, path)
+    if most is not None and status.st_size > most:
+        raise TooLargeError(most)
 
 
-def content_of(path: str | os.PathLike[str], most: int) -> bytes:
+def content_of(path: str | os.PathLike[str], most: int = MOST_BYTES) -> bytes:
     """All bytes of a regular file.
 
     Parameters
@@ -88,13 +106,14 @@ def content_of(path: str | os.PathLike[str], most: int) -> bytes:
         It has more bytes.
     """
     with opened(path) as file:
-        content = file.read(most + 1)
-    if len(content) > most:
-        raise TooLargeError(f"it has more than {most} bytes, the most that is read of such a file")
+        too_large = os.fstat(file.fileno()).st_size > most
+        content = b"" if too_large else file.read(most + 1)
+    if too_large or len(content) > most:  # it may have grown meanwhile
+        raise TooLargeError(most)
     return content
 
 
-def text_of(path: str | os.PathLike[str], most: int, encoding: str = "utf-8") -> str:
+def text_of(path: str | os.PathLike[str], most: int = MOST_BYTES, encoding: str = "utf-8") -> str:
     r"""The text of a regular file, whose lines end with ``\n`` however they end in the file.
 
     Raises

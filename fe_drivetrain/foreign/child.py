@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +22,7 @@ def main(request_file: str, result_file: str) -> int:
     from fe_drivetrain.common.errors import InputError
 
     try:
-        arrays = _ACTIONS[request["action"]](request)
+        arrays = _action(request["action"])(request)
         np.savez(result_file, **arrays)
         return 0
     except InputError as error:
@@ -180,6 +182,13 @@ def _read_mesh(request: dict[str, Any]) -> dict[str, Any]:
     from fe_drivetrain.foreign.mesh_file import read
 
     return read(request["file"])
+
+
+def _action(name: str) -> Callable[[dict[str, Any]], dict[str, Any]]:
+    if name in _ACTIONS:
+        return _ACTIONS[name]
+    module, _, function = name.partition(":")
+    return getattr(import_module(module), function)  # type: ignore[no-any-return]
 
 
 _ACTIONS = {
