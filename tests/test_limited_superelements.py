@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Result
+from tiny_case import Result
 
 from fe_drivetrain import export
 from fe_drivetrain.common.errors import InputError

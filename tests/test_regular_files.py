@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import Result
+from tiny_case import Result
 
 from fe_drivetrain import export
 from fe_drivetrain.bearing import catalogue

@@ -11,8 +11,8 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from conftest import Result
 from numba import njit
+from tiny_case import Result
 
 from fe_drivetrain.commands import terminal
 from fe_drivetrain.common.errors import InputError
