@@ -93,7 +93,7 @@ def test_a_key_depends_on_content_alone_and_on_every_digit() -> None:
 def test_a_damaged_entry_is_ignored_and_rewritten(tmp_path: Path, damage: str) -> None:
     cache = Cache(tmp_path)
     cache.keep("meshes", CONTENT, arrays())
-    (file,) = tmp_path.rglob("*.kept")
+    (file,) = tmp_path.rglob("*.arrays")
     content = bytearray(file.read_bytes())
     if damage == "cut":
         content = content[: len(content) // 2]
@@ -142,7 +142,7 @@ def test_beyond_the_limit_what_was_used_longest_ago_is_dropped(tmp_path: Path) -
     cache = Cache(tmp_path)
     for k in range(4):
         cache.keep("meshes" if k % 2 else "hub-loads", {"k": k}, arrays(k))
-    files = sorted(tmp_path.rglob("*.kept"), key=lambda file: file.stat().st_mtime_ns)
+    files = sorted(tmp_path.rglob("*.arrays"), key=lambda file: file.stat().st_mtime_ns)
     size = files[0].stat().st_size
     for age, file in enumerate(reversed(files)):
         os.utime(file, (1e9 - age, 1e9 - age))
@@ -283,7 +283,7 @@ def test_a_mesh_that_is_not_as_it_was_written_is_made_again(
 ) -> None:
     scene = coarse_scene("bonded")
     made = mesh_scene(scene)
-    (file,) = folder.rglob("*.kept")
+    (file,) = folder.rglob("*.arrays")
     if damage == "cut":
         file.write_bytes(file.read_bytes()[:-1000])
     else:

@@ -136,7 +136,7 @@ def test_an_entry_that_is_not_sound_is_solved_again(
 ) -> None:
     cache = Cache(tmp_path)
     cached_response(bonded_model, cache=cache)
-    (file,) = tmp_path.rglob("*.kept")
+    (file,) = tmp_path.rglob("*.arrays")
     damage(file, entry(file))
     again = cached_response(bonded_model, cache=cache)
     assert not again.kept
@@ -150,7 +150,7 @@ def test_solutions_count_for_the_bound_in_size(
 ) -> None:
     cache = Cache(tmp_path, limit=0)
     cached_response(bonded_model, cache=cache)
-    assert list(tmp_path.rglob("*.kept")) == []
+    assert list(tmp_path.rglob("*.arrays")) == []
 
 
 def test_bounds_of_a_bearing_unit_are_kept_to_the_last_bit(

@@ -308,7 +308,7 @@ ARRAYS = {f"face {k}": np.arange(k * 5.0, k * 5 + 4) for k in range(4)}
 def entry(tmp_path_factory: pytest.TempPathFactory) -> tuple[Cache, Path, bytes]:
     folder = tmp_path_factory.mktemp("entry")
     Cache(folder).keep("meshes", CONTENT, ARRAYS)
-    (file,) = folder.rglob("*.kept")
+    (file,) = folder.rglob("*.arrays")
     return Cache(folder), file, file.read_bytes()
 
 

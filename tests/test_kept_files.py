@@ -127,7 +127,7 @@ def test_what_does_not_fit_is_made_again_and_said(
         assert all(cache.load(kind, content) is not None for content in contents)
         assert cache.load(kind, {"file": "c"}) is None
         assert not caplog.records  # what was never kept is no news
-        first, second = (tmp_path / kind / f"{k}.kept" for k in map(key, contents))
+        first, second = (tmp_path / kind / f"{k}.arrays" for k in map(key, contents))
         damage(first, second)
         assert cache.load(kind, contents[0]) is None
     assert re.match(rf"kept {kind} are made again: {first.name}", caplog.messages[0])

@@ -291,7 +291,7 @@ def test_kept_histories_are_used_again_and_equal(
     assert count_made == PAIR[1:]
     np.testing.assert_array_equal(first.loads[0], fresh.loads[0])
     np.testing.assert_array_equal(second.loads, fresh.loads)
-    assert all(file.suffix == ".kept" for file in (tmp_path / "hub-loads").iterdir())
+    assert all(file.suffix == ".arrays" for file in (tmp_path / "hub-loads").iterdir())
 
 
 @pytest.mark.parametrize("damage", ["cut", "flip", "empty", "other", "short"])

@@ -337,7 +337,7 @@ def _damaged(caches: Path, out: Path, stiffness: float) -> tuple[int, int]:
     """Damages of a kept mesh, and how many of them changed the mesh."""
     shutil.rmtree(caches, ignore_errors=True)
     ended(*child(lambda: run_new(out)))
-    (file,) = caches.rglob("*.kept")
+    (file,) = caches.rglob("*.arrays")
     content = file.read_bytes()
     cache = Cache(caches)
     sound = cache.load("meshes", MESH_CONTENT)

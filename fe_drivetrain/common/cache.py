@@ -38,8 +38,8 @@ Kind = Literal["figures", "hub-loads", "life-digests", "load-digests", "meshes",
 _OFF = ("off", "0", "no", "false")
 # Only names of our own making are ever deleted: the user may have named any folder.
 # Those of earlier versions of this program, which end in .npz, are dropped as they grow old.
-_OURS = re.compile(r"[0-9a-f]{32,64}\.(kept|npz)")
-_UNFINISHED = r"\.[0-9a-f]{32,64}\.(kept|npz)\.[0-9a-f]{32}\.tmp"
+_OURS = re.compile(r"[0-9a-f]{32,64}\.(arrays|npz)")
+_UNFINISHED = r"\.[0-9a-f]{32,64}\.(arrays|npz)\.[0-9a-f]{32}\.tmp"
 
 _log = logging.getLogger(__name__)
 

@@ -24,7 +24,7 @@ from fe_drivetrain.common.regular_files import opened
 FORM = 1
 """Version of the form: files of another one are made again."""
 
-SUFFIX = ".kept"
+SUFFIX = ".arrays"
 
 _START = re.compile(rb"fe-drivetrain kept file (\d{4})\n([0-9a-f]{64}) (\d{16})\n")
 _START_LENGTH = 24 + 5 + 64 + 1 + 16 + 1
