@@ -46,7 +46,7 @@ def source_hash(rooms: Mapping[str, Set[str] | None]) -> str:
 
 
 @lru_cache(maxsize=256)
-def _digest(path: str, modified: int, size: int) -> str:
+def _digest(path: str, *_state: int) -> str:
     with opened(path) as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
@@ -61,7 +61,9 @@ def file_digest(path: str) -> str:
     """
     try:
         found = Path(path).stat()
-        return _digest(str(path), found.st_mtime_ns, found.st_size)
+        # a copy may have taken over the first two, and no program sets the last
+        state = found.st_mtime_ns, found.st_size, found.st_ino, found.st_ctime_ns
+        return _digest(str(path), *state)
     except OSError:
         return ""
 
