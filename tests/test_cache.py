@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from coarse_scenes import COARSE, coarse_scene
+from kept_entries import entry, rewrite
 
 from fe_drivetrain.common import cache as cache_module
 from fe_drivetrain.common.cache import CACHE_VARIABLE, Cache, key, switched_off, user_cache
@@ -88,11 +89,11 @@ def test_a_key_depends_on_content_alone_and_on_every_digit() -> None:
     assert len({key(content) for content in others}) == len(others)
 
 
-@pytest.mark.parametrize("damage", ["cut", "empty", "text", "header", "middle", "directory"])
+@pytest.mark.parametrize("damage", ["cut", "empty", "text", "header", "middle", "end"])
 def test_a_damaged_entry_is_ignored_and_rewritten(tmp_path: Path, damage: str) -> None:
     cache = Cache(tmp_path)
     cache.keep("meshes", CONTENT, arrays())
-    (file,) = tmp_path.rglob("*.npz")
+    (file,) = tmp_path.rglob("*.arrays")
     content = bytearray(file.read_bytes())
     if damage == "cut":
         content = content[: len(content) // 2]
@@ -101,30 +102,14 @@ def test_a_damaged_entry_is_ignored_and_rewritten(tmp_path: Path, damage: str) -
     elif damage == "text":
         content = bytearray(b"not an archive")
     else:
-        where = {"header": 60, "middle": len(content) // 2, "directory": len(content) - 40}
+        where = {"header": 60, "middle": len(content) // 2, "end": -1}
         content[where[damage]] ^= 0x55
     file.write_bytes(content)
-    loaded = cache.load("meshes", CONTENT)
-    if loaded is not None:  # the byte was one that no reader looks at
-        assert all(np.array_equal(loaded[name], array) for name, array in arrays().items())
+    assert cache.load("meshes", CONTENT) is None
     cache.keep("meshes", CONTENT, arrays())
     loaded = cache.load("meshes", CONTENT)
     assert loaded is not None
     np.testing.assert_array_equal(loaded["floats"], arrays()["floats"])
-
-
-@pytest.mark.parametrize("position", range(0, 2000, 97))
-def test_no_flipped_bit_gives_other_numbers(tmp_path: Path, position: int) -> None:
-    cache = Cache(tmp_path)
-    cache.keep("meshes", CONTENT, arrays(n=20))
-    (file,) = tmp_path.rglob("*.npz")
-    content = bytearray(file.read_bytes())
-    content[position % len(content)] ^= 0x10
-    file.write_bytes(content)
-    loaded = cache.load("meshes", CONTENT)
-    if loaded is not None and set(loaded) == set(arrays()):
-        for name, array in arrays(n=20).items():
-            np.testing.assert_array_equal(loaded[name], array)
 
 
 def test_a_write_that_is_stopped_leaves_the_old_entry(
@@ -133,11 +118,11 @@ def test_a_write_that_is_stopped_leaves_the_old_entry(
     cache = Cache(tmp_path)
     cache.keep("meshes", CONTENT, arrays())
 
-    def stopped(stream: Any, **content: Any) -> None:
+    def stopped(stream: Any, *content: Any) -> None:
         stream.write(b"half")
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(cache_module.np, "savez", stopped)
+    monkeypatch.setattr(cache_module, "write_kept", stopped)
     with pytest.raises(KeyboardInterrupt):
         cache.keep("meshes", CONTENT, arrays(1))
     loaded = cache.load("meshes", CONTENT)
@@ -157,7 +142,7 @@ def test_beyond_the_limit_what_was_used_longest_ago_is_dropped(tmp_path: Path) -
     cache = Cache(tmp_path)
     for k in range(4):
         cache.keep("meshes" if k % 2 else "hub-loads", {"k": k}, arrays(k))
-    files = sorted(tmp_path.rglob("*.npz"), key=lambda file: file.stat().st_mtime_ns)
+    files = sorted(tmp_path.rglob("*.arrays"), key=lambda file: file.stat().st_mtime_ns)
     size = files[0].stat().st_size
     for age, file in enumerate(reversed(files)):
         os.utime(file, (1e9 - age, 1e9 - age))
@@ -298,13 +283,11 @@ def test_a_mesh_that_is_not_as_it_was_written_is_made_again(
 ) -> None:
     scene = coarse_scene("bonded")
     made = mesh_scene(scene)
-    (file,) = folder.rglob("*.npz")
+    (file,) = folder.rglob("*.arrays")
     if damage == "cut":
         file.write_bytes(file.read_bytes()[:-1000])
     else:
-        with np.load(file) as archive:
-            arrays = {name: archive[name] for name in archive.files if name != "face 2"}
-        np.savez(file, **arrays)
+        rewrite(file, {name: array for name, array in entry(file).items() if name != "face 2"})
     same(mesh_scene(scene), made)
     same(mesh_scene(scene), made)
     assert len(meshings) == 2

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from coarse_scenes import coarse_scene
+from kept_entries import entry, rewrite
 
 from fe_drivetrain.common import made_by
 from fe_drivetrain.common.cache import Cache
@@ -118,11 +119,11 @@ def cut(file: Path, arrays: dict[str, Any]) -> None:
 
 
 def incomplete(file: Path, arrays: dict[str, Any]) -> None:
-    np.savez(file, **{k: v for k, v in arrays.items() if k != "reactions 1"})
+    rewrite(file, {k: v for k, v in arrays.items() if k != "reactions 1"})
 
 
 def other_diagnostics(file: Path, arrays: dict[str, Any]) -> None:
-    np.savez(file, **(arrays | {"diagnostics": np.array('{"of": "another form"}')}))
+    rewrite(file, arrays | {"diagnostics": np.array('{"of": "another form"}')})
 
 
 @pytest.mark.parametrize("damage", [cut, incomplete, other_diagnostics])
@@ -135,10 +136,8 @@ def test_an_entry_that_is_not_sound_is_solved_again(
 ) -> None:
     cache = Cache(tmp_path)
     cached_response(bonded_model, cache=cache)
-    (file,) = tmp_path.rglob("*.npz")
-    with np.load(file) as archive:
-        arrays = dict(archive)
-    damage(file, arrays)
+    (file,) = tmp_path.rglob("*.arrays")
+    damage(file, entry(file))
     again = cached_response(bonded_model, cache=cache)
     assert not again.kept
     assert_same(again, bonded_response)
@@ -151,7 +150,7 @@ def test_solutions_count_for_the_bound_in_size(
 ) -> None:
     cache = Cache(tmp_path, limit=0)
     cached_response(bonded_model, cache=cache)
-    assert list(tmp_path.rglob("*.npz")) == []
+    assert list(tmp_path.rglob("*.arrays")) == []
 
 
 def test_bounds_of_a_bearing_unit_are_kept_to_the_last_bit(

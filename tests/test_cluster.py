@@ -143,7 +143,7 @@ def test_a_stopped_study_goes_on_where_it_was(
         first = [next(stopped) for _ in range(3)]
         stopped.close()
         assert len((tmp_path / "log").read_text().split()) <= 3 + 4
-        done = len(list((tmp_path / "cache" / "load-digests").glob("*.npz")))
+        done = len(list((tmp_path / "cache" / "load-digests").glob("*.arrays")))
         assert done >= 3
         again = list(mapped(cluster_jobs.digest_with_death, items, 1))
     for one, other in zip(first, again, strict=False):
@@ -268,7 +268,7 @@ def test_no_file_is_lost_or_counted_twice_when_a_worker_is_killed(
     assert set(log) == {file.stem for file in histories}
     assert log.count("5") == 2
     assert {lane for step, lane in steps if step} == {1, 2}
-    kept = list((tmp_path / "cache" / "load-digests").glob("*.npz"))
+    kept = list((tmp_path / "cache" / "load-digests").glob("*.arrays"))
     assert len(kept) == len(histories)
     for path in kept:
         path.unlink()

@@ -15,6 +15,7 @@ from fe_drivetrain.commands import life_digest
 from fe_drivetrain.commands.life import parse_lubricant
 from fe_drivetrain.commands.life_bearings import Choices, bearings_of, rollers_in_words
 from fe_drivetrain.commands.life_page import _scatter
+from fe_drivetrain.common.cache import CACHE_VARIABLE
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.histories.sites import site_of_class
@@ -141,6 +142,8 @@ def test_a_stopped_run_goes_on(
 ) -> None:
     done: list[str] = []
     real = life_digest.digest
+    # what is in files counts, and other tests may have had the same
+    monkeypatch.setenv(CACHE_VARIABLE, str(histories.parent / "cache"))
 
     def counted(file: Path, *more: object) -> object:
         done.append(file.name)

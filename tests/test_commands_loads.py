@@ -1,6 +1,7 @@
 """``loads`` on anyone's files: mapped channels, other lengths and steps, stop and go on."""
 
 import csv
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -13,8 +14,10 @@ from fe_drivetrain.commands.loads_digest import Options, digest
 from fe_drivetrain.commands.loads_reactions import scene_reactions
 from fe_drivetrain.commands.loads_tables import write_tables
 from fe_drivetrain.commands.loads_together import Together
+from fe_drivetrain.common.cache import CACHE_VARIABLE
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.remarks import VERBOSE_VARIABLE
 from fe_drivetrain.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.recorded import Recorded, read_recorded
@@ -124,6 +127,8 @@ def test_a_stopped_run_goes_on(
     invoke: Callable[..., Result], histories: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     read: list[str] = []
+    # what is in files counts, and other tests have counted the same
+    monkeypatch.setenv(CACHE_VARIABLE, str(histories.parent / "cache"))
 
     def counted(path: Path, *more: object) -> Recorded:
         read.append(path.name)
@@ -140,6 +145,55 @@ def test_a_stopped_run_goes_on(
     assert (status, read) == (0, ["a.csv", "b.csv", "b.csv"])
     status, _, _ = invoke(*command, "--resume", "--slope", "5")  # other options: read again
     assert (status, read[3:]) == (0, ["a.csv", "b.csv"])
+
+
+def test_what_is_kept_of_a_file_is_known_by_its_content(
+    invoke: Callable[..., Result], histories: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Not by its name, size and time, which a copy may have in common with another file."""
+    read: list[str] = []
+    monkeypatch.setenv(CACHE_VARIABLE, str(histories.parent / "cache"))
+
+    def counted(path: Path, *more: object) -> Recorded:
+        read.append(path.name)
+        return read_recorded(path, *more)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(loads_page, "read_recorded", counted)
+    command = ("loads", str(histories), "--out", str(histories.parent / "out"), *COLUMNS)
+    assert invoke(*command)[0] == 0
+    file = histories / "b.csv"
+    content, status = file.read_bytes(), file.stat()
+    place = content.rindex(b"1")
+    file.write_bytes(content[:place] + b"2" + content[place + 1 :])
+    os.utime(file, ns=(status.st_atime_ns, status.st_mtime_ns))
+    assert file.stat().st_size == status.st_size
+    file.rename(histories / "a_moved.csv").rename(file)
+    (histories / "a.csv").rename(histories / "moved.csv")
+    assert invoke(*command, "--resume")[0] == 0
+    assert read == ["a.csv", "b.csv", "b.csv"]
+
+
+def test_a_digest_of_another_file_is_made_again_and_said(
+    invoke: Callable[..., Result], histories: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cache, out = histories.parent / "cache", histories.parent / "out"
+    monkeypatch.setenv(CACHE_VARIABLE, str(cache))
+    monkeypatch.setenv(VERBOSE_VARIABLE, "")
+    command = ("loads", str(histories), "--out", str(out), *COLUMNS)
+    assert invoke(*command)[0] == 0
+    sound = read_results(out / "results.json").figures
+    one, other = (cache / "load-digests").iterdir()
+    content = one.read_bytes()
+    one.write_bytes(other.read_bytes())
+    status, _, err = invoke(*command, "--resume")
+    assert (status, "made again" in err) == (0, False)
+    assert one.read_bytes() == content
+    one.write_bytes(other.read_bytes())
+    status, _, err = invoke(*command, "--resume", "-v")
+    assert status == 0
+    assert err.count(f"fe-drivetrain: kept load-digests are made again: {one.name} of ") == 1
+    assert "it is of something else" in err
+    assert read_results(out / "results.json").figures == sound
 
 
 def test_another_set_is_compared_by_wind(invoke: Callable[..., Result], histories: Path) -> None:

@@ -28,6 +28,7 @@ from fe_drivetrain.commands.run import run_and_print
 from fe_drivetrain.common import files
 from fe_drivetrain.common.cache import CACHE_VARIABLE, Cache
 from fe_drivetrain.common.files import HiddenFolder, atomic_path
+from fe_drivetrain.common.stopped import STOPPED, TERMINATED
 from fe_drivetrain.common.threads import CORES_VARIABLE as CORES
 from fe_drivetrain.geometry import gmsh_session
 from fe_drivetrain.mesh import cached
@@ -307,7 +308,7 @@ ARRAYS = {f"face {k}": np.arange(k * 5.0, k * 5 + 4) for k in range(4)}
 def entry(tmp_path_factory: pytest.TempPathFactory) -> tuple[Cache, Path, bytes]:
     folder = tmp_path_factory.mktemp("entry")
     Cache(folder).keep("meshes", CONTENT, ARRAYS)
-    (file,) = folder.rglob("*.npz")
+    (file,) = folder.rglob("*.arrays")
     return Cache(folder), file, file.read_bytes()
 
 
@@ -327,10 +328,7 @@ def test_a_cache_damaged_anywhere_gives_no_other_numbers(
     else:
         changed[place:place] = bytes([flip]) * 7
     file.write_bytes(changed)
-    loaded = cache.load("meshes", CONTENT)
-    if loaded is not None:
-        for name in set(loaded) & set(ARRAYS):
-            np.testing.assert_array_equal(loaded[name], ARRAYS[name])
+    assert (cache.load("meshes", CONTENT) is not None) == (bytes(changed) == content)
 
 
 def test_a_kill_at_any_moment_of_keeping_leaves_a_sound_cache(tmp_path: Path) -> None:
@@ -506,22 +504,24 @@ def test_a_signal_while_it_meshes_solves_or_writes_leaves_the_old_results(
     assert [p.name for p in out.parent.iterdir()] == ["b"]
 
 
+@pytest.mark.parametrize(
+    ("sent", "status"), [(signal.SIGTERM, TERMINATED), (signal.SIGINT, STOPPED)]
+)
 def test_a_stop_that_a_librarys_callback_drops_is_raised_again(
-    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str], sent: signal.Signals, status: int
 ) -> None:
-    """As SIGTERM while compiled code is loaded; and not in the midst of what it unwinds."""
-    dropped: list[object] = []
-    monkeypatch.setattr(sys, "unraisablehook", lambda found: dropped.append(found.exc_type))
+    """As a signal while compiled code is loaded; and not in the midst of what it unwinds."""
 
     @ctypes.CFUNCTYPE(None)
     def callback() -> None:
-        os.kill(os.getpid(), signal.SIGTERM)
+        os.kill(os.getpid(), sent)
         time.sleep(0.01)
 
     cleaned: list[str] = []
 
     def work() -> int:
         callback()
+        cleaned.append("dropped")
         try:
             time.sleep(10.0)
         finally:
@@ -530,12 +530,14 @@ def test_a_stop_that_a_librarys_callback_drops_is_raised_again(
         return 0
 
     begin = time.perf_counter()
-    with pytest.raises(SystemExit) as end:
-        terminal.guarded(work)
-    assert end.value.code == terminal.TERMINATED
+    try:
+        ended = terminal.guarded(work)
+    except SystemExit as end:
+        ended = int(end.code or 0)
+    assert ended == status
     assert time.perf_counter() - begin < 5.0
-    assert dropped == [SystemExit]
-    assert cleaned == ["wholly"]
+    assert cleaned == ["dropped", "wholly"]
+    assert "ignored" not in capsys.readouterr().err
     assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
 
 
@@ -552,5 +554,5 @@ def test_ctrl_c_in_compiled_code_stops_as_any_other(
         with pytest.raises(SystemError):
             terminal.guarded(work)
         return
-    assert terminal.guarded(work) == terminal.STOPPED
+    assert terminal.guarded(work) == STOPPED
     assert capsys.readouterr().err.startswith("fe-drivetrain: stopped; ")

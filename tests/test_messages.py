@@ -21,10 +21,15 @@ HEADER = "time [s],Fx [N],Fy [N],Fz [N],Mx [N m],My [N m],Mz [N m]"
 
 
 def test_a_pipe_or_device_as_scene_is_refused_at_once(tmp_path):
-    pipe = tmp_path / "pipe"
+    pipe, link = tmp_path / "pipe", tmp_path / "link"
     os.mkfifo(pipe)
-    for path in (pipe, "/dev/zero", tmp_path):
-        with pytest.raises(InputError, match="it is a folder, a pipe or a device: give a file"):
+    link.symlink_to("/dev/zero")
+    for path, says in (
+        (pipe, "it is a pipe, which may have no end: write what comes from it to a file"),
+        (link, "it is a device, which may have no end: write what comes from it to a file"),
+        (tmp_path, "it is a folder: give a file"),
+    ):
+        with pytest.raises(InputError, match=says):
             read_scene(path)
 
 

@@ -42,6 +42,8 @@ from fe_drivetrain.commands.studies import (
 from fe_drivetrain.commands.terminal import prepare_streams, write
 from fe_drivetrain.commands.validate import validate_command
 from fe_drivetrain.common.memory import collect_lasting_seldom
+from fe_drivetrain.common.remarks import show_remarks, show_remarks_if_asked
+from fe_drivetrain.common.stopped import stop_status
 
 if TYPE_CHECKING:
     from fe_drivetrain.suite.case import Case
@@ -100,15 +102,60 @@ def main(arguments: list[str] | None = None) -> None:
     arguments : list of str, optional
         The words after the name of the program; those of the shell where left out.
     """
+    _ended(lambda: _command()(arguments, prog_name="fe-drivetrain"))
+
+
+def _ended(command: Callable[[], object]) -> None:
+    """Do what was typed, and end: by Ctrl-C as `guarded` does, though it comes outside of it."""
     prepare_streams()
     collect_lasting_seldom()
-    _command()(arguments, prog_name="fe-drivetrain")
+    show_remarks_if_asked()
+    try:
+        command()
+    except BaseException as error:
+        stop = stop_status(error)
+        if stop is None:
+            raise
+        # what reads the words typed may have made another status of it
+        raise SystemExit(stop) from error
+
+
+def _ask_for_remarks(verbose: bool) -> None:
+    if verbose:
+        show_remarks()
+
+
+_Verbose = Annotated[
+    bool,
+    typer.Option(
+        "--verbose",
+        "-v",
+        callback=_ask_for_remarks,
+        expose_value=False,
+        help="Say what is otherwise done without a word, as to make a damaged kept file again.",
+    ),
+]
+
+
+def _with_verbose(command: Any) -> Any:
+    """A command with the option that every one has, as typer makes it of one with no other."""
+    sample = typer.Typer(**_LOOK)
+
+    @sample.command()
+    def nothing(verbose: _Verbose = False) -> None:
+        pass
+
+    command.params += get_command(sample).params
+    return command
 
 
 @cache
 def _command() -> Callable[..., Any]:
     """All commands with their options, built once where a program calls several."""
-    return get_command(app)
+    group: Any = get_command(app)
+    for command in group.commands.values():
+        _with_verbose(command)
+    return group  # type: ignore[no-any-return]
 
 
 def main_of_case(case: Case) -> None:
@@ -137,6 +184,4 @@ def main_of_case(case: Case) -> None:
         typed = replace(case, command=shlex.join(["python", *sys.argv]))
         raise typer.Exit(run_and_print(lambda: [typed], out, set_ or (), quick))
 
-    prepare_streams()
-    collect_lasting_seldom()
-    script()
+    _ended(_with_verbose(get_command(script)))

@@ -16,16 +16,15 @@ from fe_drivetrain.commands.study_loads import entering
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.made_by import file_digest, program_hash
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.hub_loads.files import require_points
 from fe_drivetrain.hub_loads.recorded import read_recorded
 from fe_drivetrain.life.limits import Limits
 from fe_drivetrain.life.roller_damage import Damage, LifeRules, Steps, damage_of_steps
+from fe_drivetrain.response.cached import whole_content
 from fe_drivetrain.scene.scene import Scene
-
-VERSION = 2
-"""Raise whenever a change alters a digest: kept ones of another version are not used."""
 
 WINDOWS = 60
 """Of a file, over which the damage map follows the time."""
@@ -113,21 +112,18 @@ def content(
     Returns
     -------
     content : dict
-        For the cache.
+        For the cache. What is in files counts, not their names.
     """
-    status = file.stat()
     return {
-        "version": VERSION,
-        "file": str(file.resolve()),
-        "size": status.st_size,
-        "written": status.st_mtime_ns,
+        "code": program_hash(),
+        "file": file_digest(str(file)),
         "bearing": one.name,
         "rated": repr(one.rated),
         "rollers": {name: repr(b) for name, b in one.path.bearings.items()},
         "rules": repr(rules),
         "mapping": reading.names.content(),
         "reading": [reading.skip, reading.every, reading.rotor_speed],
-        "scene": scene.model_dump_json(),
+        "scene": whole_content(scene),
         "choices": repr(choices),
     }
 

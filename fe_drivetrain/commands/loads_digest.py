@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.made_by import file_digest, program_hash
 from fe_drivetrain.histories.classes import Classes, in_classes
 from fe_drivetrain.histories.cycles import Residue, gated, rainflow_cycles
 from fe_drivetrain.histories.damage import FREQUENCY, goodman
@@ -31,9 +32,6 @@ from fe_drivetrain.histories.windows import window_statistics
 from fe_drivetrain.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.hub_loads.loops import find_loops, loop_statistics, time_on_loops
 from fe_drivetrain.hub_loads.recorded import OWN_NAMES, Recorded
-
-VERSION = 5
-"""Raise whenever a change alters a digest: kept ones of another version are not used."""
 
 LOADS = (*FORCES, "radial force", "bending moment")
 """Channels that are counted; the last two are sizes across the shaft."""
@@ -104,13 +102,10 @@ class Options:
         return self.mapping.with_columns(self.columns)
 
     def content(self, file: Path) -> dict[str, Any]:
-        """All that the digest of a file depends on."""
-        status = file.stat()
+        """All that the digest of a file depends on: what is in the file counts, not its name."""
         return {
-            "version": VERSION,
-            "file": str(file.resolve()),
-            "size": status.st_size,
-            "written": status.st_mtime_ns,
+            "code": program_hash(),
+            "file": file_digest(str(file)),
             "mapping": self.names.content(),
             "slopes": [float(m) for m in self.slopes],
             "ultimate": dict(self.ultimate),

@@ -29,6 +29,7 @@ from fe_drivetrain.hub_loads.files import require_points
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.recorded import Recorded
 from fe_drivetrain.report.charts import trace
+from fe_drivetrain.response.cached import whole_content
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
@@ -64,7 +65,7 @@ class SceneReactions:
 
     def content(self) -> dict[str, Any]:
         """All that reactions depend on."""
-        return {"scene": self.scene.model_dump(mode="json"), "level": self.model.level}
+        return {"scene": whole_content(self.scene), "level": self.model.level}
 
     def of(self, history: LoadHistory) -> dict[str, Floats]:
         """Each reaction to a history, (n, 6) [N, N m], moments about the bearing's centre.

@@ -70,11 +70,9 @@ def part_command(
 def _superelement(file: Path, bore: str, held: list[str]) -> str:
     """Points of a superelement, and the housing that it is in a scene."""
     from fe_drivetrain.export.condensed_housing import condensed_housing
-    from fe_drivetrain.export.files import read
+    from fe_drivetrain.export.limited_reading import read_limited
 
-    if not file.is_file():
-        raise InputError(f"cannot read {file}: there is no such file: give a superelement")
-    element = read(file, _SUPERELEMENTS[file.suffix.lower()])
+    element = read_limited(file, _SUPERELEMENTS[file.suffix.lower()])
     lines = [f"{file.name}: superelement {element.name}, its points [m]:"]
     lines += [
         f"  {name}  ({x:.6g}, {y:.6g}, {z:.6g})"

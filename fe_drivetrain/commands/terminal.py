@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import sentence_about
+from fe_drivetrain.common.stopped import STOPPED, TERMINATED, stop_status
 
 if TYPE_CHECKING:
     from types import FrameType
 
-PASSED, FAILED, MISTAKE, STOPPED, TERMINATED = 0, 1, 2, 130, 143
-"""Exit statuses: all checks pass, one fails, wrong input, stopped by Ctrl-C, stopped by SIGTERM."""
+PASSED, FAILED, MISTAKE = 0, 1, 2
+"""Exit statuses: all checks pass, one fails, wrong input."""
 
 KEPT = "results of an earlier run are unchanged"
 
@@ -51,52 +52,66 @@ def guarded(work: Callable[[], int], kept: str = KEPT) -> int:
         With `TERMINATED`, on SIGTERM.
     """
     try:
-        with _stopped_by_terminate():
+        with _unwound_by_signals():
             return work()
-    except InputError as error:
-        message, status = str(error), MISTAKE
-    except (KeyboardInterrupt, SystemError) as error:
-        # Python makes the second of Ctrl-C in compiled code of a library, as numba's
-        if not any(isinstance(e, KeyboardInterrupt) for e in (error, error.__cause__)):
-            raise
-        message, status = f"stopped; {kept}", STOPPED
-    except OSError as error:
-        sentence = sentence_about(error)
+    except BaseException as error:
+        stop = stop_status(error)
+        if stop == TERMINATED:
+            raise SystemExit(TERMINATED) from error
+        sentence = f"stopped; {kept}" if stop == STOPPED else _sentence(error)
         if sentence is None:
             raise
-        message, status = sentence, MISTAKE
-    except RuntimeError as error:
-        # what Path.resolve raises before Python 3.13
-        if "Symlink loop" not in str(error):
-            raise
-        message, status = f"cannot write: {error}: give another folder with --out", MISTAKE
-    write(sys.stderr, f"fe-drivetrain: {message}\n")
-    return status
+    write(sys.stderr, f"fe-drivetrain: {sentence}\n")
+    return stop or MISTAKE
+
+
+def _sentence(error: BaseException) -> str | None:
+    """What the user can do about an error; None where it is the program's own."""
+    if isinstance(error, InputError):
+        return str(error)
+    if isinstance(error, OSError):
+        return sentence_about(error)
+    # what Path.resolve raises before Python 3.13
+    if isinstance(error, RuntimeError) and "Symlink loop" in str(error):
+        return f"cannot write: {error}: give another folder with --out"
+    return None
 
 
 @contextmanager
-def _stopped_by_terminate() -> Iterator[None]:
+def _unwound_by_signals() -> Iterator[None]:
     """Unwind on SIGTERM as on Ctrl-C, so that no half-written file is left.
 
-    What is raised in a callback of a library is dropped there, as in compiled code that is loaded:
-    so it is raised again, until something unwinds.
+    What is raised in a callback of a library is dropped there, as in compiled code that is loaded,
+    and where any error of a library is caught: so it is raised again, until all is unwound.
     """
+    raised: dict[int, Callable[[], BaseException]] = {
+        signal.SIGTERM: lambda: SystemExit(TERMINATED),
+        signal.SIGINT: KeyboardInterrupt,
+    }
+    sent = signal.SIGTERM
 
     def stop(number: int, frame: FrameType | None) -> None:
+        nonlocal sent
+        sent = signal.Signals(number) if number in raised else sent
         if hasattr(signal, "setitimer"):  # not on Windows
             signal.setitimer(signal.ITIMER_REAL, _AGAIN)
-        if not isinstance(sys.exc_info()[1], SystemExit):
-            raise SystemExit(TERMINATED)
+        if stop_status(sys.exc_info()[1]) is None:
+            raise raised[sent]()
 
     numbers = [signal.SIGTERM, *([signal.SIGALRM] if hasattr(signal, "SIGALRM") else [])]
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # or it is ignored
+        numbers.append(signal.SIGINT)
     try:
         before = {number: signal.signal(number, stop) for number in numbers}
     except ValueError:  # only the main thread may handle signals
         yield
         return
+    dropped = sys.unraisablehook
+    sys.unraisablehook = lambda error: None if stop_status(error.exc_value) else dropped(error)
     try:
         yield
     finally:
+        sys.unraisablehook = dropped
         if hasattr(signal, "setitimer"):
             signal.setitimer(signal.ITIMER_REAL, 0.0)
         for number, handler in before.items():

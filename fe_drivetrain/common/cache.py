@@ -2,15 +2,17 @@
 
 One mechanism for meshes, made hub loads, solutions, and figures of long studies. They are kept in
 the user's cache folder, which may be deleted at any time; the environment variable
-``FE_DRIVETRAIN_CACHE`` names another folder, or switches keeping off ("off"). Nothing here ever
-fails a run: what cannot be read or is damaged is made again, and what cannot be written is not
-kept.
+``FE_DRIVETRAIN_CACHE`` names another folder, or switches keeping off ("off"). A kept file holds its
+whole key and digests of all that is in it, which are compared when it is read (`kept_files`).
+Nothing here ever fails a run: what cannot be read, is damaged, or is of something else is made
+again, which the logger of this module says, and what cannot be written is not kept.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
+import logging
 import os
 import re
 from collections.abc import Iterator, Mapping
@@ -19,10 +21,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, get_args
 
-import numpy as np
 from numpy.typing import NDArray
 
 from fe_drivetrain.common.files import atomic_path, remove_abandoned
+from fe_drivetrain.common.kept_files import SUFFIX, UnfitError, read_kept, write_kept
 
 CACHE_VARIABLE = "FE_DRIVETRAIN_CACHE"
 """Environment variable: a folder to keep things in, or "off"."""
@@ -35,8 +37,11 @@ Kind = Literal["figures", "hub-loads", "life-digests", "load-digests", "meshes",
 
 _OFF = ("off", "0", "no", "false")
 # Only names of our own making are ever deleted: the user may have named any folder.
-_OURS = re.compile(r"[0-9a-f]{32,64}\.npz")
-_UNFINISHED = r"\.[0-9a-f]{32,64}\.npz\.[0-9a-f]{32}\.tmp"
+# Those of earlier versions of this program, which end in .npz, are dropped as they grow old.
+_OURS = re.compile(r"[0-9a-f]{32,64}\.(arrays|npz)")
+_UNFINISHED = r"\.[0-9a-f]{32,64}\.(arrays|npz)\.[0-9a-f]{32}\.tmp"
+
+_log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -73,11 +78,11 @@ class Cache:
         if file is None:
             return None
         try:
-            # The zip container carries checksums, which reading the arrays to their end verifies.
-            with np.load(file, allow_pickle=False) as archive:
-                arrays = {name: archive[name] for name in archive.files}
-        except Exception:
-            # Not there, not readable, or damaged, and a damaged archive may raise anything.
+            arrays = read_kept(file, kind, _text(content))
+        except FileNotFoundError:
+            return None
+        except (OSError, UnfitError) as error:
+            _log.info("kept %s are made again: %s of %s: %s", kind, file.name, file.parent, error)
             return None
         with suppress(OSError):
             os.utime(file)  # used now: dropped last
@@ -94,7 +99,7 @@ class Cache:
             file.parent.mkdir(parents=True, exist_ok=True)
             remove_abandoned(file.parent, _UNFINISHED)
             with atomic_path(file) as temporary, temporary.open("wb") as stream:
-                np.savez(stream, **dict(arrays))  # type: ignore[arg-type]
+                write_kept(stream, kind, _text(content), arrays)
             self._drop_oldest()
         except OSError:
             return
@@ -102,7 +107,7 @@ class Cache:
     def _file(self, kind: Kind, content: Mapping[str, Any]) -> Path | None:
         if self.folder is None:
             return None
-        return self.folder / kind / f"{key(content)}.npz"
+        return self.folder / kind / f"{key(content)}{SUFFIX}"
 
     def _drop_oldest(self) -> None:
         """Delete what was used longest ago until the rest is within the limit."""
@@ -131,8 +136,11 @@ def key(content: Mapping[str, Any]) -> str:
     TypeError
         JSON cannot hold the content.
     """
-    text = json.dumps(content, sort_keys=True, ensure_ascii=True, separators=(",", ":"))
-    return hashlib.sha256(text.encode()).hexdigest()
+    return hashlib.sha256(_text(content).encode()).hexdigest()
+
+
+def _text(content: Mapping[str, Any]) -> str:
+    return json.dumps(content, sort_keys=True, ensure_ascii=True, separators=(",", ":"))
 
 
 def user_cache() -> Cache:

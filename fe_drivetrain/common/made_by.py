@@ -17,6 +17,8 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
+from fe_drivetrain.common.regular_files import opened
+
 #: Which choose kernels by the processor. MKL is loaded by a solver, in the course of a process.
 _CHOOSE = ("openblas", "blis")
 
@@ -44,13 +46,13 @@ def source_hash(rooms: Mapping[str, Set[str] | None]) -> str:
 
 
 @lru_cache(maxsize=256)
-def _digest(path: str, modified: int, size: int) -> str:
-    with open(path, "rb") as file:
+def _digest(path: str, *_state: int) -> str:
+    with opened(path) as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def file_digest(path: str) -> str:
-    """SHA-256 of a file; "" where there is none.
+    """SHA-256 of a regular file; "" where there is none that can be read.
 
     Parameters
     ----------
@@ -59,7 +61,9 @@ def file_digest(path: str) -> str:
     """
     try:
         found = Path(path).stat()
-        return _digest(str(path), found.st_mtime_ns, found.st_size)
+        # a copy may have taken over the first two, and no program sets the last
+        state = found.st_mtime_ns, found.st_size, found.st_ino, found.st_ctime_ns
+        return _digest(str(path), *state)
     except OSError:
         return ""
 

@@ -16,6 +16,13 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.regular_files import (
+    MOST_BYTES,
+    NotRegularError,
+    TooLargeError,
+    content_of,
+    require_regular,
+)
 from fe_drivetrain.common.strict_yaml import PlainLoader, shown
 
 _MAX_BYTES = 1_000_000
@@ -37,6 +44,10 @@ def why_unreadable(error: OSError | ValueError) -> str:
     str
         As in "there is no such file: check the path".
     """
+    if isinstance(error, NotRegularError):
+        return f"{error}: write what comes from it to a file, and give that"
+    if isinstance(error, TooLargeError):
+        return f"{error}: shorten it"
     if isinstance(error, FileNotFoundError | NotADirectoryError):
         return "there is no such file: check the path"
     if isinstance(error, PermissionError):
@@ -74,6 +85,27 @@ def unreadable(path: str | Path, kind: str, error: OSError | ValueError) -> Inpu
     return InputError(f"cannot read {kind} {path}: {why_unreadable(error)}")
 
 
+def require_readable(path: str | Path, kind: str) -> None:
+    """Refuse a user's file that cannot be read, before a library opens it by its name.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    kind : str
+        As of `unreadable`.
+
+    Raises
+    ------
+    InputError
+        There is no such file, it is no regular file, or it is too large.
+    """
+    try:
+        require_regular(path, MOST_BYTES)
+    except (OSError, ValueError) as error:
+        raise unreadable(path, kind, error) from error
+
+
 def read_text(path: str | Path, kind: str) -> str:
     """Text of a file of at most 1 MB.
 
@@ -93,19 +125,8 @@ def read_text(path: str | Path, kind: str) -> str:
     InputError
         The file cannot be read, is too large, or is not UTF-8.
     """
-    path = Path(path)
     try:
-        if path.exists() and not path.is_file():  # a pipe would wait for ever
-            raise InputError(
-                f"cannot read {kind} file {path}: it is a folder, a pipe or a device: give a file"
-            )
-        with path.open("rb") as file:
-            content = file.read(_MAX_BYTES + 1)
-        if len(content) > _MAX_BYTES:
-            raise InputError(
-                f"{path} is larger than {_MAX_BYTES} bytes, the limit of a {kind} file: shorten it"
-            )
-        return content.decode("utf-8")
+        return content_of(path, _MAX_BYTES).decode("utf-8")
     except (OSError, ValueError) as error:  # no file, no text, or no name of a file
         raise unreadable(path, f"{kind} file", error) from error
 

@@ -23,6 +23,7 @@ from typing import Any
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.memory import collect_lasting_seldom
 from fe_drivetrain.common.progress import Progress
+from fe_drivetrain.common.remarks import show_remarks_if_asked
 from fe_drivetrain.common.threads import CORES_VARIABLE
 
 _SPAWN = multiprocessing.get_context("spawn")
@@ -142,6 +143,7 @@ def _begin(environment: dict[str, str], output: str, steps: Connection) -> None:
     os.dup2(file, 2)
     sys.stdout = sys.stderr  # which does not wait with what it has
     collect_lasting_seldom()
+    show_remarks_if_asked()
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 

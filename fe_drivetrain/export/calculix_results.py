@@ -9,6 +9,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.regular_files import text_of
 from fe_drivetrain.common.spatial import resultant, wrench_transport
 from fe_drivetrain.export.calculix_plan import DeckPlan, deck_label, plan_deck
 from fe_drivetrain.response.model import Model
@@ -82,7 +83,7 @@ class DeckResponse:
 
 def read_dat(path: str | Path) -> list[Printed]:
     """Displacements, forces and energies of a .dat file, in the order of the file."""
-    text = Path(path).read_text("ascii")
+    text = text_of(path, encoding="ascii")
     headers = list(_PRINTED.finditer(text))
     starts = [*(header.start() for header in headers), len(text)]
     found = []

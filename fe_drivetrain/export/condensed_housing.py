@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.reading import validated
 from fe_drivetrain.export.superelement import Superelement
 from fe_drivetrain.geometry import CondensedHousing
 
@@ -64,4 +65,8 @@ def condensed_housing(
     source = f"superelement {element.name}, point {bore}"
     if held:
         source += f", {', '.join(held)} held"
-    return CondensedHousing.model_validate({"stiffness": rows, "source": source})
+    return validated(
+        CondensedHousing,
+        {"stiffness": rows, "source": source},
+        f"superelement {element.name!r} as a housing",
+    )

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
+from fe_drivetrain.common.reading import require_readable
 from fe_drivetrain.export.superelement import Superelement
 
 
@@ -80,9 +81,12 @@ def read(path: str | Path, format: str) -> Superelement:
     Raises
     ------
     InputError
-        The format is unknown or cannot be read back, or the file is not of that format.
+        The format is unknown or cannot be read back, or the file cannot be read, is too large, or
+        is not of that format.
     """
-    found = _function(format, "read")(Path(path))
+    reader = _function(format, "read")
+    require_readable(path, "superelement")
+    found = reader(Path(path))
     assert isinstance(found, Superelement)
     return found
 

@@ -24,6 +24,13 @@ UNITS = "N/m, N, N m/rad; kg, kg m, kg m^2; m, rad"
 #: relative to the largest entry of a unit diagonal.
 ALLOWED = 1e-9
 
+#: What a free body may resist a rigid motion with: formats keep ten digits of each term, positions
+#: in another unit leave none of the first.
+RIGID = 1e-6
+
+#: Any coordinate of a point [m]: no drivetrain is that long.
+FARTHEST = 100.0
+
 
 def refuse_one_point(part: str, at: Sequence[str], points: Sequence[str], held: str) -> None:
     """Refuse a free body at one point, where no motion strains it: all its stiffness is round-off.
@@ -115,8 +122,9 @@ class Superelement:
         Raises
         ------
         InputError
-            A shape is wrong, a value is not finite, or a matrix is not symmetric or has a negative
-            eigenvalue.
+            A shape is wrong, a value is not finite, a position is none of a drivetrain's in metres,
+            a matrix is not symmetric or has a negative eigenvalue, or the stiffness of a free body
+            resists a rigid motion.
         """
         n = len(self.points)
         if not self.name.replace("_", "").isalnum() or not self.name[0].isalpha():
@@ -128,6 +136,12 @@ class Superelement:
             raise InputError(
                 f"superelement {self.name!r} has positions of shape {np.shape(self.positions)} for "
                 f"the points {', '.join(self.points) or 'none'}: give each point once, with x, y, z"
+            )
+        self._check_positions()
+        if self.band is not None and not 0.0 <= self.band < np.inf:
+            raise InputError(
+                f"superelement {self.name!r}: its band is {self.band:g} but must be from 0 on and "
+                "finite, relative to the stiffness: correct it, or leave it open"
             )
         for kind, matrix in (("stiffness", self.stiffness), ("mass", self.mass)):
             if matrix is None:
@@ -146,6 +160,21 @@ class Superelement:
                 )
                 raise InputError(
                     f"superelement {self.name!r}: its {kind} {fault}: check its source"
+                )
+        if n > 1 and not self.supported and (error := self.rigid_error()) > RIGID:
+            raise InputError(
+                f"superelement {self.name!r}: it is free, but its stiffness resists a rigid motion "
+                f"with {error:.2g} of its terms, which must be at most {RIGID:g}: check that "
+                "positions are in metres, in the order of the points, or that it has supports"
+            )
+
+    def _check_positions(self) -> None:
+        for point, position in zip(self.points, self.positions, strict=True):
+            if not np.abs(position).max() <= FARTHEST:  # nor is a number that is none
+                place = ", ".join(f"{value:g}" for value in position)
+                raise InputError(
+                    f"superelement {self.name!r}: the position of {point} is ({place}) but must be "
+                    f"finite and within {FARTHEST:g} m of the origin: give metres"
                 )
 
     @property
@@ -166,9 +195,8 @@ class Superelement:
     def rigid_error(self) -> float:
         """Largest force against a rigid motion, of those that its terms would have one by one."""
         R = self.rigid_motions
-        return float(
-            np.max(np.abs(self.stiffness @ R) / (np.abs(self.stiffness) @ np.abs(R)).max())
-        )
+        one_by_one = (np.abs(self.stiffness) @ np.abs(R)).max()
+        return float(np.abs(self.stiffness @ R).max() / one_by_one) if one_by_one else 0.0
 
     def inertia(self) -> Floats | None:
         """(6, 6) mass matrix of its rigid motions about the first point; None without mass."""

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +22,7 @@ def main(request_file: str, result_file: str) -> int:
     from fe_drivetrain.common.errors import InputError
 
     try:
-        arrays = _ACTIONS[request["action"]](request)
+        arrays = _action(request["action"])(request)
         np.savez(result_file, **arrays)
         return 0
     except InputError as error:
@@ -182,6 +184,13 @@ def _read_mesh(request: dict[str, Any]) -> dict[str, Any]:
     return read(request["file"])
 
 
+def _action(name: str) -> Callable[[dict[str, Any]], dict[str, Any]]:
+    if name in _ACTIONS:
+        return _ACTIONS[name]
+    module, _, function = name.partition(":")
+    return getattr(import_module(module), function)  # type: ignore[no-any-return]
+
+
 _ACTIONS = {
     "look": _look_at_step,
     "mesh step": _mesh_step,
@@ -190,4 +199,6 @@ _ACTIONS = {
 }
 
 if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:]))
+    from fe_drivetrain.common.stopped import until_stopped
+
+    sys.exit(until_stopped(lambda: main(*sys.argv[1:])))

@@ -21,6 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.reading import why_unreadable
+from fe_drivetrain.common.regular_files import MOST_BYTES, require_regular
 from fe_drivetrain.common.threads import thread_limits
 
 Arrays = dict[str, NDArray[Any]]
@@ -42,7 +44,7 @@ class Limits:
         Most bytes of what it hands back.
     """
 
-    file: int = 300_000_000
+    file: int = MOST_BYTES
     memory: int = 6_000_000_000
     seconds: int = 900
     result: int = 1_000_000_000
@@ -59,7 +61,8 @@ def read_in_process(
     Parameters
     ----------
     action : str
-        "look", "mesh step", "mesh further part" or "read mesh", see `child`.
+        "look", "mesh step", "mesh further part" or "read mesh", see `child`; or a function as in
+        "package.module:function", which is given the request and returns arrays by name.
     path : str or Path
         The file.
     request : Mapping[str, Any]
@@ -110,9 +113,10 @@ def read_in_process(
 
 
 def _check_file(file: Path, limits: Limits) -> None:
-    if not file.is_file():
-        there = "it is no file" if file.exists() else "there is no such file"
-        raise InputError(f"cannot read {file}: {there}: give a STEP or mesh file")
+    try:
+        require_regular(file)
+    except (OSError, ValueError) as error:
+        raise InputError(f"cannot read {file}: {why_unreadable(error)}") from error
     size = file.stat().st_size
     if not 0 < size <= limits.file:
         raise InputError(

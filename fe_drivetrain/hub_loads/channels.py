@@ -13,6 +13,9 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import why_unreadable
+from fe_drivetrain.common.regular_files import require_regular
+
+_MOST_BYTES = 8_000_000_000  # of one file of loads or wind, which memory holds whole
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,12 +96,10 @@ def not_utf8(kind: str, file: Path) -> InputError:
 
 
 def existing_file(path: str | os.PathLike[str], kind: str = "hub loads") -> Path:
-    """The path of a file that exists and may be read; `InputError` where it does not."""
+    """The path of a regular file that may be read, and that memory can hold; else `InputError`."""
     file = Path(path)
     try:
-        # not by opening it: a pipe would wait for ever
-        if not file.is_file():
-            raise IsADirectoryError if file.is_dir() else FileNotFoundError
+        require_regular(file, _MOST_BYTES)
         if not os.access(file, os.R_OK):
             raise PermissionError
     except (OSError, ValueError) as error:

@@ -34,7 +34,7 @@ from fe_drivetrain.hub_loads.controller import (
 from fe_drivetrain.hub_loads.csv_table import write_csv
 from fe_drivetrain.hub_loads.histories import MIN_SAMPLES, Attribute, LoadHistory
 from fe_drivetrain.hub_loads.recorded import Recorded
-from fe_drivetrain.hub_loads.surrogate import DURATION, RATE, Condition
+from fe_drivetrain.hub_loads.surrogate import DURATION, RATE, Condition, made_by
 from fe_drivetrain.hub_loads.turbine import (
     Physics,
     Turbine,
@@ -48,9 +48,6 @@ from fe_drivetrain.hub_loads.wind import (
     power_law,
     turbulence_sigma,
 )
-
-VERSION = 2
-"""Raise whenever a change alters the histories: kept ones of another version are not used."""
 
 SETTLING = 60.0
 """Left out at the beginning [s]: 20 lengths of the speed's answer, 15 of the slowest wake."""
@@ -323,7 +320,7 @@ def turbine_histories(
     of_speed = float("nan")
     for done, condition in enumerate(conditions, 1):
         content = {
-            "version": VERSION,
+            "made by": made_by(),
             "what": "moving turbine",
             "turbine": asdict(turbine),
             "controller": asdict(chosen),

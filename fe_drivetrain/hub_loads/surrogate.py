@@ -17,6 +17,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
+from functools import cache as once
 from itertools import product
 from pathlib import Path
 from typing import Literal, overload
@@ -27,6 +28,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache, user_cache
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.made_by import machine, source_hash
 from fe_drivetrain.hub_loads.aero_rotor import (
     CUT_IN,
     CUT_OUT,
@@ -56,9 +58,6 @@ __all__ = [
     "surrogate_grid",
 ]
 
-
-VERSION = 3
-"""Raise whenever a change alters the histories: kept ones of another version are not used."""
 
 _KIND: Literal["hub-loads"] = "hub-loads"
 
@@ -353,12 +352,19 @@ def _cache(cache: bool | str | os.PathLike[str]) -> Cache:
 def _content(rotor: Rotor, condition: Condition, duration: float, rate: float) -> dict[str, object]:
     """All that one history depends on."""
     return {
-        "version": VERSION,
+        "made by": made_by(),
         "rotor": asdict(rotor),
         "condition": asdict(condition),
         "duration": float(duration),
         "rate": float(rate),
     }
+
+
+@once
+def made_by() -> dict[str, str]:
+    """What makes a history: another program may make another one."""
+    code = source_hash({"fe_drivetrain.hub_loads": None})
+    return {"code": code, "numpy": np.__version__, "machine": machine()}
 
 
 def _load(

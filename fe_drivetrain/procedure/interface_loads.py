@@ -21,6 +21,7 @@ from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.common.reading import unreadable
+from fe_drivetrain.common.regular_files import text_of
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.histories.cycles import Cycles, rainflow_cycles
 from fe_drivetrain.histories.damage import damage_equivalent_load
@@ -363,7 +364,7 @@ def read_load_json(path: str | Path) -> LoadTable:
         The file cannot be read, or does not hold such a table.
     """
     try:
-        text = Path(path).read_text(encoding="utf-8")
+        text = text_of(path)
     except (OSError, ValueError) as error:
         raise unreadable(path, "a load table from", error) from error
     try:

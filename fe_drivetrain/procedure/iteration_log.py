@@ -15,6 +15,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.common.reading import value_changes, why_unreadable
+from fe_drivetrain.common.regular_files import text_of
 from fe_drivetrain.procedure.assessment import StepState
 from fe_drivetrain.procedure.project import SECTIONS, Project
 from fe_drivetrain.procedure.steps import STEPS, Evidence, Procedure, Visit
@@ -85,7 +86,7 @@ def read_log(path: Path) -> tuple[Entry, ...]:
         return ()
     entries = []
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
+        lines = text_of(path).splitlines()
     except (OSError, ValueError) as error:
         raise InputError(
             f"cannot read the log {path}: {why_unreadable(error)}, or restore or move the log"

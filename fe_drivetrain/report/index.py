@@ -14,6 +14,7 @@ import jinja2
 from markupsafe import Markup
 
 from fe_drivetrain.common.files import atomic_path
+from fe_drivetrain.common.regular_files import text_of
 from fe_drivetrain.report.answer import answer_sentence, headline, value_with_band
 from fe_drivetrain.report.history import Point, points_over_runs
 from fe_drivetrain.report.rendering import policy_hash, read_template, templates
@@ -175,7 +176,7 @@ def problems_before(folder: Path) -> dict[str, Problem]:
         By the name of the case; empty where nothing is known.
     """
     try:
-        found = json.loads((folder / PROBLEMS).read_text(encoding="utf-8"))
+        found = json.loads(text_of(folder / PROBLEMS))
         return {name: Problem(**said) for name, said in found.items() if said["state"] in WORDS}
     except (OSError, ValueError, TypeError, KeyError, AttributeError):  # none, or none of ours
         return {}

@@ -9,6 +9,8 @@ from typing import Annotated, Any, Literal, NamedTuple
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from fe_drivetrain.common.regular_files import content_of
+
 Cell = float | int | str | bool | None
 
 Measure = Literal[
@@ -368,4 +370,4 @@ def results_below(folder: Path) -> dict[str, Path]:
 
 def read_results(path: str | Path) -> Results:
     """Read and validate a results.json."""
-    return Results.model_validate_json(Path(path).read_text(encoding="utf-8"))
+    return Results.model_validate_json(content_of(path))

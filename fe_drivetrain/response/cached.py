@@ -80,15 +80,35 @@ def solved_content(scene: Scene) -> dict[str, Any]:
     dict
         Plain data.
     """
-    content = scene.model_dump(mode="json", exclude={"title", "uncertainty", "mesh"})
-    for unit, described in zip(scene.bearing_units, content["bearing_units"], strict=True):
+    content = whole_content(scene, {"title", "uncertainty", "mesh"})
+    for described in content["bearing_units"]:
         del described["catalogue"]  # which is for lives
-        if unit.foreign is not None:  # what is in the file counts, not where it is
+    for loaded in (content["gearbox"], *content["load_points"]):
+        del loaded["weight"]
+    return content
+
+
+def whole_content(scene: Scene, without: set[str] | None = None) -> dict[str, Any]:
+    """All that is stated of a scene, its files by what is in them and not by where they are.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    without : set of str or None
+        Keys to leave out.
+
+    Returns
+    -------
+    dict
+        Plain data.
+    """
+    content = scene.model_dump(mode="json", exclude=without)
+    for unit, described in zip(scene.bearing_units, content["bearing_units"], strict=True):
+        if unit.foreign is not None:
             described["housing"] |= {"step": None, "mesh": file_digest(unit.foreign.file)}
         for part, data in zip(unit.parts, described["parts"], strict=True):
             data |= {"step": None, "mesh": file_digest(part.file)}
-    for loaded in (content["gearbox"], *content["load_points"]):
-        del loaded["weight"]
     return content
 
 

@@ -17,6 +17,7 @@ from fe_drivetrain.common.jobs import pool
 from fe_drivetrain.common.processes import Processes
 from fe_drivetrain.common.progress import OVERALL, Progress, silent
 from fe_drivetrain.common.repeated import Repeated
+from fe_drivetrain.common.stopped import stop_status
 from fe_drivetrain.report.results import Problem
 from fe_drivetrain.suite.case import Case, all_cases
 from fe_drivetrain.suite.result_folders import (
@@ -188,6 +189,8 @@ def _run(
     except InputError as error:
         return problem_of(error)
     except Exception as error:
+        if stop_status(error) is not None:
+            raise
         sentence = sentence_about(error) if isinstance(error, OSError) else None
         if sentence is not None:
             return Problem(sentence)

@@ -30,6 +30,7 @@ from fe_drivetrain.fidelity.quantities import (
 )
 from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.fidelity.shafts import condensed_shaft, meridian_shaft
+from fe_drivetrain.response.cached import whole_content
 from fe_drivetrain.response.makers import solved_by
 from fe_drivetrain.scene.scene import Coupling, Scene, Spread
 from fe_drivetrain.uncertainty.resolver import Resolver
@@ -204,7 +205,7 @@ def study(
     report("sensitivities")
     slopes = sensitivities(scene, evaluate, list(scene.uncertainty))
     content = {
-        "numbers of": scene.model_dump(mode="json"),
+        "numbers of": whole_content(scene),
         "level": level,
         "seed of surfaces": seed,
         "asked": list(asked),

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_drivetrain.common import Floats, InputError, run_python
+from fe_drivetrain.common import Floats, InputError, run_python, until_stopped
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.interfaces import eliminate, fixed
 from fe_drivetrain.mesh import shaft_hexahedra
@@ -122,4 +122,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(until_stopped(main))

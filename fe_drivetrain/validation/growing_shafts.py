@@ -9,9 +9,9 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
-from fe_drivetrain.common import Times, peak_memory, run_python
+from fe_drivetrain.common import Times, peak_memory, run_python, until_stopped
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.validation import stiffness_choices as choices
@@ -102,8 +102,9 @@ def _measure(size: float, turn: int, method: str, repeats: int) -> Grown:
     return Grown(outcome.unknowns, outcome.used, seconds, peak_memory() or 0)
 
 
-if __name__ == "__main__":
-    from dataclasses import asdict
+def _main(size: str, turn: str, method: str, repeats: str) -> None:
+    print(json.dumps(asdict(_measure(float(size), int(turn), method, int(repeats)))))
 
-    _size, _turn, _method, _repeats = sys.argv[1:]
-    print(json.dumps(asdict(_measure(float(_size), int(_turn), _method, int(_repeats)))))
+
+if __name__ == "__main__":
+    sys.exit(until_stopped(lambda: _main(*sys.argv[1:])))

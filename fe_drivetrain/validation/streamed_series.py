@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.common import Floats, peak_memory, run_python
+from fe_drivetrain.common import Floats, peak_memory, run_python, until_stopped
 from fe_drivetrain.compare import Comparison, compare, compare_streamed
 from fe_drivetrain.compare import statistics as by_definition
 
@@ -126,4 +126,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(until_stopped(main))

@@ -12,6 +12,8 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.export.craig_bampton import CraigBampton
 from fe_drivetrain.export.formats.superelement_json import (
+    Number,
+    Rows,
     SuperelementFile,
     content_of,
     element_of,
@@ -22,13 +24,13 @@ from fe_drivetrain.export.formats.superelement_json import (
 class CraigBamptonFile(BaseModel):
     """The content: points as a superelement (Guyan), and modes that have unit mass."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     kind: Literal["Craig-Bampton"] = "Craig-Bampton"
     schema_version: Literal[1] = 1
     points: SuperelementFile
-    omega: list[float] = Field(description="circular frequencies, all points held [rad/s]")
-    coupling: list[list[float]] = Field(
+    omega: list[Number] = Field(description="circular frequencies, all points held [rad/s]")
+    coupling: Rows = Field(
         description="mass between degrees of freedom of points (rows) and modes (columns); none "
         "in stiffness"
     )

@@ -15,7 +15,8 @@ import numpy as np
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
-from fe_drivetrain.common.reading import unreadable
+from fe_drivetrain.common.reading import require_readable, unreadable
+from fe_drivetrain.common.regular_files import content_of
 
 SPRING, DAMPER = "DTTorSpr", "DTTorDmp"
 
@@ -101,6 +102,7 @@ def read_elastodyn(path: str | Path) -> dict[str, Any]:
     """
     from openfast_io.FAST_reader import InputReader_OpenFAST
 
+    require_readable(path, "ElastoDyn input")
     reader = InputReader_OpenFAST()
     reader.FAST_directory = str(Path(path).parent)
     try:
@@ -117,7 +119,7 @@ def read_elastodyn(path: str | Path) -> dict[str, Any]:
 
 def _text(path: Path) -> str:
     try:
-        return path.read_bytes().decode(_ENCODING)
+        return content_of(path).decode(_ENCODING)
     except (OSError, ValueError) as error:
         raise unreadable(path, "ElastoDyn input", error) from error
 

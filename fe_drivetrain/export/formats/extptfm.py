@@ -17,6 +17,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.reading import require_readable
 from fe_drivetrain.export.formats.statement import comment_lines, statement, text_of
 from fe_drivetrain.export.superelement import ALLOWED, Superelement
 
@@ -162,6 +163,7 @@ def read_reduced(path: str | Path) -> Reduced:
     """
     from openfast_io.FAST_reader import InputReader_OpenFAST
 
+    require_readable(path, "ExtPtfm superelement")
     reader = InputReader_OpenFAST()
     reader.fst_vt["ExtPtfm"]["FlexASCII"] = {}
     try:

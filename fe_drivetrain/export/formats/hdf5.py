@@ -45,8 +45,6 @@ def read(path: Path) -> Superelement:
         h5py is not installed.
     """
     h5py = _h5py()
-    if not path.is_file():
-        raise InputError(f"{path} is no file: name one")
     try:
         with h5py.File(path, "r") as file:
             entries = {key: str(value) for key, value in file.attrs.items()}

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fe_drivetrain.common import regular_files
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
@@ -140,7 +141,7 @@ def text_of(path: Path, kind: str) -> str:
         It cannot be read, or is not text.
     """
     try:
-        text = path.read_text("utf-8")
+        text = regular_files.text_of(path)
     except (OSError, ValueError) as error:
         raise unreadable(path, kind, error) from error
     if "\0" in text:

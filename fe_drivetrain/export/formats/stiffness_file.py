@@ -10,20 +10,20 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.scaling import least_eigenvalue
-from fe_drivetrain.export.formats.superelement_json import read_content
+from fe_drivetrain.export.formats.superelement_json import Rows, read_content
 from fe_drivetrain.export.superelement import FRAME
 
 
 class StiffnessMatrix(BaseModel):
     """A 6x6 stiffness at a reference point, in SI units."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     name: str
     reference_point: tuple[float, float, float] = Field(description="[m], in the frame")
     degrees_of_freedom: tuple[str, ...] = MOTIONS
     units: Literal["N/m, N, N m/rad"] = "N/m, N, N m/rad"
-    matrix: list[list[float]]
+    matrix: Rows
     description: str
 
     @model_validator(mode="after")
@@ -43,7 +43,7 @@ class StiffnessMatrix(BaseModel):
 class StiffnessFile(BaseModel):
     """The content of a stiffness.json."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     schema_version: Literal[1] = 1
     scene: str

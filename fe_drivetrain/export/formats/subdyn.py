@@ -14,6 +14,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.reading import require_readable
 from fe_drivetrain.common.scaling import largest_difference
 from fe_drivetrain.export.formats.statement import comment_lines, statement
 from fe_drivetrain.export.superelement import ALLOWED, Superelement
@@ -213,6 +214,7 @@ def read_spring(path: str | Path) -> Spring:
     """
     from openfast_io.FAST_reader import InputReader_OpenFAST
 
+    require_readable(path, "SubDyn input")
     reader = InputReader_OpenFAST()
     reader.fst_vt["outlist"]["SubDyn"] = {}
     try:

@@ -29,7 +29,7 @@ from fe_drivetrain.scene.scene import Scene
 
 
 class _File(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
 class ShaftFile(_File):

@@ -3,16 +3,42 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Literal, TypeVar
+from typing import Annotated, Literal, Self, TypeVar
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    ValidationError,
+    model_validator,
+)
 
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.reading import unreadable
+from fe_drivetrain.common.reading import fault_sentence, unreadable
+from fe_drivetrain.common.regular_files import text_of
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
+from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.export.superelement import FRAME, UNITS, Origin, Superelement
+
+Number = Annotated[float, Field(strict=True)]
+"""No word, and neither true nor false; that all numbers are finite is said of the whole file."""
+
+
+def _equally_long(rows: list[list[float]]) -> list[list[float]]:
+    for k, row in enumerate(rows):
+        if len(row) != len(rows[0]):
+            raise ValueError(
+                f"row {k + 1} has {len(row)} values but must have {len(rows[0])}, as row 1 has: "
+                "write it whole"
+            )
+    return rows
+
+
+Rows = Annotated[list[list[Number]], AfterValidator(_equally_long)]
+"""A matrix: rows of equal length."""
 
 _SINGULAR = 1e13  # condition of a stiffness with a unit diagonal
 
@@ -20,7 +46,7 @@ _Content = TypeVar("_Content", bound=BaseModel)
 
 
 class _File(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
 class OriginFile(_File):
@@ -45,18 +71,33 @@ class SuperelementFile(_File):
         default=MOTIONS, description="order of each point's six"
     )
     points: list[str]
-    positions: list[tuple[float, float, float]] = Field(description="[m]")
+    positions: list[tuple[Number, Number, Number]] = Field(description="[m]")
     supported: bool = Field(
         description="whether the supports are in the stiffness; else it is free"
     )
-    stiffness: list[list[float]]
-    compliance: list[list[float]] | None = Field(
+    stiffness: Rows
+    compliance: Rows | None = Field(
         default=None, description="motions for unit forces; null where something is free to move"
     )
-    mass: list[list[float]] | None
-    band: float | None = Field(description="uncertainty of the stiffness, relative")
+    mass: Rows | None
+    band: Number | None = Field(description="uncertainty of the stiffness, relative")
     checks: dict[str, float] = Field(description="of the stiffness, with a unit diagonal")
     origin: OriginFile
+
+    @model_validator(mode="after")
+    def _as_all_are(self) -> Self:
+        """Refuse what this form states and does not leave open: nothing here is converted."""
+        for key, stated, has in (
+            ("frame", self.frame, FRAME),
+            ("units", self.units, UNITS),
+            ("degrees_of_freedom", self.degrees_of_freedom, MOTIONS),
+        ):
+            if stated != has:
+                raise ValueError(
+                    f"{key} is {shown(stated)} but must be {shown(has)}: convert positions and "
+                    "matrices, and state this, or leave the key out"
+                )
+        return self
 
 
 def content_of(element: Superelement) -> SuperelementFile:
@@ -121,15 +162,16 @@ def read_content(path: Path, kind: type[_Content], what: str) -> _Content:
         it first.
     """
     try:
-        text = path.read_text(encoding="utf-8")
+        text = text_of(path)
     except (OSError, ValueError) as error:
         raise unreadable(path, what, error) from error
     try:
         return kind.model_validate_json(text)
     except ValidationError as error:
-        first = error.errors()[0]
-        where = ".".join(map(str, first["loc"])) or "the file"
-        raise InputError(f"{path} is no {what}: {where}: {first['msg']}") from error
+        first = error.errors(include_input=False)[0]
+        is_json = first["type"] != "json_invalid"
+        fault = fault_sentence(error, kind) if is_json else f"{first['msg']}: write it again, whole"
+        raise InputError(f"{path} is no {what}: {fault}") from error
 
 
 def _compliance(element: Superelement) -> list[list[float]] | None:

@@ -19,6 +19,7 @@ import yaml
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.common.reading import unreadable
+from fe_drivetrain.common.regular_files import content_of
 from fe_drivetrain.export.formats.elastodyn import Torsion
 
 Program = Literal["wisdem", "windio"]
@@ -138,7 +139,7 @@ def _number(value: float) -> str:
 
 def _text(path: Path) -> str:
     try:
-        return path.read_bytes().decode("utf-8")
+        return content_of(path).decode("utf-8")
     except (OSError, ValueError) as error:
         raise unreadable(path, "windIO turbine file", error) from error
 

@@ -1,0 +1,62 @@
+"""A user's superelement, read in a process of limited memory, time and output."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.export.files import format_module, read
+from fe_drivetrain.export.superelement import Origin, Superelement
+from fe_drivetrain.foreign.reading import LIMITS, Limits, read_in_process
+
+_MATRICES = ("positions", "stiffness", "mass")
+
+
+def read_limited(path: str | Path, format: str, limits: Limits = LIMITS) -> Superelement:
+    """`read` in a process of its own: a damaged or huge file ends there in one sentence.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    format : str
+        A name of `FORMATS`.
+    limits : Limits
+        What reading may take.
+
+    Raises
+    ------
+    InputError
+        As `read`, or reading takes more than the limits.
+    """
+    format_module(format)
+    action = f"{__name__}:arrays_of"
+    found = read_in_process(action, path, {"format": format, "named": str(path)}, limits)
+    stated: dict[str, Any] = json.loads(str(found["stated"]))
+    return Superelement(
+        **{key: found[key] for key in _MATRICES if key in found},
+        **{**stated, "points": tuple(stated["points"]), "origin": Origin(**stated["origin"])},
+    )
+
+
+def arrays_of(request: dict[str, Any]) -> dict[str, Any]:
+    """What the limited process does: a superelement as arrays, and all else as JSON."""
+    try:
+        element = read(request["file"], request["format"])
+    except InputError as error:
+        # of links the process knows what they lead to, the user the name that was given
+        raise InputError(str(error).replace(request["file"], request["named"])) from error
+    stated = {
+        "name": element.name,
+        "points": element.points,
+        "supported": element.supported,
+        "band": element.band,
+        "origin": vars(element.origin),
+    }
+    matrices = {key: getattr(element, key) for key in _MATRICES}
+    kept = {key: matrix for key, matrix in matrices.items() if matrix is not None}
+    return {**kept, "stated": np.array(json.dumps(stated))}
