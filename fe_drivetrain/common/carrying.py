@@ -155,6 +155,20 @@ def _remove_below(old: Path, new: Path, own: Manifest, below: str) -> None:
                 path.rename(_free(new / entry.name, old))
 
 
+def keep_aside(file: Path) -> Path | None:
+    """Add `KEPT` to the name of a file; its new path, or None where it has gone meanwhile."""
+    kept = _free(file, file.parent)
+    try:
+        os.link(file, kept, follow_symlinks=False)
+    except FileNotFoundError:
+        return None
+    except (OSError, NotImplementedError):
+        file.rename(kept)
+    else:
+        file.unlink(missing_ok=True)
+    return kept
+
+
 def _is_folder(path: Path) -> bool:
     return path.is_dir() and not path.is_symlink()
 

@@ -25,9 +25,15 @@ from fe_drivetrain.common.manifest import MANIFEST, Manifest, manifest_of, read_
 
 # Whoever has these in the name of a hidden folder has it from here: others are never removed.
 _NEW, _OLD = "unfinished", "replaced"
+_HIDDEN = re.compile(rf"\..+(-({_NEW}|{_OLD})-[a-z0-9_]{{8}}|\.[0-9a-f]{{32}}\.tmp)")
 _RESULTS = "results"  # in a folder of the second kind
 _EXCHANGE = 2  # RENAME_EXCHANGE, linux/fs.h
 _HERE = -100  # AT_FDCWD, linux/fcntl.h
+
+
+def is_hidden(name: str) -> bool:
+    """Whether a name is that of what this program has not finished or not put away yet."""
+    return _HIDDEN.fullmatch(name) is not None
 
 
 class HiddenFolder:

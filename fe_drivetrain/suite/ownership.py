@@ -9,6 +9,7 @@ from pathlib import Path
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
+from fe_drivetrain.common.folders import is_hidden
 from fe_drivetrain.common.manifest import (
     MANIFEST,
     Manifest,
@@ -130,7 +131,7 @@ def claim_reports(folder: Path) -> bool:
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        names = set(os.listdir(folder))
+        names = os.listdir(folder)
     except OSError as error:
         raise not_writable(folder, error) from error
     try:
@@ -139,8 +140,7 @@ def claim_reports(folder: Path) -> bool:
         return False
     if manifest is not None:
         return manifest.kind == "reports"
-    # another run may be writing the manifest this moment
-    if any(not name.startswith(f".{MANIFEST}.") for name in names) and not _has_results(folder):
+    if any(not is_hidden(name) for name in names) and not _has_results(folder):
         return False
     with atomic_path(folder / MANIFEST) as unfinished:
         unfinished.write_text(Manifest("reports").text(), encoding="utf-8")
