@@ -207,7 +207,7 @@ def test_ctrl_c_between_the_two_renames_puts_the_earlier_results_back(
 def test_a_new_run_replaces_the_whole_folder(tmp_path: Path) -> None:
     run_case(tiny_case(), tmp_path / "out")
     run_case(tiny_case(fill), tmp_path / "out")
-    assert set(contents(tmp_path / "out")) == {"history.sqlite", "results.json", "report.html"}
+    assert set(contents(tmp_path / "out")) == {MANIFEST, FILE, "results.json", "report.html"}
 
 
 def test_an_empty_folder_is_used_and_a_foreign_one_refused(tmp_path: Path) -> None:

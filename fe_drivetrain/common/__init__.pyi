@@ -16,6 +16,7 @@ from .errors import InputError as InputError
 from .errors import MissingToolError as MissingToolError
 from .exact_sums import ExactSum as ExactSum
 from .exact_sums import exact_sum as exact_sum
+from .files import scratch_folder as scratch_folder
 from .interpreter import interpreters as interpreters
 from .interpreter import run_python as run_python
 from .jobs import mapped as mapped

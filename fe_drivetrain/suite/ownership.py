@@ -88,12 +88,13 @@ def check_result_folder(out: Path) -> None:
     if replaced:  # meanwhile, by another run
         check_result_folder(out)
         return
-    is_reports = (manifest := read_manifest(out)) is not None and manifest.kind == "reports"
+    if read_manifest(out) is not None:
+        raise InputError(
+            f"--out {out} is the folder above the results of several cases: give one below it"
+        )
     raise InputError(
-        f"--out {out} is the folder above the results of several cases: give a folder below it"
-        if is_reports
-        else f"--out {out} holds files that are not of an earlier run ({_some(names)}), and stays "
-        "as it is: give a new or empty folder"
+        f"--out {out} holds files that are not results of an earlier run ({_some(names)}), and "
+        "stays as it is: give a new or empty folder"
     )
 
 
@@ -158,7 +159,7 @@ def require_reports(folder: Path) -> None:
     if not claim_reports(folder):
         names = sorted(os.listdir(folder))
         raise InputError(
-            f"--out {folder} holds files that are not of earlier runs of several cases "
+            f"--out {folder} holds files that are not results of earlier runs "
             f"({_some(names)}), and stays as it is: give a new or empty folder"
         )
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import warnings
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -210,9 +212,21 @@ def put_in_place(folder: HiddenFolder, out: Path) -> None:
         ``out`` cannot be written; it is as it was.
     """
     try:
+        here = Path.cwd()
+    except FileNotFoundError:  # somebody has removed it
+        here = Path(out.anchor)
+    try:
         folder.put_in_place()
     except OSError as error:
         raise not_writable(out, error) from error
+    if here.is_relative_to(out.resolve()):
+        # this process would stay in the folder that has gone; a shell does
+        with suppress(OSError):
+            os.chdir(here)
+        warnings.warn(
+            f"you are in {here}, which has been replaced: type cd . to see the new results",
+            stacklevel=2,
+        )
 
 
 @contextmanager
