@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import re
 import sys
-import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,7 +12,7 @@ from pathlib import Path
 import gmsh
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.files import atomic_path
+from fe_drivetrain.common.files import atomic_path, scratch_folder
 
 _MILLIMETRE = re.compile(
     r"(LENGTH_UNIT\(\s*\)\s*NAMED_UNIT\(\*\)\s*)SI_UNIT\(\.MILLI\.,\.METRE\.\)"
@@ -68,8 +67,8 @@ def write_step(path: str | os.PathLike[str], volumes: Sequence[int], unit: str =
     for dim in (2, 1, 0):
         occ.remove(occ.getEntities(dim))  # those that no solid has
     occ.synchronize()
-    with tempfile.TemporaryDirectory() as folder:
-        made = Path(folder) / "part.step"
+    with scratch_folder() as folder:
+        made = folder / "part.step"
         with _silent():
             gmsh.write(str(made))
         text = made.read_text("utf-8")

@@ -14,11 +14,13 @@ from tiny_case import check_one
 
 from fe_drivetrain.commands.advice_page import tornado
 from fe_drivetrain.commands.settings import parse_settings
-from fe_drivetrain.common import files
+from fe_drivetrain.common import folders
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.manifest import MANIFEST
 from fe_drivetrain.fidelity.ablation import Effect
 from fe_drivetrain.report.answer import headline
 from fe_drivetrain.report.charts import trace
+from fe_drivetrain.report.history import FILE
 from fe_drivetrain.report.results import Chart, Image, Table, Text, read_results
 from fe_drivetrain.suite import case as case_module
 from fe_drivetrain.suite.case import Case, find_cases
@@ -71,7 +73,7 @@ def test_run_writes_what_it_returns(tmp_path: Path) -> None:
     results = run_case(tiny_case(), out, {"a": [1, "b"]})
     assert read_results(out / "results.json") == results
     assert results.environment.settings == {"a": [1, "b"]}
-    assert set(contents(out)) == {"history.sqlite", "results.json", "report.html", "one.txt"}
+    assert set(contents(out)) == {MANIFEST, FILE, "results.json", "report.html", "one.txt"}
     assert [path.name for path in out.parent.iterdir()] == ["folder"]
 
 
@@ -195,7 +197,7 @@ def test_ctrl_c_between_the_two_renames_puts_the_earlier_results_back(
         rename(source, target)  # type: ignore[arg-type]
 
     # as where the system cannot exchange two folders in one go
-    monkeypatch.setattr(files, "_exchange", lambda first, second: False)
+    monkeypatch.setattr(folders, "_exchange", lambda first, second: False)
     monkeypatch.setattr(os, "rename", interrupted)
     with pytest.raises(KeyboardInterrupt):
         run_case(tiny_case(), tmp_path / "out")
@@ -205,7 +207,7 @@ def test_ctrl_c_between_the_two_renames_puts_the_earlier_results_back(
 def test_a_new_run_replaces_the_whole_folder(tmp_path: Path) -> None:
     run_case(tiny_case(), tmp_path / "out")
     run_case(tiny_case(fill), tmp_path / "out")
-    assert set(contents(tmp_path / "out")) == {"history.sqlite", "results.json", "report.html"}
+    assert set(contents(tmp_path / "out")) == {MANIFEST, FILE, "results.json", "report.html"}
 
 
 def test_an_empty_folder_is_used_and_a_foreign_one_refused(tmp_path: Path) -> None:

@@ -25,9 +25,11 @@ from hypothesis import strategies as st
 
 from fe_drivetrain.commands import terminal
 from fe_drivetrain.commands.run import run_and_print
-from fe_drivetrain.common import files
+from fe_drivetrain.common import folders
 from fe_drivetrain.common.cache import CACHE_VARIABLE, Cache
-from fe_drivetrain.common.files import HiddenFolder, atomic_path
+from fe_drivetrain.common.files import atomic_path
+from fe_drivetrain.common.folders import HiddenFolder
+from fe_drivetrain.common.manifest import MANIFEST
 from fe_drivetrain.common.stopped import STOPPED, TERMINATED
 from fe_drivetrain.common.threads import CORES_VARIABLE as CORES
 from fe_drivetrain.geometry import gmsh_session
@@ -63,7 +65,7 @@ def marked(mark: str) -> Case:
     return Case("a/b", "t", "s", work)
 
 
-def state(out: Path) -> str:
+def state(out: Path, *others: str) -> str:
     """Whose results stand there; an assertion fails where they are not all of one run."""
     if not out.exists():
         return MISSING
@@ -72,8 +74,8 @@ def state(out: Path) -> str:
     assert (out / "one.txt").read_text() == mark
     assert (out / "two" / "three.txt").read_text() == mark * 1000
     # runs of several cases have one history above their folders
-    there = {p.name for p in out.iterdir()} - {FILE}
-    assert there == {"one.txt", "report.html", "results.json", "two"}
+    there = {p.name for p in out.iterdir()} - {FILE, MANIFEST}
+    assert there == {"one.txt", "report.html", "results.json", "two", *others}
     return mark
 
 
@@ -146,7 +148,7 @@ def test_at_no_moment_does_a_fault_leave_half_of_anything(
     exchange: bool,
 ) -> None:
     if not exchange:
-        monkeypatch.setattr(files, "_exchange", lambda first, second: False)
+        monkeypatch.setattr(folders, "_exchange", lambda first, second: False)
     out = tmp_path / "b"
     found = []
     for number in range(1000):
@@ -226,7 +228,7 @@ def test_two_runs_into_one_folder_leave_the_whole_of_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, exchange: bool, there: bool
 ) -> None:
     if not exchange:
-        monkeypatch.setattr(files, "_exchange", lambda first, second: False)
+        monkeypatch.setattr(folders, "_exchange", lambda first, second: False)
     for k in range(4):
         out = tmp_path / f"{k}" / "b"
         if there:

@@ -22,6 +22,7 @@ from fe_drivetrain.report.history import (
 from fe_drivetrain.report.results import Results
 from fe_drivetrain.report.trend import change_text, relative_change, sparkline
 from fe_drivetrain.suite.case import Case
+from fe_drivetrain.suite.ownership import claim_reports
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.result_folders import run_case, shared_folder
 from fe_drivetrain.suite.run import Run
@@ -126,6 +127,7 @@ def test_a_folder_that_is_replaced_takes_its_history_along(tmp_path: Path) -> No
 
 
 def test_a_file_that_is_no_history_is_refused_before_any_work(tmp_path: Path) -> None:
+    assert claim_reports(tmp_path)
     (tmp_path / FILE).write_text("years of work, in a file of another kind" * 30)
     worked = []
     case = Case("g/c", "t", "s", lambda run, page: worked.append(1))

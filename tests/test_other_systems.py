@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import pytest
 
 from fe_drivetrain.cases.stability.faults import experiment
-from fe_drivetrain.common import files, memory, processes, threads
+from fe_drivetrain.common import files, folders, memory, processes, threads
 from fe_drivetrain.common.errors import MissingToolError
 from fe_drivetrain.common.memory import peak_memory
 from fe_drivetrain.peers import launching
@@ -85,19 +85,19 @@ def test_files_and_folders_appear_whole_without_locks_and_exchange(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(files, "fcntl", None)
-    monkeypatch.setattr(files, "sys", SimpleNamespace(platform="win32"))
+    monkeypatch.setattr(folders, "sys", SimpleNamespace(platform="win32"))
     with files.atomic_path(tmp_path / "file") as unfinished:
         unfinished.write_text("new")
     assert (tmp_path / "file").read_text() == "new"
     for content in ("first", "second"):
-        folder = files.HiddenFolder(tmp_path / "out")
+        folder = folders.HiddenFolder(tmp_path / "out")
         (folder.path / "a").write_text(content)
         folder.put_in_place()
         folder.discard()
         assert (tmp_path / "out/a").read_text() == content
     assert sorted(os.listdir(tmp_path)) == ["file", "out"]
-    beside = files.HiddenFolder(tmp_path / "out")  # which another may be writing still
-    files.HiddenFolder(tmp_path / "out").discard()
+    beside = folders.HiddenFolder(tmp_path / "out")  # which another may be writing still
+    folders.HiddenFolder(tmp_path / "out").discard()
     assert beside.path.exists()
 
 

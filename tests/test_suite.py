@@ -27,6 +27,7 @@ from suite_cases import (
 
 from fe_drivetrain.commands.run import results_text
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.manifest import MANIFEST
 from fe_drivetrain.common.progress import OVERALL
 from fe_drivetrain.common.threads import CORES_VARIABLE
 from fe_drivetrain.report.history import FILE
@@ -64,7 +65,8 @@ def test_each_case_has_its_results_and_all_are_listed(tmp_path: Path, number_of_
     # times add up to what passed
     assert page.count('data-value="1.25">1.25</td>') == 3
     assert re.findall('<tr class="[^"]*" data-state="([^"]*)"', page) == ["fail", "pass", "pass"]
-    assert sorted(os.listdir(tmp_path)) == ["a", "b", "checks.html", "history.sqlite", "index.html"]
+    pages = ["checks.html", MANIFEST, "history.sqlite", "index.html"]
+    assert sorted(os.listdir(tmp_path)) == ["a", "b", *pages]
     assert sorted(os.listdir(tmp_path / "a")) == ["miss", "one"]
 
 
@@ -323,6 +325,7 @@ def test_stopping_keeps_what_is_done_and_leaves_nothing_half_written(
     assert sorted(os.listdir(tmp_path / "reports")) == [
         "a",
         "checks.html",
+        MANIFEST,
         "history.sqlite",
         "index.html",
         "problems.json",

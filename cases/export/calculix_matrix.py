@@ -1,13 +1,10 @@
 """Full stiffness and mass matrices in CalculiX, as springs and masses on auxiliary nodes."""
 
-from pathlib import Path
-from tempfile import TemporaryDirectory
-
 import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.export.samples import frequencies, samples, show
-from fe_drivetrain.common import scaled_to_unit_diagonal
+from fe_drivetrain.common import scaled_to_unit_diagonal, scratch_folder
 from fe_drivetrain.export import (
     ROUNDING,
     compliance_by_calculix,
@@ -38,8 +35,8 @@ def run(run: Run, page: Page) -> None:
     for label, element in samples(run).items():
         start = held(element)
         stiffness = element.stiffness[start:, start:]
-        with run.step("CalculiX"), TemporaryDirectory() as name:
-            found = compliance_by_calculix(element, Path(name))
+        with run.step("CalculiX"), scratch_folder() as name:
+            found = compliance_by_calculix(element, name)
         expected = np.linalg.inv(stiffness)
         size = np.sqrt(np.outer(expected.diagonal(), expected.diagonal()))
         # fourteen digits of the deck, times the condition of what is solved
@@ -63,8 +60,8 @@ def run(run: Run, page: Page) -> None:
         page.meets(found[value], Target(title, expected[value], 1e-6, SEVEN, INVERSE))
         if element.mass is None:
             continue
-        with run.step("CalculiX"), TemporaryDirectory() as name:
-            computed = frequencies_by_calculix(element, Path(name), COUNT)
+        with run.step("CalculiX"), scratch_folder() as name:
+            computed = frequencies_by_calculix(element, name, COUNT)
         exact = frequencies(stiffness, element.mass[start:, start:], COUNT)
         for k in range(COUNT):
             title = f"{label}, held at its first point: natural frequency {k + 1} [Hz]"

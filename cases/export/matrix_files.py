@@ -1,13 +1,11 @@
 """Condensed matrices as JSON, CSV, Matrix Market and HDF5, read by what others read them with."""
 
 from importlib import import_module
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from fe_drivetrain import export
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.export.samples import matrices, samples, show
-from fe_drivetrain.common import MissingToolError, largest_difference
+from fe_drivetrain.common import MissingToolError, largest_difference, scratch_folder
 from fe_drivetrain.suite import Page, Record, Run, column
 from fe_drivetrain.validation.matrix_readers import READERS
 
@@ -30,13 +28,13 @@ def run(run: Run, page: Page) -> None:
         ) from error
     rows: list[Record] = []
     elements = samples(run)
-    with run.step("write and read"), TemporaryDirectory() as name:
+    with run.step("write and read"), scratch_folder() as name:
         for label, element in elements.items():
             written = matrices(element)
             for format, library, kinds, read in READERS:
                 if not written.keys() & set(kinds):
                     continue
-                path = Path(name) / f"{element.name}_{format}{export.FORMATS[format].suffix}"
+                path = name / f"{element.name}_{format}{export.FORMATS[format].suffix}"
                 export.write(path, element, format)
                 rows += [
                     {

@@ -1,14 +1,11 @@
 """Condensed matrices as Nastran bulk data (DMIG) and OUTPUT4, read by pyNastran."""
 
-from pathlib import Path
-from tempfile import TemporaryDirectory
-
 import numpy as np
 
 from fe_drivetrain import export
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.export.samples import frequencies, matrices, samples, show
-from fe_drivetrain.common import largest_difference
+from fe_drivetrain.common import largest_difference, scratch_folder
 from fe_drivetrain.export import pynastran
 from fe_drivetrain.suite import Page, Run, Target, column, grouped
 
@@ -42,8 +39,8 @@ def run(run: Run, page: Page) -> None:
     rows = []
     for label, element in elements.items():
         for format, (tolerance, digits) in DIGITS.items():
-            with run.step("write and read"), TemporaryDirectory() as folder:
-                path = Path(folder) / f"{element.name}{export.FORMATS[format].suffix}"
+            with run.step("write and read"), scratch_folder() as folder:
+                path = folder / f"{element.name}{export.FORMATS[format].suffix}"
                 export.write(path, element, format)
                 size, back = path.stat().st_size, export.read(path, format)
             name, found, written = f"{label}, {format}", matrices(back), matrices(element)

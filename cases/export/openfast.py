@@ -1,13 +1,12 @@
 """OpenFAST inputs from the export, read by openfast_io: ElastoDyn, SubDyn and ExtPtfm."""
 
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.export.samples import FACTOR, frequencies, show
-from fe_drivetrain.common import largest_difference
+from fe_drivetrain.common import largest_difference, scratch_folder
 from fe_drivetrain.export import (
     Superelement,
     shaft_superelement,
@@ -53,8 +52,7 @@ def run(run: Run, page: Page) -> None:
     """Write the three inputs and read them."""
     scene = library_scene("main_bearing_bonded")
     shaft = run.timed("free shaft", shaft_superelement, scene, 2)
-    with TemporaryDirectory() as name:
-        folder = Path(name)
+    with scratch_folder() as folder:
         drivetrain_torsion(run, page, scene, shaft, folder)
         spring_element(run, page, scene, folder / "spring.dat")
         platform_superelement(run, page, shaft, folder / "superelement.dat")

@@ -2,15 +2,13 @@
 
 import warnings
 from importlib import import_module
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.export.samples import show
-from fe_drivetrain.common import MissingToolError
+from fe_drivetrain.common import MissingToolError, scratch_folder
 from fe_drivetrain.export import Torsion, shaft_superelement, torsional_damping, torsional_stiffness
 from fe_drivetrain.export.formats import windio
 from fe_drivetrain.scene import change_scene, library_scene
@@ -73,8 +71,8 @@ def run(run: Run, page: Page) -> None:
     softer = 1.0 / (1.0 / spring + 1.0 / (5 * spring) + 1.0 / (3 * spring))
     ours = Torsion(softer, torsional_damping(RATIO, softer, rotor, generator))
 
-    with run.step("WISDEM with ours"), TemporaryDirectory() as name:
-        path = Path(name) / "turbine.yaml"
+    with run.step("WISDEM with ours"), scratch_folder() as name:
+        path = name / "turbine.yaml"
         path.write_text(TURBINE)
         windio.write_torsion(path, path, ours, "wisdem", overwrite=True)
         given = load_yaml(path)["components"]["drivetrain"]

@@ -1,12 +1,9 @@
 """Histories that say less than they seem to: too slow, too short, with spikes, gaps, constants."""
 
-import tempfile
-from pathlib import Path
-
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.common import Floats, InputError, scratch_folder
 from fe_drivetrain.histories import (
     RESIDUES,
     alias,
@@ -259,8 +256,8 @@ def refused(page: Page) -> None:
         why="it has no cycle",
         source="definition",
     )
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "constant.csv"
+    with scratch_folder() as folder:
+        file = folder / "constant.csv"
         write_csv(LoadHistory("constant", time, np.full((len(time), 6), 3.0)), file)
         read = read_recorded(file).history
     page.holds(

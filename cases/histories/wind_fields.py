@@ -1,13 +1,11 @@
 """Wind fields on grids, as TurbSim and HAWC2 write them: how fine a grid hub loads need."""
 
-import tempfile
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import Floats, scratch_folder
 from fe_drivetrain.histories import damage_equivalent_load, rainflow_cycles
 from fe_drivetrain.hub_loads import (
     LoadHistory,
@@ -143,16 +141,14 @@ def equivalent(history: LoadHistory) -> float:
 def files(run: Run, page: Page, box: WindBox) -> None:
     """Loads of a field that was written and read."""
     hub = ROTOR.hub_height
-    with run.step("files"), tempfile.TemporaryDirectory() as folder:
-        write_bts(box, Path(folder) / "waves.bts", hub)
-        write_hawc2(box, Path(folder) / "u.bin", SPEED, hub, 0.0)
+    with run.step("files"), scratch_folder() as folder:
+        write_bts(box, folder / "waves.bts", hub)
+        write_hawc2(box, folder / "u.bin", SPEED, hub, 0.0)
         spacing = SPEED * box.step, float(np.diff(box.y)[0]), float(np.diff(box.z)[0])
         planes, points, heights = box.speed.shape
         found = {
-            "TurbSim": read_bts(Path(folder) / "waves.bts"),
-            "HAWC2": read_hawc2(
-                Path(folder) / "u.bin", (planes, points, heights), spacing, SPEED, hub
-            ),
+            "TurbSim": read_bts(folder / "waves.bts"),
+            "HAWC2": read_hawc2(folder / "u.bin", (planes, points, heights), spacing, SPEED, hub),
         }
     exact = box_hub_loads(box).loads
     spread = exact.std(axis=0).max()

@@ -1,6 +1,5 @@
 """Reactions to hub-load histories, with the weight of the parts: tables, and files of one's own."""
 
-import csv
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
@@ -8,7 +7,15 @@ import numpy as np
 
 from fe_drivetrain.cases.main_bearing.loads import HubLoads
 from fe_drivetrain.cases.main_bearing.study import Solved
-from fe_drivetrain.common import FORCES, GRAVITY, Floats, InputError
+from fe_drivetrain.common import (
+    FORCES,
+    GRAVITY,
+    Floats,
+    InputError,
+    SafeWriter,
+    comment_line,
+    table_head,
+)
 from fe_drivetrain.suite import Page, Record, Run
 
 FRAME = "x downwind along the shaft, z up, y = z cross x; does not turn with the rotor"
@@ -97,7 +104,9 @@ def write_files(
                 np.column_stack([hub.times[k], reactions[k]]),
                 delimiter=",",
                 fmt="%.9g",
-                header="\n".join([*(f"# {f} = {v}" for f, v in facts.items()), ",".join(columns)]),
+                header="\n".join(
+                    [*(comment_line(f"{f} = {v}") for f, v in facts.items()), table_head(columns)]
+                ),
                 comments="",
                 encoding="utf-8",
             )
@@ -170,16 +179,19 @@ def _write_statistics(
 ) -> Iterator[Record]:
     """Write each history's statistics, and yield those over all as rows of the page [kN, kN m]."""
     with path.open("w", encoding="utf-8", newline="") as file:
-        file.write(f"# frame = {FRAME}\n")
-        file.write(f"# loads = {hub.statement.removeprefix('Hub loads: ')}\n")
+        table = SafeWriter(file)
+        facts = [f"frame = {FRAME}", f"loads = {hub.statement.removeprefix('Hub loads: ')}"]
         for kind, of in solved.items():
-            file.write(f"# weight, {kind} = {weight_statement(of, self_weight)}\n")
-            for name in of.response.reactions:
-                file.write(f"# {name}, {kind} = {meaning_of(of, name)}; moments about ")
-                file.write(f"{origin_of(of, name)}\n")
-        for history, channels in zip(hub.names, hub.channels, strict=False):
-            file.write(f"# channels of {history} = {channels}\n")
-        table = csv.writer(file, lineterminator="\n")
+            facts.append(f"weight, {kind} = {weight_statement(of, self_weight)}")
+            facts += [
+                f"{name}, {kind} = {meaning_of(of, name)}; moments about {origin_of(of, name)}"
+                for name in of.response.reactions
+            ]
+        facts += [
+            f"channels of {history} = {channels}"
+            for history, channels in zip(hub.names, hub.channels, strict=False)
+        ]
+        table.comments(facts)
         table.writerow(["bearing type", "history", "reaction", "component", "unit", *_COLUMNS])
         for kind, of in solved.items():
             for name in of.response.reactions:

@@ -1,6 +1,5 @@
 """The elastic operator beside scikit-fem's generic form: same matrix, other time."""
 
-import tempfile
 from functools import partial
 from typing import Any
 
@@ -20,7 +19,7 @@ from skfem import (
 from skfem.models.elasticity import linear_elasticity
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats, Ints, Times, run_python, timed_runs
+from fe_drivetrain.common import Floats, Ints, Times, run_python, scratch_folder, timed_runs
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.interfaces import eliminate, fixed
 from fe_drivetrain.mesh import element_kind, generate
@@ -202,9 +201,9 @@ def compile_times(repeats: int) -> tuple[Times, Times]:
     """First calls of all kernels in a new process, with an empty cache and with a full one."""
     found: tuple[list[float], list[float]] = [], []
     for _ in range(repeats):
-        with tempfile.TemporaryDirectory() as folder:
+        with scratch_folder() as folder:
             for seconds in found:
-                result = run_python("-c", COMPILE, environment={"NUMBA_CACHE_DIR": folder})
+                result = run_python("-c", COMPILE, environment={"NUMBA_CACHE_DIR": str(folder)})
                 result.check_returncode()
                 _, assembly, solve = map(float, result.stdout.split())
                 seconds.append(assembly + solve)

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.performance.peer_goals import (
@@ -15,7 +14,7 @@ from fe_drivetrain.cases.performance.peer_goals import (
 )
 from fe_drivetrain.cases.performance.peer_method import method, of_motions
 from fe_drivetrain.cases.performance.peer_settings import OURS, plan_of, settings_of
-from fe_drivetrain.common import Progress, interpreters
+from fe_drivetrain.common import Progress, interpreters, scratch_folder
 from fe_drivetrain.compare import growth_exponent
 from fe_drivetrain.peers import (
     BENCHMARKS,
@@ -80,8 +79,8 @@ def run(run: Run, page: Page) -> None:
     variants = parse([*([] if has_ours else [OURS]), *settings["tools"]])
     benchmarks = [BENCHMARKS[name]() for name in settings["problems"]]
     found: list[list[Row]] = []
-    with TemporaryDirectory() as name:
-        warm_up, problem_file = Path(name) / "warm_up.npz", Path(name) / "problem.npz"
+    with scratch_folder() as name:
+        warm_up, problem_file = name / "warm_up.npz", name / "problem.npz"
         with run.step("tools: a first small run"):
             shaft = problems.of_size(problems.hollow_shaft(), WARM_UP, settings["right_hand_sides"])
             write_problem(shaft, warm_up)

@@ -6,11 +6,16 @@ import json
 import statistics
 import time
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import CACHE_VARIABLE, InputError, MissingToolError, run_python
+from fe_drivetrain.common import (
+    CACHE_VARIABLE,
+    InputError,
+    MissingToolError,
+    run_python,
+    scratch_folder,
+)
 from fe_drivetrain.suite import Page, Record, Run
 
 _PROGRAM = "import sys; from fe_drivetrain.commands import main; sys.exit(main())"
@@ -59,7 +64,7 @@ def waited(wait: Wait, compiled: Path, kept: Path) -> Took:
     """
     import resource  # which Windows does not have
 
-    with TemporaryDirectory() as out:
+    with scratch_folder() as out:
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         start = time.perf_counter()
         done = run_python(
@@ -84,19 +89,19 @@ def measured(run: Run, wait: Wait, repeats: int) -> list[Took]:
     """A command several times, each time with the same things there before it."""
     name = f"{' '.join(wait.command)}, {wait.before}"
     found = []
-    with run.step(name), TemporaryDirectory() as folder:
-        compiled, kept = Path(folder, "compiled"), Path(folder, "kept")
+    with run.step(name), scratch_folder() as folder:
+        compiled, kept = folder / "compiled", folder / "kept"
         if wait.before != FIRST:
             waited(wait, compiled, kept)
         for number in range(repeats):
             run.report(f"{name} ({number + 1} of {repeats})")
             # as a user has it: what a run makes is kept for the rest of it
-            with TemporaryDirectory() as empty:
+            with scratch_folder() as empty:
                 found.append(
                     waited(
                         wait,
-                        Path(empty, "compiled") if wait.before == FIRST else compiled,
-                        kept if wait.before == SECOND else Path(empty, "kept"),
+                        empty / "compiled" if wait.before == FIRST else compiled,
+                        kept if wait.before == SECOND else empty / "kept",
                     )
                 )
     return found

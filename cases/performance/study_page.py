@@ -1,12 +1,12 @@
 """A study of choices on its page: what to take, the Pareto fronts, the reference, the tolerance."""
 
-import csv
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from fe_drivetrain.cases.performance.studies import Study
+from fe_drivetrain.common import SafeWriter
 from fe_drivetrain.compare import pareto_front
 from fe_drivetrain.report import Chart, bars, rounded, trace
 from fe_drivetrain.suite import Page, Record, Run
@@ -287,7 +287,7 @@ def write_outcomes(run: Run, study: Study, name: str) -> None:
     """Every choice with its times and errors, for other programs."""
     errors = [(study.signed_error(q), study.error(q)) for q in range(len(study.quantities))]
     with (run.folder / f"{name}_choices.csv").open("w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file)
+        table = SafeWriter(file)
         table.writerow(
             ["element", "mesh", "solver", "tolerance", "unknowns", "iterations", "bytes"]
             + [f"{step} [s]" for step in STEPS]

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 from statistics import median
-from tempfile import TemporaryDirectory
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.performance.peer_settings import problems_of, sizes_of
-from fe_drivetrain.common import cores
+from fe_drivetrain.common import cores, scratch_folder
 from fe_drivetrain.compare import PowerLaw, power_law
 from fe_drivetrain.peers import (
     BENCHMARKS,
@@ -97,8 +95,8 @@ def measured(run: Run, benchmark: Benchmark, sizes: Sequence[int], plan: Plan) -
     """A row for each size of a body."""
     rows: list[Row] = []
     ours = [(Variant("this_project", "auto"), sys.executable)]
-    with TemporaryDirectory() as name:
-        warm_up, file = Path(name) / "warm_up.npz", Path(name) / "problem.npz"
+    with scratch_folder() as name:
+        warm_up, file = name / "warm_up.npz", name / "problem.npz"
         write_problem(problems.of_size(problems.hollow_shaft(), min(WARM_UP, *sizes)), warm_up)
         for size in sizes:
             with run.step(f"{benchmark.title}: mesh of {size:,} unknowns"):

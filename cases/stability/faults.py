@@ -2,11 +2,10 @@
 
 import json
 import os
-import tempfile
 from typing import Any
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import CORES_VARIABLE, MissingToolError, run_python
+from fe_drivetrain.common import CORES_VARIABLE, MissingToolError, run_python, scratch_folder
 from fe_drivetrain.report import chart, trace
 from fe_drivetrain.suite import Page, Record, Run, column
 
@@ -35,9 +34,9 @@ def experiment(moments: int) -> Any:
         raise MissingToolError(
             "this system cannot fork processes, to which the faults happen: run it on Linux"
         )
-    with tempfile.TemporaryDirectory() as folder:
+    with scratch_folder() as folder:
         done = run_python(
-            *("-m", "fe_drivetrain.cases.stability.fault_moments", folder, str(moments)),
+            *("-m", "fe_drivetrain.cases.stability.fault_moments", str(folder), str(moments)),
             environment={**dict.fromkeys(THREADS, "1"), CORES_VARIABLE: "1"},
             timeout=600,
         )

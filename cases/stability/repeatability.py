@@ -1,13 +1,11 @@
 """Two runs, bit for bit: with one thread, with two, and with the nodes in another order."""
 
-import tempfile
 from collections.abc import Mapping
-from pathlib import Path
 
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import Floats, scratch_folder
 from fe_drivetrain.compare import FOUR_DIGITS, fitted_exponent, in_words, safe_range
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run
@@ -78,10 +76,10 @@ def run(run: Run, page: Page) -> None:
         planned |= {"two threads": 2, "two threads, again": 2}
         pairs += [("two threads", "two threads, again"), ("one thread", "two threads")]
     runs: dict[str, Arrays] = {}
-    with tempfile.TemporaryDirectory() as folder:
+    with scratch_folder() as folder:
         for name, threads in planned.items():
             with run.step(f"a process with {name}"):
-                runs[name] = elsewhere(Path(folder) / f"{len(runs)}.npz", lengths, threads)
+                runs[name] = elsewhere(folder / f"{len(runs)}.npz", lengths, threads)
     slenderness = QUICK_SLENDERNESS if run.quick else SLENDERNESS
     with run.step("nodes in another order"):
         reordered = renumbered(slenderness)

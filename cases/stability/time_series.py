@@ -1,15 +1,13 @@
 """Statistics of load histories where they break: zero crossings, outliers, constants, NaN."""
 
-import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from scipy.special import erf
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import FORCES, Floats, InputError
+from fe_drivetrain.common import FORCES, Floats, InputError, scratch_folder
 from fe_drivetrain.compare import fitted_exponent, statistics
 from fe_drivetrain.hub_loads import UNITS, read_hub_loads
 from fe_drivetrain.report import trace
@@ -434,8 +432,8 @@ def refusals() -> list[Record]:
         "a file whose loads never vary": [f"{t},1,2,3,4,5,6" for t in range(3)],
         "a file with a missing sample": [f"{t},{t},2,3,4,5,6" for t in (0, 1, 2, 4, 5)],
     }
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder, "loads.csv")
+    with scratch_folder() as folder:
+        file = folder / "loads.csv"
         for what, lines in files.items():
             file.write_text("\n".join([heading, *lines]), encoding="utf-8")
             rows[what] = message(lambda: read_hub_loads(file)).replace(str(file), "loads.csv")

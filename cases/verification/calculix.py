@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import shutil
 import subprocess
-import tempfile
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from fe_drivetrain.cases import cases
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import Floats, scratch_folder
 from fe_drivetrain.export import (
     ROUNDING,
     DeckResponse,
@@ -124,8 +122,8 @@ def compare(run: Run, scene: Scene, label: str, mesh: Mesh) -> Compared:
     deck = run.folder / f"{label}.inp"
     with run.step(f"deck ({label})"):
         write_inp(model, deck, loads, fields=False)
-    with run.step(f"CalculiX ({label})"), tempfile.TemporaryDirectory() as name:
-        copy = Path(name) / "job.inp"
+    with run.step(f"CalculiX ({label})"), scratch_folder() as name:
+        copy = name / "job.inp"
         shutil.copy(deck, copy)
         start = time.perf_counter()
         dat = run_calculix(copy)

@@ -15,6 +15,7 @@ from fe_drivetrain.commands.scenes import named_scene_or_component
 from fe_drivetrain.commands.settings import SceneSettings, parse_settings
 from fe_drivetrain.commands.terminal import PASSED, guarded, write
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.files import check_writable
 from fe_drivetrain.common.threads import hold_threads
 
 if TYPE_CHECKING:
@@ -180,6 +181,7 @@ class Export:
             raise InputError(
                 f"--out {self.out} must be a file in an existing folder: give such a file"
             )
+        check_writable(self.out)
 
     @property
     def points(self) -> list[str] | None:

@@ -170,6 +170,11 @@ def life_command(
 
     def work() -> int:
         hold_threads()
+        from fe_drivetrain.suite.ownership import check_result_folder
+
+        name = Path(scene).stem
+        target = out or Path("reports") / "life" / name
+        check_result_folder(target)
         found = named_scene(scene, parse_settings(set_ or ()))
         from fe_drivetrain.commands.life_bearings import Choices, bearings_of
         from fe_drivetrain.commands.life_digest import Reading
@@ -197,7 +202,6 @@ def life_command(
         )
         place = None if site is None else parse_site(site)
         files = recorded_files(loads)
-        name = Path(scene).stem
         case = Case(
             f"life/{name}",
             f"{found.title}: rating life of its bearings",
@@ -210,7 +214,6 @@ def life_command(
         with show_steps() as report, scheduled_by(scheduler):
             report("bearings")
             bearings = bearings_of(found, choices)
-            target = out or Path("reports") / "life" / name
             results = run_case(case, target.resolve(), report=report)
         write(sys.stdout, results_text(results, target / "report.html"))
         return PASSED if results.passed else FAILED

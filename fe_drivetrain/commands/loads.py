@@ -193,8 +193,10 @@ def loads_command(
         from fe_drivetrain.hub_loads.channel_map import read_channel_map
         from fe_drivetrain.hub_loads.recorded import OWN_NAMES, recorded_files
         from fe_drivetrain.suite.case import Case
+        from fe_drivetrain.suite.ownership import check_result_folder
         from fe_drivetrain.suite.result_folders import run_case
 
+        check_result_folder(out)
         for exponent in slope or ():
             check_slope(exponent)
         if residue not in RESIDUES:

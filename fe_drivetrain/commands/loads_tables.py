@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
 
+from fe_drivetrain.common.csv_cells import SafeWriter
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.suite.records import Record
 
@@ -55,8 +55,8 @@ def write_tables(
             continue
         columns = list(rows[0])
         with (folder / f"{name}.csv").open("w", encoding="utf-8", newline="") as file:
-            file.writelines(f"# {key} = {value}\n" for key, value in facts.items())
-            writer = csv.writer(file, lineterminator="\n")
+            writer = SafeWriter(file)
+            writer.comments(f"{key} = {value}" for key, value in facts.items())
             writer.writerow(columns)
             writer.writerows([_cell(row[column]) for column in columns] for row in rows)
         if parquet is not None:

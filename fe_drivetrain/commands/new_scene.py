@@ -81,7 +81,7 @@ def write_all(texts: dict[Path, str], overwrite: bool) -> None:
     InputError
         A file is there, or its folder is not.
     """
-    from fe_drivetrain.common.files import atomic_path
+    from fe_drivetrain.common.files import atomic_path, check_writable
 
     changed = {
         path: text
@@ -91,8 +91,7 @@ def write_all(texts: dict[Path, str], overwrite: bool) -> None:
     for path in changed:
         if not path.parent.is_dir():
             raise InputError(f"cannot write {path}: there is no folder {path.parent}: create it")
-        if path.is_dir():
-            raise InputError(f"{path} is a folder: name a file")
+        check_writable(path)
         if path.exists() and not overwrite:
             raise InputError(f"{path} exists: give another file, or add --overwrite")
     for path, text in changed.items():

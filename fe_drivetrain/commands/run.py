@@ -222,7 +222,12 @@ def run_and_print(
                 raise InputError(
                     f"--junit {junit}: there is no folder {junit.parent}: create it first"
                 )
-            junit.unlink(missing_ok=True)  # of an earlier run: it says nothing of this one
+            from fe_drivetrain.report.junit import check_junit
+
+            check_junit(junit)
+            junit.resolve().unlink(
+                missing_ok=True
+            )  # of an earlier run: it says nothing of this one
         cases = find()
         if resume and len(cases) == 1:
             raise InputError(

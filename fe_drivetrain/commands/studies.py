@@ -25,6 +25,7 @@ from fe_drivetrain.commands.terminal import FAILED, PASSED, as_typed, guarded, w
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
+from fe_drivetrain.suite.ownership import check_result_folder
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.results import Results
@@ -97,6 +98,7 @@ def study_command(
 
     def work() -> int:
         hold_threads()
+        check_result_folder(out or Path("reports", "study", _name_of([scene])))
         found = named_scene(scene, parse_settings(set_ or ()))
         if skip and loads is None:
             raise InputError(
@@ -325,12 +327,16 @@ def _results_of_scene(
     from fe_drivetrain.suite.result_folders import run_case
 
     stems = [Path(scene).stem for scene in scenes]
-    unique = dict.fromkeys(stems)
-    name = "-".join(unique)
-    names = " and ".join(stems if len(unique) == len(stems) else scenes)
+    names = " and ".join(stems if len(set(stems)) == len(stems) else scenes)
     source = f"the scene{'s' * (len(scenes) > 1)} {names}"
+    name = _name_of(scenes)
     case = Case(f"{command}/{name}", title, source, study, command=as_typed())
     folder = Path("reports", command, name) if out is None else out
     with show_steps() as report:
         results = run_case(case, folder.resolve(), quick=quick, report=report)
     return results, folder / "report.html"
+
+
+def _name_of(scenes: Sequence[str]) -> str:
+    """Their names, each once, as the folder has them."""
+    return "-".join(dict.fromkeys(Path(scene).stem for scene in scenes))

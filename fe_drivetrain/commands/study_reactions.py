@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +11,7 @@ import numpy as np
 from fe_drivetrain.commands.study_loads import StudyLoads, entering
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES, GRAVITY
+from fe_drivetrain.common.csv_cells import SafeWriter, comment_line, table_head
 from fe_drivetrain.compare.time_weighted import weighted_statistics
 from fe_drivetrain.fidelity.ladder import LevelModel
 from fe_drivetrain.fidelity.over_loads import Levels, reaction_history
@@ -273,9 +273,8 @@ def _write_statistics(
             for history in loads.histories
         }
     with path.open("w", encoding="utf-8", newline="") as file:
-        for fact, value in facts.items():
-            file.write(f"# {fact} = {value}\n")
-        table = csv.writer(file, lineterminator="\n")
+        table = SafeWriter(file)
+        table.comments(f"{fact} = {value}" for fact, value in facts.items())
         columns = ["history", "reaction", "component", "unit", *_COLUMNS, "mesh band"]
         table.writerow([*columns, *(f"DEL m={m:g}" for m in slopes)])
         for name, over in found.items():
@@ -332,7 +331,9 @@ def write_reactions(folder: Path, model: Model, loads: StudyLoads, levels: Level
             np.column_stack([history.time, *values]),
             delimiter=",",
             fmt="%.9g",
-            header="\n".join([*(f"# {f} = {v}" for f, v in facts.items()), ",".join(columns)]),
+            header="\n".join(
+                [*(comment_line(f"{f} = {v}") for f, v in facts.items()), table_head(columns)]
+            ),
             comments="",
             encoding="utf-8",
         )

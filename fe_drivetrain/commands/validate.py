@@ -83,13 +83,15 @@ def _validated(path: Path, out: Path | None) -> int:
     from fe_drivetrain.procedure.iteration_log import log_file
     from fe_drivetrain.procedure.project import read_project
     from fe_drivetrain.suite.case import Case
+    from fe_drivetrain.suite.ownership import check_result_folder
     from fe_drivetrain.suite.result_folders import run_case
 
     project = read_project(path)
-    standing = standing_of(project, path.parent)
-    log = _logged(standing, log_file(path))
     reports = path.parent / project.reports
     folder = (reports / "validate" / path.stem if out is None else out).resolve()
+    check_result_folder(folder)
+    standing = standing_of(project, path.parent)
+    log = _logged(standing, log_file(path))
     case = Case(
         f"validate/{path.stem}",
         f"{project.subject}: from failure modes to comparison",

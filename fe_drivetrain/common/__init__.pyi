@@ -9,10 +9,14 @@ from .components import FORCES as FORCES
 from .components import GRAVITY as GRAVITY
 from .components import MOTIONS as MOTIONS
 from .components import STRESSES as STRESSES
+from .csv_cells import SafeWriter as SafeWriter
+from .csv_cells import comment_line as comment_line
+from .csv_cells import table_head as table_head
 from .errors import InputError as InputError
 from .errors import MissingToolError as MissingToolError
 from .exact_sums import ExactSum as ExactSum
 from .exact_sums import exact_sum as exact_sum
+from .files import scratch_folder as scratch_folder
 from .interpreter import interpreters as interpreters
 from .interpreter import run_python as run_python
 from .jobs import mapped as mapped

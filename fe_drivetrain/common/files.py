@@ -1,33 +1,33 @@
-"""Atomic files and folders, and clean-up of interrupted ones.
+"""Atomic files, scratch folders, and clean-up of interrupted ones.
 
 What is being written stands beside its target under a hidden name, and its writer holds a lock on
 it. The system lets go of the lock when the writer ends, however it ends: so what is not locked was
 abandoned, by a kill or a power cut, and the next writer of the same thing removes it.
 """
 
-import ctypes
 import errno
 import os
 import re
 import shutil
+import stat
 import sys
 import tempfile
 import uuid
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
-from glob import escape
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
+
+from fe_drivetrain.common.errors import InputError
 
 if sys.platform == "win32":
     fcntl = None
 else:
     import fcntl
 
-# Whoever has these in the name of a hidden folder has it from here: others are never removed.
-_NEW, _OLD = "unfinished", "replaced"
-_TRIES = 100  # to hold something new before another takes it for abandoned
-_EXCHANGE = 2  # RENAME_EXCHANGE, linux/fs.h
-_HERE = -100  # AT_FDCWD, linux/fcntl.h
+TRIES = 100
+"""To hold something new before another takes it for abandoned."""
+
+_SCRATCH = "fe-drivetrain-scratch-"  # whoever has this name has it from here
 
 # what a user can fix about a folder or a disk; any other OSError is ours
 _USERS_ERRORS = {
@@ -40,6 +40,15 @@ _USERS_ERRORS = {
     errno.EPERM,
     errno.EROFS,
 }
+
+
+_NO_FILES = (
+    (stat.S_ISDIR, "a folder"),
+    (stat.S_ISCHR, "a device"),
+    (stat.S_ISBLK, "a device"),
+    (stat.S_ISFIFO, "a named pipe"),
+    (stat.S_ISSOCK, "a socket"),
+)
 
 
 def sentence_about(error: OSError) -> str | None:
@@ -55,102 +64,138 @@ def sentence_about(error: OSError) -> str | None:
     return None
 
 
+class UnwritableError(InputError, OSError):
+    """A file that cannot be written: the user's to fix, unless the program goes on without it."""
+
+    def __init__(self, message: str, strerror: str | None) -> None:
+        super().__init__(message)
+        self.strerror = strerror
+
+
+def file_to_write(target: Path) -> Path:
+    """The file that a path leads to, through links, if a file may be written there.
+
+    Parameters
+    ----------
+    target : Path
+        A regular file, or nothing yet.
+
+    Raises
+    ------
+    InputError
+        There is something else: a folder, a device, a pipe, a socket.
+    """
+    try:
+        file = target.resolve()
+        mode = file.stat().st_mode
+    except FileNotFoundError:
+        return file
+    except (OSError, RuntimeError) as error:  # a loop of links is the latter before Python 3.13
+        raise _unwritable(target, error) from error
+    if not stat.S_ISREG(mode):
+        what = next((word for is_it, word in _NO_FILES if is_it(mode)), "no regular file")
+        raise UnwritableError(f"{target} is {what}: name a file, existing or new", what)
+    return file
+
+
+def check_writable(target: Path) -> None:
+    """Refuse a file that cannot be written, before any work.
+
+    Raises
+    ------
+    InputError
+        As of `atomic_path`.
+    """
+    file = file_to_write(target)
+    try:
+        with tempfile.TemporaryFile(dir=file.parent):
+            pass
+    except OSError as error:
+        raise _unwritable(target, error) from error
+
+
 @contextmanager
 def atomic_path(target: Path) -> Iterator[Path]:
-    """Hand out a temporary path beside ``target`` and put it in place only if all went well."""
-    remove_abandoned(target.parent, rf"\.{re.escape(target.name)}\.[0-9a-f]{{32}}\.tmp")
-    for _ in range(_TRIES):
-        temporary = target.with_name(f".{target.name}.{uuid.uuid4().hex}.tmp")
-        temporary.touch(exist_ok=False)
-        lock = _hold(temporary)
-        if lock is not None:
-            break
+    """Hand out a temporary path beside ``target`` and put it in place only if all went well.
+
+    A link to a file stays; the file that it leads to is replaced, and keeps its mode.
+
+    Raises
+    ------
+    InputError
+        The target is no regular file, or its folder is not there or cannot be written.
+    """
+    file = file_to_write(target)
+    remove_abandoned(file.parent, rf"\.{re.escape(file.name)}\.[0-9a-f]{{32}}\.tmp")
+    try:
+        temporary, lock = _held_file(file)
+    except OSError as error:
+        raise _unwritable(target, error) from error
     try:
         yield temporary
-        os.replace(temporary, target)
+        if file_to_write(file).exists():
+            with suppress(OSError):
+                shutil.copymode(file, temporary)
+        os.replace(temporary, file)
+    except OSError as error:
+        if file.parent.is_dir() or isinstance(error, InputError):
+            raise
+        raise _unwritable(target, error) from error  # removed meanwhile
     finally:
-        temporary.unlink(missing_ok=True)
-        _let_go(lock)
+        with suppress(OSError):
+            temporary.unlink(missing_ok=True)
+        let_go(lock)
 
 
-class HiddenFolder:
-    """A folder beside its target, to be filled and then put in the target's place.
+def _held_file(file: Path) -> tuple[Path, int | None]:
+    """An empty file beside another, and the lock on it."""
+    for _ in range(TRIES):
+        temporary = file.with_name(f".{file.name}.{uuid.uuid4().hex}.tmp")
+        temporary.touch(exist_ok=False)
+        lock = hold(temporary)
+        if lock is not None:
+            break
+    return temporary, lock
 
-    Attributes
+
+def _unwritable(target: Path, error: OSError | RuntimeError) -> UnwritableError:
+    why = getattr(error, "strerror", None) or str(error)
+    return UnwritableError(
+        f"cannot write {target}: {why}: name a file in a folder that is there and can be written",
+        why,
+    )
+
+
+@contextmanager
+def scratch_folder(parent: Path | None = None) -> Iterator[Path]:
+    """A folder for a while; what killed runs have left of theirs goes first.
+
+    Parameters
     ----------
-    path
-        Where it is.
+    parent : Path, optional
+        Where; the system's folder for temporary files where left out.
     """
-
-    def __init__(self, target: Path) -> None:
-        """Make one beside a target, and remove what earlier ones left there.
-
-        Raises
-        ------
-        OSError
-            There it cannot be made.
-        """
-        self._target = target
-        target.parent.mkdir(parents=True, exist_ok=True)
-        _put_back(target)
-        name = re.escape(target.name)
-        remove_abandoned(target.parent, rf"\.{name}-({_NEW}|{_OLD})-[a-z0-9_]{{8}}")
-        for _ in range(_TRIES):
-            self.path = Path(_beside(target, _NEW))
-            self._lock = _hold(self.path)
-            if self._lock is not None:
-                break
-
-    def put_in_place(self) -> None:
-        """Put it in the place of the target; at no moment is there neither, nor half of one.
-
-        Raises
-        ------
-        OSError
-            The target cannot be written; it is as it was.
-        """
-        self.path.chmod(0o755)
-        for attempt in range(_TRIES):
-            try:
-                if not self._target.exists():
-                    os.rename(self.path, self._target)
-                elif not _exchange(self.path, self._target):
-                    self._replace()
-                return
-            except OSError as error:
-                # another run has put its own there, or has just taken it away
-                meanwhile = (errno.ENOTEMPTY, errno.EEXIST, errno.ENOENT)
-                if error.errno not in meanwhile or attempt == _TRIES - 1:
-                    raise
-
-    def _replace(self) -> None:
-        """Where the system cannot exchange two folders in one go."""
-        old = Path(_beside(self._target, _OLD))
-        lock = _hold(old)
-        try:
-            os.rename(self._target, old / "results")
-            os.rename(self.path, self._target)
-        finally:
-            # whatever went wrong, Ctrl-C between the two included
-            if not self._target.exists() and (old / "results").exists():
-                os.rename(old / "results", self._target)
-            shutil.rmtree(old, ignore_errors=True)
-            _let_go(lock)
-
-    def discard(self) -> None:
-        """Remove it, or what it has replaced."""
-        shutil.rmtree(self.path, ignore_errors=True)
-        _let_go(self._lock)
-        self._lock = None
+    with ExitStack() as stack:
+        path, end = lasting_scratch_folder(parent)
+        stack.callback(end)
+        yield path
 
 
-def empty(folder: Path) -> None:
-    """Remove all that is in a folder."""
-    for entry in folder.iterdir():
-        if entry.is_dir() and not entry.is_symlink():
-            shutil.rmtree(entry)
-        else:
-            entry.unlink()
+def lasting_scratch_folder(parent: Path | None = None) -> tuple[Path, Callable[[], None]]:
+    """As `scratch_folder`, with the function that ends it."""
+    where = Path(tempfile.gettempdir()) if parent is None else parent
+    remove_abandoned(where, rf"{re.escape(_SCRATCH)}[a-z0-9_]{{8}}")
+    for _ in range(TRIES):
+        path = Path(tempfile.mkdtemp(prefix=_SCRATCH, dir=where))
+        lock = hold(path)
+        if lock is not None:
+            break
+
+    def end() -> None:
+        shutil.rmtree(path, ignore_errors=True)
+        let_go(lock)
+
+    return path, end
 
 
 def remove_abandoned(folder: Path, pattern: str) -> None:
@@ -158,37 +203,30 @@ def remove_abandoned(folder: Path, pattern: str) -> None:
 
     Nothing here is an error: what cannot be looked at or removed stays.
     """
+    for path in abandoned(folder, pattern):
+        with suppress(OSError):
+            if path.is_dir() and not path.is_symlink():
+                shutil.rmtree(path, ignore_errors=True)
+            else:
+                path.unlink()
+
+
+def abandoned(folder: Path, pattern: str) -> Iterator[Path]:
+    """Files and folders of such names that no writer holds, each held while it is looked at."""
     if fcntl is None:
         return
-    with suppress(OSError), os.scandir(folder) as entries:
-        for entry in entries:
-            if not re.fullmatch(pattern, entry.name):
-                continue
+    with suppress(OSError):
+        for name in sorted(filter(re.compile(pattern).fullmatch, os.listdir(folder))):
             with suppress(OSError):
-                lock = os.open(entry.path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+                lock = os.open(folder / name, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
                 try:
                     fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                    if entry.is_dir(follow_symlinks=False):
-                        shutil.rmtree(entry.path, ignore_errors=True)
-                    else:
-                        os.unlink(entry.path)
+                    yield folder / name
                 finally:
                     os.close(lock)
 
 
-def _beside(target: Path, what: str) -> str:
-    return tempfile.mkdtemp(prefix=f".{target.name}-{what}-", dir=target.parent)
-
-
-def _put_back(target: Path) -> None:
-    """After a kill between the two renames of `HiddenFolder._replace`."""
-    for old in sorted(target.parent.glob(f".{escape(target.name)}-{_OLD}-*/results")):
-        if not target.exists():
-            with suppress(OSError):
-                os.rename(old, target)
-
-
-def _hold(path: Path) -> int | None:
+def hold(path: Path) -> int | None:
     """Lock what was just made; None where another has taken it for abandoned meanwhile.
 
     Where nothing can be locked, nothing is ever taken for abandoned: then -1.
@@ -213,21 +251,7 @@ def _hold(path: Path) -> int | None:
     return None
 
 
-def _let_go(lock: int | None) -> None:
+def let_go(lock: int | None) -> None:
+    """Release what `hold` locked."""
     if lock is not None and lock >= 0:
         os.close(lock)
-
-
-def _exchange(first: Path, second: Path) -> bool:
-    """Exchange two paths in one go; False where the system or the disk cannot.
-
-    renameat2 of Linux, man 2 rename.
-    """
-    if sys.platform != "linux":
-        return False
-    try:
-        rename = ctypes.CDLL(None, use_errno=True).renameat2
-    except (OSError, AttributeError):  # not in every C library
-        return False
-    paths = [os.fsencode(path) for path in (first, second)]
-    return bool(rename(_HERE, paths[0], _HERE, paths[1], _EXCHANGE) == 0)

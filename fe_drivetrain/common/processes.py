@@ -11,17 +11,16 @@ import os
 import pickle
 import queue
 import sys
-import tempfile
 import threading
 from collections.abc import Callable, Collection, Iterator
 from concurrent.futures import CancelledError, Future, ThreadPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import AbstractContextManager, ExitStack, nullcontext, suppress
 from functools import partial
-from pathlib import Path
 from types import TracebackType
 from typing import Any, TypeVar
 
+from fe_drivetrain.common.files import scratch_folder
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.threads import cores, held_to_one_thread, thread_limits
 from fe_drivetrain.common.worker import Worker
@@ -80,7 +79,7 @@ class Processes:
     def __enter__(self) -> Processes:
         if self.count:
             self._threads = ThreadPoolExecutor(self.count, "job")
-            folder = Path(self._stack.enter_context(tempfile.TemporaryDirectory()))
+            folder = self._stack.enter_context(scratch_folder())
             self._stack.enter_context(held_to_one_thread())
             for lane in range(1, self.count + 1):
                 self._workers.append(Worker(lane, self._environment, folder / str(lane)))

@@ -11,7 +11,6 @@ import os
 import signal
 import subprocess
 import sys
-import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.files import scratch_folder
 from fe_drivetrain.common.reading import why_unreadable
 from fe_drivetrain.common.regular_files import MOST_BYTES, require_regular
 from fe_drivetrain.common.threads import thread_limits
@@ -82,14 +82,14 @@ def read_in_process(
     """
     file = Path(path)
     _check_file(file, limits)
-    with tempfile.TemporaryDirectory(prefix="fe-drivetrain-") as folder:
-        asked, result = Path(folder) / "request.json", Path(folder) / "result.npz"
+    with scratch_folder() as folder:
+        asked, result = folder / "request.json", folder / "result.npz"
         bounds = {"bytes": limits.memory, "seconds": limits.seconds, "file": limits.result}
         content = {**request, "action": action, "file": str(file.resolve()), "limits": bounds}
         asked.write_text(json.dumps(content))
         environment = {**os.environ, **thread_limits(1), "PYTHONSAFEPATH": "1"}
         command = [sys.executable, "-m", "fe_drivetrain.foreign.child", str(asked), str(result)]
-        with (Path(folder) / "printed").open("w+b") as printed:
+        with (folder / "printed").open("w+b") as printed:
             try:
                 status = subprocess.run(
                     command,

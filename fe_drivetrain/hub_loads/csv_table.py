@@ -14,6 +14,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.common.csv_cells import cell_as_given, comment_as_given, comment_line, table_head
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.common.strict_yaml import shown
@@ -116,7 +117,7 @@ def _channels(
     def kept() -> Iterator[str]:
         for number, line in enumerate(stream, start=1):
             if line.startswith("#"):
-                key, equals, value = line[1:].partition("=")
+                key, equals, value = comment_as_given(line[1:]).partition("=")
                 if equals:
                     attributes[key.strip()] = _number_or_text(value.strip())
             elif line.strip():
@@ -124,8 +125,8 @@ def _channels(
                 yield line
 
     table = csv.reader(kept())
-    header = next(table, None)
-    if header is None:
+    header = [cell_as_given(title) for title in next(table, [])]
+    if not header:
         raise InputError(f"hub loads '{file}': empty; begin with the header '{_CSV_EXAMPLE}'")
     if len(header) == 1 and ";" in header[0]:
         raise InputError(
@@ -191,8 +192,8 @@ def write_csv(
     columns = [values[:, None] for values in more.values()]
     table = np.column_stack((history.time, history.loads, *history.at.values(), *columns))
     others = [f"{p}.{c} [{u}]" for p in history.at for c, u in zip(FORCES, UNITS, strict=True)]
-    lines = [f"# {key} = {value}" for key, value in history.attributes.items()]
-    lines.append(",".join([_CSV_EXAMPLE, *others, *more]))
+    lines = [comment_line(f"{key} = {value}") for key, value in history.attributes.items()]
+    lines.append(table_head([*_CSV_EXAMPLE.split(","), *others, *more]))
     lines += [",".join(map(repr, row)) for row in table.tolist()]
     try:
         with atomic_path(file) as temporary:

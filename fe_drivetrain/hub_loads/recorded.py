@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.csv_cells import cell_as_given
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.hub_loads.channel_map import (
     LOAD_NAMES,
@@ -384,7 +385,7 @@ def _header(file: Path) -> tuple[int, list[str]]:
                     break
     except UnicodeDecodeError as error:
         raise not_utf8("table", file) from error
-    return before, [title.strip() for title in next(csv.reader([titles]), [])]
+    return before, [cell_as_given(title.strip()) for title in next(csv.reader([titles]), [])]
 
 
 def _named(file: Path, channels: Mapping[str, Channel], column: str, sign: float = 1.0) -> Channel:

@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.hub_loads.aero_rotor import Rotor, aerodynamic_hub_loads, operating_point
 from fe_drivetrain.hub_loads.channels import existing_file
 from fe_drivetrain.hub_loads.histories import Attribute, LoadHistory
@@ -281,7 +282,8 @@ def write_bts(box: WindBox, path: str | os.PathLike[str], hub_height: float) -> 
     values[..., 0] = np.round(slope * box.speed.transpose(0, 2, 1).astype(float) + offset)
     spacing = box.z[1] - box.z[0], box.y[1] - box.y[0], box.step, mean, hub_height, box.z[0]
     head = _HEADER.pack(7, nz, ny, 0, n, *spacing, slope, offset, 1.0, 0.0, 1.0, 0.0, len(text))
-    Path(path).write_bytes(head + text + values.tobytes())
+    with atomic_path(Path(path)) as unfinished:
+        unfinished.write_bytes(head + text + values.tobytes())
 
 
 def read_hawc2(
@@ -350,4 +352,5 @@ def write_hawc2(
         The mean wind that is taken off, as of `read_hawc2` [m/s, m, -].
     """
     mean = power_law(wind_speed, box.z, hub_height, shear)
-    (box.speed - mean)[:, ::-1].astype("<f4").tofile(Path(path))
+    with atomic_path(Path(path)) as unfinished:
+        (box.speed - mean)[:, ::-1].astype("<f4").tofile(unfinished)

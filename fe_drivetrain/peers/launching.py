@@ -8,7 +8,6 @@ import os
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Sequence
 from contextlib import suppress
@@ -16,6 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
+from fe_drivetrain.common.files import scratch_folder
 from fe_drivetrain.peers import runner
 
 TOOLS = ("this_project", "scikit_fem", "calculix", "ngsolve", "sfepy", "felupe", "dolfinx")
@@ -140,8 +140,7 @@ def launch(
         return Outcome("missing", reason="this system has no sessions of processes: use Linux")
     words = [str(word) for word in getattr(_module(variant.tool), "LAUNCH", ())]
     before = [word.format(threads=limits.threads) for word in words]
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
+    with scratch_folder() as folder:
         arguments = [variant.tool, variant.key, problem.resolve(), warm_up.resolve()]
         command = [*before, interpreter, runner.__file__, *map(str, arguments)]
         command += [str(folder / "result.json"), repr(limits.seconds)]
@@ -156,7 +155,10 @@ def launch(
                     stderr=log,
                     env=_environment(limits.threads, len(before) > 0, interpreter)
                     # what a process that is ended leaves behind goes with the folder
-                    | {"TMPDIR": name, "OMPI_MCA_btl_vader_backing_directory": name},
+                    | {
+                        "TMPDIR": str(folder),
+                        "OMPI_MCA_btl_vader_backing_directory": str(folder),
+                    },
                     start_new_session=True,
                 )
             except FileNotFoundError as error:

@@ -6,7 +6,6 @@ which column is which channel, with its sign and, where the header has none, its
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import GRAVITY
+from fe_drivetrain.common.csv_cells import SafeWriter
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.hub_loads.recorded import csv_channels
@@ -217,6 +217,6 @@ def write_channels(path: str | Path, step: float, columns: Mapping[str, Floats])
     count = len(next(iter(columns.values())))
     table = np.column_stack([np.arange(count) * step, *columns.values()])
     with atomic_path(Path(path)) as hidden, hidden.open("w", newline="") as file:
-        writer = csv.writer(file)
+        writer = SafeWriter(file)
         writer.writerow(["time [s]", *columns])
         writer.writerows([[repr(float(value)) for value in row] for row in table])

@@ -7,7 +7,6 @@ a body from all of its interfaces, its weight and its inertia add up to nothing,
 
 from __future__ import annotations
 
-import csv
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,6 +17,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES, MOTIONS
+from fe_drivetrain.common.csv_cells import SafeWriter
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.common.reading import unreadable
@@ -295,7 +295,7 @@ def write_load_csv(table: LoadTable, path: str | Path) -> None:
     heads = [f"{name} {component} [{unit}]" for name, component, unit, _ in signals]
     columns = np.column_stack([table.time, *(values for *_, values in signals)])
     with atomic_path(Path(path)) as hidden, hidden.open("w", newline="") as file:
-        writer = csv.writer(file)
+        writer = SafeWriter(file)
         writer.writerow(["time [s]", *heads])
         writer.writerows([[repr(float(value)) for value in row] for row in columns])
 

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.files import file_to_write
 from fe_drivetrain.report.answer import headline
 from fe_drivetrain.report.results import Environment, Figure, Results, Verdict
 
@@ -134,6 +135,7 @@ def check_history(folder: Path) -> None:
         The file there is something else, or cannot be written.
     """
     if (folder / FILE).exists():
+        file_to_write(folder / FILE)
         with _opened(folder):
             pass
 
@@ -337,6 +339,7 @@ def _opened(folder: Path) -> Iterator[sqlite3.Connection]:
     file = folder / FILE
     try:
         with closing(sqlite3.connect(file, timeout=_WAIT)) as database, database:
+            _refuse_of_others(file, database)
             database.executescript(_TABLES)
             yield database
     except sqlite3.DatabaseError as error:
@@ -350,6 +353,17 @@ def _opened(folder: Path) -> Iterator[sqlite3.Connection]:
             f"{file} cannot be used as history of the runs ({error}): move it away, and the next "
             "run begins another"
         ) from error
+
+
+def _refuse_of_others(file: Path, database: sqlite3.Connection) -> None:
+    """Refuse a database in which another program has its tables."""
+    names = {name for (name,) in database.execute("SELECT name FROM sqlite_master")}
+    others = sorted(names - {"runs", "checks", "runs_of_a_case"})
+    if others or (names and "runs" not in names):
+        raise InputError(
+            f"{file} is a database of another program, with {', '.join(others or names)}, and no "
+            "history of runs: move it away, or name another folder with --out"
+        )
 
 
 def _settings(environment: Environment) -> str:

@@ -28,6 +28,7 @@ from fe_drivetrain.report.results import (
     results_below,
     share_of_tolerance,
 )
+from fe_drivetrain.report.sealed import clear_of_others, remove_sealed, write_sealed
 from fe_drivetrain.report.trend import change_text, sparkline
 
 WORDS = {
@@ -158,7 +159,7 @@ def write_index(
             quick=sorted({name for _, name in limits} & set(quick)),
         )
     else:
-        (folder / "atlas.html").unlink(missing_ok=True)
+        remove_sealed(folder / "atlas.html")
     return folder / "index.html"
 
 
@@ -184,8 +185,10 @@ def problems_before(folder: Path) -> dict[str, Problem]:
 
 def _keep_problems(folder: Path, problems: Mapping[str, Problem]) -> None:
     if not problems:
-        (folder / PROBLEMS).unlink(missing_ok=True)
+        if problems_before(folder):
+            (folder / PROBLEMS).unlink(missing_ok=True)
         return
+    clear_of_others(folder / PROBLEMS, lambda file: bool(problems_before(file.parent)))
     with atomic_path(folder / PROBLEMS) as unfinished:
         said = {name: problem._asdict() for name, problem in problems.items()}
         unfinished.write_text(json.dumps(said, indent=1), encoding="utf-8")
@@ -231,13 +234,8 @@ def _checks(name: str, file: Path, *state: int) -> Sequence[tuple[Verdict, Marku
 
 def _write(page: Path, template: str, **content: Any) -> None:
     script = read_template("listing.js")
-    with atomic_path(page) as unfinished:
-        text = (
-            _listings()
-            .get_template(template)
-            .render(script=script, script_hash=policy_hash(script), **content)
-        )
-        unfinished.write_text(text, encoding="utf-8")
+    found = _listings().get_template(template)
+    write_sealed(page, found.render(script=script, script_hash=policy_hash(script), **content))
 
 
 @lru_cache(maxsize=1)

@@ -2,16 +2,50 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
-from fe_drivetrain.common.files import atomic_path
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.files import atomic_path, check_writable
 from fe_drivetrain.report.results import expectation
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.results import Problem, Results
+
+# the head of what `write_junit` writes
+_OURS = re.compile(rb"<\?xml [^>]*\?>\s*<testsuites name=\"fe-drivetrain\"")
+
+
+def check_junit(path: Path) -> None:
+    """Refuse a file that cannot be written, or that holds something else, before any work.
+
+    Parameters
+    ----------
+    path : Path
+        New, empty, or of an earlier run.
+
+    Raises
+    ------
+    InputError
+        It is something else.
+    """
+    check_writable(path)
+    if path.exists() and path.stat().st_size and not _is_ours(path):
+        raise InputError(
+            f"--junit {path} exists and is no JUnit file of fe-drivetrain: name another file, or "
+            "move it away"
+        )
+
+
+def _is_ours(path: Path) -> bool:
+    try:
+        with path.open("rb") as file:
+            return bool(_OURS.match(file.read(200)))
+    except OSError:
+        return False
 
 
 def write_junit(

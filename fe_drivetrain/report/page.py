@@ -6,6 +6,7 @@ Every string of the results is data: it is escaped, whatever it says.
 from __future__ import annotations
 
 import base64
+import hashlib
 import json
 import os
 import re
@@ -17,6 +18,7 @@ import jinja2
 from markupsafe import Markup, escape
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.manifest import MANIFEST
 from fe_drivetrain.plots.style import is_number
 from fe_drivetrain.report.answer import answer_sentence, headline, value_with_band
 from fe_drivetrain.report.bundle import place_plotly, plotly_file
@@ -108,6 +110,8 @@ def render(results: Results, folder: Path, shared: Path) -> str:
         index=above + "/index.html" if (shared / "index.html").is_file() else "",
         contents=len(results.sections) + 4 >= _CONTENTS_FROM,
         plotly=above + f"/{plotly_file()}" if has_charts else "",
+        # no string of the results can hold the hash of them all: so no other script is allowed
+        nonce=hashlib.sha256(results.model_dump_json().encode()).hexdigest(),
         scripts=scripts,
         script_hashes=[policy_hash(script) for script in scripts],
     )
@@ -172,7 +176,7 @@ def _files(folder: Path) -> list[tuple[Markup, str, str]]:
             f"{formatted(max(file.stat().st_size / 1000, 0.1), 2)} kB",
         )
         for file in sorted(folder.rglob("*"))
-        if file.is_file() and file.name not in ("report.html", FILE, plotly_file())
+        if file.is_file() and file.name not in ("report.html", FILE, MANIFEST, plotly_file())
     ][:_FILES]
 
 

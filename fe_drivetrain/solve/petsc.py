@@ -15,9 +15,9 @@ import os
 import shlex
 import shutil
 import subprocess
-import tempfile
 import time
 import weakref
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache as once
@@ -28,6 +28,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import SINGULAR, InputError
+from fe_drivetrain.common.files import lasting_scratch_folder
 from fe_drivetrain.common.interpreter import interpreters
 from fe_drivetrain.common.threads import cores, thread_limits
 from fe_drivetrain.solve.element_system import ElementSystem
@@ -118,7 +119,8 @@ class Ranks:
                 f"solver {method!r} needs PETSc and MPI: {INSTALL}, or choose 'multigrid'"
             )
         launch = _launch()
-        self._folder = Path(tempfile.mkdtemp(dir=os.environ.get(FOLDER_VARIABLE)))
+        named = os.environ.get(FOLDER_VARIABLE)
+        self._folder, end = lasting_scratch_folder(Path(named) if named else None)
         self._log = (self._folder / "log").open("w+")
         self._process = subprocess.Popen(
             [*launch, python, str(_RANK), str(self._folder)],
@@ -129,7 +131,7 @@ class Ranks:
             env=_environment() | {"TMPDIR": str(self._folder)},
             cwd=self._folder,
         )
-        weakref.finalize(self, _end, self._process, self._folder)
+        weakref.finalize(self, _end, self._process, end)
         count = self._answer()["ranks"]
         start = time.perf_counter()
         self._order = hand_over(self._folder, system, method, count)
@@ -216,7 +218,7 @@ def _environment() -> dict[str, str]:
     return values
 
 
-def _end(process: subprocess.Popen[str], folder: Path) -> None:
+def _end(process: subprocess.Popen[str], remove: Callable[[], None]) -> None:
     """Let the processes end; they do once nothing more can come."""
     for stream in (process.stdin, process.stdout):
         if stream is not None:
@@ -227,4 +229,4 @@ def _end(process: subprocess.Popen[str], folder: Path) -> None:
     except subprocess.TimeoutExpired:
         process.terminate()
         process.wait()
-    shutil.rmtree(folder, ignore_errors=True)
+    remove()

@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+import os
+import warnings
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fe_drivetrain.common.errors import InputError, MissingToolError
-from fe_drivetrain.common.files import HiddenFolder
+from fe_drivetrain.common.folders import HiddenFolder
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.report.results import Problem
 from fe_drivetrain.suite.case import Case, all_cases
+from fe_drivetrain.suite.ownership import (
+    check_result_folder,
+    claim_reports,
+    not_writable,
+    own_files,
+)
 from fe_drivetrain.suite.run import Run
 from fe_drivetrain.suite.settings import settings_by_case
 
@@ -66,15 +74,16 @@ def run_case(
 
     Everything is written to a hidden folder beside ``out`` first, so that a run that fails or is
     stopped leaves what was there before. Of a run that was killed, the next one into the same place
-    removes that folder. Where ``out`` is GROUP/NAME of a folder of reports, the pages that list the
-    cases there are written again.
+    removes that folder. Files in ``out`` that the earlier run did not write, or that were changed
+    since, stay: under another name where this run writes one of the same name. Where ``out`` is
+    GROUP/NAME of a folder of reports, the pages that list the cases there are written again.
 
     Parameters
     ----------
     case : Case
         What to run.
     out : Path
-        The result folder. It must not exist, be empty, or hold the results of an earlier run.
+        The result folder. It must not exist, be empty, or be of an earlier run.
     settings : mapping, optional
         As of `Run`.
     quick : bool
@@ -91,13 +100,16 @@ def run_case(
 
     out = Path(out)
     taken = settings_by_case([case], settings or {})[case.name]
+    check_result_folder(out)
+    shared = shared_folder(out, case)
+    if shared is not None and not claim_reports(shared):
+        shared = None  # of somebody else: no page of ours goes there
     folder = new_folder(out)
     try:
-        shared = shared_folder(out, case)
         if shared is None:
             carry_history(out, folder.path)
         check_history(shared or folder.path)
-        with _listed(case, shared):
+        with removed_in_one_sentence(folder.path), _listed(case, shared):
             results = run_into(case, folder.path, taken, quick, report, shared)
             # before others see the folder, and may put another in its place
             record_run(shared or folder.path, results)
@@ -182,33 +194,49 @@ def new_folder(out: Path) -> HiddenFolder:
     InputError
         ``out`` cannot be written or holds something else.
     """
-    _check_folder(out)
+    check_result_folder(out)
     try:
-        return HiddenFolder(out)
+        return HiddenFolder(out, own_files)
     except OSError as error:
-        raise _not_writable(out.parent, error) from error
-
-
-def _check_folder(out: Path) -> None:
-    if not out.exists():
-        return
-    if not out.is_dir():
-        raise InputError(f"--out {out} is a file: give a folder")
-    if any(out.iterdir()) and not (out / "results.json").exists():
-        raise InputError(
-            f"--out {out} holds files that are not results of a case: give a new or empty folder"
-        )
+        raise not_writable(out.parent, error) from error
 
 
 def put_in_place(folder: HiddenFolder, out: Path) -> None:
-    """Put a complete folder of `new_folder` in the place of an older one."""
+    """Put a complete folder of `new_folder` in the place of an older one.
+
+    What is in the older one and was not written by the run that made it goes over.
+
+    Raises
+    ------
+    InputError
+        ``out`` cannot be written; it is as it was.
+    """
+    try:
+        here = Path.cwd()
+    except FileNotFoundError:  # somebody has removed it
+        here = Path(out.anchor)
     try:
         folder.put_in_place()
     except OSError as error:
-        raise _not_writable(out, error) from error
+        raise not_writable(out, error) from error
+    if here.is_relative_to(out.resolve()):
+        # this process would stay in the folder that has gone; a shell does
+        with suppress(OSError):
+            os.chdir(here)
+        warnings.warn(
+            f"you are in {here}, which has been replaced: type cd . to see the new results",
+            stacklevel=2,
+        )
 
 
-def _not_writable(where: Path, error: OSError) -> InputError:
-    return InputError(
-        f"cannot write to {where}: {error.strerror}: give a writable folder with --out"
-    )
+@contextmanager
+def removed_in_one_sentence(folder: Path) -> Iterator[None]:
+    """Tell the user of a folder that somebody has removed while a run wrote into it."""
+    try:
+        yield
+    except FileNotFoundError as error:
+        if folder.is_dir():
+            raise
+        raise InputError(
+            f"{folder.parent} was removed, or what the run was writing in it: run it again"
+        ) from error

@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.files import HiddenFolder, empty, sentence_about
+from fe_drivetrain.common.files import sentence_about
+from fe_drivetrain.common.folders import HiddenFolder, empty
 from fe_drivetrain.common.jobs import pool
 from fe_drivetrain.common.processes import Processes
 from fe_drivetrain.common.progress import OVERALL, Progress, silent
@@ -20,6 +21,7 @@ from fe_drivetrain.common.repeated import Repeated
 from fe_drivetrain.common.stopped import stop_status
 from fe_drivetrain.report.results import Problem
 from fe_drivetrain.suite.case import Case, all_cases
+from fe_drivetrain.suite.ownership import require_reports
 from fe_drivetrain.suite.result_folders import (
     NOT_RUN,
     PLANNED,
@@ -27,6 +29,7 @@ from fe_drivetrain.suite.result_folders import (
     new_folder,
     problem_of,
     put_in_place,
+    removed_in_one_sentence,
     result_folder,
     run_into,
 )
@@ -80,6 +83,7 @@ def run_cases(
 
     out = Path(out)
     taken = settings_by_case(cases, settings or {})
+    require_reports(out)
     asked = {case.name for case in cases}
     cases = [case for case in cases if case.name not in kept]
     known = list(all_cases())
@@ -185,7 +189,8 @@ def _run(
                 "all workers share"
             )
         empty(folder)  # a worker may have died half-way
-        run_into(case, folder, settings, quick, named, shared)
+        with removed_in_one_sentence(folder):
+            run_into(case, folder, settings, quick, named, shared)
     except InputError as error:
         return problem_of(error)
     except Exception as error:

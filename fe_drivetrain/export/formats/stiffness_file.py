@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import MOTIONS
+from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.common.scaling import least_eigenvalue
 from fe_drivetrain.export.formats.superelement_json import Rows, read_content
 from fe_drivetrain.export.superelement import FRAME
@@ -82,7 +83,8 @@ def write_stiffness_json(
         tilt_stiffness={plane: dict(k) for plane, k in (tilt_stiffness or {}).items()},
         unknowns=unknowns,
     )
-    Path(path).write_text(content.model_dump_json(indent=1), encoding="utf-8")
+    with atomic_path(Path(path)) as unfinished:
+        unfinished.write_text(content.model_dump_json(indent=1), encoding="utf-8")
 
 
 def read_stiffness_json(path: str | Path) -> StiffnessFile:

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.csv_cells import SafeWriter, cell_as_given
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.export.formats.statement import dof_labels, element_of, statement, text_of
 from fe_drivetrain.export.superelement import Superelement
@@ -23,7 +24,7 @@ def write(path: Path, element: Superelement) -> None:
     """Write a superelement; numbers keep every digit."""
     labels = dof_labels(element)
     with path.open("w", encoding="utf-8", newline="") as file:
-        rows = csv.writer(file, lineterminator="\n")
+        rows = SafeWriter(file)
         rows.writerows((f"# {key}", value) for key, value in statement(element).items())
         rows.writerow(["matrix", "freedom", *labels])
         for kind, matrix in (("stiffness", element.stiffness), ("mass", element.mass)):
@@ -46,7 +47,8 @@ def read(path: Path) -> Superelement:
     head: list[str] = []
     ended = False
     text = text_of(path, "superelement in CSV")
-    for number, row in enumerate(csv.reader(text.splitlines()), 1):
+    for number, cells in enumerate(csv.reader(text.splitlines()), 1):
+        row = [cell_as_given(cell) for cell in cells]
         try:
             if ended or not row:
                 continue

@@ -25,7 +25,9 @@
 
   function saved(table) {
     const cell = function (element) {
-      const text = element.dataset.value ?? element.textContent.trim();
+      let text = element.dataset.value ?? element.textContent.trim();
+      // as text, or a spreadsheet would take it for a formula
+      if (/^[=+\-@\t\r]/.test(text) && isNaN(text)) text = `'${text}`;
       return /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
     };
     const lines = Array.from(table.rows, (row) => Array.from(row.cells, cell).join(","));
