@@ -464,7 +464,8 @@ SHAFT = plain_shaft(2.0)
         ),
         (
             {"shaft": SHAFT, "sizes": MeshSizes(housing=0.4)},
-            "part 'main_bearing.housing': mesh size 'housing' is 0.4 m but must be at most 0.3 m, 3 times its foot of 0.1 m",
+            "part 'main_bearing.housing': mesh size 'housing' is 0.4 m but must be at most 0.3 m, "
+            "3 times its foot of 0.1 m",
         ),
         (
             {"shaft": plain_shaft(2.0, inner=0.39)},
