@@ -60,7 +60,8 @@ def named_bearings(
     Raises
     ------
     InputError
-        There is no such entry, or the shaft does not go into the bearing.
+        There is no such entry, the shaft does not go into the bearing, or all bearings roll and
+        nothing holds the shaft's torque.
     """
     entries = {u.bearing.name: u.catalogue for u in scene.bearing_units if u.catalogue}
     entries |= chosen
@@ -83,4 +84,8 @@ def named_bearings(
         seat = scene.seat_diameter(name)
         misfit = check_seat(name, entry, known[entry], seat)
         found[name] = NamedBearing(entry, known[entry], seat, misfit)
+    if len(found) == len(scene.bearing_units) and scene.nose is None:
+        from fe_drivetrain.coupled.of_scene import scene_body
+
+        scene_body(scene, 1)  # rolling bearings hold no torque, which the scene's joints may
     return found

@@ -8,12 +8,14 @@ comes later: `fe_drivetrain.foreign` and `fe_drivetrain.mesh`.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Protocol
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import (
     WIDEST,
     Band,
+    ForeignFile,
     Housing,
     MeshSizes,
     Shaft,
@@ -103,6 +105,27 @@ def check_scene(scene: Described, gearbox: Springs, load_points: Sequence[str]) 
     springs = as_numbers(gearbox)
     check_standing(scene.shaft, scene.bearing_units, springs, modulus, scene.nose_bearings)
     _check_mesh(scene, bores)
+
+
+def check_files(units: Sequence[BearingUnit]) -> None:
+    """Refuse parts whose files are not there, whether a model level asks for them or not.
+
+    Parameters
+    ----------
+    units : Sequence[BearingUnit]
+        Of a scene that was read from a file; the names of their files lead somewhere.
+
+    Raises
+    ------
+    InputError
+    """
+    for unit in units:
+        for part, solid in unit.housing_parts.items():
+            if isinstance(solid, ForeignFile) and not Path(solid.file).is_file():
+                there = "it is no file" if Path(solid.file).exists() else "there is no such file"
+                raise InputError(
+                    f"{part}: cannot read {solid.file}: {there}: give a STEP or mesh file"
+                )
 
 
 def _check_names(names: Sequence[str], load_points: Sequence[str]) -> None:
