@@ -13,6 +13,7 @@ from fe_drivetrain.report.pictures import NoPictureError, picture_of_model
 from fe_drivetrain.report.pictures.model import with_prefix
 from fe_drivetrain.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.scene.bearing_unit import SPHERICAL_JOINTS, BearingUnit, Springs
+from fe_drivetrain.scene.left_out import left_out
 from fe_drivetrain.scene.nose import NoseBearing
 from fe_drivetrain.scene.reading import scene_text
 from fe_drivetrain.scene.scene import Scene, coarser_scene
@@ -74,7 +75,7 @@ def picture(run: Run, page: Page, model: Model) -> None:
 
 
 def describe(page: Page, model: Model) -> None:
-    """Tables of the parts, bearings and supports of a scene, with masses and units.
+    """Tables of the parts, bearings and supports of a scene, and what it leaves out.
 
     Parameters
     ----------
@@ -85,6 +86,7 @@ def describe(page: Page, model: Model) -> None:
     """
     scene = model.scene
     page.scene = scene_text(scene)
+    page.assume_all(left_out(scene))
     parts: list[Record] = [
         {
             "part": part,

@@ -39,7 +39,8 @@ def no_truth_value(value: Any) -> Any:
     ValueError
         The value is true or false, or a list in which one stands.
     """
-    if isinstance(value, bool) or type(value).__name__ == "bool_":  # of numpy, not loaded for it
+    # numpy's, too, which need not be loaded for that
+    if isinstance(value, bool) or type(value).__name__ in ("bool", "bool_"):
         raise ValueError("a truth value has no meaning here: give a number or a word")
     for entry in value if isinstance(value, list | tuple) else ():
         no_truth_value(entry)

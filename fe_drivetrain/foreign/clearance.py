@@ -63,9 +63,9 @@ def _refuse_inside(part: str, solid: ForeignFile, what: str, places: Floats, rad
     if depth[worst] > 0:
         raise InputError(
             f"{part} from {Path(solid.file).name} overlaps the {what}: at x = "
-            f"{places[worst, 0]:.4g} m it comes to {from_axis[worst]:.4g} m from the axis, but the "
-            f"surface there has a radius of {radii[worst]:.3g} m: correct the part's unit, 'rotate' "
-            "or 'translate', or its shape"
+            f"{places[worst, 0]:.4g} m it comes to {from_axis[worst]:.4g} m from the axis, but "
+            f"must stay {radii[worst]:.3g} m away there: correct the part's unit, 'rotate' or "
+            "'translate', or its shape"
         )
 
 
