@@ -6,6 +6,7 @@ from .bolt_preload import Thread as Thread
 from .bolt_preload import assembly_preload as assembly_preload
 from .bolt_preload import coarse_thread as coarse_thread
 from .bolt_preload import yield_strength as yield_strength
+from .element_counts import check_counts as check_counts
 from .element_sizes import MeshSizes as MeshSizes
 from .element_sizes import size_name as size_name
 from .fits import WIDEST as WIDEST
@@ -13,6 +14,7 @@ from .fits import Band as Band
 from .fits import check_bands as check_bands
 from .fits import check_parts as check_parts
 from .fits import refuse_millimetres as refuse_millimetres
+from .fits import refuse_oversize as refuse_oversize
 from .foreign_housing import AnyHousing as AnyHousing
 from .foreign_housing import BoltedJoint as BoltedJoint
 from .foreign_housing import Bolts as Bolts
@@ -40,4 +42,5 @@ from .shaft import Flange as Flange
 from .shaft import Section as Section
 from .shaft import Shaft as Shaft
 from .step_files import write_step as write_step
+from .walls import check_sizes as check_sizes
 from .walls import within_walls as within_walls

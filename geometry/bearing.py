@@ -95,17 +95,19 @@ class Bearing(Part):
     def build(self, bore_diameter: float) -> int:
         """Add the solid to the open gmsh model and return the tag of the volume."""
         self.check_bore(bore_diameter)
+        return revolve(self.faces(bore_diameter))
+
+    def faces(self, bore_diameter: float) -> list[Segment]:
+        """The closed meridian, a segment for each face of the solid."""
         low, high = self.span
         bore, edge = bore_diameter / 2, self.edge_radius
         centre = (self.x, 0.0) if self.kind == "spherical" else None
-        return revolve(
-            [
-                Segment((low, bore), (low, edge)),
-                Segment((low, edge), (high, edge), centre),
-                Segment((high, edge), (high, bore)),
-                Segment((high, bore), (low, bore)),
-            ]
-        )
+        return [
+            Segment((low, bore), (low, edge)),
+            Segment((low, edge), (high, edge), centre),
+            Segment((high, edge), (high, bore)),
+            Segment((high, bore), (low, bore)),
+        ]
 
     def bore_tool(self, reach: float) -> int:
         """Add the solid that cuts the matching bore out of a housing.

@@ -112,13 +112,7 @@ def apply_sizes(sizes: MeshSizes, parts: Mapping[str, int], faces: Mapping[str, 
     fields = []
     for name, tag in parts.items():
         size = getattr(sizes, size_name(name))
-        elements = near_faces = gmsh.model.occ.getMass(3, tag) * _PER_VOLUME / size**3
-        if elements > MOST_ELEMENTS:
-            raise InputError(
-                f"part {name!r}: mesh size {size_name(name)!r} is {size:g} m, which makes about "
-                f"{elements:.1g} elements, but must make at most {MOST_ELEMENTS:.0e}: choose "
-                f"{size * (elements / MOST_ELEMENTS) ** (1 / 3):.2g} m or more"
-            )
+        near_faces = elements_within(name, gmsh.model.occ.getMass(3, tag), size)
         fields.append(field.add("Constant"))
         field.setNumber(fields[-1], "VIn", size)
         field.setNumber(fields[-1], "VOut", 1e22)
@@ -127,7 +121,8 @@ def apply_sizes(sizes: MeshSizes, parts: Mapping[str, int], faces: Mapping[str, 
             limit = _size_limit(face, sizes.elements_per_turn)
             if limit < size:
                 near_faces += _elements_beside(face, limit)
-                _refuse_too_many(name, face, limit, near_faces)
+                box = gmsh.model.getBoundingBox(2, face)
+                refuse_too_many(name, (box[0], box[3]), (box[1], box[4]), limit, near_faces)
                 fields.append(field.add("MathEval"))
                 field.setString(fields[-1], "F", f"{limit:.9f} + {GROWTH} * {_distance(face)}")
         if size_name(name) == "bearing":
@@ -137,28 +132,84 @@ def apply_sizes(sizes: MeshSizes, parts: Mapping[str, int], faces: Mapping[str, 
     field.setAsBackgroundMesh(least)
 
 
-def _elements_beside(face: int, size: float) -> float:
-    """About how many elements a face of small ones makes, those that grow away from it included.
+def elements_within(name: str, volume: float, size: float) -> float:
+    """About how many elements of a size fill a part.
 
-    The integral of 6 sqrt(2) / h^3 with h = h0 + g d at the distance d: over one side of a wide
-    face A / (2 g h0^2), over half the space round a narrow one of length L pi L / (2 g^2 h0).
+    Parameters
+    ----------
+    name : str
+        Name of the part.
+    volume, size : float
+        Its volume, m^3, and the size of its elements, m.
+
+    Raises
+    ------
+    InputError
+        They are more than `MOST_ELEMENTS`.
     """
+    elements = volume * _PER_VOLUME / size**3
+    if elements > MOST_ELEMENTS:
+        raise InputError(
+            f"part {name!r}: mesh size {size_name(name)!r} is {size:g} m, which makes about "
+            f"{elements:.1g} elements, but must make at most {MOST_ELEMENTS:.0e}: choose "
+            f"{size * (elements / MOST_ELEMENTS) ** (1 / 3):.2g} m or more"
+        )
+    return elements
+
+
+def _elements_beside(face: int, size: float) -> float:
+    """About how many elements a face of the open gmsh model makes."""
     area, meridian = gmsh.model.occ.getMass(2, face), revolved_ranges(face)
     box = gmsh.model.getBoundingBox(2, face)
     length = math.dist(box[:3], box[3:])
     if meridian is not None:
         x0, x1, r0, r1 = meridian
         length = max(2 * math.pi * r1, math.hypot(x1 - x0, r1 - r0))
+    return elements_beside(area, length, size)
+
+
+def elements_beside(area: float, length: float, size: float) -> float:
+    """About how many elements a face of small ones makes, those that grow away from it included.
+
+    The integral of 6 sqrt(2) / h^3 with h = h0 + g d at the distance d: over one side of a wide
+    face A / (2 g h0^2), over half the space round a narrow one of length L pi L / (2 g^2 h0).
+
+    Parameters
+    ----------
+    area, length, size : float
+        Of the face, m^2 and m, and of its elements, m.
+    """
     wide, narrow = area / (2 * GROWTH * size**2), math.pi * length / (2 * GROWTH**2 * size)
     return float(_PER_VOLUME * (wide + narrow))
 
 
-def _refuse_too_many(name: str, face: int, size: float, elements: float) -> None:
+def refuse_too_many(
+    name: str,
+    x: tuple[float, float],
+    y: tuple[float, float],
+    size: float,
+    elements: float,
+) -> None:
+    """Refuse a face whose small elements are too many.
+
+    Parameters
+    ----------
+    name : str
+        Name of the part.
+    x, y : tuple[float, float]
+        Where the face is, m.
+    size, elements : float
+        Size of its elements, m, and how many elements the part has with them.
+
+    Raises
+    ------
+    InputError
+        They are more than `MOST_ELEMENTS`.
+    """
     if elements > MOST_ELEMENTS:
-        x0, y0, _, x1, y1, _ = gmsh.model.getBoundingBox(2, face)
         raise InputError(
-            f"part {name!r}: a bore, fillet or narrow face at x = {x0:.6g} to {x1:.6g} m, "
-            f"y = {y0:.6g} to {y1:.6g} m needs elements of {size:.2g} m, which make about "
+            f"part {name!r}: a bore, fillet or narrow face at x = {x[0]:.6g} to {x[1]:.6g} m, "
+            f"y = {y[0]:.6g} to {y[1]:.6g} m needs elements of {size:.2g} m, which make about "
             f"{elements:.1g} elements, but must make at most {MOST_ELEMENTS:.0e}: leave that "
             "detail out, enlarge it, or lower elements_per_turn"
         )
@@ -176,21 +227,36 @@ def _finer_along_edges(tag: int, size: float) -> int:
         for curve in boundary([(2, face) for face in boundary([(3, tag)])])
         if gmsh.model.getType(1, curve) != "Line"
     ]
-    length = math.fsum(gmsh.model.occ.getMass(1, curve) for curve in circles) / 2  # each is twice
-    # a quarter of a turn round each edge, elements growing away from it
-    elements = _PER_VOLUME * length * math.pi / 4 / (GROWTH**2 * size)
-    if elements > MOST_ELEMENTS:
-        raise InputError(
-            f"mesh size 'bearing_edge' is {size:g} m, which makes about {elements:.1g} elements, "
-            f"but must make at most {MOST_ELEMENTS:.0e}: choose "
-            f"{size * elements / MOST_ELEMENTS:.2g} m or more"
-        )
+    refuse_fine_edges(math.fsum(gmsh.model.occ.getMass(1, curve) for curve in circles), size)
     distance = field.add("Distance")
     field.setNumbers(distance, "CurvesList", circles)
     field.setNumber(distance, "Sampling", 200)
     growing = field.add("MathEval")
     field.setString(growing, "F", f"{size:.9f} + {GROWTH} * F{distance}")
     return int(growing)
+
+
+def refuse_fine_edges(length: float, size: float) -> None:
+    """Refuse elements along the edges of a bearing that are too many.
+
+    Parameters
+    ----------
+    length, size : float
+        Of all edges, and of the elements along them, m.
+
+    Raises
+    ------
+    InputError
+        They are more than `MOST_ELEMENTS`.
+    """
+    # an eighth of a turn round each edge, elements growing away from it
+    elements = _PER_VOLUME * length * math.pi / 8 / (GROWTH**2 * size)
+    if elements > MOST_ELEMENTS:
+        raise InputError(
+            f"mesh size 'bearing_edge' is {size:g} m, which makes about {elements:.1g} elements, "
+            f"but must make at most {MOST_ELEMENTS:.0e}: choose "
+            f"{size * elements / MOST_ELEMENTS:.2g} m or more"
+        )
 
 
 def _size_limit(face: int, elements_per_turn: int) -> float:
@@ -205,13 +271,34 @@ def _size_limit(face: int, elements_per_turn: int) -> float:
     if kind != "Plane":
         largest, smallest, _, _ = gmsh.model.getPrincipalCurvatures(face, parameters(face)[0])
         curvature = max(abs(float(largest[0])), abs(float(smallest[0])))
-        if curvature > 0:
-            limit = (1.5 if kind == "Torus" else 1.0) * 2 * math.pi / curvature / elements_per_turn
+        limit = curved_limit(curvature, kind == "Torus", elements_per_turn)
     meridian = revolved_ranges(face)
     if meridian is not None:
         x0, x1, r0, r1 = meridian
-        limit = min(limit, 2 * math.sqrt(r1 * math.hypot(x1 - x0, r1 - r0)))
+        limit = min(limit, narrow_limit(math.hypot(x1 - x0, r1 - r0), r1))
     return limit
+
+
+def curved_limit(curvature: float, fillet: bool, elements_per_turn: int) -> float:
+    """Largest element size that a curved face allows; see `_size_limit`.
+
+    Parameters
+    ----------
+    curvature : float
+        The largest of the face, 1/m.
+    fillet : bool
+        Whether it is a fillet.
+    elements_per_turn : int
+        Of a scene.
+    """
+    if curvature == 0:
+        return math.inf
+    return (1.5 if fillet else 1.0) * 2 * math.pi / curvature / elements_per_turn
+
+
+def narrow_limit(width: float, radius: float) -> float:
+    """Largest element size that a ring of a width and its larger radius allows, m."""
+    return 2 * math.sqrt(radius * width)
 
 
 def _distance(face: int) -> str:

@@ -122,6 +122,14 @@ def _check_units(
     shaft: Shaft | None, bearings: Sequence[Bearing], housings: Mapping[str, Housing]
 ) -> None:
     """Refuse parts of a size that only millimetres taken for metres explain."""
+    for part, long, wide in _extents(shaft, bearings, housings):
+        refuse_millimetres(part, long, wide)
+
+
+def _extents(
+    shaft: Shaft | None, bearings: Sequence[Bearing], housings: Mapping[str, Housing]
+) -> list[tuple[str, float, float]]:
+    """Parts, and their extents along x and across, m."""
     extents = [(f"bearing {b.name!r}", b.width, b.raceway_diameter) for b in bearings]
     extents += [
         (f"housing of {name!r}", max(h.width, h.foot_width), max(h.foot_length, h.centre_height))
@@ -130,11 +138,30 @@ def _check_units(
     if shaft is not None:
         wide = max(max(p.outer_diameter, p.end_diameter) for p in shaft.pieces)
         extents.append(("shaft", shaft.length, wide))
-    for part, long, wide in extents:
-        refuse_millimetres(part, long, wide)
+    return extents
 
 
-def refuse_millimetres(part: str, long: float, wide: float) -> None:
+def refuse_oversize(
+    shaft: Shaft, bearings: Sequence[Bearing], housings: Mapping[str, Housing]
+) -> None:
+    """Refuse parts of a scene that are longer than a nacelle.
+
+    Parts on their own may be longer, see `refuse_millimetres`.
+
+    Parameters
+    ----------
+    shaft, bearings, housings : Shaft, Sequence[Bearing], Mapping[str, Housing]
+        The parts.
+
+    Raises
+    ------
+    InputError
+    """
+    for part, long, wide in _extents(shaft, bearings, housings):
+        refuse_millimetres(part, long, wide, WIDEST)
+
+
+def refuse_millimetres(part: str, long: float, wide: float, longest: float = LONGEST) -> None:
     """Refuse a part of implausible size.
 
     Parameters
@@ -143,14 +170,16 @@ def refuse_millimetres(part: str, long: float, wide: float) -> None:
         What it is, for the message.
     long, wide : float
         Its extents along x and across, m.
+    longest : float
+        What it may be along x, m.
 
     Raises
     ------
     InputError
     """
-    if long > LONGEST or wide > WIDEST:
+    if long > longest or wide > WIDEST:
         raise InputError(
-            f"{part} is {long:g} m long and {wide:g} m wide, but must be at most {LONGEST:g} m "
+            f"{part} is {long:g} m long and {wide:g} m wide, but must be at most {longest:g} m "
             f"long and {WIDEST:g} m wide: lengths are in metres, {long / 1000:g} and "
             f"{wide / 1000:g} m if these were millimetres"
         )

@@ -12,12 +12,33 @@ from pydantic import Field, model_validator
 from fe_drivetrain.common.errors import InputError
 
 from .bearing import Bearing
-from .part import LENGTH_TOLERANCE, Part, dimension
+from .part import LENGTH_TOLERANCE, Part, dimension, slip_of_units
 from .shaft import Shaft
 
 THICKEST = 10.0
 """Thickest wall of a housing, in diameters of its raceway: real ones have 0.1 to 0.3, and one in
 millimetres has a hundred."""
+
+
+_BOLTS = ("bolt_diameter", "bolt_spacing_x", "bolt_spacing_y", "washer_diameter")
+
+
+def _default(name: str) -> float:
+    return float(Housing.model_fields[name].default)
+
+
+class CurvedFace(NamedTuple):
+    """A cylinder or a zone of a sphere: radius and length, m, area, m^2, and where it is, m.
+
+    Its width along the meridian, m, counts where it goes all round the shaft's axis.
+    """
+
+    radius: float
+    length: float
+    area: float
+    x: tuple[float, float]
+    y: tuple[float, float]
+    width: float = math.inf
 
 
 class HousingSolid(NamedTuple):
@@ -121,9 +142,10 @@ class Housing(Part):
             ("foot_thickness", self.foot_thickness, "centre_height", self.centre_height),
             ("pedestal_width", self.pedestal_width, "foot_length", self.foot_length),
         ]
-        if self.base == "bolted":
+        given = [name for name in _BOLTS if getattr(self, name) != _default(name)]
+        if self.base == "bolted" or given:
             washer = self.washer_diameter
-            limits += [
+            bolted = [
                 ("bolt_diameter", self.bolt_diameter, "washer_diameter", washer),
                 ("washer_diameter", washer, "bolt_spacing_x", self.bolt_spacing_x),
                 (
@@ -145,11 +167,13 @@ class Housing(Part):
                     self.bolt_spacing_y - washer,
                 ),
             ]
+            # what is given must fit, used or not; the defaults need not where nothing uses them
+            limits += [one for one in bolted if self.base == "bolted" or one[0] in given]
         for name, value, limit_name, limit in limits:
             if value >= limit - LENGTH_TOLERANCE:
                 raise InputError(
                     f"Housing: {name} is {value:g} m but must be less than {limit_name}, "
-                    f"{limit:g} m: change one of them"
+                    f"{limit:g} m{slip_of_units(value, limit)}: change one of them"
                 )
         return self
 
@@ -204,25 +228,92 @@ class Housing(Part):
                 "narrower"
             )
         if shaft is not None:
-            self._check_opening(bearing, shaft)
+            self.check_clear(bearing, shaft)
 
-    def _check_opening(self, bearing: Bearing, shaft: Shaft) -> None:
-        low, high = bearing.x - self.width / 2, bearing.x + self.width / 2
-        corners = [p for s in shaft.outer_profile() for p in (s.start, s.end)]
-        corners += [(x, shaft.outer_radius(x)) for x in (low, high)]
-        for x, shaft_radius in corners:
-            offset = abs(x - bearing.x)
-            if not low - LENGTH_TOLERANCE <= x <= high + LENGTH_TOLERANCE:
-                continue
-            room = bearing.raceway_diameter / 2
-            if bearing.kind == "spherical":
-                room = math.sqrt(room**2 - min(offset, room) ** 2)
-            if room <= shaft_radius + LENGTH_TOLERANCE:
+    def check_clear(self, bearing: Bearing, shaft: Shaft, what: str = "shaft") -> None:
+        """Refuse a housing that touches a body of revolution in its bore or over its foot.
+
+        Parameters
+        ----------
+        bearing, shaft : Bearing, Shaft
+            The bearing in its bore, and the body.
+        what : str
+            What the body is.
+
+        Raises
+        ------
+        InputError
+        """
+        drop = self.centre_height - self.foot_thickness
+        for width, depth in ((self.width, 0.0), (self.foot_width, drop)):
+            low, high = bearing.x - width / 2, bearing.x + width / 2
+            corners = [p for s in shaft.outer_profile() for p in (s.start, s.end)]
+            corners += [(x, shaft.outer_radius(x)) for x in (low, high)]
+            for x, radius in corners:
+                if not low - LENGTH_TOLERANCE <= x <= high + LENGTH_TOLERANCE:
+                    continue
+                opening = bearing.raceway_diameter / 2
+                if bearing.kind == "spherical":
+                    opening = math.sqrt(opening**2 - min(abs(x - bearing.x), opening) ** 2)
+                if max(opening, depth) > radius + LENGTH_TOLERANCE:
+                    continue
+                part = f"{bearing.name}.housing"
+                if depth > opening:
+                    raise InputError(
+                        f"{part}: its foot of width {width:g} m has room for a radius of "
+                        f"{depth:g} m at x = {x:g} m, but the {what} has {radius:g} m there and "
+                        "must be smaller: make the foot narrower or raise the centre"
+                    )
                 raise InputError(
-                    f"{bearing.name}.housing: its opening at x = {x:g} m is {2 * room:g} m in "
-                    f"diameter but must be greater than the shaft, {2 * shaft_radius:g} m there: "
+                    f"{part}: its opening at x = {x:g} m is {2 * opening:g} m in "
+                    f"diameter but must be greater than the {what}, {2 * radius:g} m there: "
                     "make the housing narrower or the raceway larger"
                 )
+
+    def volume(self, bearing: Bearing) -> float:
+        """Volume round a bearing, m^3; what a bore takes of the foot is left in."""
+        outer, radius = self.outer_radius(bearing), bearing.raceway_diameter / 2
+        drop = self.centre_height - self.foot_thickness
+        bore = math.pi * radius**2 * self.width
+        if bearing.kind == "spherical":
+            bore -= math.pi * self.width**3 / 12
+        section = math.pi * outer**2 / 2 + (outer + self.pedestal_width / 2) * drop
+        foot = self.foot_length * self.foot_width * self.foot_thickness
+        return section * self.width - bore + foot
+
+    def curved_faces(self, bearing: Bearing) -> list[CurvedFace]:
+        """Bore, as the sides of the bearing divide it, outside of the shell, and bolt holes."""
+        outer, half = self.outer_radius(bearing), self.width / 2
+        turn = math.pi * outer
+        x = (bearing.x - half, bearing.x + half)
+        found = [CurvedFace(outer, turn, turn * self.width, x, (-outer, outer))]
+        radius, inner = bearing.raceway_diameter / 2, min(bearing.width / 2, half)
+        for low, high in ((-half, -inner), (-inner, inner), (inner, half)):
+            if high - low < LENGTH_TOLERANCE:
+                continue
+            r0, r1 = radius, radius
+            if bearing.kind == "spherical":
+                r0, r1 = (math.sqrt(max(radius**2 - t * t, 0.0)) for t in (low, high))
+            widest, ends = max(r0, r1), (bearing.x + low, bearing.x + high)
+            rim = math.hypot(high - low, r1 - r0)
+            area = 2 * math.pi * radius * (high - low)
+            turn = max(2 * math.pi * widest, rim)
+            found.append(CurvedFace(radius, turn, area, ends, (-widest, widest), rim))
+        hole, deep = self.bolt_diameter / 2, self.foot_thickness
+        length, area = math.hypot(2 * math.sqrt(2) * hole, deep), 2 * math.pi * hole * deep
+        for x_at, y_at in self._bolts(bearing):
+            around = (x_at - hole, x_at + hole), (y_at - hole, y_at + hole)
+            found.append(CurvedFace(hole, length, area, *around))
+        return found
+
+    def _bolts(self, bearing: Bearing) -> list[tuple[float, float]]:
+        """x and y of the bolts' axes, m; none where the whole base is fixed."""
+        if self.base == "fixed":
+            return []
+        return [
+            (bearing.x + sign_x * self.bolt_spacing_x / 2, sign_y * self.bolt_spacing_y / 2)
+            for sign_x, sign_y in product((-1, 1), (-1, 1))
+        ]
 
     def build(self, bearing: Bearing) -> HousingSolid:
         """Add the housing of a bearing, its washer footprints and its named points to gmsh."""
@@ -231,19 +322,14 @@ class Housing(Part):
         block, _ = occ.fuse([(3, self._body(x, outer))], [(3, self._foot(x))])
         tools = [(3, bearing.bore_tool(max(self.width, self.foot_width)))]
         washers: list[int] = []
-        if self.base == "bolted":
-            for sign_x, sign_y in product((-1, 1), (-1, 1)):
-                at = (
-                    x + sign_x * self.bolt_spacing_x / 2,
-                    sign_y * self.bolt_spacing_y / 2,
-                    -self.centre_height,
-                )
-                bolt, washer = self.bolt_diameter / 2, self.washer_diameter / 2
-                tools.append((3, occ.addCylinder(*at, 0, 0, self.foot_thickness, bolt)))
-                ring, _ = occ.cut(
-                    [(2, occ.addDisk(*at, washer, washer))], [(2, occ.addDisk(*at, bolt, bolt))]
-                )
-                washers += [tag for _, tag in ring]
+        bolt, washer = self.bolt_diameter / 2, self.washer_diameter / 2
+        for place in self._bolts(bearing):
+            at = (*place, -self.centre_height)
+            tools.append((3, occ.addCylinder(*at, 0, 0, self.foot_thickness, bolt)))
+            ring, _ = occ.cut(
+                [(2, occ.addDisk(*at, washer, washer))], [(2, occ.addDisk(*at, bolt, bolt))]
+            )
+            washers += [tag for _, tag in ring]
         ((_, volume),), _ = occ.cut(block, tools)
         points = {
             "top": occ.addPoint(x, 0, outer),

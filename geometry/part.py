@@ -26,6 +26,29 @@ SMALLEST, LARGEST = 1e-6, 1e4
 """A length (m) beyond these is a slip of the pen: CAD cannot tell it from nothing, or from far."""
 
 
+_SLIP = 100.0
+"""Beyond its limit by more than this factor, a length is likely to be in millimetres."""
+
+
+def slip_of_units(value: float, limit: float) -> str:
+    """What a message adds where a length may have been given in the wrong unit.
+
+    Parameters
+    ----------
+    value, limit : float
+        The length, and what it must be less than, or more, m.
+
+    Returns
+    -------
+    str
+        As in " (lengths are in metres: 1.42 m if this was in millimetres)"; empty where the
+        length is near to its limit, or in millimetres would be no better.
+    """
+    if limit > 0 and _SLIP * limit < value:
+        return f" (lengths are in metres: {value / 1000:g} m if this was in millimetres)"
+    return ""
+
+
 class Assumption(NamedTuple):
     """One dimension of a part, and where its value comes from."""
 

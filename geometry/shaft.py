@@ -348,6 +348,14 @@ class Shaft(Part):
         int
             Tag of the volume.
         """
+        return revolve(self.faces(seats, bore_seats))
+
+    def faces(
+        self,
+        seats: Iterable[tuple[float, float]] = (),
+        bore_seats: Iterable[tuple[float, float]] = (),
+    ) -> list[Segment]:
+        """The closed meridian, a segment for each face of the solid; arguments as of `build`."""
         cuts = sorted({x for seat in seats for x in seat})
         bore_cuts = sorted({x for seat in bore_seats for x in seat})
         outline = [piece for segment in self.outer_profile() for piece in split(segment, cuts)]
@@ -359,7 +367,7 @@ class Shaft(Part):
         for start, end in pairwise(corners):
             if math.dist(start, end) > LENGTH_TOLERANCE:
                 outline.append(Segment(start, end))
-        return revolve(outline)
+        return outline
 
 
 def _ranges(lengths: Iterable[tuple[float, float]]) -> str:

@@ -20,6 +20,7 @@ class Wall(NamedTuple):
 
     part: str
     thickness: float
+    what: str = "thinnest wall"
 
     @property
     def largest(self) -> float:
@@ -42,7 +43,9 @@ def thinnest_walls(
         if bearing.name in housings:
             housing = housings[bearing.name]
             floor = housing.centre_height - bearing.raceway_diameter / 2
-            yield Wall(f"{bearing.name}.housing", min(housing.wall, floor))
+            wall = Wall(f"{bearing.name}.housing", min(housing.wall, floor))
+            foot = Wall(f"{bearing.name}.housing", housing.foot_thickness, "foot")
+            yield min(wall, foot, key=lambda one: one.thickness)
 
 
 def check_sizes(
@@ -67,8 +70,9 @@ def check_sizes(
         if size > wall.largest:
             raise InputError(
                 f"part {wall.part!r}: mesh size {kind!r} is {size:g} m but must be at most "
-                f"{wall.largest:.3g} m, {SIZE_PER_WALL:g} times its thinnest wall of "
-                f"{wall.thickness:.3g} m: reduce the size or thicken the wall"
+                f"{wall.largest:.3g} m, {SIZE_PER_WALL:g} times its {wall.what} of "
+                f"{wall.thickness:.3g} m: reduce the size or thicken the wall (lengths are in "
+                "metres)"
             )
 
 

@@ -323,3 +323,10 @@ def test_advice_is_for_scenes() -> None:
     outcome = CliRunner().invoke(app, ["advise", "planet_carrier", "--quantity", "hub.Fx"])
     assert outcome.exit_code == MISTAKE
     assert "is a component" in outcome.output
+
+
+def test_a_truth_value_among_stiffnesses_is_refused():
+    """It counted as 1 N/m."""
+    given = [2e6, 4e7, True, 2e4, 3e5, 3e5]
+    with pytest.raises(InputError, match=r"bushings\.stiffness: a truth value has no meaning"):
+        change_component(library_component("gearbox_housing"), {"bushings.stiffness": given})

@@ -359,6 +359,21 @@ def test_a_housing_on_a_plate_is_softer_and_tends_to_the_fixed_foot(plate):
     assert away[2] == pytest.approx(away[1] / 10, rel=0.1)
 
 
+def test_a_plate_that_a_collar_of_the_shaft_reaches_is_refused_by_assembly_and_unit(plate):
+    """Its top is 0.42 m under the axis; the collar is clear of the housing, from x = 0.25 m on."""
+    clear = on_plate(plate)
+    for diameter, reaches in ((0.8, False), (0.9, True)):
+        lengths = ((1.25, 0.4), (0.1, diameter), (0.85, 0.4))
+        sections = [{"length": length, "outer_diameter": d} for length, d in lengths]
+        one = change_scene(clear, {"shaft.sections": sections})
+        if not reaches:
+            mesh_scene(one)
+            continue
+        for solve in (mesh_scene, stiffness):
+            with pytest.raises(InputError, match=r"overlaps the shaft: at x = 0\.\d+ m it"):
+                solve(one)
+
+
 def test_an_assembly_on_a_plate_is_in_balance_and_weighs_all_its_parts(plate):
     one = on_plate(plate)
     model = build_model(one, mesh_scene(one))

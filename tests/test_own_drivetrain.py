@@ -17,7 +17,8 @@ from tiny_case import Result
 
 from fe_drivetrain.commands import study_loads
 from fe_drivetrain.commands.app import main
-from fe_drivetrain.commands.scene_page import catalogue_warnings, describe
+from fe_drivetrain.commands.named_bearings import named_bearings
+from fe_drivetrain.commands.scene_page import describe
 from fe_drivetrain.commands.study_loads import own_loads
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
@@ -268,19 +269,37 @@ def test_check_shows_the_point_that_hub_loads_are_about(bonded_model: Model) -> 
 
 
 @pytest.mark.parametrize(
-    ("entry", "words"),
+    ("entry", "refused", "words"),
     [
-        ("nosuch", "Catalogue entry 'nosuch' of bearing 'main_bearing' is none of the program's"),
-        ("planet_nj2232", "planet_nj2232 is 160 mm, the shaft at its seat 600 mm"),
-        ("bearing_s", "bearing_s is 635 mm, the shaft at its seat 600 mm"),
-        ("three_point_main", None),
+        ("nosuch", True, "catalogue entry 'nosuch' of bearing 'main_bearing' is in no catalogue"),
+        ("planet_nj2232", True, "planet_nj2232 is 160 mm, the shaft at its seat 600 mm"),
+        ("bearing_s", False, "bearing_s is 635 mm, the shaft at its seat 600 mm"),
+        ("three_point_main", False, None),
     ],
 )
-def test_check_says_what_life_will_say_of_catalogue_entries(entry: str, words: str | None) -> None:
-    scene = library_scene("three_point_suspension")
-    found = catalogue_warnings(change_scene(scene, {"bearing_units.main_bearing.catalogue": entry}))
-    assert len(found) == (words is not None)
-    assert words is None or words in found[0]
+def test_check_and_life_say_the_same_of_catalogue_entries(
+    invoke: Callable[..., Result],
+    entry: str,
+    refused: bool,
+    words: str | None,
+    tmp_path: Path,
+) -> None:
+    key = f"bearing_units.main_bearing.catalogue={entry}"
+    scene = change_scene(library_scene("three_point_suspension"), dict([key.split("=")]))
+    if not refused:
+        (found,) = named_bearings(scene, (), {}).values()
+        assert words in str(found.misfit) if words else found.misfit is None
+        return
+    said = set()
+    (tmp_path / "any.csv").write_text("not read before the bearings are known")
+    for command in (["check"], ["life", "--loads", str(tmp_path / "any.csv")]):
+        arguments = [command[0], "three_point_suspension", *command[1:], "--set", key]
+        status, _, err = invoke(*arguments, "--out", str(tmp_path / "page"))
+        assert status == 2
+        said.add(err.splitlines()[-1])
+    (sentence,) = said
+    assert words is not None
+    assert words in sentence
 
 
 def test_forecast_is_of_the_systems_that_are_solved(

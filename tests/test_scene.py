@@ -1,8 +1,12 @@
 """Scenes from YAML: what is read, what is refused, and that a file cannot do anything."""
 
+import json
+
+import numpy as np
 import pytest
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.scene.left_out import left_out
 from fe_drivetrain.scene.reading import change_scene, library_scene, parse_scene, read_scene
 
 TEXT = """
@@ -197,3 +201,55 @@ def test_the_bearing_unit_that_is_wrong_is_named_once(change):
     assert str(caught.value).count("rear") == 1
     with pytest.raises(InputError, match=r"bearing_units\.rear\.interface is 'glued'"):
         change_scene(library_scene("two_bearings"), {"bearing_units.rear.interface": "glued"})
+
+
+def test_truth_values_are_no_numbers_in_lists_of_any_depth_or_of_numpy():
+    rows = np.diag([1e9, 1e9, 1e9, 1e8, 1e8, 1e8]).tolist()
+    scene = library_scene("main_bearing_bonded")
+    unit = {"bearing_units.main_bearing.interface": "spring"}
+    key = "bearing_units.main_bearing.stiffness"
+    assert change_scene(scene, {**unit, key: rows}).bearing_units[0].interface == "spring"
+    for row, column, truth in ((0, 1, False), (3, 3, True), (3, 3, np.True_)):
+        wrong = [list(r) for r in rows]
+        wrong[row][column] = truth
+        with pytest.raises(InputError, match="a truth value has no meaning here"):
+            change_scene(scene, {**unit, key: wrong})
+
+
+def test_what_a_scene_leaves_out_is_listed_with_its_value_and_reason(tmp_path):
+    text = """
+title: little is given
+shaft: {front: -1, sections: [{length: 2.5, outer_diameter: 0.4}]}
+bearing_units: [{bearing: {width: 0.2}, housing: {base: fixed}, interface: sliding}]
+gearbox: {stiffness: [4e6, 8e7, 8e7, 8e7, 0, 0]}
+"""
+    rows = {row.key: row for row in left_out(parse_scene(text))}
+    assert rows["bearing_units.main_bearing.bearing.raceway_diameter"][1:3] == (0.6, "m")
+    assert rows["bearing_units.main_bearing.housing.wall"].value == 0.11
+    assert rows["shaft.material"].value == "steel"
+    assert rows["gearbox.weight"][1:3] == (0.0, "N")
+    assert rows["hub.coupling"].value == "averaged"
+    assert all(row.why.startswith("assumed: ") for row in rows.values())
+    # what is given, and what nothing uses
+    for key in ("bearing.width", "housing.base", "housing.bolt_diameter", "interface"):
+        assert f"bearing_units.main_bearing.{key}" not in rows
+    given = parse_scene(text, {"gearbox.weight": 0, "shaft.material": "steel"})
+    assert {"gearbox.weight", "shaft.material"} == rows.keys() - {r.key for r in left_out(given)}
+
+
+def test_a_file_that_a_scene_names_and_is_not_there_is_refused_as_it_is_read(tmp_path):
+    unit = {"bearing": {}, "housing": {"step": "no.step", "seat": {"radius": 300}, "held": []}}
+    held = {"point": [0, 0, -420], "normal": [0, 0, 1]}
+    unit["housing"]["held"] = [held]
+    data = {
+        "title": "t",
+        "shaft": {"front": -1, "sections": [{"length": 2.5, "outer_diameter": 0.4}]},
+        "bearing_units": [unit | {"interface": "sliding"}],
+        "gearbox": {"stiffness": [4e6, 8e7, 8e7, 8e7, 0, 0]},
+    }
+    file = tmp_path / "mine.yaml"
+    file.write_text(json.dumps(data))
+    with pytest.raises(InputError, match=r"main_bearing.housing: cannot read .*no.step: there is"):
+        read_scene(file)
+    (tmp_path / "no.step").write_text("")
+    assert read_scene(file).bearing_units[0].foreign is not None

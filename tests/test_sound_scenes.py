@@ -48,10 +48,44 @@ FAULTS = {
         "7850 if it is in t/m^3",
     ),
     "weight": (["gearbox.weight=1e308"], "must be at most 1e+09"),
+    "a section in millimetres": (
+        ["shaft.sections.0.length=700"],
+        "shaft is 700 m long and 0.4 m wide, but must be at most 50 m long",
+    ),
+    "bolts in millimetres that nothing uses": (
+        ["bearing_units.0.housing.bolt_spacing_y=1060"],
+        "less than foot_length less washer_diameter, 1.158 m (lengths are in metres: 1.06 m if",
+    ),
+    "foot of a sheet": (
+        ["bearing_units.0.housing.foot_thickness=0.00013"],
+        "must be at most 0.00039 m, 3 times its foot of 0.00013 m",
+    ),
+    "foot under a collar": (
+        [
+            "shaft.flange.outer_diameter=0.8",
+            "shaft.flange.thickness=0.1",
+            "shaft.front=-0.5",
+            "bearing_units.0.housing.foot_width=0.9",
+        ],
+        "its foot of width 0.9 m has room for a radius of 0.32 m at x = -0.4 m",
+    ),
+    "mesh for a thick wall": (
+        ["shaft.sections.0.inner_diameter=0.39"],
+        "mesh size 'shaft' is 0.1",
+    ),
+    "mesh of dust": (["mesh.shaft=1e-3"], "must make at most 1e+06"),
+    "a truth value in a list": (
+        ["gearbox.stiffness=[4e6, 8e7, 8e7, true, 0, 0]"],
+        "gearbox.stiffness: a truth value has no meaning here",
+    ),
 }
 ADVISE = ["advise", "SCENE", "--quantity", "main_bearing.Fz", "--load", "hub.Fz=-3e5"]
 EXPORT = ["export", "SCENE", "--out", "out", "--format", "json"]
 ENTRIES = {
+    "check": ["check", "SCENE"],
+    "study": ["study", "SCENE"],
+    "compare": ["compare", "SCENE", "two_bearings"],
+    "life": ["life", "SCENE", "--loads", "none.csv"],
     "advise": ADVISE,
     "uncertainty": ["uncertainty", "SCENE", "--level", "1"],
     "shaft": [*EXPORT, "--level", "1"],

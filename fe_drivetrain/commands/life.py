@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fe_drivetrain.commands.options import (
+    Catalogues,
     Channels,
     Mapping,
     Resume,
@@ -66,12 +67,7 @@ def life_command(
         str | None,
         typer.Option("--only", metavar="NAME", help="The one bearing whose life is asked for."),
     ] = None,
-    catalogue: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--catalogue", metavar="FILE", help="A bearing catalogue of your own. May be repeated."
-        ),
-    ] = None,
+    catalogue: Catalogues = None,
     lubricant: Annotated[
         str,
         typer.Option(

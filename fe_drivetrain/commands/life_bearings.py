@@ -9,7 +9,7 @@ from typing import Any
 
 from fe_drivetrain.bearing.catalogue import Entry, read_catalogue
 from fe_drivetrain.bearing.geometry import RollerRow
-from fe_drivetrain.bearing.seats import check_seat
+from fe_drivetrain.commands.named_bearings import named_bearings
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.coupled.load_paths import PINNED, LoadPath
@@ -121,33 +121,32 @@ def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
         raise InputError(
             f"--only {choices.only}: the scene has no such bearing; name one of {', '.join(units)}"
         )
-    known = read_catalogue(*choices.catalogues)
-    found: dict[str, tuple[str, Entry, RatedBearing, float, str | None]] = {}
-    for name, unit in units.items():
-        entry_name = choices.named.get(name) or unit.catalogue
-        if entry_name is None:
-            raise InputError(
-                f"bearing {name!r} of the scene has no rollers: name its entry of the catalogue "
-                f"with --bearing {name}=ENTRY, or under 'catalogue' in the scene; there are "
-                f"{', '.join(known)}"
-            )
-        changes = _profile(known.get(entry_name), choices.profiled)
-        rated = rated_from_catalogue(entry_name, *choices.catalogues, **changes)
-        entry, seat = known[entry_name], scene.seat_diameter(name)
-        found[name] = entry_name, entry, rated, seat, check_seat(name, entry_name, entry, seat)
-    rolling = {name: rated.bearing for name, (_, _, rated, _, _) in found.items()}
+    named = named_bearings(scene, choices.catalogues, choices.named)
+    if nameless := [name for name in units if name not in named]:
+        raise InputError(
+            f"bearing {nameless[0]!r} of the scene has no rollers: name its entry of the catalogue "
+            f"with --bearing {nameless[0]}=ENTRY, or under 'catalogue' in the scene; there are "
+            f"{', '.join(read_catalogue(*choices.catalogues))}"
+        )
+    rated = {
+        name: rated_from_catalogue(
+            one.name, *choices.catalogues, **_profile(one.entry, choices.profiled)
+        )
+        for name, one in named.items()
+    }
+    rolling = {name: one.bearing for name, one in rated.items()}
     body = scene_body(scene, 1)
     result = []
-    for name, (entry_name, entry, rated, seat, misfit) in found.items():
+    for name, (entry_name, entry, seat, misfit) in named.items():
         if choices.only not in (None, name):
             continue
         model = None
         if choices.rings == "three-degree":
-            model = three_degree_rings(rated.bearing)
+            model = three_degree_rings(rolling[name])
         elif choices.rings == "housing":
             from fe_drivetrain.rings.housing import housing_races
 
-            model = flexible_rings(housing_races(scene, name, rated.bearing))
+            model = flexible_rings(housing_races(scene, name, rolling[name]))
         path = LoadPath(
             body,
             rolling,
@@ -157,7 +156,7 @@ def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
             scene.gearbox.weight if choices.weight else 0.0,
             GRAVITY if choices.weight else 0.0,
         )
-        result.append(OneBearing(name, entry_name, entry, rated, path, seat, misfit))
+        result.append(OneBearing(name, entry_name, entry, rated[name], path, seat, misfit))
     return result
 
 
@@ -189,9 +188,9 @@ def rollers_in_words(one: OneBearing, riser: str) -> str:
     return f"{shape}, {ends}"
 
 
-def _profile(entry: Entry | None, profiled: bool) -> dict[str, Any]:
+def _profile(entry: Entry, profiled: bool) -> dict[str, Any]:
     """The standard's profile, for rollers whose entry has none."""
-    if entry is None or not profiled or entry.crown or entry.kind not in PROFILE:
+    if not profiled or entry.crown or entry.kind not in PROFILE:
         return {}
     return {"crown": PROFILE[entry.kind]}
 

@@ -55,6 +55,12 @@ Slopes = Annotated[
         "4 and 10.",
     ),
 ]
+Catalogues = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--catalogue", metavar="FILE", help="A bearing catalogue of your own. May be repeated."
+    ),
+]
 Resume = Annotated[
     bool,
     typer.Option(

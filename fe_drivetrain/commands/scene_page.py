@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
+from fe_drivetrain.commands.named_bearings import named_bearings
 from fe_drivetrain.common.components import MOTIONS
-from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.fidelity.level_costs import forecast
 from fe_drivetrain.geometry import FurtherPart
 from fe_drivetrain.report.pictures import NoPictureError, picture_of_model
 from fe_drivetrain.report.pictures.model import with_prefix
 from fe_drivetrain.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.scene.bearing_unit import SPHERICAL_JOINTS, BearingUnit, Springs
+from fe_drivetrain.scene.left_out import left_out
 from fe_drivetrain.scene.nose import NoseBearing
 from fe_drivetrain.scene.reading import scene_text
 from fe_drivetrain.scene.scene import Scene, coarser_scene
@@ -74,7 +75,7 @@ def picture(run: Run, page: Page, model: Model) -> None:
 
 
 def describe(page: Page, model: Model) -> None:
-    """Tables of the parts, bearings and supports of a scene, with masses and units.
+    """Tables of the parts, bearings and supports of a scene, and what it leaves out.
 
     Parameters
     ----------
@@ -85,6 +86,7 @@ def describe(page: Page, model: Model) -> None:
     """
     scene = model.scene
     page.scene = scene_text(scene)
+    page.assume_all(left_out(scene))
     parts: list[Record] = [
         {
             "part": part,
@@ -212,40 +214,6 @@ def _bearing_row(unit: BearingUnit) -> Record:
     }
 
 
-def catalogue_warnings(scene: Scene) -> list[str]:
-    """What ``life`` will refuse, or say, of the catalogue entries that a scene names.
-
-    They are no faults of the scene: a catalogue of the user, which only ``life`` is given, may have
-    the entry.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    """
-    named = {u.bearing.name: u.catalogue for u in scene.bearing_units if u.catalogue is not None}
-    if not named:
-        return []
-    # late, since it loads the compiled loops of bearings, which no other command here needs
-    from fe_drivetrain.bearing.catalogue import read_catalogue
-    from fe_drivetrain.bearing.seats import check_seat
-
-    known, found = read_catalogue(), []
-    for name, entry in named.items():
-        if entry not in known:
-            found.append(
-                f"Catalogue entry {shown(entry)} of bearing {name!r} is none of the program's: give"
-                f" life a file that has it (--catalogue FILE), or use one of {', '.join(known)}."
-            )
-            continue
-        try:
-            sentence = check_seat(name, entry, known[entry], scene.seat_diameter(name))
-        except InputError as error:
-            sentence = f"life will refuse this: {error}."
-        found += [sentence] if sentence else []
-    return found
-
-
 def _nose_bearing_row(scene: Scene, bearing: NoseBearing) -> Record:
     assert scene.nose is not None
     return {
@@ -307,7 +275,7 @@ def cost_table(page: Page, model: Model) -> None:
     page.data("levels", rows)
 
 
-def checked(run: Run, page: Page, scene: Scene) -> None:
+def checked(run: Run, page: Page, scene: Scene, catalogues: Sequence[Path] = ()) -> None:
     """Validate a scene, describe it, draw it, and say what it costs.
 
     Parameters
@@ -318,12 +286,15 @@ def checked(run: Run, page: Page, scene: Scene) -> None:
         Takes the tables and the picture.
     scene : Scene
         The scene.
+    catalogues : Sequence[Path]
+        Bearing catalogues of the user, beside the program's own.
 
     Raises
     ------
     InputError
-        See `checked_model`.
+        See `named_bearings` and `checked_model`.
     """
+    misfits = [one.misfit for one in named_bearings(scene, catalogues, {}).values()]
     model = checked_model(run, scene)
     mass = float(model.mass.sum())
     count = len(scene.bearing_names)
@@ -340,7 +311,7 @@ def checked(run: Run, page: Page, scene: Scene) -> None:
         f"bearing{'s' if count > 1 else ''}{on_nose}, {mass:,.0f} kg in all, "
         f"{model.n_dofs:,} degrees of freedom; it is held, and can be solved.",
         *model.warnings,
-        *catalogue_warnings(scene),
+        *filter(None, misfits),
     )
     page.section("Scene")
     picture(run, page, model)

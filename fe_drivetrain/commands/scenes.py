@@ -30,11 +30,11 @@ def named_scene(name: str, changes: Mapping[str, Any]) -> Scene:
     InputError
         There is no such scene, it is a component, or a value is wrong.
     """
-    from fe_drivetrain.scene.reading import change_scene, library_scene, read_scene
+    from fe_drivetrain.scene.reading import library_text, parse_scene, read_scene
 
     if _is_file(name):
         return read_scene(name, changes)
-    return change_scene(library_scene(name), changes)
+    return parse_scene(library_text(name), changes, name)
 
 
 def named_scene_or_component(name: str, changes: Mapping[str, Any]) -> Scene | Component:

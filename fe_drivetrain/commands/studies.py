@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fe_drivetrain.commands.options import Mapping, SceneName, Scheduler, Skip, Slopes
+from fe_drivetrain.commands.options import Catalogues, Mapping, SceneName, Scheduler, Skip, Slopes
 from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.run import Quick, results_text, tables_text
 from fe_drivetrain.commands.scenes import named_scene
@@ -38,10 +38,16 @@ OutFolder = Annotated[
 ]
 
 
-def check_command(scene: SceneName, out: OutFolder = None, set_: SceneSettings = None) -> None:
+def check_command(
+    scene: SceneName,
+    catalogue: Catalogues = None,
+    out: OutFolder = None,
+    set_: SceneSettings = None,
+) -> None:
     """Check a scene, describe and draw it, and predict what each level of the ladder costs.
 
-    Prints parts, bearings, supports, masses and costs; the report has the picture, too.
+    Prints parts, bearings, supports, masses and costs; the report has the picture, too. Entries
+    that the scene names under 'catalogue' must be in the program's bearing catalogue, or in yours.
 
     The exit status is 0 if the scene can be solved, 2 if it cannot.
     """
@@ -53,7 +59,11 @@ def check_command(scene: SceneName, out: OutFolder = None, set_: SceneSettings =
 
         title = f"{found.title}: what the scene is, and what it costs"
         results, page = _results_of_scene(
-            "check", [scene], title, out, lambda run, page: checked(run, page, found)
+            "check",
+            [scene],
+            title,
+            out,
+            lambda run, page: checked(run, page, found, tuple(catalogue or ())),
         )
         write(sys.stdout, tables_text(results, page))
         return PASSED

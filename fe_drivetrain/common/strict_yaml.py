@@ -32,13 +32,18 @@ def shown(value: object) -> str:
 def no_truth_value(value: Any) -> Any:
     """For pydantic's ``field_validator("*", mode="before")``: true is no number, and not one.
 
+    Lists are searched to their ends: pydantic makes 1.0 of a true in them.
+
     Raises
     ------
     ValueError
-        The value is true or false.
+        The value is true or false, or a list in which one stands.
     """
-    if isinstance(value, bool):
+    # numpy's, too, which need not be loaded for that
+    if isinstance(value, bool) or type(value).__name__ in ("bool", "bool_"):
         raise ValueError("a truth value has no meaning here: give a number or a word")
+    for entry in value if isinstance(value, list | tuple) else ():
+        no_truth_value(entry)
     return value
 
 

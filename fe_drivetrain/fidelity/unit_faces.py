@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from fe_drivetrain.foreign.assembly import Tied, mesh_parts, tied
+from fe_drivetrain.foreign.clearance import check_clear
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.scene.component import Attachment
 from fe_drivetrain.scene.scene import Coupling, Scene
@@ -54,7 +55,9 @@ def without_shaft(scene: Scene, rings: Mapping[str, bool]) -> tuple[Tied, list[s
         units.append(unit.model_copy(update={"bearing": bearing}))
         parts += [*([name] if with_ring else []), *unit.housing_parts]
     giving = [name for name, with_ring in rings.items() if with_ring]
-    return tied(units, mesh_parts(None, units, scene.mesh), giving), parts
+    mesh = mesh_parts(None, units, scene.mesh)
+    check_clear(scene.shaft, units, mesh)
+    return tied(units, mesh, giving), parts
 
 
 def attached(scene: Scene, name: str, with_ring: bool, coupling: Coupling) -> Attachment:

@@ -12,6 +12,7 @@ from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.cache import Cache
+from fe_drivetrain.foreign.clearance import check_clear
 from fe_drivetrain.foreign.further_parts import joined, placed_part, tie_faces, tie_of
 from fe_drivetrain.foreign.housing import placed_housing
 from fe_drivetrain.geometry import (
@@ -64,6 +65,11 @@ def mesh_parts(
     -------
     Mesh
         Housings from files share no nodes with their bearings, see `tied`.
+
+    Raises
+    ------
+    InputError
+        A part cannot be meshed, or one from a file reaches into the shaft or a bearing.
     """
     blocks = {u.bearing.name: u.housing for u in units if isinstance(u.housing, Housing)}
     bonded = frozenset(u.bearing.name for u in units if u.interface == "bonded")
@@ -82,6 +88,7 @@ def mesh_parts(
     for unit in units:
         for part in unit.parts:
             mesh = beside(mesh, placed_part(part, unit.bearing, sizes, cache).mesh)
+    check_clear(shaft, units, mesh)
     for unit in units:
         if unit.parts or unit.stands_on == "parts":
             mesh = joined(mesh, unit)

@@ -8,7 +8,6 @@ import numpy as np
 from pydantic import (
     AfterValidator,
     BaseModel,
-    BeforeValidator,
     ConfigDict,
     Field,
     ModelWrapValidatorHandler,
@@ -45,12 +44,6 @@ class Keys(BaseModel):
     _truth = field_validator("*", mode="before")(no_truth_value)
 
 
-def _no_booleans(value: Any) -> Any:
-    if isinstance(value, list | tuple) and any(isinstance(k, bool) for k in value):
-        raise ValueError("each stiffness must be a number of at least 0, or 'rigid'")
-    return value
-
-
 def within_range(value: tuple[float | Literal["rigid"], ...], *, free: bool = True) -> Any:
     """Refuse springs that are neither rigid, nor of a size that is one, nor 0 where that is free.
 
@@ -70,7 +63,6 @@ def within_range(value: tuple[float | Literal["rigid"], ...], *, free: bool = Tr
 _Six = Annotated[
     tuple[float | Literal["rigid"], ...],
     Field(min_length=6, max_length=6),
-    BeforeValidator(_no_booleans),
 ]
 #: Along x, y, z [N/m] and about them [N m/rad]: each a number, or "rigid", or 0 for free.
 Springs = Annotated[_Six, AfterValidator(within_range)]
@@ -80,7 +72,6 @@ _Held = Annotated[_Six, AfterValidator(partial(within_range, free=False))]
 _Spring = Annotated[
     tuple[float | Literal["rigid"] | tuple[float, ...], ...],
     Field(min_length=6, max_length=6),
-    BeforeValidator(_no_booleans),
 ]
 
 

@@ -16,12 +16,8 @@ from pydantic import AfterValidator, Field, model_validator
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.geometry import BodySizes, GearboxHousing, PlanetCarrier
 from fe_drivetrain.scene.bearing_unit import Keys, within_range
-from fe_drivetrain.scene.materials import Material, known_materials
-from fe_drivetrain.scene.scene import (
-    HEAVIEST,
-    Coupling,
-    check_material,
-)
+from fe_drivetrain.scene.materials import Material, check_material, known_materials
+from fe_drivetrain.scene.scene import HEAVIEST, Coupling
 from fe_drivetrain.scene.standing import RigidBody, check_held
 
 

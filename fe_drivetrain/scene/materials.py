@@ -5,7 +5,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
-from fe_drivetrain.common.strict_yaml import no_truth_value
+from fe_drivetrain.common.strict_yaml import no_truth_value, shown
 
 HIGHEST_POISSON_RATIO = 0.499999
 """Nearer to 1/2 lambda swamps mu, and stiffnesses lose digits without a word
@@ -67,3 +67,27 @@ MATERIALS: dict[str, Material] = {
 def known_materials(defined: Mapping[str, Material]) -> dict[str, Material]:
     """Materials by name: those of the program, and those that a scene defines, which go first."""
     return {**MATERIALS, **defined}
+
+
+def check_material(name: str, defined: Mapping[str, Material], of: str = "") -> None:
+    """Refuse a material that neither the program nor a scene has.
+
+    Parameters
+    ----------
+    name : str
+        Name of the material.
+    defined : mapping
+        Those that the scene defines.
+    of : str
+        The part, where there are several, as in " of shaft".
+
+    Raises
+    ------
+    ValueError
+    """
+    known = known_materials(defined)
+    if name not in known:
+        raise ValueError(
+            f"material {shown(name)}{of} is unknown: use one of {', '.join(known)}, or define it "
+            "under 'materials'"
+        )

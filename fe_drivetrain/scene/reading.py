@@ -17,6 +17,7 @@ from fe_drivetrain.common.reading import (
 )
 from fe_drivetrain.geometry import Bearing
 from fe_drivetrain.scene.component import COMPONENTS, Component, SomeComponent
+from fe_drivetrain.scene.gate import check_files
 from fe_drivetrain.scene.scene import Scene
 
 
@@ -39,11 +40,14 @@ def read_scene(path: str | Path, changes: Mapping[str, Any] | None = None) -> Sc
     Raises
     ------
     InputError
-        The file cannot be read, is not such YAML, or does not describe a scene.
+        The file cannot be read, is not such YAML, does not describe a scene, or a file that it
+        names is not there.
     """
     data = _changed_mapping(read_text(path, "scene"), changes, str(path))
     _beside(Path(path).parent, data.get("bearing_units"))
-    return _scene(data, str(path))
+    scene = _scene(data, str(path))
+    check_files(scene.bearing_units)
+    return scene
 
 
 def parse_scene(

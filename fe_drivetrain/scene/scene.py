@@ -11,60 +11,18 @@ from pydantic import (
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import value_by_key
 from fe_drivetrain.common.strict_yaml import shown
-from fe_drivetrain.geometry import (
-    Band,
-    Housing,
-    MeshSizes,
-    Shaft,
-    check_bands,
-    check_parts,
-    refuse_millimetres,
-    within_walls,
-)
-from fe_drivetrain.scene.bearing_unit import SPHERICAL_JOINTS, BearingUnit, Keys, Springs
-from fe_drivetrain.scene.joint_springs import as_numbers
+from fe_drivetrain.geometry import Band, Housing, MeshSizes, Shaft, within_walls
+from fe_drivetrain.scene.bearing_unit import BearingUnit, Keys, Springs
+from fe_drivetrain.scene.gate import check_scene
 from fe_drivetrain.scene.materials import MATERIALS, Material, known_materials
 from fe_drivetrain.scene.nose import Nose, NoseBearing
-from fe_drivetrain.scene.shared_parts import check_shared, coupled_units
-from fe_drivetrain.scene.standing import check_standing
+from fe_drivetrain.scene.shared_parts import coupled_units
 
 #: How a reference point holds its face: as its mean motion (RBE3) or as a rigid body (RBE2).
 Coupling = Literal["averaged", "rigid"]
 
 #: Largest weight of a part [N]: a hundred times the nacelle of the largest turbines.
 HEAVIEST = 1e9
-
-#: Farthest point that hub loads are about from the front face, in lengths of the shaft: the rotor's
-#: centre is ahead of it by less than one, the tower's axis behind it by up to five (12 m in the
-#: IEA 15 MW turbine, whose shaft is 2.4 m long). Beyond it a force's moment is of another machine.
-FARTHEST = 5.0
-
-#: Names that load points cannot have: loads and points of every scene.
-_RESERVED = ("hub", "gearbox", "gravity", "shaft", "nose")
-
-
-def check_material(name: str, defined: Mapping[str, Material], of: str = "") -> None:
-    """Refuse a material that neither the program nor a scene has.
-
-    Parameters
-    ----------
-    name : str
-        Name of the material.
-    defined : mapping
-        Those that the scene defines.
-    of : str
-        The part, where there are several, as in " of shaft".
-
-    Raises
-    ------
-    ValueError
-    """
-    known = known_materials(defined)
-    if name not in known:
-        raise ValueError(
-            f"material {shown(name)}{of} is unknown: use one of {', '.join(known)}, or define it "
-            "under 'materials'"
-        )
 
 
 class Hub(Keys):
@@ -138,8 +96,8 @@ class Spread(Keys):
 class Scene(Keys):
     """A drivetrain: one shaft on any number of bearing units, or round a nose; a hub, a gearbox.
 
-    Whatever is to be done with a scene, it is sound from the start: its parts fit together
-    (`fe_drivetrain.geometry.check_parts`), and it is no mechanism (`check_standing`).
+    Whatever is to be done with a scene, it is sound from the start: see
+    `fe_drivetrain.scene.gate.check_scene`.
     """
 
     title: str
@@ -155,65 +113,9 @@ class Scene(Keys):
 
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":
-        names = self.bearing_names
-        if not names:
-            raise ValueError("there is no bearing: give bearing_units, or a nose with bearings")
-        if set(names) & set(_RESERVED):
-            raise ValueError(f"bearing names {names} must not be one of {', '.join(_RESERVED)}")
-        if len(set(names)) < len(names):
-            raise ValueError(f"bearing names {names} must differ from each other")
-        taken = {*names, *_RESERVED}
-        for point in self.load_points:
-            if point.name in taken:
-                raise ValueError(
-                    f"load point {point.name!r} has the name of another point of the scene "
-                    f"({', '.join(sorted(taken))}): rename it"
-                )
-            taken.add(point.name)
-        used = [("shaft", self.shaft.material)]
-        for unit in self.bearing_units:
-            used.append((unit.bearing.name, unit.bearing.material))
-            used += [(part, solid.material) for part, solid in unit.housing_parts.items()]
-            if unit.interface in SPHERICAL_JOINTS and unit.bearing.kind != "spherical":
-                raise ValueError(
-                    f"bearing {unit.bearing.name!r} of kind {unit.bearing.kind!r} cannot have the "
-                    f"spherical-joint interface {unit.interface!r}: make its kind 'spherical' or "
-                    "its interface 'bonded', 'spring' or 'rollers'"
-                )
-        for part, material in used:
-            check_material(material, self.materials, f" of {part}")
-        check_parts(
-            self.shaft,
-            [unit.bearing for unit in self.bearing_units],
-            self.blocks,
-        )
-        if self.nose is not None:
-            check_material(self.nose.body.material, self.materials, " of nose")
-            refuse_millimetres(
-                "nose",
-                self.nose.body.length,
-                2 * max(map(self.nose.body.outer_radius, self.nose.body.stations)),
-            )
-            self.nose.check_fits(self.shaft)
-        check_shared(self.bearing_units)
-        check_bands(self.shaft, self.seats, [unit.bearing for unit in self.bearing_units])
-        self._check_hub()
+        check_scene(self, self.gearbox.stiffness, [point.name for point in self.load_points])
         check_spreads(self)
-        gearbox = as_numbers(self.gearbox.stiffness)
-        modulus = self.material_of("shaft").youngs_modulus
-        check_standing(self.shaft, self.bearing_units, gearbox, modulus, self.nose_bearings)
         return self
-
-    def _check_hub(self) -> None:
-        """Refuse hub loads about a point that is on no machine with such a shaft."""
-        front, reach = self.shaft.front, FARTHEST * self.shaft.length
-        if abs(self.loads_at - front) > reach:
-            raise InputError(
-                f"hub.loads_at is {self.loads_at:g} m but must be from {front - reach:g} to "
-                f"{front + reach:g} m, at most {FARTHEST:g} lengths of the shaft from its front "
-                f"face at {front:g} m: give x of the point that your hub loads are about, in m, or "
-                "leave it out where that is the front face"
-            )
 
     def material_of(self, part: str) -> Material:
         """The material of a part, by the part's name in the mesh."""

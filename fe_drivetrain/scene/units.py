@@ -35,7 +35,7 @@ def unit_of_key(scene: Scene, key: str) -> str:
         target = _inner(target, part)
     if isinstance(target, BaseModel):
         field = type(target).model_fields.get(last)
-        return "" if field is None else _of_field(field)
+        return "" if field is None else unit_of_field(field)
     springs = isinstance(target, tuple) and len(target) == len(_SPRINGS)
     if springs and path[-1] in ("stiffness", "bedplate") and last.isdecimal():
         return _SPRINGS[int(last)] if int(last) < len(_SPRINGS) else ""
@@ -60,7 +60,8 @@ def _name(one: Any) -> Any:
     return getattr(one, "name", None)
 
 
-def _of_field(field: FieldInfo) -> str:
+def unit_of_field(field: FieldInfo) -> str:
+    """Unit of a value that a field declares; empty where it states none."""
     extra = field.json_schema_extra
     if isinstance(extra, dict) and "unit" in extra:
         unit = str(extra["unit"])

@@ -32,6 +32,7 @@ from . import low_speed_shaft as low_speed_shaft
 from . import manufactured as manufactured
 from . import matrix_readers as matrix_readers
 from . import moved_bodies as moved_bodies
+from . import mutated_scenes as mutated_scenes
 from . import one_norm as one_norm
 from . import other_precisions as other_precisions
 from . import patched_interfaces as patched_interfaces

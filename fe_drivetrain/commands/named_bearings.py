@@ -1,0 +1,91 @@
+"""The catalogue entries of a scene's bearings, found and held against its shaft: one gate.
+
+``check`` and ``life`` pass it, so that what the one takes the other does not refuse.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.strict_yaml import shown
+from fe_drivetrain.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from fe_drivetrain.bearing.catalogue import Entry
+
+
+class NamedBearing(NamedTuple):
+    """A bearing's entry of a catalogue.
+
+    Attributes
+    ----------
+    name : str
+        Name of the entry.
+    entry : Entry
+        What the catalogue says.
+    seat : float
+        Diameter of the shaft at the seat [m].
+    misfit : str or None
+        What does not fit, as a sentence; see `fe_drivetrain.bearing.seats.check_seat`.
+    """
+
+    name: str
+    entry: Entry
+    seat: float
+    misfit: str | None
+
+
+def named_bearings(
+    scene: Scene, catalogues: Sequence[Path], chosen: Mapping[str, str]
+) -> dict[str, NamedBearing]:
+    """Catalogue entries by bearing, of those bearings that have one.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    catalogues : Sequence[Path]
+        Files of the user, beside the program's own catalogue.
+    chosen : Mapping[str, str]
+        Entries by bearing that come before those of the scene.
+
+    Returns
+    -------
+    dict[str, NamedBearing]
+        In the scene's order.
+
+    Raises
+    ------
+    InputError
+        There is no such entry, the shaft does not go into the bearing, or all bearings roll and
+        nothing holds the shaft's torque.
+    """
+    entries = {u.bearing.name: u.catalogue for u in scene.bearing_units if u.catalogue}
+    entries |= chosen
+    if not entries and not catalogues:
+        return {}
+    # late, since it loads the compiled loops of bearings
+    from fe_drivetrain.bearing.catalogue import read_catalogue
+    from fe_drivetrain.bearing.seats import check_seat
+
+    known, found = read_catalogue(*catalogues), {}
+    for name in (unit.bearing.name for unit in scene.bearing_units):
+        entry = entries.get(name)
+        if entry is None:
+            continue
+        if entry not in known:
+            raise InputError(
+                f"catalogue entry {shown(entry)} of bearing {name!r} is in no catalogue: give a "
+                f"file that has it with --catalogue FILE, or use one of {', '.join(known)}"
+            )
+        seat = scene.seat_diameter(name)
+        misfit = check_seat(name, entry, known[entry], seat)
+        found[name] = NamedBearing(entry, known[entry], seat, misfit)
+    if len(found) == len(scene.bearing_units) and scene.nose is None:
+        from fe_drivetrain.coupled.of_scene import scene_body
+
+        scene_body(scene, 1)  # rolling bearings hold no torque, which the scene's joints may
+    return found
