@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple, Self
 
 from pydantic import (
@@ -17,7 +18,7 @@ from pydantic.fields import FieldInfo
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import fault_sentence
-from fe_drivetrain.common.strict_yaml import no_truth_value
+from fe_drivetrain.common.strict_yaml import no_truth_value, shown
 
 LENGTH_TOLERANCE = 1e-9
 """Two lengths closer than this (m) are the same length."""
@@ -43,6 +44,7 @@ def dimension(
     source: str = "",
     gt: float | None = None,
     ge: float | None = None,
+    le: float | None = None,
 ) -> Any:
     """Declare a field that carries its unit and the source of its default value.
 
@@ -59,6 +61,8 @@ def dimension(
     gt, ge : float or None
         Lower bounds, exclusive and inclusive. A length lies between `SMALLEST` and `LARGEST`, too,
         where it must be greater than 0; else it is at most `LARGEST`, with either sign.
+    le : float or None
+        Upper bound; of a length `LARGEST` where not given.
     """
     if unit == "m":
         ge = SMALLEST if gt == 0 else -LARGEST if ge is None else ge
@@ -67,9 +71,54 @@ def dimension(
         description=f"{of}, {unit}" if unit != "-" else of,
         gt=gt,
         ge=ge,
-        le=LARGEST if unit == "m" else None,
+        le=LARGEST if unit == "m" and le is None else le,
         json_schema_extra={"unit": unit, "source": source},
     )
+
+
+def kind_of(row: Any) -> Any:
+    """For pydantic's ``Discriminator``: the kind of a part; rows of a file have become parts."""
+    return getattr(row, "kind", None)
+
+
+def rows_of(what: str, of: type[Part] | Mapping[str, type[Part]]) -> Any:
+    """For pydantic's ``field_validator(..., mode="before")``: rows of a file become parts.
+
+    A fault names its row, counted from one.
+
+    Parameters
+    ----------
+    what : str
+        What a row is, in messages.
+    of : type or mapping of str to type
+        Its part, or parts by their ``kind``.
+
+    Returns
+    -------
+    callable
+        From a list of mappings, or of anything else, to one with parts for the mappings.
+    """
+
+    def one(row: Mapping[str, Any]) -> Part:
+        if not isinstance(of, Mapping):
+            return of.model_validate(row)
+        kind = row.get("kind")
+        if not (isinstance(kind, str) and kind in of):
+            raise InputError(f"kind is {shown(kind)} but must be one of {', '.join(of)}: change it")
+        return of[kind].model_validate(row)
+
+    def rows(value: Any) -> Any:
+        if not isinstance(value, list | tuple):
+            return value
+        found = []
+        for number, item in enumerate(value, start=1):
+            try:
+                found.append(one(item) if isinstance(item, Mapping) else item)
+            except InputError as error:
+                raise InputError(f"{what} {number}: {error}") from None
+        return found
+
+    return rows
 
 
 def _extra(field: FieldInfo, key: str) -> str:

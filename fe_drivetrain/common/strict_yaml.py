@@ -35,10 +35,13 @@ def no_truth_value(value: Any) -> Any:
     Raises
     ------
     ValueError
-        The value is true or false.
+        The value is true or false, or is a list with such a value.
     """
     if isinstance(value, bool):
         raise ValueError("a truth value has no meaning here: give a number or a word")
+    if isinstance(value, list | tuple):
+        for item in value:
+            no_truth_value(item)
     return value
 
 
@@ -82,6 +85,10 @@ class PlainLoader(yaml.SafeLoader):
             raise yaml.YAMLError(f"{shown(node.value)} is too large for a number")
         return number
 
+    def construct_whole(self, node: Any) -> int:
+        self.construct_number(node)  # so that every whole number is a number, too
+        return int(node.value)
+
 
 PlainLoader.yaml_implicit_resolvers = {
     first: [(tag, regexp) for tag, regexp in found if tag not in (_OLD_MEANINGS | {_NUMBER})]
@@ -97,3 +104,4 @@ PlainLoader.add_implicit_resolver(
     _FIRST,
 )
 PlainLoader.add_constructor(_NUMBER, PlainLoader.construct_number)
+PlainLoader.add_constructor("tag:yaml.org,2002:int", PlainLoader.construct_whole)

@@ -344,14 +344,19 @@ def working_angle(
     InputError
         The base circles do not leave room for a line of action.
     """
-    transverse = np.arctan(np.tan(pressure_angle) / cos(helix))
-    cosine = module * teeth / (2 * cos(helix)) * np.cos(transverse) / centre_distance
+    transverse = transverse_angle(pressure_angle, helix)
+    cosine = module * teeth / (2 * cos(helix)) * cos(transverse) / centre_distance
     if not 0 < cosine < 1:
         raise InputError(
             f"centre distance {centre_distance:g} m is too small for {teeth} teeth of module "
             f"{module:g} m: the working pressure angle must have a cosine below 1, not {cosine:g}"
         )
     return float(np.arccos(cosine))
+
+
+def transverse_angle(pressure_angle: float, helix: float) -> float:
+    """Transverse pressure angle at the reference circle [rad], of the normal one and the helix."""
+    return float(np.arctan(np.tan(pressure_angle) / cos(helix)))
 
 
 def base_helix(helix: float, pressure_angle: float) -> float:

@@ -16,17 +16,16 @@ planets go the other way round than what drives them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from math import sqrt
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import parse_mapping, read_text, validated
 from fe_drivetrain.common.strict_yaml import shown
-from fe_drivetrain.geometry.part import Part, dimension
+from fe_drivetrain.geometry.part import Part, dimension, kind_of, rows_of
 from fe_drivetrain.torsion.system import Element, Inertia, Torsional, chain
 
 GeneratorState = Literal["fixed", "free"]
@@ -156,19 +155,12 @@ class ParallelStage(_Stage):
         return self.teeth[0] / self.teeth[1] if self.teeth else float(self.ratio or 0.0)
 
 
-def _kind_of(stage: Any) -> Any:
-    return getattr(stage, "kind", None)
-
-
 Stage = Annotated[
     Annotated[PlanetaryStage, Tag("planetary")] | Annotated[ParallelStage, Tag("parallel")],
-    Discriminator(_kind_of),
+    Discriminator(kind_of),
 ]
 """Of either kind; by the time it is one, rows of a file have become stages."""
-_KINDS: dict[str, type[PlanetaryStage] | type[ParallelStage]] = {
-    "planetary": PlanetaryStage,
-    "parallel": ParallelStage,
-}
+_KINDS: dict[str, type[Part]] = {"planetary": PlanetaryStage, "parallel": ParallelStage}
 
 
 class GeneratorRow(Part):
@@ -188,15 +180,8 @@ class Drivetrain(Part):
     stages: tuple[Stage, ...] = Field(default=(), description="gear stages from the rotor on")
     generator: GeneratorRow = Field(description="the generator")
 
-    @field_validator("shafts", mode="before")
-    @classmethod
-    def _shafts(cls, value: Any) -> Any:
-        return _rows("shaft", value, lambda row: ShaftRow.model_validate(row))
-
-    @field_validator("stages", mode="before")
-    @classmethod
-    def _stages(cls, value: Any) -> Any:
-        return _rows("stage", value, _stage)
+    _shafts = field_validator("shafts", mode="before")(rows_of("shaft", ShaftRow))
+    _stages = field_validator("stages", mode="before")(rows_of("stage", _KINDS))
 
     @model_validator(mode="after")
     def _one_shaft_more(self) -> Self:
@@ -223,26 +208,6 @@ class Drivetrain(Part):
         for stage in self.stages:
             speeds.append(speeds[-1] * stage.speed_ratio)
         return tuple(speeds)
-
-
-def _rows(kind: str, value: Any, one: Any) -> Any:
-    """Say which row is wrong, counting from one at the rotor."""
-    if not isinstance(value, list | tuple):
-        return value
-    rows = []
-    for number, item in enumerate(value, start=1):
-        try:
-            rows.append(one(item) if isinstance(item, Mapping) else item)
-        except InputError as error:
-            raise InputError(f"{kind} {number}: {error}") from None
-    return rows
-
-
-def _stage(row: Mapping[str, Any]) -> PlanetaryStage | ParallelStage:
-    kind = row.get("kind")
-    if kind not in _KINDS:
-        raise InputError(f"kind is {shown(kind)} but must be one of {', '.join(_KINDS)}: change it")
-    return _KINDS[kind].model_validate(row)
 
 
 def read_drivetrain(path: str | Path) -> Drivetrain:
