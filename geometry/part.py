@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, Self
 
 from pydantic import (
@@ -121,6 +121,14 @@ def rows_of(what: str, of: type[Part] | Mapping[str, type[Part]]) -> Any:
     return rows
 
 
+def in_its_field(value: Any, handler: Any, info: Any) -> Any:
+    """For pydantic's ``field_validator(..., mode="wrap")``: a part's fault names its field."""
+    try:
+        return handler(value)
+    except InputError as error:
+        raise InputError(f"{info.field_name}: {error}") from None
+
+
 def _extra(field: FieldInfo, key: str) -> str:
     extra = field.json_schema_extra
     return str(extra.get(key, "")) if isinstance(extra, dict) else ""
@@ -169,3 +177,13 @@ class Part(BaseModel):
                 )
             )
         return rows
+
+
+def assumed_in(parts: Sequence[tuple[str, Part]]) -> list[Assumption]:
+    """What parts do not give and have all the same, by the name of each part and its key."""
+    return [
+        row._replace(name=f"{owner}: {row.name}")
+        for owner, part in parts
+        for row in part.assumptions()
+        if row.source.startswith("assumed")
+    ]

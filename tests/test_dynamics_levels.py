@@ -98,6 +98,7 @@ def test_profile_shifted_planets_of_the_5_mw_gearbox_have_their_own_teeth() -> N
                     "kind": "planetary",
                     "teeth": [ring, sun],
                     "planet_teeth": planet,
+                    "planets": stage.planets,
                     "carrier": stage.carrier.inertia,
                     "planet": stage.planet.inertia,
                     "sun": stage.sun.inertia,
@@ -140,7 +141,14 @@ def test_profile_shifted_planets_of_the_5_mw_gearbox_have_their_own_teeth() -> N
 
 
 def test_teeth_of_planets_that_do_not_fit_are_refused() -> None:
-    row = {"carrier": 1.0, "planet": 1.0, "sun": 1.0, "ring_planet": 1.0, "sun_planet": 1.0}
+    row = {
+        "planets": 3,
+        "carrier": 1.0,
+        "planet": 1.0,
+        "sun": 1.0,
+        "ring_planet": 1.0,
+        "sun_planet": 1.0,
+    }
     with pytest.raises(InputError, match=r"fewer than the ring, 56; .* they have about 18"):
         PlanetaryStage.model_validate(row | {"teeth": [56, 19], "planet_teeth": 60})
     with pytest.raises(InputError, match="ring and sun have a ratio alone"):

@@ -19,8 +19,8 @@ from fe_drivetrain.gear.functions import involute_of
 ROUNDED = 1e-3
 #: Largest sum of two profile shifts [modules].
 MOST_SHIFTS = 3.0
-#: Play of teeth [modules] along the line of action: what rounded shifts leave, what is no play.
-LEAST_PLAY, MOST_PLAY = -0.02, 0.5
+#: Play of teeth along the line of action [modules] that is no play any more.
+MOST_PLAY = 0.5
 #: Diameters of the smaller gear that a face may be wide.
 WIDEST = 5.0
 #: Radius of gyration of a gear over its own radius: it carries part of its shaft, or is a point.
@@ -159,10 +159,10 @@ def _check_teeth(stage: PlanetaryData | ParallelData, name: str) -> dict[str, fl
     pairs = stage_pairs(stage, name)
     for mesh, pair in pairs.items():
         play = pair.backlash / pair.first.normal_module
-        if not LEAST_PLAY <= play <= MOST_PLAY:
+        if play > MOST_PLAY:
             raise InputError(
                 f"{name}, {mesh}: play of the teeth is {1e3 * pair.backlash:.4g} mm but must be "
-                f"within {LEAST_PLAY:g} and {MOST_PLAY:g} modules: profile shifts of "
+                f"at most {MOST_PLAY:g} modules: profile shifts of "
                 f"{pair.first.shift:g} and {pair.second.shift:g} are not those of a centre "
                 f"distance of {pair.centre_distance:g} m, of {pair.shift_sum:.4g} in sum; correct "
                 "one of them"

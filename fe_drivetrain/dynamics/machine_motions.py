@@ -13,7 +13,7 @@ from fe_drivetrain.common.free_motions import described_motion, null_space, spar
 from fe_drivetrain.dynamics.bodies import assemble
 from fe_drivetrain.dynamics.levels import Assembly, Level, assembly
 from fe_drivetrain.dynamics.machine_rows import MachineTable, PlanetaryData
-from fe_drivetrain.dynamics.modes import spring_frequencies
+from fe_drivetrain.dynamics.modes import spring_frequencies, system_modes
 from fe_drivetrain.dynamics.system import System, without_massless
 
 #: Of what a spring's parts do to its length: turning that winds it by less is round-off.
@@ -36,7 +36,7 @@ def check_held(machine: MachineTable) -> None:
     system = assemble(made.bodies, made.springs, made.superelements)
     _check_turning(machine, made, system)
     _check_free(machine, made, system)
-    _check_frequencies(machine, without_massless(system))
+    _check_frequencies(machine, made, without_massless(system))
 
 
 def free_count(machine: MachineTable) -> int:
@@ -122,19 +122,26 @@ def _check_free(machine: MachineTable, made: Assembly, system: System) -> None:
     )
 
 
-def _check_frequencies(machine: MachineTable, system: System) -> None:
+def _check_frequencies(machine: MachineTable, made: Assembly, system: System) -> None:
     """Springs and masses so far apart that a motion has 0 Hz but for round-off."""
     try:
         found = spring_frequencies(system)
     except np.linalg.LinAlgError:
-        found = np.full(len(system.names), np.nan)
+        raise InputError(
+            "masses and inertias are too far apart for the digits of a computer: correct them"
+        ) from None
     least = ROUND_OFF * len(found) * float(np.finfo(float).eps)
     at = free_count(machine)
     if len(found) == at or found[at] > least * found[-1]:
         return
-    softest = int(np.argmin(system.K.diagonal() / system.mass.diagonal()))
+    modes = system_modes(system)
+    free = modes.shapes[:, modes.frequencies <= least * found[-1]]
+    if at:  # what is not the drivetrain's own turning
+        t = turning_motion(machine, made, system)
+        free = free - np.outer(t, t @ system.mass @ free) / (t @ system.mass @ t)
+    moving = int(np.argmax(np.abs(free * (system.mass @ free)).sum(axis=1)))
     raise InputError(
-        f"stiffnesses or masses are too far apart for the digits of a computer: "
-        f"{system.names[softest]} swings at {found[at]:.3g} Hz beside {found[-1]:.3g} Hz: correct "
+        "stiffnesses or masses are too far apart for the digits of a computer: "
+        f"{system.names[moving]} swings at {found[at]:.3g} Hz beside {found[-1]:.3g} Hz: correct "
         "the stiffness or mass there"
     )

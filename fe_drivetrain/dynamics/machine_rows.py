@@ -26,7 +26,15 @@ from fe_drivetrain.dynamics.machine_parts import (
 )
 from fe_drivetrain.dynamics.planetary import base_helix, check_assembly, working_angle
 from fe_drivetrain.dynamics.springs import Mesh
-from fe_drivetrain.geometry.part import Assumption, Part, dimension, kind_of, rows_of
+from fe_drivetrain.geometry.part import (
+    Assumption,
+    Part,
+    assumed_in,
+    dimension,
+    in_its_field,
+    kind_of,
+    rows_of,
+)
 
 #: What the full data of gears take where a table is silent, of stages with profile shifts.
 OF_TEETH = ("dedendum", "fillets", "tips", "faces", "blank")
@@ -200,6 +208,9 @@ class PlanetaryData(GearData):
     )
     pins: tuple[PinData, ...] = Field(default=(), description="bearings of each planet")
 
+    _bodies = field_validator("carrier", "planet", "sun", "ring", mode="wrap")(in_its_field)
+    _pins = field_validator("pins", mode="before")(rows_of("pin", PinData))
+
     @model_validator(mode="after")
     def _teeth_or_radii(self) -> Self:
         if (self.teeth is None) == (self.radii is None):
@@ -271,6 +282,8 @@ class ParallelData(GearData):
         of="mesh stiffness, N/m or", unit="N m/rad", gt=0, le=MOST_STIFFNESS
     )
 
+    _bodies = field_validator("gear", "pinion", mode="wrap")(in_its_field)
+
     @model_validator(mode="after")
     def _teeth_or_radii(self) -> Self:
         if (self.teeth is None) == (self.radii is None):
@@ -335,6 +348,7 @@ class MachineTable(Part):
     generator: GeneratorBody = Field(description="the generator")
     bearings: tuple[BearingData, ...] = Field(default=(), description="bearings in the housing")
 
+    _ends = field_validator("rotor", "generator", mode="wrap")(in_its_field)
     _shafts = field_validator("shafts", mode="before")(rows_of("shaft", ShaftData))
     _stages = field_validator("stages", mode="before")(rows_of("stage", _KINDS))
     _bearings = field_validator("bearings", mode="before")(rows_of("bearing", BearingData))
@@ -399,9 +413,4 @@ class MachineTable(Part):
             named += [(f"stage {number} pin {pin.name}".strip(), pin) for pin in pins]
         named.append(("generator", self.generator))
         named += [(bearing.name, bearing) for bearing in self.bearings]
-        return [
-            row._replace(name=f"{owner}: {row.name}")
-            for owner, part in named
-            for row in part.assumptions()
-            if row.source.startswith("assumed")
-        ]
+        return assumed_in(named)

@@ -16,16 +16,24 @@ planets go the other way round than what drives them.
 
 from __future__ import annotations
 
-from math import sqrt
+from math import cos, pi, radians, sin, sqrt
 from pathlib import Path
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import parse_mapping, read_text, validated
 from fe_drivetrain.common.strict_yaml import shown
-from fe_drivetrain.geometry.part import Part, dimension, kind_of, rows_of
+from fe_drivetrain.geometry.part import (
+    Assumption,
+    Part,
+    assumed_in,
+    dimension,
+    in_its_field,
+    kind_of,
+    rows_of,
+)
 from fe_drivetrain.torsion.system import Element, Inertia, Torsional, chain
 
 GeneratorState = Literal["fixed", "free"]
@@ -36,18 +44,37 @@ ROTOR, GENERATOR, GRID = "rotor", "generator", "grid"
 
 STIFFNESS, DAMPING, INERTIA = "N m/rad", "N m s/rad", "kg m^2"
 
+UNDAMPED = "assumed: without damping"
+
+Teeth = Annotated[int, Field(ge=5, le=5000)]
+
+#: Cosines of working pressure angles of both meshes of a planet, 10 to 35 degrees, of each other.
+MOST_SHIFTED = cos(radians(10)) / cos(radians(35))
+
+
+def _inertia(of: str) -> Any:
+    return dimension(of=of, unit=INERTIA, gt=0, le=1e11)
+
+
+def _stiffness(of: str) -> Any:
+    return dimension(of=of, unit=STIFFNESS, gt=0, le=1e20)
+
+
+def _damping(of: str) -> Any:
+    return dimension(0.0, of=of, unit=DAMPING, ge=0, le=1e12, source=UNDAMPED)
+
 
 class ShaftRow(Part):
     """A shaft between two stages, or between a stage and the rotor or generator."""
 
     name: str = Field(description="name of the shaft")
-    stiffness: float = dimension(of="torsional stiffness", unit=STIFFNESS, gt=0)
-    damping: float = dimension(0.0, of="torsional damping", unit=DAMPING, ge=0)
+    stiffness: float = _stiffness("torsional stiffness")
+    damping: float = _damping("torsional damping")
 
 
 class _Stage(Part):
-    ratio: float | None = dimension(None, of="speed ratio", unit="-", gt=1)
-    teeth: tuple[int, int] | None = Field(
+    ratio: float | None = dimension(None, of="speed ratio", unit="-", gt=1, le=1000)
+    teeth: tuple[Teeth, Teeth] | None = Field(
         default=None, description="teeth of ring and sun, or of gear and pinion, for the ratio"
     )
 
@@ -56,7 +83,7 @@ class _Stage(Part):
         kind = type(self).__name__
         if (self.ratio is None) == (self.teeth is None):
             raise InputError(f"{kind} needs a ratio or the teeth, and not both: give one of them")
-        if self.teeth is not None and not 0 < self.teeth[1] < self.teeth[0]:
+        if self.teeth is not None and not self.teeth[1] < self.teeth[0]:
             raise InputError(
                 f"{kind}: teeth are {list(self.teeth)} but must be two numbers above 0, the larger "
                 "first: swap or correct them"
@@ -71,20 +98,20 @@ class PlanetaryStage(_Stage):
     """
 
     kind: Literal["planetary"] = Field(default="planetary", description="the word planetary")
-    planets: int = Field(default=3, ge=1, description="number of planets")
-    planet_teeth: int | None = Field(
+    planets: int = Field(ge=1, le=50, description="number of planets")
+    planet_teeth: Teeth | None = Field(
         default=None,
-        ge=1,
         description="teeth of a planet, beside those of ring and sun; without, (ring - sun) / 2, "
         "as of stages without profile shift",
+        json_schema_extra={"unit": "-", "source": "assumed: (ring - sun) / 2, no profile shift"},
     )
-    carrier: float = dimension(of="inertia of the carrier, planets as points", unit=INERTIA, gt=0)
-    planet: float = dimension(of="inertia of one planet about its own axis", unit=INERTIA, gt=0)
-    sun: float = dimension(of="inertia of the sun", unit=INERTIA, gt=0)
-    ring_planet: float = dimension(of="mesh stiffness about the planet", unit=STIFFNESS, gt=0)
-    sun_planet: float = dimension(of="mesh stiffness about the planet", unit=STIFFNESS, gt=0)
-    ring_planet_damping: float = dimension(0.0, of="mesh damping", unit=DAMPING, ge=0)
-    sun_planet_damping: float = dimension(0.0, of="mesh damping", unit=DAMPING, ge=0)
+    carrier: float = _inertia("inertia of the carrier, planets as points")
+    planet: float = _inertia("inertia of one planet about its own axis")
+    sun: float = _inertia("inertia of the sun")
+    ring_planet: float = _stiffness("mesh stiffness about the planet")
+    sun_planet: float = _stiffness("mesh stiffness about the planet")
+    ring_planet_damping: float = _damping("mesh damping")
+    sun_planet_damping: float = _damping("mesh damping")
 
     @model_validator(mode="after")
     def _room_for_planets(self) -> Self:
@@ -105,7 +132,26 @@ class PlanetaryStage(_Stage):
                 f"the ring, {ring}; beside a sun of {sun} they have about {(ring - sun) // 2}: "
                 "correct one of them"
             )
+        self._check_fit()
         return self
+
+    def _check_fit(self) -> None:
+        """Refuse planets that both sun and ring cannot have at one centre distance, or overlap."""
+        p = self.planet_over_sun
+        inside = (self.speed_ratio - 1 - p) / (1 + p)
+        if not 1 / MOST_SHIFTED <= inside <= MOST_SHIFTED:
+            ring, sun = self.teeth or (0, 0)
+            raise InputError(
+                f"PlanetaryStage: ring and planet have {ring} - {self.planet_teeth} teeth, planet "
+                f"and sun {self.planet_teeth} + {sun}, which must be equal but for profile shifts, "
+                f"within a factor of {MOST_SHIFTED:.3g}: correct one of them"
+            )
+        n = self.planets
+        if n > 1 and not (1 + p) * sin(pi / n) > p:
+            raise InputError(
+                f"PlanetaryStage: {n} planets of {p:.4g} times the radius of the sun overlap: give "
+                "fewer planets, or a smaller ratio"
+            )
 
     @property
     def speed_ratio(self) -> float:
@@ -144,10 +190,10 @@ class ParallelStage(_Stage):
     """A gear that drives a pinion; the mesh stiffness is about the gear's axis, r_b^2 k."""
 
     kind: Literal["parallel"] = Field(default="parallel", description="the word parallel")
-    gear: float = dimension(of="inertia of the gear", unit=INERTIA, gt=0)
-    pinion: float = dimension(of="inertia of the pinion", unit=INERTIA, gt=0)
-    mesh: float = dimension(of="mesh stiffness about the gear", unit=STIFFNESS, gt=0)
-    mesh_damping: float = dimension(0.0, of="mesh damping about the gear", unit=DAMPING, ge=0)
+    gear: float = _inertia("inertia of the gear")
+    pinion: float = _inertia("inertia of the pinion")
+    mesh: float = _stiffness("mesh stiffness about the gear")
+    mesh_damping: float = _damping("mesh damping about the gear")
 
     @property
     def speed_ratio(self) -> float:
@@ -166,20 +212,28 @@ _KINDS: dict[str, type[Part]] = {"planetary": PlanetaryStage, "parallel": Parall
 class GeneratorRow(Part):
     """The generator's rotor, and the spring that the field is when the speed is fixed."""
 
-    inertia: float = dimension(of="inertia of the generator", unit=INERTIA, gt=0)
-    stiffness: float = dimension(0.0, of="electrical stiffness", unit=STIFFNESS, ge=0)
-    damping: float = dimension(0.0, of="electrical damping", unit=DAMPING, ge=0)
+    inertia: float = _inertia("inertia of the generator")
+    stiffness: float = dimension(
+        0.0,
+        of="electrical stiffness",
+        unit=STIFFNESS,
+        ge=0,
+        le=1e20,
+        source="assumed: off the grid, or of variable speed",
+    )
+    damping: float = _damping("electrical damping")
 
 
 class Drivetrain(Part):
     """A table of a drivetrain, from the rotor to the generator."""
 
     title: str = Field(description="what it is, and whose numbers")
-    rotor: float = dimension(of="inertia of the rotor", unit=INERTIA, gt=0)
+    rotor: float = _inertia("inertia of the rotor")
     shafts: tuple[ShaftRow, ...] = Field(min_length=1, description="shafts from the rotor on")
     stages: tuple[Stage, ...] = Field(default=(), description="gear stages from the rotor on")
     generator: GeneratorRow = Field(description="the generator")
 
+    _end = field_validator("generator", mode="wrap")(in_its_field)
     _shafts = field_validator("shafts", mode="before")(rows_of("shaft", ShaftRow))
     _stages = field_validator("stages", mode="before")(rows_of("stage", _KINDS))
 
@@ -200,6 +254,12 @@ class Drivetrain(Part):
                     f"{', '.join(sorted(taken))} and 'stage ...': rename it"
                 )
         return self
+
+    def assumptions(self) -> list[Assumption]:
+        """What the table does not give and is taken all the same, of all of its rows."""
+        named: list[tuple[str, Part]] = [(f"shaft {shaft.name}", shaft) for shaft in self.shafts]
+        named += [(f"stage {k}", stage) for k, stage in enumerate(self.stages, start=1)]
+        return assumed_in([*named, ("generator", self.generator)])
 
     @property
     def speeds(self) -> tuple[float, ...]:
