@@ -418,8 +418,8 @@ def test_wrong_tables_say_what_is_wrong(old, new, message):
 def test_planets_need_room():
     text = GOOD.replace(
         "{kind: parallel, ratio: 3.0, gear: 2.0, pinion: 0.5, mesh: 1e7}",
-        "{kind: planetary, ratio: 1.9, planets: 3, carrier: 1, planet: 1, sun: 1, ring_planet: 1e6, "
-        "sun_planet: 1e6}",
+        "{kind: planetary, ratio: 1.9, planets: 3, carrier: 1, planet: 1, sun: 1, "
+        "ring_planet: 1e6, sun_planet: 1e6}",
     )
     with pytest.raises(InputError, match="must be greater than 2"):
         parse_drivetrain(text)

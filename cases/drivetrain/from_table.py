@@ -88,14 +88,8 @@ def run(run: Run, page: Page) -> None:
         last,
         shown,
     )
-    page.section("Assumed")
-    page.table(
-        "What the table does not give, and is taken here",
-        [
-            {"key": row.name, "value": row.value, "unit": row.unit, "why": row.source}
-            for row in table.assumptions()
-        ],
-    )
+    for row in table.assumptions():
+        page.assume(row.name, row.value, row.unit, row.source)
     show_keys(page, table)
     page.data(
         "frequencies",

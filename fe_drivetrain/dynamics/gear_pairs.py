@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import cos, sin
 
-from fe_drivetrain.dynamics.machine_rows import PlanetaryData
+from fe_drivetrain.dynamics.machine_rows import OF_TEETH, ParallelData, PlanetaryData
 from fe_drivetrain.dynamics.springs import Mesh
 from fe_drivetrain.dynamics.stage_gears import stage_pairs
 from fe_drivetrain.dynamics.tables import Machine
@@ -20,6 +20,8 @@ from fe_drivetrain.gear.strength import GearMaterial
 
 STEELS = (GearMaterial("case-hardened", 1500e6, 430e6),) * 2
 """Case-hardened gears of quality MQ, ISO 6336-5."""
+
+NO_FACTORS = "load factors: assumed: all 1, stresses are nominal"
 
 
 def machine_pairs(machine: Machine) -> dict[str, Pair]:
@@ -114,12 +116,15 @@ class MeshStress:
         Hertz pressure of both flanks.
     roots : tuple of RootStress, or None
         Of both gears; none of a ring whose cutter is not known.
+    assumed : tuple of str
+        What was not given and counts here: load factors, and keys of the stage.
     """
 
     pair: Pair
     torque: float
     contact: ContactStress
     roots: tuple[RootStress, RootStress] | None
+    assumed: tuple[str, ...]
 
 
 def mesh_stresses(
@@ -165,8 +170,15 @@ def mesh_stresses(
             on_first,
             contact_stress(pair, on_first, own, materials),
             root_stress(pair, on_first, own, cutter) if known else None,
+            (*(() if name in given else (NO_FACTORS,)), *silent_keys(stage)),
         )
     return found
+
+
+def silent_keys(stage: PlanetaryData | ParallelData) -> list[str]:
+    """What of a stage's gears is not given and is taken all the same, a phrase each."""
+    of_gears = ("pressure_angle", *OF_TEETH)
+    return [f"{row.name}: {row.source}" for row in stage.assumptions() if row.name in of_gears]
 
 
 @dataclass(frozen=True)

@@ -128,6 +128,15 @@ class PlanetarySet:
                 f"but must be above 0 and below the centre distance, {self.centre_distance:g} m: "
                 "correct one of them"
             )
+        psi = np.sort(np.mod(self.angles, 2 * pi))
+        steps = np.diff(np.append(psi, psi[:1] + 2 * pi))
+        radius = self.centre_distance - self.sun_radius
+        apart = 2 * self.centre_distance * sin(float(steps.min(initial=pi)) / 2)
+        if len(psi) > 1 and not apart > 2 * radius:
+            raise InputError(
+                f"planetary stage {self.name!r}: planets of radius {radius:.4g} m overlap, "
+                f"{apart:.4g} m apart: give fewer or smaller ones, or other angles"
+            )
         object.__setattr__(self, "ratio", 1 + self.ring_base_radius / self.sun_base_radius)
 
     @property

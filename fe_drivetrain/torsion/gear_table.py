@@ -153,6 +153,17 @@ class PlanetaryStage(_Stage):
                 "fewer planets, or a smaller ratio"
             )
 
+    def assumptions(self) -> list[Assumption]:
+        """As of every part, and whether planets stand at unequal angles, which turning ignores."""
+        rows = super().assumptions()
+        if self.teeth is not None and sum(self.teeth) % self.planets:
+            why = (
+                f"assumed: ring and sun, {self.teeth[0]} + {self.teeth[1]} teeth, are no multiple "
+                f"of {self.planets} planets, which stand at unequal angles"
+            )
+            rows.append(Assumption("angles of planets", "unequal", "", why))
+        return rows
+
     @property
     def speed_ratio(self) -> float:
         """Of the sun to the carrier: 1 + ring / sun."""
