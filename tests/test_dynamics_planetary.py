@@ -39,6 +39,7 @@ from fe_drivetrain.validation.published_planetary import (
     LIN_PARKER_STAGE,
     helical_stage,
     helical_system,
+    lin_parker_stage,
     plane_stage,
     plane_system,
     printed_values,
@@ -68,9 +69,7 @@ def test_cooley_and_parker_at_rest(planets: int) -> None:
 
 @pytest.mark.parametrize("planets", [3, 4, 5, 6])
 def test_kinds_of_modes_in_the_plane(planets: int) -> None:
-    # six of the published planets overlap; the kinds are those of any sizes
-    smaller = replace(LIN_PARKER_STAGE, base_diameters=(0.0774, 0.07))
-    system = plane_system(LIN_PARKER_STAGE if planets < 6 else smaller, planets)
+    system = plane_system(lin_parker_stage(planets), planets)
     kinds = planetary_kinds(system, system_modes(system), CENTRAL)
     assert kinds.count(ROTATIONAL) == 6
     assert kinds.count(TRANSLATIONAL) == 12
