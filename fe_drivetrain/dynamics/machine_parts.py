@@ -14,7 +14,7 @@ STEEL = Material(youngs_modulus=2.06e11, poisson_ratio=0.3, density=7850.0)
 """Of shafts, where nothing else is given."""
 
 #: What no machine's inertia [kg m^2], mass [kg], stiffness [N/m, N m/rad] or damping is beyond.
-MOST_INERTIA, MOST_MASS, MOST_STIFFNESS, MOST_DAMPING = 1e11, 1e7, 1e20, 1e12
+MOST_INERTIA, MOST_MASS, MOST_STIFFNESS, MOST_DAMPING = 1e10, 1e7, 1e20, 1e12
 #: Least inertia [kg m^2]: where a table has none, a body may turn with so little.
 LEAST_INERTIA = 1e-9
 #: What no shaft is longer than, no centre distance, face or diameter larger than [m].

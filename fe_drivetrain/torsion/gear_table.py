@@ -53,7 +53,7 @@ MOST_SHIFTED = cos(radians(10)) / cos(radians(35))
 
 
 def _inertia(of: str) -> Any:
-    return dimension(of=of, unit=INERTIA, gt=0, le=1e11)
+    return dimension(of=of, unit=INERTIA, gt=0, le=1e10)
 
 
 def _stiffness(of: str) -> Any:
