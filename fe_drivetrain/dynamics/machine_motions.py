@@ -15,11 +15,10 @@ from fe_drivetrain.dynamics.levels import Assembly, Level, assembly
 from fe_drivetrain.dynamics.machine_rows import MachineTable, PlanetaryData
 from fe_drivetrain.dynamics.modes import spring_frequencies, system_modes
 from fe_drivetrain.dynamics.system import System, without_massless
+from fe_drivetrain.torsion.system import resolved
 
 #: Of what a spring's parts do to its length: turning that winds it by less is round-off.
 WOUND = 1e-9
-#: Of the highest frequency and the count of motions, in units of round-off: a frequency below is 0.
-ROUND_OFF = 1e3
 #: Motions that are named in one message.
 NAMED = 3
 
@@ -130,12 +129,11 @@ def _check_frequencies(machine: MachineTable, made: Assembly, system: System) ->
         raise InputError(
             "masses and inertias are too far apart for the digits of a computer: correct them"
         ) from None
-    least = ROUND_OFF * len(found) * float(np.finfo(float).eps)
     at = free_count(machine)
-    if len(found) == at or found[at] > least * found[-1]:
+    if resolved(found, at):
         return
     modes = system_modes(system)
-    free = modes.shapes[:, modes.frequencies <= least * found[-1]]
+    free = modes.shapes[:, modes.frequencies <= found[at]]
     if at:  # what is not the drivetrain's own turning
         t = turning_motion(machine, made, system)
         free = free - np.outer(t, t @ system.mass @ free) / (t @ system.mass @ t)

@@ -16,10 +16,11 @@ planets go the other way round than what drives them.
 
 from __future__ import annotations
 
-from math import cos, pi, radians, sin, sqrt
+from math import cos, pi, radians, sin
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
+import numpy as np
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from fe_drivetrain.common.errors import InputError
@@ -34,7 +35,14 @@ from fe_drivetrain.geometry.part import (
     kind_of,
     rows_of,
 )
-from fe_drivetrain.torsion.system import Element, Inertia, Torsional, chain
+from fe_drivetrain.torsion.system import (
+    Element,
+    Inertia,
+    Torsional,
+    chain,
+    natural_modes,
+    resolved,
+)
 
 GeneratorState = Literal["fixed", "free"]
 """Generator on the grid, its spring to the ground; or off it, with none (variable speed)."""
@@ -53,7 +61,7 @@ MOST_SHIFTED = cos(radians(10)) / cos(radians(35))
 
 
 def _inertia(of: str) -> Any:
-    return dimension(of=of, unit=INERTIA, gt=0, le=1e10)
+    return dimension(of=of, unit=INERTIA, ge=1e-9, le=1e10)
 
 
 def _stiffness(of: str) -> Any:
@@ -266,6 +274,20 @@ class Drivetrain(Part):
                 )
         return self
 
+    @model_validator(mode="after")
+    def _within_digits(self) -> Self:
+        system = gear_masses(self, "free")
+        modes = natural_modes(system)
+        if not resolved(modes.frequencies, 1):
+            wound = np.abs(system.B @ modes.shapes[:, :2])
+            softest = system.elements[int(np.argmax(wound.max(axis=1)))]
+            raise InputError(
+                f"drivetrain {shown(self.title)}: stiffnesses or inertias are too far apart for "
+                f"the digits of a computer: {softest.name} has {softest.stiffness:g} N m/rad; "
+                "correct it, or the inertias"
+            )
+        return self
+
     def assumptions(self) -> list[Assumption]:
         """What the table does not give and is taken all the same, of all of its rows."""
         named: list[tuple[str, Part]] = [(f"shaft {shaft.name}", shaft) for shaft in self.shafts]
@@ -414,40 +436,6 @@ def gear_speeds(table: Drivetrain) -> dict[str, float]:
             speed *= -stage.speed_ratio
             speeds[f"{name} pinion"] = speed
     return {**speeds, GENERATOR: speed}
-
-
-def shaft_damping(ratio: float, inertia: float, stiffness: float) -> float:
-    """C = 2 zeta sqrt(J k) [N m s/rad] (Eq 4.5), with J an inertia [kg m^2].
-
-    Of two inertias J_1 and J_2 on the shaft, J_1 J_2 / (J_1 + J_2) makes zeta the damping ratio of
-    the two against each other.
-    """
-    return 2 * ratio * sqrt(inertia * stiffness)
-
-
-def mesh_damping(
-    ratio: float, stiffness: float, driving: float, driven: float, gear: float
-) -> float:
-    """Damping of a gear mesh about the driving gear's axis [N m s/rad], after Eq 4.7.
-
-    C = 2 zeta sqrt(k_mesh J), with J the inertia that the two gears oppose to each other in the
-    mesh, about the driving one: r_1^2 J_1 J_2 / (r_1^2 J_2 + r_2^2 J_1). Eq 4.7 is printed as
-    r_1^2 r_2^2 J_1 J_2 / (r_1^2 J_1 + r_2^2 J_2), which is a length squared more and gives each
-    inertia the other's radius; with one of the two fixed, it must leave the other alone.
-
-    Parameters
-    ----------
-    ratio : float
-        zeta.
-    stiffness : float
-        About the driving gear [N m/rad].
-    driving, driven : float
-        Inertias J_1, J_2 about their own axes [kg m^2].
-    gear : float
-        r_1 / r_2, the speed ratio.
-    """
-    inertia = gear**2 * driving * driven / (gear**2 * driven + driving)
-    return shaft_damping(ratio, inertia, stiffness)
 
 
 def _planetary(
