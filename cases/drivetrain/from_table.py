@@ -88,8 +88,7 @@ def run(run: Run, page: Page) -> None:
         last,
         shown,
     )
-    for row in table.assumptions():
-        page.assume(row.name, row.value, row.unit, row.source)
+    page.assume_all(table.assumptions())
     show_keys(page, table)
     page.data(
         "frequencies",

@@ -3,6 +3,7 @@
 import json
 from collections import Counter
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -91,18 +92,16 @@ def as_text(data: dict[str, Any]) -> str:
 
 def try_machine(data: dict[str, Any], text: bool) -> Outcome:
     """A machine from data, or from text."""
-    read = (lambda: parse_machine(as_text(data))) if text else lambda: Machine.model_validate(data)
-    return tried(read, machine_facts)
+    if text:
+        return tried(partial(parse_machine, as_text(data)), machine_facts)
+    return tried(partial(Machine.model_validate, data), machine_facts)
 
 
 def try_table(data: dict[str, Any], text: bool) -> Outcome:
     """A gear table from data, or from text."""
-    read = (
-        (lambda: parse_drivetrain(as_text(data)))
-        if text
-        else lambda: Drivetrain.model_validate(data)
-    )
-    return tried(read, table_facts)
+    if text:
+        return tried(partial(parse_drivetrain, as_text(data)), table_facts)
+    return tried(partial(Drivetrain.model_validate, data), table_facts)
 
 
 def check(page: Page, name: str, rows: list[Record]) -> None:
@@ -142,7 +141,7 @@ def control(page: Page) -> None:
     for name, changes in WRONG.items():
         data = plain(library_machine("park_2021"))
         data["stages"][0] |= changes
-        outcome = tried(lambda data=data: MachineTable.model_validate(data), machine_facts)
+        outcome = tried(partial(MachineTable.model_validate, data), machine_facts)
         page.holds(
             f"control, without the gate: {name} is found wrong by the facts",
             bool(outcome.wrong),

@@ -55,7 +55,8 @@ def check_machine(machine: MachineTable) -> None:
 
 def check_names(machine: MachineTable) -> None:
     """Refuse shafts and bearings that share a name, or have one of the program's own."""
-    names = [row.name for row in (*machine.shafts, *machine.bearings)]
+    names = [shaft.name for shaft in machine.shafts]
+    names += [bearing.name for bearing in machine.bearings]
     for name in names:
         own = name in RESERVED or name.startswith("stage ")
         if own or names.count(name) > 1 or not name or name != name.strip():
