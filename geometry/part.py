@@ -35,6 +35,11 @@ class Assumption(NamedTuple):
     unit: str
     source: str
 
+    @property
+    def is_assumed(self) -> bool:
+        """Whether it is neither given nor from a source."""
+        return self.source.startswith("assumed")
+
 
 def dimension(
     default: Any = ...,
@@ -185,5 +190,5 @@ def assumed_in(parts: Sequence[tuple[str, Part]]) -> list[Assumption]:
         row._replace(name=f"{owner}: {row.name}")
         for owner, part in parts
         for row in part.assumptions()
-        if row.source.startswith("assumed")
+        if row.is_assumed
     ]

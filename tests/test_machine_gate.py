@@ -186,6 +186,7 @@ def test_what_a_table_does_not_give_is_stated() -> None:
     assert "all 1" in stresses["stage 1 sun-planet"].assumed[0]
     assert not any("load factors" in text for text in stresses["stage 3 mesh"].assumed)
     assert any("0.38 modules" in text for text in stresses["stage 3 mesh"].assumed)
+    assert not any("tips" in text for text in stresses["stage 3 mesh"].assumed)
 
 
 def test_gears_without_contact_are_not_rated() -> None:

@@ -36,7 +36,7 @@ FACTS = (
 @case(
     "Machines with slips of the pen: refused with one sentence, or right by physics",
     source="mechanics: what every drivetrain must do, of its table alone",
-    settings={"count": "300 machines and 200 gear tables (quick 40 each; from 1)"},
+    settings={"count": "300 machines and 200 gear tables (quick 40 each; from 20)"},
 )
 def run(run: Run, page: Page) -> None:
     """Change tables at random, read them, and hold what is taken to facts."""
@@ -49,7 +49,7 @@ def run(run: Run, page: Page) -> None:
         "gear tables": (tables, try_table),
     }
     for name, (given, attempt) in groups.items():
-        count = run.count("count", COUNTS[name][run.quick])
+        count = run.count("count", COUNTS[name][run.quick], 20)
         with run.step(name):
             rows = slips(given, count, attempt)
         check(page, name, rows)

@@ -178,7 +178,8 @@ def mesh_stresses(
 def silent_keys(stage: PlanetaryData | ParallelData) -> list[str]:
     """What of a stage's gears is not given and is taken all the same, a phrase each."""
     of_gears = ("pressure_angle", *OF_TEETH)
-    return [f"{row.name}: {row.source}" for row in stage.assumptions() if row.name in of_gears]
+    silent = [row for row in stage.assumptions() if row.is_assumed]
+    return [f"{row.name}: {row.source}" for row in silent if row.name in of_gears]
 
 
 @dataclass(frozen=True)
