@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, Self
 
 from pydantic import (
@@ -17,7 +18,7 @@ from pydantic.fields import FieldInfo
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import fault_sentence
-from fe_drivetrain.common.strict_yaml import no_truth_value
+from fe_drivetrain.common.strict_yaml import no_truth_value, shown
 
 LENGTH_TOLERANCE = 1e-9
 """Two lengths closer than this (m) are the same length."""
@@ -57,6 +58,11 @@ class Assumption(NamedTuple):
     unit: str
     source: str
 
+    @property
+    def is_assumed(self) -> bool:
+        """Whether it is neither given nor from a source."""
+        return self.source.startswith("assumed")
+
 
 def dimension(
     default: Any = ...,
@@ -66,6 +72,7 @@ def dimension(
     source: str = "",
     gt: float | None = None,
     ge: float | None = None,
+    le: float | None = None,
 ) -> Any:
     """Declare a field that carries its unit and the source of its default value.
 
@@ -82,6 +89,8 @@ def dimension(
     gt, ge : float or None
         Lower bounds, exclusive and inclusive. A length lies between `SMALLEST` and `LARGEST`, too,
         where it must be greater than 0; else it is at most `LARGEST`, with either sign.
+    le : float or None
+        Upper bound; of a length `LARGEST` where not given.
     """
     if unit == "m":
         ge = SMALLEST if gt == 0 else -LARGEST if ge is None else ge
@@ -90,9 +99,62 @@ def dimension(
         description=f"{of}, {unit}" if unit != "-" else of,
         gt=gt,
         ge=ge,
-        le=LARGEST if unit == "m" else None,
+        le=LARGEST if unit == "m" and le is None else le,
         json_schema_extra={"unit": unit, "source": source},
     )
+
+
+def kind_of(row: Any) -> Any:
+    """For pydantic's ``Discriminator``: the kind of a part; rows of a file have become parts."""
+    return getattr(row, "kind", None)
+
+
+def rows_of(what: str, of: type[Part] | Mapping[str, type[Part]]) -> Any:
+    """For pydantic's ``field_validator(..., mode="before")``: rows of a file become parts.
+
+    A fault names its row, counted from one.
+
+    Parameters
+    ----------
+    what : str
+        What a row is, in messages.
+    of : type or mapping of str to type
+        Its part, or parts by their ``kind``.
+
+    Returns
+    -------
+    callable
+        From a list of mappings, or of anything else, to one with parts for the mappings.
+    """
+
+    def one(row: Mapping[str, Any]) -> Part:
+        if not isinstance(of, Mapping):
+            return of.model_validate(row)
+        kind = row.get("kind")
+        if not (isinstance(kind, str) and kind in of):
+            raise InputError(f"kind is {shown(kind)} but must be one of {', '.join(of)}: change it")
+        return of[kind].model_validate(row)
+
+    def rows(value: Any) -> Any:
+        if not isinstance(value, list | tuple):
+            return value
+        found = []
+        for number, item in enumerate(value, start=1):
+            try:
+                found.append(one(item) if isinstance(item, Mapping) else item)
+            except InputError as error:
+                raise InputError(f"{what} {number}: {error}") from None
+        return found
+
+    return rows
+
+
+def in_its_field(value: Any, handler: Any, info: Any) -> Any:
+    """For pydantic's ``field_validator(..., mode="wrap")``: a part's fault names its field."""
+    try:
+        return handler(value)
+    except InputError as error:
+        raise InputError(f"{info.field_name}: {error}") from None
 
 
 def _extra(field: FieldInfo, key: str) -> str:
@@ -143,3 +205,13 @@ class Part(BaseModel):
                 )
             )
         return rows
+
+
+def assumed_in(parts: Sequence[tuple[str, Part]]) -> list[Assumption]:
+    """What parts do not give and have all the same, by the name of each part and its key."""
+    return [
+        row._replace(name=f"{owner}: {row.name}")
+        for owner, part in parts
+        for row in part.assumptions()
+        if row.is_assumed
+    ]

@@ -8,15 +8,14 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.compare.tolerances import digit
 from fe_drivetrain.suite.case import find_cases
 from fe_drivetrain.suite.run import Run
+from fe_drivetrain.torsion.damping import mesh_damping, shaft_damping
 from fe_drivetrain.torsion.gear_table import (
     GENERATOR,
     ROTOR,
     gear_masses,
     gear_speeds,
-    mesh_damping,
     parse_drivetrain,
     read_drivetrain,
-    shaft_damping,
     stage_masses,
     two_masses,
 )
@@ -385,7 +384,7 @@ generator: {inertia: 4.0}
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("rotor: 100.0", "rotor: -1", "rotor is -1 but must be greater than 0"),
+        ("rotor: 100.0", "rotor: -1", "rotor is -1 but must be at least 1e-09"),
         ("rotor: 100.0\n", "", "rotor .inertia of the rotor, kg m.2. is missing"),
         ("ratio: 3.0", "ratio: 0.5", "stage 1: ParallelStage: ratio is 0.5 but must be greater"),
         ("ratio: 3.0", "ratio: 3.0, teeth: [60, 20]", "needs a ratio or the teeth, and not both"),
@@ -418,8 +417,8 @@ def test_wrong_tables_say_what_is_wrong(old, new, message):
 def test_planets_need_room():
     text = GOOD.replace(
         "{kind: parallel, ratio: 3.0, gear: 2.0, pinion: 0.5, mesh: 1e7}",
-        "{kind: planetary, ratio: 1.9, carrier: 1, planet: 1, sun: 1, ring_planet: 1e6, "
-        "sun_planet: 1e6}",
+        "{kind: planetary, ratio: 1.9, planets: 3, carrier: 1, planet: 1, sun: 1, "
+        "ring_planet: 1e6, sun_planet: 1e6}",
     )
     with pytest.raises(InputError, match="must be greater than 2"):
         parse_drivetrain(text)

@@ -14,10 +14,11 @@ from fe_drivetrain.dynamics.advice import Operation, Rung, ladder
 from fe_drivetrain.dynamics.elastic_ring import Rim
 from fe_drivetrain.dynamics.flexible import ElasticHousing, Flexible, Housing
 from fe_drivetrain.dynamics.levels import Level, assembly, machine_system, steady_load
+from fe_drivetrain.dynamics.machine_parts import STEEL
 from fe_drivetrain.dynamics.modes import system_modes
 from fe_drivetrain.dynamics.roller_seats import machine_seat
 from fe_drivetrain.dynamics.static import static
-from fe_drivetrain.dynamics.tables import STEEL, library_machine
+from fe_drivetrain.dynamics.tables import library_machine
 from fe_drivetrain.dynamics.travelling import travelling
 from fe_drivetrain.fidelity.shafts import beam_shaft, meridian_shaft
 from fe_drivetrain.solve.condensation import Condensed

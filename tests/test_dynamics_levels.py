@@ -14,18 +14,13 @@ from fe_drivetrain.dynamics.levels import (
     steady_load,
     torsional,
 )
+from fe_drivetrain.dynamics.machine_rows import PlanetaryData
 from fe_drivetrain.dynamics.modes import system_modes, turning_modes
 from fe_drivetrain.dynamics.planetary import check_assembly
 from fe_drivetrain.dynamics.springs import Place, bushing
 from fe_drivetrain.dynamics.static import over_a_turn, static
 from fe_drivetrain.dynamics.system import System, with_proportional_damping, without_massless
-from fe_drivetrain.dynamics.tables import (
-    MACHINES,
-    Machine,
-    PlanetaryData,
-    library_machine,
-    parse_machine,
-)
+from fe_drivetrain.dynamics.tables import MACHINES, Machine, library_machine, parse_machine
 from fe_drivetrain.torsion.gear_table import (
     Drivetrain,
     PlanetaryStage,
@@ -89,7 +84,6 @@ def test_profile_shifted_planets_of_the_5_mw_gearbox_have_their_own_teeth() -> N
     for shaft, given in zip(data["shafts"], FIVE_MW.shafts, strict=True):
         del shaft["outer"]
         shaft["torsion"] = 8.0e10 * given.section.torsion / given.length
-        shaft["kind"] = "coupling"
     machine = Machine.model_validate(data)
     stages = []
     for stage in machine.stages:
@@ -104,6 +98,7 @@ def test_profile_shifted_planets_of_the_5_mw_gearbox_have_their_own_teeth() -> N
                     "kind": "planetary",
                     "teeth": [ring, sun],
                     "planet_teeth": planet,
+                    "planets": stage.planets,
                     "carrier": stage.carrier.inertia,
                     "planet": stage.planet.inertia,
                     "sun": stage.sun.inertia,
@@ -146,7 +141,14 @@ def test_profile_shifted_planets_of_the_5_mw_gearbox_have_their_own_teeth() -> N
 
 
 def test_teeth_of_planets_that_do_not_fit_are_refused() -> None:
-    row = {"carrier": 1.0, "planet": 1.0, "sun": 1.0, "ring_planet": 1.0, "sun_planet": 1.0}
+    row = {
+        "planets": 3,
+        "carrier": 1.0,
+        "planet": 1.0,
+        "sun": 1.0,
+        "ring_planet": 1.0,
+        "sun_planet": 1.0,
+    }
     with pytest.raises(InputError, match=r"fewer than the ring, 56; .* they have about 18"):
         PlanetaryStage.model_validate(row | {"teeth": [56, 19], "planet_teeth": 60})
     with pytest.raises(InputError, match="ring and sun have a ratio alone"):

@@ -39,6 +39,7 @@ from fe_drivetrain.validation.published_planetary import (
     LIN_PARKER_STAGE,
     helical_stage,
     helical_system,
+    lin_parker_stage,
     plane_stage,
     plane_system,
     printed_values,
@@ -68,7 +69,7 @@ def test_cooley_and_parker_at_rest(planets: int) -> None:
 
 @pytest.mark.parametrize("planets", [3, 4, 5, 6])
 def test_kinds_of_modes_in_the_plane(planets: int) -> None:
-    system = plane_system(LIN_PARKER_STAGE, planets)
+    system = plane_system(lin_parker_stage(planets), planets)
     kinds = planetary_kinds(system, system_modes(system), CENTRAL)
     assert kinds.count(ROTATIONAL) == 6
     assert kinds.count(TRANSLATIONAL) == 12

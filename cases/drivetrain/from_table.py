@@ -88,6 +88,7 @@ def run(run: Run, page: Page) -> None:
         last,
         shown,
     )
+    page.assume_all(table.assumptions())
     show_keys(page, table)
     page.data(
         "frequencies",

@@ -106,6 +106,7 @@ def run(run: Run, page: Page) -> None:
             )
         for text in machine.assumed:
             page.assume(f"{name}: {text.partition(':')[0]}", "", "", text)
+        page.assume_all(row._replace(name=f"{name}: {row.name}") for row in machine.assumptions())
     page.section("Which level a question needs")
     page.table(f"The simplest level within {100 * TOLERANCE:g} % of the finest", needed)
     page.text(

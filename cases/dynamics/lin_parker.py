@@ -9,7 +9,7 @@ from fe_drivetrain.suite import Page, Record, Run, Target
 from fe_drivetrain.validation.published_planetary import (
     LIN_PARKER,
     LIN_PARKER_PRINTED,
-    LIN_PARKER_STAGE,
+    lin_parker_stage,
     plane_system,
     printed_values,
 )
@@ -30,7 +30,7 @@ def run(run: Run, page: Page) -> None:
     rows: list[Record] = []
     for planets in (3, 4, 5, 6):
         with run.step(f"{planets} planets"):
-            system = plane_system(LIN_PARKER_STAGE, planets)
+            system = plane_system(lin_parker_stage(planets), planets)
             modes = system_modes(system)
             kinds = planetary_kinds(system, modes, CENTRAL)
         if planets in LIN_PARKER_PRINTED:

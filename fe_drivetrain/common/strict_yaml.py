@@ -87,6 +87,10 @@ class PlainLoader(yaml.SafeLoader):
             raise yaml.YAMLError(f"{shown(node.value)} is too large for a number")
         return number
 
+    def construct_whole(self, node: Any) -> int:
+        self.construct_number(node)  # so that every whole number is a number, too
+        return int(node.value)
+
 
 PlainLoader.yaml_implicit_resolvers = {
     first: [(tag, regexp) for tag, regexp in found if tag not in (_OLD_MEANINGS | {_NUMBER})]
@@ -102,3 +106,4 @@ PlainLoader.add_implicit_resolver(
     _FIRST,
 )
 PlainLoader.add_constructor(_NUMBER, PlainLoader.construct_number)
+PlainLoader.add_constructor("tag:yaml.org,2002:int", PlainLoader.construct_whole)

@@ -59,6 +59,7 @@ from .levels import machine_system as machine_system
 from .levels import planetary_set as planetary_set
 from .levels import steady_load as steady_load
 from .levels import torsional as torsional
+from .machine_rows import MachineTable as MachineTable
 from .machines import constant_power as constant_power
 from .machines import grid_spring as grid_spring
 from .machines import slip_line as slip_line

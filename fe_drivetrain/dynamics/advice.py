@@ -12,10 +12,11 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.flexible import Flexible
 from fe_drivetrain.dynamics.gear_pairs import pitch_contacts
 from fe_drivetrain.dynamics.levels import Level, machine_system, steady_load, torsional
+from fe_drivetrain.dynamics.machine_rows import ParallelData, PlanetaryData
 from fe_drivetrain.dynamics.modes import SystemModes, system_modes
 from fe_drivetrain.dynamics.static import Static, load_sharing, static
 from fe_drivetrain.dynamics.system import System
-from fe_drivetrain.dynamics.tables import Machine, ParallelData, PlanetaryData
+from fe_drivetrain.dynamics.tables import Machine
 from fe_drivetrain.torsion.system import natural_modes
 
 

@@ -198,6 +198,12 @@ def _check(bodies: Sequence[Body], names: Sequence[str], springs: Sequence[Sprin
         missing = spring.by.keys() - known
         if missing:
             raise InputError(f"spring {spring.name!r} is on {min(missing)!r}, which is no body")
+        for what, value in (("stiffness", spring.stiffness), ("damping", spring.damping)):
+            if not (np.isfinite(value) and value >= 0):
+                raise InputError(
+                    f"spring {spring.name!r}: {what} is {value:g} but must be a finite number of "
+                    "at least 0: change it"
+                )
 
 
 def stretched(springs: Sequence[Spring], motions: Mapping[str, Floats]) -> Floats:

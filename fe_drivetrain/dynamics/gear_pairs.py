@@ -2,13 +2,14 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import cos, radians, sin
+from math import cos, sin
 
-from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.dynamics.machine_rows import OF_TEETH, ParallelData, PlanetaryData
 from fe_drivetrain.dynamics.springs import Mesh
-from fe_drivetrain.dynamics.tables import Machine, ParallelData, PlanetaryData
+from fe_drivetrain.dynamics.stage_gears import stage_pairs
+from fe_drivetrain.dynamics.tables import Machine
 from fe_drivetrain.gear.flank_stress import LineContact, reduced_modulus
-from fe_drivetrain.gear.involute import Gear, Pair, Rack
+from fe_drivetrain.gear.involute import Pair
 from fe_drivetrain.gear.iso import iso_stiffness
 from fe_drivetrain.gear.load_factors import LoadFactors
 from fe_drivetrain.gear.meshes import StiffnessTable, mesh_stiffness
@@ -19,6 +20,8 @@ from fe_drivetrain.gear.strength import GearMaterial
 
 STEELS = (GearMaterial("case-hardened", 1500e6, 430e6),) * 2
 """Case-hardened gears of quality MQ, ISO 6336-5."""
+
+NO_FACTORS = "load factors: assumed: all 1, stresses are nominal"
 
 
 def machine_pairs(machine: Machine) -> dict[str, Pair]:
@@ -40,54 +43,11 @@ def machine_pairs(machine: Machine) -> dict[str, Pair]:
     InputError
         A stage lacks data, or its gears do not fit.
     """
-    found = {}
-    for number, stage in enumerate(machine.stages, start=1):
-        gears = _gears(stage, number)
-        if isinstance(stage, PlanetaryData):
-            ring, planet, sun = gears
-            found[f"stage {number} sun-planet"] = Pair(sun, planet, stage.centre_distance)
-            found[f"stage {number} ring-planet"] = Pair(planet, ring, stage.centre_distance)
-        else:
-            wheel, pinion = gears
-            found[f"stage {number} mesh"] = Pair(pinion, wheel, stage.centre_distance)
-    return found
-
-
-def _gears(stage: PlanetaryData | ParallelData, number: int) -> list[Gear]:
-    """In the order of the teeth."""
-    if stage.teeth is None or stage.module is None or stage.shifts is None:
-        raise InputError(
-            f"stage {number} has no full data of its gears: give teeth, module and shifts"
-        )
-    count = len(stage.teeth)
-    fillets = stage.fillets or count * (Rack().fillet,)
-    helix = stage.hand * radians(stage.helix)
-    planetary = isinstance(stage, PlanetaryData)
-    # a sun is opposite to its planets, and they are as their ring; a wheel opposite to its pinion
-    helices = (-helix, -helix, helix) if planetary else (helix, -helix)
-    signs = (-1, 1, 1) if planetary else (1, 1)
-    return [
-        Gear(
-            sign * teeth,
-            stage.module,
-            face,
-            turned,
-            shift,
-            pressure_angle=radians(stage.pressure_angle),
-            rack=Rack(dedendum=stage.dedendum, fillet=fillet),
-            tip_diameter=tip,
-        )
-        for sign, teeth, face, turned, shift, fillet, tip in zip(
-            signs,
-            stage.teeth,
-            stage.faces or count * (stage.face_width,),
-            helices,
-            stage.shifts,
-            fillets,
-            stage.tips or count * (None,),
-            strict=True,
-        )
-    ]
+    return {
+        f"stage {number} {mesh}": pair
+        for number, stage in enumerate(machine.stages, start=1)
+        for mesh, pair in stage_pairs(stage, f"stage {number}").items()
+    }
 
 
 def contact_ratios(machine: Machine) -> dict[str, float]:
@@ -156,12 +116,15 @@ class MeshStress:
         Hertz pressure of both flanks.
     roots : tuple of RootStress, or None
         Of both gears; none of a ring whose cutter is not known.
+    assumed : tuple of str
+        What was not given and counts here: load factors, and keys of the stage.
     """
 
     pair: Pair
     torque: float
     contact: ContactStress
     roots: tuple[RootStress, RootStress] | None
+    assumed: tuple[str, ...]
 
 
 def mesh_stresses(
@@ -207,8 +170,16 @@ def mesh_stresses(
             on_first,
             contact_stress(pair, on_first, own, materials),
             root_stress(pair, on_first, own, cutter) if known else None,
+            (*(() if name in given else (NO_FACTORS,)), *silent_keys(stage)),
         )
     return found
+
+
+def silent_keys(stage: PlanetaryData | ParallelData) -> list[str]:
+    """What of a stage's gears is not given and is taken all the same, a phrase each."""
+    of_gears = ("pressure_angle", *OF_TEETH)
+    silent = [row for row in stage.assumptions() if row.is_assumed]
+    return [f"{row.name}: {row.source}" for row in silent if row.name in of_gears]
 
 
 @dataclass(frozen=True)

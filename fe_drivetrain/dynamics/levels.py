@@ -25,6 +25,8 @@ from fe_drivetrain.dynamics.flexible import (
     housing_bodies,
     shaft_element,
 )
+from fe_drivetrain.dynamics.machine_parts import STEEL, ShaftData
+from fe_drivetrain.dynamics.machine_rows import MachineTable, ParallelData, PlanetaryData
 from fe_drivetrain.dynamics.planetary import (
     Inertias,
     PinBearing,
@@ -41,7 +43,6 @@ from fe_drivetrain.dynamics.springs import (
     uniform_shaft,
 )
 from fe_drivetrain.dynamics.system import System, without_massless
-from fe_drivetrain.dynamics.tables import STEEL, Machine, ParallelData, PlanetaryData, ShaftData
 from fe_drivetrain.solve.condensation import Condensed
 from fe_drivetrain.torsion.system import Element, Inertia, Torsional
 
@@ -86,7 +87,7 @@ class Assembly:
 
 
 def machine_system(
-    machine: Machine,
+    machine: MachineTable,
     level: Level = Level.RIGID,
     azimuth: float | Mapping[int, float] = 0.0,
     elements: int = 6,
@@ -101,7 +102,7 @@ def machine_system(
 
     Parameters
     ----------
-    machine : Machine
+    machine : MachineTable
         Its table.
     level : Level
         What may move.
@@ -120,7 +121,7 @@ def machine_system(
 
 
 def assembly(
-    machine: Machine,
+    machine: MachineTable,
     level: Level = Level.RIGID,
     azimuth: float | Mapping[int, float] = 0.0,
     elements: int = 6,
@@ -138,11 +139,8 @@ def assembly(
         of_housing, element = housing_bodies(housing)
         bodies += of_housing
         superelements.append(element)
-    rotor = machine.rotor
-    across = rotor.inertia / 2 if rotor.transverse is None else rotor.transverse
-    bodies.append(
-        Body("rotor", (0.0, 0.0, 0.0), rotor.mass or 0.0, rotor.inertia, across, 1.0, free)
-    )
+    mass, across = machine.rotor.apart
+    bodies.append(Body("rotor", (0.0, 0.0, 0.0), mass, machine.rotor.inertia, across, 1.0, free))
     driving, ends = "rotor", []
     for number, stage in enumerate(machine.stages, start=1):
         name = f"stage {number}"
@@ -175,17 +173,9 @@ def assembly(
     own = machine.generator
     moves = TURNS if own.mass is None else free
     at = (x + machine.shafts[-1].length, y, z)
-    bodies.append(
-        Body(
-            "generator",
-            at,
-            own.mass or 0.0,
-            own.inertia,
-            own.inertia / 2 if own.transverse is None else own.transverse,
-            machine.speeds[-1],
-            moves - TURNS if held_generator else moves,
-        )
-    )
+    mass, across = own.apart
+    moves = moves - TURNS if held_generator else moves
+    bodies.append(Body("generator", at, mass, own.inertia, across, machine.speeds[-1], moves))
     ends.append((driving, "generator"))
     if own.stiffness > 0:
         grid = (0, 0, 0, own.stiffness, 0, 0)
@@ -218,7 +208,7 @@ def assembly(
 
 
 def planetary_set(
-    machine: Machine, number: int, free: frozenset[str] = ALL, turned: float = 0.0
+    machine: MachineTable, number: int, free: frozenset[str] = ALL, turned: float = 0.0
 ) -> PlanetarySet:
     """A machine's planetary stage by its number, from 1, with the first planet at an angle [rad].
 
@@ -269,7 +259,7 @@ def planetary_set(
 
 
 def _planetary(
-    machine: Machine,
+    machine: MachineTable,
     stage: PlanetaryData,
     number: int,
     built: PlanetarySet,
@@ -299,7 +289,7 @@ def _planetary(
 
 
 def _parallel(
-    machine: Machine, stage: ParallelData, number: int, free: frozenset[str]
+    machine: MachineTable, stage: ParallelData, number: int, free: frozenset[str]
 ) -> tuple[list[Body], list[Spring]]:
     begin = machine.axes[number - 1]
     x = machine.axes[number][0]
@@ -330,7 +320,7 @@ def _parallel(
 
 
 def _shaft(
-    machine: Machine,
+    machine: MachineTable,
     k: int,
     ends: tuple[str, str],
     bodies: list[Body],
@@ -382,7 +372,7 @@ def _shaft(
 
 
 def _solid_shaft(
-    machine: Machine,
+    machine: MachineTable,
     k: int,
     ends: tuple[str, str],
     bodies: list[Body],
@@ -456,7 +446,7 @@ def _heavier(body: Body, shaft: ShaftData, length: float) -> Body:
     )
 
 
-def torsional(machine: Machine) -> Torsional:
+def torsional(machine: MachineTable) -> Torsional:
     """The machine at the torsional level, for what the room `torsion` does with one.
 
     Windings of meshes are along the lines of action [m/rad], so that their stiffness is in N/m;
@@ -476,12 +466,12 @@ def torsional(machine: Machine) -> Torsional:
     return Torsional(tuple(inertias), tuple(elements))
 
 
-def steady_load(machine: Machine, system: System, torque: float, hub: Floats) -> Floats:
+def steady_load(machine: MachineTable, system: System, torque: float, hub: Floats) -> Floats:
     """(n,) load of gravity, of the rotor's torque and of a wrench on the hub [N, N m].
 
     Parameters
     ----------
-    machine : Machine
+    machine : MachineTable
         Whose rotor it is.
     system : System
         Of it.

@@ -21,10 +21,11 @@ from fe_drivetrain.dynamics.equations import (
     spring_laws,
     wave_table,
 )
+from fe_drivetrain.dynamics.machine_rows import PlanetaryData
 from fe_drivetrain.dynamics.mesh_errors import MeshError
 from fe_drivetrain.dynamics.planetary import equal_angles
 from fe_drivetrain.dynamics.system import System, springs_named
-from fe_drivetrain.dynamics.tables import Machine, PlanetaryData
+from fe_drivetrain.dynamics.tables import Machine
 from fe_drivetrain.gear.meshes import MeshStiffness, StiffnessTable, square_wave_series
 from fe_drivetrain.gear.planets import ring_phases, sun_phases
 

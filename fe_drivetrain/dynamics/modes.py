@@ -87,10 +87,8 @@ def system_modes(system: System) -> SystemModes:
         omega = np.sqrt(np.clip(values, 0.0, None))
         omega[omega <= np.sqrt(n * np.finfo(float).eps) * omega.max(initial=0.0)] = 0.0
     else:
-        wound = linalg.solve_triangular(
-            root, (np.sqrt(system.stiffness)[:, None] * system.rows).T, lower=True
-        )
-        _, sizes, right = np.linalg.svd(wound.T, full_matrices=True)
+        wound = _wound(system, root)
+        _, sizes, right = np.linalg.svd(wound, full_matrices=True)
         omega = np.zeros(n)
         omega[: len(sizes)] = sizes[:n]
         omega[omega <= max(wound.shape) * np.finfo(float).eps * omega.max(initial=0.0)] = 0.0
@@ -114,6 +112,25 @@ def system_modes(system: System) -> SystemModes:
         strain,
         kinetic,
     )
+
+
+def spring_frequencies(system: System) -> Floats:
+    """The frequencies of `system_modes`, of a system without superelements, and no more.
+
+    Returns
+    -------
+    ndarray, (n,)
+        Ascending [Hz]; what is 0 but for round-off as it comes.
+    """
+    sizes = np.linalg.svd(_wound(system, _mass_root(system)), compute_uv=False)
+    missing = np.zeros(max(len(system.names) - len(sizes), 0))
+    return np.sort(np.concatenate([missing, sizes])) / (2 * np.pi)
+
+
+def _wound(system: System, root: Floats) -> Floats:
+    """(m, n) sqrt(k) H over the root of the mass, whose singular values are the frequencies."""
+    rows = np.sqrt(system.stiffness)[:, None] * system.rows
+    return np.asarray(linalg.solve_triangular(root, rows.T, lower=True).T)
 
 
 def _by_direction(system: System, free: Floats) -> Floats:

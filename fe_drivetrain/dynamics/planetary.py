@@ -128,6 +128,15 @@ class PlanetarySet:
                 f"but must be above 0 and below the centre distance, {self.centre_distance:g} m: "
                 "correct one of them"
             )
+        psi = np.sort(np.mod(self.angles, 2 * pi))
+        steps = np.diff(np.append(psi, psi[:1] + 2 * pi))
+        radius = self.centre_distance - self.sun_radius
+        apart = 2 * self.centre_distance * sin(float(steps.min(initial=pi)) / 2)
+        if len(psi) > 1 and not apart > 2 * radius:
+            raise InputError(
+                f"planetary stage {self.name!r}: planets of radius {radius:.4g} m overlap, "
+                f"{apart:.4g} m apart: give fewer or smaller ones, or other angles"
+            )
         object.__setattr__(self, "ratio", 1 + self.ring_base_radius / self.sun_base_radius)
 
     @property
@@ -344,14 +353,19 @@ def working_angle(
     InputError
         The base circles do not leave room for a line of action.
     """
-    transverse = np.arctan(np.tan(pressure_angle) / cos(helix))
-    cosine = module * teeth / (2 * cos(helix)) * np.cos(transverse) / centre_distance
+    transverse = transverse_angle(pressure_angle, helix)
+    cosine = module * teeth / (2 * cos(helix)) * cos(transverse) / centre_distance
     if not 0 < cosine < 1:
         raise InputError(
             f"centre distance {centre_distance:g} m is too small for {teeth} teeth of module "
             f"{module:g} m: the working pressure angle must have a cosine below 1, not {cosine:g}"
         )
     return float(np.arccos(cosine))
+
+
+def transverse_angle(pressure_angle: float, helix: float) -> float:
+    """Transverse pressure angle at the reference circle [rad], of the normal one and the helix."""
+    return float(np.arctan(np.tan(pressure_angle) / cos(helix)))
 
 
 def base_helix(helix: float, pressure_angle: float) -> float:

@@ -23,13 +23,13 @@ from fe_drivetrain.dynamics.equations import (
 from fe_drivetrain.dynamics.integration import State
 from fe_drivetrain.dynamics.machines import slip_line
 from fe_drivetrain.dynamics.steady_state import wind_up
+from fe_drivetrain.torsion.damping import shaft_damping
 from fe_drivetrain.torsion.gear_table import (
     GENERATOR,
     ROTOR,
     Drivetrain,
     gear_masses,
     gear_speeds,
-    shaft_damping,
     two_masses,
 )
 from fe_drivetrain.torsion.system import Torsional, damped

@@ -30,6 +30,7 @@ from fe_drivetrain.dynamics.equations import Equations, Loads
 from fe_drivetrain.dynamics.flexible import Flexible
 from fe_drivetrain.dynamics.integration import AVERAGE, TOLERANCE, Motion, Scheme, State, at_rest
 from fe_drivetrain.dynamics.levels import Level, machine_system
+from fe_drivetrain.dynamics.machine_rows import PlanetaryData
 from fe_drivetrain.dynamics.roller_seats import (
     Rollers,
     Seat,
@@ -39,7 +40,7 @@ from fe_drivetrain.dynamics.roller_seats import (
 )
 from fe_drivetrain.dynamics.steady_state import SpringsAt, gathered, springs_at
 from fe_drivetrain.dynamics.system import System
-from fe_drivetrain.dynamics.tables import Machine, PlanetaryData
+from fe_drivetrain.dynamics.tables import Machine
 from fe_drivetrain.dynamics.time_steps import MOST_STEPS
 
 EXACT = 1e-9

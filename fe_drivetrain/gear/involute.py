@@ -19,7 +19,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.gear.functions import inverse_involute, involute_of, spare_angle_of_tips
-from fe_drivetrain.gear.path import ContactPath
+from fe_drivetrain.gear.path import ContactPath, check_meshing
 
 
 @dataclass(frozen=True)
@@ -457,6 +457,7 @@ def _check_fit(first: Gear, second: Gear) -> None:
 
 def _check_interference(pair: Pair) -> None:
     first, second, path = pair.first, pair.second, pair.path
+    teeth = (first.teeth, -second.teeth)
     if not path.end > path.start:
         raise InputError(
             f"the tips of gears of {first.teeth} and {second.teeth} teeth at a centre distance of "
@@ -474,6 +475,7 @@ def _check_interference(pair: Pair) -> None:
                 f"the tips of the {mate} gear of a pair enter the root circle of the {name} by "
                 f"{-1e3 * gap:.4g} mm: give a larger dedendum, or shorten the tips"
             )
+    check_meshing(pair.contact_ratio, pair.backlash / first.normal_module, teeth)
     # contact must lie on the involutes, which begin at the form circles
     slack = 1e-9 * first.normal_module
     end = float(pair.curvatures(path.end)[1])
@@ -489,7 +491,6 @@ def _check_interference(pair: Pair) -> None:
             f"second, whose involute begins at {1e3 * second.form_curvature:.4g} mm: shorten the "
             "tips of the first, or shift the second further out"
         )
-    teeth = (first.teeth, -second.teeth)
     bases, tips = (first.base_radius, second.base_radius), (first.tip_radius, second.tip_radius)
     if second.internal and spare_angle_of_tips(teeth, bases, tips, pair.centre_distance) < 0.0:
         raise InputError(

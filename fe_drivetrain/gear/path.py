@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from fe_drivetrain.common.errors import InputError
+
 
 @dataclass(frozen=True)
 class ContactPath:
@@ -26,3 +28,39 @@ class ContactPath:
     pitch: float
     single_end: float
     end: float
+
+
+#: Play along the line of action [modules] that profile shifts of few digits leave.
+LEAST_PLAY = -0.02
+
+
+def check_meshing(ratio: float, play: float, teeth: tuple[int, int]) -> None:
+    """Refuse teeth that part before the next ones meet, or that have no room for each other.
+
+    Parameters
+    ----------
+    ratio : float
+        Total contact ratio, over the path and over the face.
+    play : float
+        Along the line of action, in normal modules.
+    teeth : tuple of int
+        Of the first gear, and of the second with the sign reversed, for the message.
+
+    Raises
+    ------
+    InputError
+        The contact ratio is below 1, or the play below `LEAST_PLAY`.
+    """
+    which = f"gears of {teeth[0]} and {abs(teeth[1])} teeth"
+    if not ratio >= 1.0:
+        raise InputError(
+            f"the contact ratio of {which} is {ratio:.4g} but must be at least 1, or teeth part "
+            "before the next ones meet: give larger tip diameters, another centre distance, or "
+            "the helix with its hand"
+        )
+    if not play >= LEAST_PLAY:
+        raise InputError(
+            f"the teeth of {which} are too thick for their centre distance, by {-play:.4g} "
+            "modules along the line of action: give the profile shifts that belong to it, or "
+            "another centre distance"
+        )

@@ -45,16 +45,16 @@ class Running:
     viscosity : float
         Of the oil at 40 degrees [m^2/s].
     flank_roughness : tuple of float
-        R_z of both flanks [m].
+        R_z of both flanks [m], such as 4.8e-6.
     root_roughness : tuple of float
-        R_z of both fillets [m].
+        R_z of both fillets [m], such as 20e-6.
     """
 
     torque: float
     speed: float
     viscosity: float
-    flank_roughness: tuple[float, float] = (4.8e-6, 4.8e-6)
-    root_roughness: tuple[float, float] = (20e-6, 20e-6)
+    flank_roughness: tuple[float, float]
+    root_roughness: tuple[float, float]
 
     def __post_init__(self) -> None:
         for name in ("torque", "speed", "viscosity"):
@@ -114,6 +114,22 @@ class RootStress:
     Y_B: float
     nominal: float
     stress: float
+
+
+def check_rated(pair: Pair) -> None:
+    """Refuse a pair outside of what ISO 6336 rates.
+
+    Raises
+    ------
+    InputError
+        The transverse contact ratio is not within 1 and 2.5 (ISO 6336-1, scope).
+    """
+    if not 1.0 <= pair.transverse_ratio <= 2.5:
+        raise InputError(
+            f"the transverse contact ratio of gears of {pair.first.teeth} and {pair.second.teeth} "
+            f"teeth is {pair.transverse_ratio:.4g} but must be within 1 and 2.5 to be rated by ISO "
+            "6336: change the tip diameters"
+        )
 
 
 def zone_factor(pair: Pair) -> float:
@@ -196,6 +212,7 @@ def contact_stress(
         sigma_H0 = Z_H Z_E Z_epsilon Z_beta sqrt(F_t (u + 1) / (d_1 b u)), u negative with an
         internal gear; sigma_H = Z_B,D sigma_H0 sqrt(K_A K_gamma K_v K_Hbeta K_Halpha).
     """
+    check_rated(pair)
     F_t, u = pair.tangential_force(torque), pair.second.teeth / pair.first.teeth
     Z_H, Z_E = zone_factor(pair), elasticity_factor(*materials)
     Z_epsilon = contact_ratio_factor(pair.transverse_ratio, pair.overlap_ratio)
@@ -298,6 +315,7 @@ def root_stress(
         sigma_F0 = F_t / (b m_n) Y_F Y_S Y_beta Y_B, of the common face width; sigma_F = sigma_F0
         K_A K_gamma K_v K_Fbeta K_Falpha. A deep tooth factor is not in it.
     """
+    check_rated(pair)
     load = pair.tangential_force(torque) / (pair.face_width * pair.first.normal_module)
 
     def of(gear: Gear, rim: float | None) -> RootStress:
@@ -377,7 +395,7 @@ def endured_root(
     root: ToothRoot,
     material: GearMaterial,
     roughness: float,
-    mean_stress: float = 1.0,
+    mean_stress: float,
     endless: bool = True,
 ) -> Endured:
     """Root stress that a gear endures, sigma_FG over cycles.

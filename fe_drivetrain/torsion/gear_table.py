@@ -16,18 +16,33 @@ planets go the other way round than what drives them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from math import sqrt
+from math import cos, pi, radians, sin
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
+import numpy as np
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import parse_mapping, read_text, validated
 from fe_drivetrain.common.strict_yaml import shown
-from fe_drivetrain.geometry.part import Part, dimension
-from fe_drivetrain.torsion.system import Element, Inertia, Torsional, chain
+from fe_drivetrain.geometry.part import (
+    Assumption,
+    Part,
+    assumed_in,
+    dimension,
+    in_its_field,
+    kind_of,
+    rows_of,
+)
+from fe_drivetrain.torsion.system import (
+    Element,
+    Inertia,
+    Torsional,
+    chain,
+    natural_modes,
+    resolved,
+)
 
 GeneratorState = Literal["fixed", "free"]
 """Generator on the grid, its spring to the ground; or off it, with none (variable speed)."""
@@ -37,18 +52,37 @@ ROTOR, GENERATOR, GRID = "rotor", "generator", "grid"
 
 STIFFNESS, DAMPING, INERTIA = "N m/rad", "N m s/rad", "kg m^2"
 
+UNDAMPED = "assumed: without damping"
+
+Teeth = Annotated[int, Field(ge=5, le=5000)]
+
+#: Cosines of working pressure angles of both meshes of a planet, 10 to 35 degrees, of each other.
+MOST_SHIFTED = cos(radians(10)) / cos(radians(35))
+
+
+def _inertia(of: str) -> Any:
+    return dimension(of=of, unit=INERTIA, ge=1e-9, le=1e10)
+
+
+def _stiffness(of: str) -> Any:
+    return dimension(of=of, unit=STIFFNESS, gt=0, le=1e20)
+
+
+def _damping(of: str) -> Any:
+    return dimension(0.0, of=of, unit=DAMPING, ge=0, le=1e12, source=UNDAMPED)
+
 
 class ShaftRow(Part):
     """A shaft between two stages, or between a stage and the rotor or generator."""
 
     name: str = Field(description="name of the shaft")
-    stiffness: float = dimension(of="torsional stiffness", unit=STIFFNESS, gt=0)
-    damping: float = dimension(0.0, of="torsional damping", unit=DAMPING, ge=0)
+    stiffness: float = _stiffness("torsional stiffness")
+    damping: float = _damping("torsional damping")
 
 
 class _Stage(Part):
-    ratio: float | None = dimension(None, of="speed ratio", unit="-", gt=1)
-    teeth: tuple[int, int] | None = Field(
+    ratio: float | None = dimension(None, of="speed ratio", unit="-", gt=1, le=1000)
+    teeth: tuple[Teeth, Teeth] | None = Field(
         default=None, description="teeth of ring and sun, or of gear and pinion, for the ratio"
     )
 
@@ -57,7 +91,7 @@ class _Stage(Part):
         kind = type(self).__name__
         if (self.ratio is None) == (self.teeth is None):
             raise InputError(f"{kind} needs a ratio or the teeth, and not both: give one of them")
-        if self.teeth is not None and not 0 < self.teeth[1] < self.teeth[0]:
+        if self.teeth is not None and not self.teeth[1] < self.teeth[0]:
             raise InputError(
                 f"{kind}: teeth are {list(self.teeth)} but must be two numbers above 0, the larger "
                 "first: swap or correct them"
@@ -72,20 +106,20 @@ class PlanetaryStage(_Stage):
     """
 
     kind: Literal["planetary"] = Field(default="planetary", description="the word planetary")
-    planets: int = Field(default=3, ge=1, description="number of planets")
-    planet_teeth: int | None = Field(
+    planets: int = Field(ge=1, le=50, description="number of planets")
+    planet_teeth: Teeth | None = Field(
         default=None,
-        ge=1,
         description="teeth of a planet, beside those of ring and sun; without, (ring - sun) / 2, "
         "as of stages without profile shift",
+        json_schema_extra={"unit": "-", "source": "assumed: (ring - sun) / 2, no profile shift"},
     )
-    carrier: float = dimension(of="inertia of the carrier, planets as points", unit=INERTIA, gt=0)
-    planet: float = dimension(of="inertia of one planet about its own axis", unit=INERTIA, gt=0)
-    sun: float = dimension(of="inertia of the sun", unit=INERTIA, gt=0)
-    ring_planet: float = dimension(of="mesh stiffness about the planet", unit=STIFFNESS, gt=0)
-    sun_planet: float = dimension(of="mesh stiffness about the planet", unit=STIFFNESS, gt=0)
-    ring_planet_damping: float = dimension(0.0, of="mesh damping", unit=DAMPING, ge=0)
-    sun_planet_damping: float = dimension(0.0, of="mesh damping", unit=DAMPING, ge=0)
+    carrier: float = _inertia("inertia of the carrier, planets as points")
+    planet: float = _inertia("inertia of one planet about its own axis")
+    sun: float = _inertia("inertia of the sun")
+    ring_planet: float = _stiffness("mesh stiffness about the planet")
+    sun_planet: float = _stiffness("mesh stiffness about the planet")
+    ring_planet_damping: float = _damping("mesh damping")
+    sun_planet_damping: float = _damping("mesh damping")
 
     @model_validator(mode="after")
     def _room_for_planets(self) -> Self:
@@ -106,7 +140,37 @@ class PlanetaryStage(_Stage):
                 f"the ring, {ring}; beside a sun of {sun} they have about {(ring - sun) // 2}: "
                 "correct one of them"
             )
+        self._check_fit()
         return self
+
+    def _check_fit(self) -> None:
+        """Refuse planets that both sun and ring cannot have at one centre distance, or overlap."""
+        p = self.planet_over_sun
+        inside = (self.speed_ratio - 1 - p) / (1 + p)
+        if not 1 / MOST_SHIFTED <= inside <= MOST_SHIFTED:
+            ring, sun = self.teeth or (0, 0)
+            raise InputError(
+                f"PlanetaryStage: ring and planet have {ring} - {self.planet_teeth} teeth, planet "
+                f"and sun {self.planet_teeth} + {sun}, which must be equal but for profile shifts, "
+                f"within a factor of {MOST_SHIFTED:.3g}: correct one of them"
+            )
+        n = self.planets
+        if n > 1 and not (1 + p) * sin(pi / n) > p:
+            raise InputError(
+                f"PlanetaryStage: {n} planets of {p:.4g} times the radius of the sun overlap: give "
+                "fewer planets, or a smaller ratio"
+            )
+
+    def assumptions(self) -> list[Assumption]:
+        """As of every part, and whether planets stand at unequal angles, which turning ignores."""
+        rows = super().assumptions()
+        if self.teeth is not None and sum(self.teeth) % self.planets:
+            why = (
+                f"assumed: ring and sun, {self.teeth[0]} + {self.teeth[1]} teeth, are no multiple "
+                f"of {self.planets} planets, which stand at unequal angles"
+            )
+            rows.append(Assumption("angles of planets", "unequal", "", why))
+        return rows
 
     @property
     def speed_ratio(self) -> float:
@@ -145,10 +209,10 @@ class ParallelStage(_Stage):
     """A gear that drives a pinion; the mesh stiffness is about the gear's axis, r_b^2 k."""
 
     kind: Literal["parallel"] = Field(default="parallel", description="the word parallel")
-    gear: float = dimension(of="inertia of the gear", unit=INERTIA, gt=0)
-    pinion: float = dimension(of="inertia of the pinion", unit=INERTIA, gt=0)
-    mesh: float = dimension(of="mesh stiffness about the gear", unit=STIFFNESS, gt=0)
-    mesh_damping: float = dimension(0.0, of="mesh damping about the gear", unit=DAMPING, ge=0)
+    gear: float = _inertia("inertia of the gear")
+    pinion: float = _inertia("inertia of the pinion")
+    mesh: float = _stiffness("mesh stiffness about the gear")
+    mesh_damping: float = _damping("mesh damping about the gear")
 
     @property
     def speed_ratio(self) -> float:
@@ -156,47 +220,41 @@ class ParallelStage(_Stage):
         return self.teeth[0] / self.teeth[1] if self.teeth else float(self.ratio or 0.0)
 
 
-def _kind_of(stage: Any) -> Any:
-    return getattr(stage, "kind", None)
-
-
 Stage = Annotated[
     Annotated[PlanetaryStage, Tag("planetary")] | Annotated[ParallelStage, Tag("parallel")],
-    Discriminator(_kind_of),
+    Discriminator(kind_of),
 ]
 """Of either kind; by the time it is one, rows of a file have become stages."""
-_KINDS: dict[str, type[PlanetaryStage] | type[ParallelStage]] = {
-    "planetary": PlanetaryStage,
-    "parallel": ParallelStage,
-}
+_KINDS: dict[str, type[Part]] = {"planetary": PlanetaryStage, "parallel": ParallelStage}
 
 
 class GeneratorRow(Part):
     """The generator's rotor, and the spring that the field is when the speed is fixed."""
 
-    inertia: float = dimension(of="inertia of the generator", unit=INERTIA, gt=0)
-    stiffness: float = dimension(0.0, of="electrical stiffness", unit=STIFFNESS, ge=0)
-    damping: float = dimension(0.0, of="electrical damping", unit=DAMPING, ge=0)
+    inertia: float = _inertia("inertia of the generator")
+    stiffness: float = dimension(
+        0.0,
+        of="electrical stiffness",
+        unit=STIFFNESS,
+        ge=0,
+        le=1e20,
+        source="assumed: off the grid, or of variable speed",
+    )
+    damping: float = _damping("electrical damping")
 
 
 class Drivetrain(Part):
     """A table of a drivetrain, from the rotor to the generator."""
 
     title: str = Field(description="what it is, and whose numbers")
-    rotor: float = dimension(of="inertia of the rotor", unit=INERTIA, gt=0)
+    rotor: float = _inertia("inertia of the rotor")
     shafts: tuple[ShaftRow, ...] = Field(min_length=1, description="shafts from the rotor on")
     stages: tuple[Stage, ...] = Field(default=(), description="gear stages from the rotor on")
     generator: GeneratorRow = Field(description="the generator")
 
-    @field_validator("shafts", mode="before")
-    @classmethod
-    def _shafts(cls, value: Any) -> Any:
-        return _rows("shaft", value, lambda row: ShaftRow.model_validate(row))
-
-    @field_validator("stages", mode="before")
-    @classmethod
-    def _stages(cls, value: Any) -> Any:
-        return _rows("stage", value, _stage)
+    _end = field_validator("generator", mode="wrap")(in_its_field)
+    _shafts = field_validator("shafts", mode="before")(rows_of("shaft", ShaftRow))
+    _stages = field_validator("stages", mode="before")(rows_of("stage", _KINDS))
 
     @model_validator(mode="after")
     def _one_shaft_more(self) -> Self:
@@ -216,6 +274,26 @@ class Drivetrain(Part):
                 )
         return self
 
+    @model_validator(mode="after")
+    def _within_digits(self) -> Self:
+        system = gear_masses(self, "free")
+        modes = natural_modes(system)
+        if not resolved(modes.frequencies, 1):
+            wound = np.abs(system.B @ modes.shapes[:, :2])
+            softest = system.elements[int(np.argmax(wound.max(axis=1)))]
+            raise InputError(
+                f"drivetrain {shown(self.title)}: stiffnesses or inertias are too far apart for "
+                f"the digits of a computer: {softest.name} has {softest.stiffness:g} N m/rad; "
+                "correct it, or the inertias"
+            )
+        return self
+
+    def assumptions(self) -> list[Assumption]:
+        """What the table does not give and is taken all the same, of all of its rows."""
+        named: list[tuple[str, Part]] = [(f"shaft {shaft.name}", shaft) for shaft in self.shafts]
+        named += [(f"stage {k}", stage) for k, stage in enumerate(self.stages, start=1)]
+        return assumed_in([*named, ("generator", self.generator)])
+
     @property
     def speeds(self) -> tuple[float, ...]:
         """Of each shaft, over the rotor's."""
@@ -223,26 +301,6 @@ class Drivetrain(Part):
         for stage in self.stages:
             speeds.append(speeds[-1] * stage.speed_ratio)
         return tuple(speeds)
-
-
-def _rows(kind: str, value: Any, one: Any) -> Any:
-    """Say which row is wrong, counting from one at the rotor."""
-    if not isinstance(value, list | tuple):
-        return value
-    rows = []
-    for number, item in enumerate(value, start=1):
-        try:
-            rows.append(one(item) if isinstance(item, Mapping) else item)
-        except InputError as error:
-            raise InputError(f"{kind} {number}: {error}") from None
-    return rows
-
-
-def _stage(row: Mapping[str, Any]) -> PlanetaryStage | ParallelStage:
-    kind = row.get("kind")
-    if kind not in _KINDS:
-        raise InputError(f"kind is {shown(kind)} but must be one of {', '.join(_KINDS)}: change it")
-    return _KINDS[kind].model_validate(row)
 
 
 def read_drivetrain(path: str | Path) -> Drivetrain:
@@ -378,40 +436,6 @@ def gear_speeds(table: Drivetrain) -> dict[str, float]:
             speed *= -stage.speed_ratio
             speeds[f"{name} pinion"] = speed
     return {**speeds, GENERATOR: speed}
-
-
-def shaft_damping(ratio: float, inertia: float, stiffness: float) -> float:
-    """C = 2 zeta sqrt(J k) [N m s/rad] (Eq 4.5), with J an inertia [kg m^2].
-
-    Of two inertias J_1 and J_2 on the shaft, J_1 J_2 / (J_1 + J_2) makes zeta the damping ratio of
-    the two against each other.
-    """
-    return 2 * ratio * sqrt(inertia * stiffness)
-
-
-def mesh_damping(
-    ratio: float, stiffness: float, driving: float, driven: float, gear: float
-) -> float:
-    """Damping of a gear mesh about the driving gear's axis [N m s/rad], after Eq 4.7.
-
-    C = 2 zeta sqrt(k_mesh J), with J the inertia that the two gears oppose to each other in the
-    mesh, about the driving one: r_1^2 J_1 J_2 / (r_1^2 J_2 + r_2^2 J_1). Eq 4.7 is printed as
-    r_1^2 r_2^2 J_1 J_2 / (r_1^2 J_1 + r_2^2 J_2), which is a length squared more and gives each
-    inertia the other's radius; with one of the two fixed, it must leave the other alone.
-
-    Parameters
-    ----------
-    ratio : float
-        zeta.
-    stiffness : float
-        About the driving gear [N m/rad].
-    driving, driven : float
-        Inertias J_1, J_2 about their own axes [kg m^2].
-    gear : float
-        r_1 / r_2, the speed ratio.
-    """
-    inertia = gear**2 * driving * driven / (gear**2 * driven + driving)
-    return shaft_damping(ratio, inertia, stiffness)
 
 
 def _planetary(

@@ -25,6 +25,10 @@ from fe_drivetrain.common.errors import InputError
 
 Complex = NDArray[np.complex128]
 
+#: Of the highest frequency and the count of motions, in units of round-off: one below is no more
+#: than 0.
+ROUND_OFF = 1e3
+
 
 @dataclass(frozen=True)
 class Inertia:
@@ -226,6 +230,20 @@ def natural_modes(system: Torsional) -> Modes:
         shares,
         np.asarray(basis**2),
     )
+
+
+def resolved(frequencies: Floats, free: int) -> bool:
+    """Whether all frequencies but those of free motions are above what round-off leaves of 0.
+
+    Parameters
+    ----------
+    frequencies : ndarray, (n,)
+        Ascending.
+    free : int
+        How many motions have a frequency of 0.
+    """
+    least = ROUND_OFF * len(frequencies) * float(np.finfo(float).eps)
+    return len(frequencies) == free or bool(frequencies[free] > least * frequencies[-1])
 
 
 def relative_sensitivities(system: Torsional) -> dict[str, Floats]:

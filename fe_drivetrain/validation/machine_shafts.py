@@ -3,7 +3,7 @@
 from fe_drivetrain.common import InputError
 from fe_drivetrain.common.reading import validated
 from fe_drivetrain.dynamics import Machine
-from fe_drivetrain.dynamics.tables import STEEL
+from fe_drivetrain.dynamics.machine_parts import STEEL
 from fe_drivetrain.scene import Scene
 
 #: Of a seat, over the shaft's diameter.

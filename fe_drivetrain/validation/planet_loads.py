@@ -96,7 +96,7 @@ class SharingStage:
         return PlanetarySet(
             "",
             0.3,
-            0.11,
+            0.2,
             Mesh(self.ANGLE),
             Mesh(self.ANGLE),
             equal_angles(self.planets),

@@ -4,7 +4,7 @@ Inputs and frequencies were read in the tests of a public program that follows t
 (gfsReboucas/Drivetrain-python, tests/test_lin_parker_1999.py), not in the papers: second-hand.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, radians
 
 import numpy as np
@@ -137,6 +137,16 @@ COOLEY_PARKER_PRINTED = {
 }
 
 
+def lin_parker_stage(planets: int) -> PlaneStage:
+    """The stage of Lin and Parker 1999; of six planets with smaller ones, as the printed overlap.
+
+    Kinds of modes and how often each is there hold for any sizes.
+    """
+    if planets < 6:
+        return LIN_PARKER_STAGE
+    return replace(LIN_PARKER_STAGE, base_diameters=(LIN_PARKER_STAGE.base_diameters[0], 0.07))
+
+
 def plane_stage(stage: PlaneStage, planets: int) -> PlanetarySet:
     """The stage with a geometry that has its base circles; driven by the sun, as in the papers.
 
@@ -205,7 +215,7 @@ def helical_stage(planets: int, offset: float = 0.002) -> PlanetarySet:
     bearings of the planets are off their middle: with all of them on it, planets that tilt in step
     about their radii push nothing, and one rotational-axial mode is theirs alone.
     """
-    flat = plane_stage(LIN_PARKER_STAGE, planets)
+    flat = plane_stage(lin_parker_stage(planets), planets)
     width, angle = 0.03, np.radians(20.0)
 
     def thick(inertias: Inertias) -> Inertias:

@@ -305,13 +305,13 @@ def _mesh(name: str, data: dict[str, Any]) -> RatedMesh:
     torque = data["torque"] if "torque" in data else power / (data["shaft_speed"] * RPM)
     torque *= data.get("share", 1.0)
     life = data["hours"] * 60.0
-    roughness = tuple(r * 1e-6 for r in data["flank_roughness"])
+    roughness = (data["flank_roughness"][0] * 1e-6, data["flank_roughness"][1] * 1e-6)
     turns, limits = data["turns"], data.get("deviations", (0.0, 0.0))
     return RatedMesh(
         name=name,
         pair=pair,
         materials=(own[0], own[1]),
-        running=Running(torque, speed, data["viscosity"] * 1e-6, (roughness[0], roughness[1])),
+        running=Running(torque, speed, data["viscosity"] * 1e-6, roughness, (20e-6, 20e-6)),
         cycles=(turns[0] * life, turns[1] * life),
         stiffness=(data["stiffness"][0] * 1e9, data["stiffness"][1] * 1e9),
         factors=LoadFactors(**data["factors"]),
