@@ -20,10 +20,10 @@ from fe_drivetrain.hub_loads import (
     hub_load_set,
     not_kept,
     read_hub_load_files,
-    require_points,
     surrogate_grid,
 )
 from fe_drivetrain.report import rounded, trace
+from fe_drivetrain.response import at_front
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.suite import Jobs, Page, Run, RunJob
 
@@ -48,7 +48,7 @@ class HubLoads:
     times : Floats
         (m, n) [s]: each history its own.
     loads : Floats
-        (m, n, 6) [N, N m].
+        (m, n, 6) about the shaft's front face [N, N m].
     names : tuple[str, ...]
         (m,) of the histories.
     conditions : tuple[Condition, ...]
@@ -171,9 +171,7 @@ def own_histories(run: Run, scene: Scene) -> tuple[list[LoadHistory], str] | Non
 
 
 def _histories(pattern: str, skip: float, scene: Scene) -> list[LoadHistory]:
-    front, at = scene.shaft.front, scene.loads_at
-    histories = [history.moved(at, front) for history in read_hub_load_files(pattern, skip)]
-    require_points(histories, list(scene.bands))
+    histories = [at_front(scene, history) for history in read_hub_load_files(pattern, skip)]
     if not any(history.loads.any() for history in histories):
         raise InputError(f"loads = {pattern!r}: all hub loads are zero: give histories with loads")
     return histories

@@ -9,6 +9,7 @@ import numpy as np
 from fe_drivetrain.cases.main_bearing.loads import HubLoads
 from fe_drivetrain.cases.main_bearing.study import Solved
 from fe_drivetrain.common import FORCES, GRAVITY, Floats, InputError
+from fe_drivetrain.hub_loads import PointLoads
 from fe_drivetrain.suite import Page, Record, Run
 
 FRAME = "x downwind along the shaft, z up, y = z cross x; does not turn with the rotor"
@@ -34,9 +35,13 @@ def has_self_weight(run: Run) -> bool:
 
 
 def reaction_of(solved: Solved, name: str, loads: Floats, self_weight: bool) -> Floats:
-    """(..., 6) one reaction [N, N m] to (..., 6) hub loads, the weight of the gearbox included."""
+    """(..., 6) one reaction [N, N m] to (..., 6) hub loads about the shaft's front face.
+
+    The weight of the gearbox is included.
+    """
     gravity = GRAVITY if self_weight else 0.0
-    return solved.response.history(name, loads, solved.scene.gearbox.weight, gravity)
+    at_hub = PointLoads(loads, solved.scene.shaft.front)
+    return solved.response.history(name, at_hub, solved.scene.gearbox.weight, gravity)
 
 
 def weight_statement(solved: Solved, self_weight: bool) -> str:

@@ -12,16 +12,15 @@ import numpy as np
 from fe_drivetrain.bearing.contact import line_pressure
 from fe_drivetrain.bearing.geometry import RollerRow, pitch_ratio
 from fe_drivetrain.commands.life_bearings import OneBearing
-from fe_drivetrain.commands.study_loads import entering
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.hub_loads.channel_map import ChannelMap
-from fe_drivetrain.hub_loads.files import require_points
 from fe_drivetrain.hub_loads.recorded import read_recorded
 from fe_drivetrain.life.limits import Limits
 from fe_drivetrain.life.roller_damage import Damage, LifeRules, Steps, damage_of_steps
+from fe_drivetrain.response.entering import entering
 from fe_drivetrain.scene.scene import Scene
 
 VERSION = 2
@@ -168,8 +167,7 @@ def digest(
         The file cannot be read, or has no rotor speed.
     """
     found = read_recorded(file, reading.names, reading.skip)
-    history = found.history.moved(scene.loads_at, scene.shaft.front)
-    require_points([history], list(scene.bands))
+    history = found.history
     if found.rotor_speed is not None:
         speed = found.rotor_speed * 30.0 / np.pi
     elif reading.rotor_speed is not None:

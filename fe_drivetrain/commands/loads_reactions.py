@@ -18,17 +18,16 @@ from fe_drivetrain.commands.loads_digest import (
     digest,
 )
 from fe_drivetrain.commands.loads_together import Together
-from fe_drivetrain.commands.study_loads import entering
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.fidelity.ladder import LevelModel, assembly_level, shaft_level
 from fe_drivetrain.fidelity.over_loads import ROUND_OFF, reaction_history
 from fe_drivetrain.histories.spectra import MULTIPLES, SEGMENT
 from fe_drivetrain.histories.windows import COLUMNS
-from fe_drivetrain.hub_loads.files import require_points
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.recorded import Recorded
 from fe_drivetrain.report.charts import trace
+from fe_drivetrain.response.entering import entering
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
@@ -79,9 +78,7 @@ class SceneReactions:
         InputError
             It has loads at a point that the scene does not have.
         """
-        require_points([history], list(self.scene.bands))
-        moved = history.moved(self.scene.loads_at, self.scene.shaft.front)
-        driving, weight = entering(self.scene, moved), self.scene.gearbox.weight
+        driving, weight = entering(self.scene, history), self.scene.gearbox.weight
         found = {n: reaction_history(self.model, n, driving, weight, GRAVITY) for n in self.names}
         size = max(float(np.abs(values).max()) for values in found.values())
         # what a support does not hold is round-off, and no load

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from fe_drivetrain.commands.study_loads import StudyLoads, entering
+from fe_drivetrain.commands.study_loads import StudyLoads
 from fe_drivetrain.commands.study_measures import measures
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
@@ -19,6 +19,7 @@ from fe_drivetrain.fidelity.over_loads import (
     relative_errors,
 )
 from fe_drivetrain.fidelity.shaft_bands import COARSER
+from fe_drivetrain.response.entering import entering, joined
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
@@ -58,7 +59,7 @@ def errors(
     """
     page.section("Beams against FE")
     others = list(levels.models)[:-1]
-    hub = np.concatenate([entering(scene, history) for history in loads.histories])
+    hub = joined([entering(scene, history) for history in loads.histories])
     weights = loads.weights
     weight, length = scene.gearbox.weight, scene.shaft.length
     absolute: list[Record] = []

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_drivetrain.commands.study_loads import StudyLoads, entering
+from fe_drivetrain.commands.study_loads import StudyLoads
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES, GRAVITY
 from fe_drivetrain.compare.time_weighted import weighted_statistics
@@ -17,6 +17,7 @@ from fe_drivetrain.fidelity.ladder import LevelModel
 from fe_drivetrain.fidelity.over_loads import Levels, reaction_history
 from fe_drivetrain.histories.cycles import RULE, Cycles, rainflow_cycles
 from fe_drivetrain.histories.damage import FREQUENCY, damage_equivalent_load
+from fe_drivetrain.response.entering import entering
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record

@@ -28,6 +28,7 @@ from .moving_turbine import even_inflow as even_inflow
 from .moving_turbine import simulate as simulate
 from .moving_turbine import turbine_histories as turbine_histories
 from .moving_turbine import turbine_history as turbine_history
+from .point_loads import PointLoads as PointLoads
 from .recorded import Recorded as Recorded
 from .recorded import read_recorded as read_recorded
 from .recorded import recorded_files as recorded_files

@@ -22,6 +22,7 @@ from fe_drivetrain.geometry import (
     within_walls,
 )
 from fe_drivetrain.scene.bearing_unit import SPHERICAL_JOINTS, BearingUnit, Keys, Springs
+from fe_drivetrain.scene.entrance import Entrance
 from fe_drivetrain.scene.joint_springs import as_numbers
 from fe_drivetrain.scene.materials import MATERIALS, Material, known_materials
 from fe_drivetrain.scene.nose import Nose, NoseBearing
@@ -279,6 +280,16 @@ class Scene(Keys):
     def loads_at(self) -> float:
         """x of the point that files of hub loads are about [m]."""
         return self.shaft.front if self.hub.loads_at is None else self.hub.loads_at
+
+    @property
+    def entrance(self) -> Entrance:
+        """Where loads enter, and which point they are about."""
+        return Entrance(
+            self.shaft.front,
+            self.loads_at,
+            tuple(point.name for point in self.load_points),
+            tuple(point.weight for point in self.load_points),
+        )
 
     def bearing_unit(self, name: str) -> BearingUnit:
         """The bearing unit of that name."""
