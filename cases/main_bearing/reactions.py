@@ -10,9 +10,9 @@ from fe_drivetrain.cases.main_bearing.loads import HubLoads
 from fe_drivetrain.cases.main_bearing.study import Solved
 from fe_drivetrain.common import FORCES, GRAVITY, Floats, InputError
 from fe_drivetrain.hub_loads import PointLoads
+from fe_drivetrain.response import Stated
 from fe_drivetrain.suite import Page, Record, Run
 
-FRAME = "x downwind along the shaft, z up, y = z cross x; does not turn with the rotor"
 STATISTICS = "reaction_statistics.csv"
 _COLUMNS = ("least", "mean", "largest", "standard deviation")
 _UNITS = 3 * ("N",) + 3 * ("N m",)
@@ -76,6 +76,13 @@ def meaning_of(solved: Solved, name: str) -> str:
     return f"the housing of {bearing} on its bedplate"
 
 
+def stated(solved: Solved, name: str, self_weight: bool) -> Stated:
+    """What a reaction is."""
+    return Stated(
+        meaning_of(solved, name), origin_of(solved, name), weight_statement(solved, self_weight)
+    )
+
+
 def write_files(
     folder: Path, hub: HubLoads, solved: Mapping[str, Solved], self_weight: bool
 ) -> None:
@@ -87,11 +94,9 @@ def write_files(
         reactions = reaction_of(of, of.bearing, hub.loads, self_weight)
         for k, name in enumerate(hub.names):
             facts = {
-                "reaction": f"{of.bearing}, {kind}: {meaning_of(of, of.bearing)}",
+                "reaction": f"{of.bearing}, {kind}",
                 "history": name,
-                "frame": FRAME,
-                "origin of moments": origin_of(of, of.bearing),
-                "weight": weight_statement(of, self_weight),
+                **stated(of, of.bearing, self_weight).facts(),
                 "channels": hub.channels[k],
                 "loads": hub.statement.removeprefix("Hub loads: "),
             }
@@ -147,8 +152,12 @@ def statistics_section(
         over_all = list(_write_statistics(run.folder / STATISTICS, hub, solved, self_weight))
     page.section("Reactions: extremes, means, standard deviations")
     any_solved = next(iter(solved.values()))
+    records = {
+        name: stated(any_solved, name, self_weight) for name in any_solved.response.reactions
+    }
+    common = next(iter(records.values()))
     page.text(
-        f"Weight {weight_statement(any_solved, self_weight)}. Frame: {FRAME}. What is compared "
+        f"Weight {common.weight}. Frame: {common.frame}. What is compared "
         "with beams is without self-weight, which the beams do not have. By history: "
         f"{STATISTICS}" + ("." if hub.conditions else "; over time: reactions_*.csv.")
     )
@@ -159,12 +168,8 @@ def statistics_section(
     page.table(
         "What each reaction is, and the origin of its moments",
         [
-            {
-                "reaction": name,
-                "load of": meaning_of(any_solved, name),
-                "moments about": origin_of(any_solved, name),
-            }
-            for name in any_solved.response.reactions
+            {"reaction": name, "load of": record.load, "moments about": record.origin}
+            for name, record in records.items()
         ],
     )
     page.data("reaction_statistics_kN", over_all)
@@ -175,13 +180,13 @@ def _write_statistics(
 ) -> Iterator[Record]:
     """Write each history's statistics, and yield those over all as rows of the page [kN, kN m]."""
     with path.open("w", encoding="utf-8", newline="") as file:
-        file.write(f"# frame = {FRAME}\n")
         file.write(f"# loads = {hub.statement.removeprefix('Hub loads: ')}\n")
         for kind, of in solved.items():
-            file.write(f"# weight, {kind} = {weight_statement(of, self_weight)}\n")
-            for name in of.response.reactions:
-                file.write(f"# {name}, {kind} = {meaning_of(of, name)}; moments about ")
-                file.write(f"{origin_of(of, name)}\n")
+            records = {name: stated(of, name, self_weight) for name in of.response.reactions}
+            common = next(iter(records.values()))
+            file.write(f"# frame, {kind} = {common.frame}\n# weight, {kind} = {common.weight}\n")
+            for name, record in records.items():
+                file.write(f"# {name}, {kind} = {record.load}; moments about {record.origin}\n")
         for history, channels in zip(hub.names, hub.channels, strict=False):
             file.write(f"# channels of {history} = {channels}\n")
         table = csv.writer(file, lineterminator="\n")

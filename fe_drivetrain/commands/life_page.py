@@ -24,6 +24,7 @@ from fe_drivetrain.life.at_site import site_lives
 from fe_drivetrain.life.reference_life import reference_load
 from fe_drivetrain.life.roller_damage import KINDS, RINGS, LifeRules
 from fe_drivetrain.report.answer import value_with_band
+from fe_drivetrain.response.stated import HUB_LOADS
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
@@ -112,11 +113,11 @@ def lived(
     _assumptions(page, found, rules, reading, choices, files)
     _checks(page, found)
     facts = {
-        "frame": "x downwind along the shaft, z up; places of rollers: 0 right, 90 deg on top",
+        "frame": f"{HUB_LOADS.frame}; places of rollers: 0 right, 90 deg on top",
         "units": "as in the heads of columns",
         "lives": "with 90 % reliability but for a_1 of modified ones",
     }
-    write_tables(run.folder, tables, facts)
+    write_tables(run.folder, tables, dict.fromkeys(tables, facts))
     page.section("Tables")
     names = ", ".join(f"{name}.csv" for name, rows in tables.items() if rows)
     page.text(f"Beside this page: {names}, and results.json with the numbers of all charts.")

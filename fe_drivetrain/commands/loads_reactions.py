@@ -28,9 +28,13 @@ from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.recorded import Recorded
 from fe_drivetrain.report.charts import trace
 from fe_drivetrain.response.entering import entering
+from fe_drivetrain.response.stated import Stated, stated_reactions
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
+
+OF_REACTIONS = ("reactions", "reaction_loops")
+"""Names of the tables of a scene's reactions."""
 
 OTHER = "channel "
 """Before the name of a part that is another channel of the files."""
@@ -60,6 +64,12 @@ class SceneReactions:
     def names(self) -> list[str]:
         """Of bearings, and "gearbox"; without those that hold nothing."""
         return [name for name, R in self.model.reaction_matrices.items() if np.nan_to_num(R).any()]
+
+    @property
+    def stated(self) -> Stated:
+        """What the reactions are."""
+        mass = sum(float(R[2, 8]) for R in self.model.reaction_matrices.values())
+        return stated_reactions(self.scene, {"shaft, rings and housings": mass})
 
     def content(self) -> dict[str, Any]:
         """All that reactions depend on."""
@@ -143,7 +153,7 @@ def parts(found: Digest) -> dict[str, Digest]:
 
 
 def reactions_section(
-    page: Page, found: Mapping[str, Together], options: Options, model: LevelModel, rule: str
+    page: Page, found: Mapping[str, Together], options: Options, of: SceneReactions, rule: str
 ) -> dict[str, list[Record]]:
     """Add the section; the table that goes to a file.
 
@@ -155,16 +165,17 @@ def reactions_section(
         All files together, by reaction.
     options : Options
         How they were counted.
-    model : LevelModel
+    of : SceneReactions
         What solved the scene.
     rule : str
         How cycles were counted.
     """
+    model = of.model
     page.section("Bearing reactions")
     page.text(
-        f"What the drivetrain puts on its supports, all weights included: {model.title}"
+        f"{model.title}"
         + (f"; left out: {'; '.join(model.neglects)}. " if model.neglects else ". ")
-        + "Moments are about each bearing's centre, in the frame of the hub loads."
+        + of.stated.sentences()
     )
     rows: list[Record] = []
     loops: list[Record] = []
@@ -189,7 +200,8 @@ def reactions_section(
                 "xy",
             )
     page.data("reactions", rows)
-    return {"reactions": rows, "reaction_loops": loops}
+    page.data("reactions_stated", of.stated.facts())
+    return dict(zip(OF_REACTIONS, (rows, loops), strict=True))
 
 
 def others_section(

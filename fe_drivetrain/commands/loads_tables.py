@@ -34,7 +34,7 @@ def parquet_writer() -> ModuleType:
 def write_tables(
     folder: Path,
     tables: Mapping[str, Sequence[Record]],
-    facts: Mapping[str, str],
+    facts: Mapping[str, Mapping[str, str]],
     parquet: ModuleType | None = None,
 ) -> None:
     """Write tables, one file each.
@@ -46,7 +46,8 @@ def write_tables(
     tables : mapping
         Rows of equal keys, by name; tables without rows are left out.
     facts : mapping
-        Lines "# key = value" above each CSV; metadata of each Parquet file.
+        Lines "# key = value" above each CSV, and metadata of each Parquet file, by the table's
+        name.
     parquet : module, optional
         Of `parquet_writer`.
     """
@@ -55,7 +56,7 @@ def write_tables(
             continue
         columns = list(rows[0])
         with (folder / f"{name}.csv").open("w", encoding="utf-8", newline="") as file:
-            file.writelines(f"# {key} = {value}\n" for key, value in facts.items())
+            file.writelines(f"# {key} = {value}\n" for key, value in facts[name].items())
             writer = csv.writer(file, lineterminator="\n")
             writer.writerow(columns)
             writer.writerows([_cell(row[column]) for column in columns] for row in rows)
@@ -63,7 +64,7 @@ def write_tables(
             import pyarrow
 
             table = pyarrow.table({column: [row[column] for row in rows] for column in columns})
-            table = table.replace_schema_metadata(dict(facts))
+            table = table.replace_schema_metadata(dict(facts[name]))
             parquet.write_table(table, folder / f"{name}.parquet")
 
 

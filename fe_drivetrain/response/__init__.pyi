@@ -21,5 +21,7 @@ from .model import joint_pairs as joint_pairs
 from .model import mesh_scene as mesh_scene
 from .model import needed_faces as needed_faces
 from .model import scene_loads as scene_loads
+from .stated import Stated as Stated
+from .stated import stated_reactions as stated_reactions
 from .unit_loads import Response as Response
 from .unit_loads import unit_load_response as unit_load_response
