@@ -99,7 +99,7 @@ class LoadPath:
         return forces, np.ones(len(forces), dtype=bool)
 
     def steps(
-        self, hub_loads: Loads, speed: ArrayLike, seconds: ArrayLike, chunk: int = CHUNK
+        self, hub_loads: Loads, speed_rpm: ArrayLike, seconds: ArrayLike, chunk: int = CHUNK
     ) -> Iterator[Steps]:
         """Load steps of the bearing, some hundred at a time.
 
@@ -107,7 +107,7 @@ class LoadPath:
         ----------
         hub_loads : LoadHistory, PointLoads or array_like
             (n, 6) [N, N m], as of `bearing_loads`.
-        speed, seconds : array_like
+        speed_rpm, seconds : array_like
             (n,) or one for all: of the shaft [1/min], and how long each lasts [s].
         chunk : int
             Steps at a time.
@@ -119,7 +119,7 @@ class LoadPath:
         """
         hub = _steps(self.body, hub_loads)
         turns, lasting = (
-            np.broadcast_to(np.asarray(v, dtype=float), (len(hub),)) for v in (speed, seconds)
+            np.broadcast_to(np.asarray(v, dtype=float), (len(hub),)) for v in (speed_rpm, seconds)
         )
         for part in chunks(len(hub), chunk):
             loads, found = self.bearing_loads(hub[part])
@@ -131,7 +131,7 @@ class LoadPath:
 def damage_of_hub_loads(
     path: LoadPath,
     hub_loads: Loads,
-    speed: ArrayLike,
+    speed_rpm: ArrayLike,
     seconds: ArrayLike,
     rated: RatedBearing,
     rules: LifeRules,
@@ -145,7 +145,7 @@ def damage_of_hub_loads(
         From the hub to its laminae.
     hub_loads : LoadHistory, PointLoads or array_like
         (n, 6) [N, N m], as of `LoadPath.bearing_loads`.
-    speed, seconds : array_like
+    speed_rpm, seconds : array_like
         (n,) or one for all: of the shaft [1/min], and how long each step lasts [s].
     rated : RatedBearing
         The named bearing with its ratings.
@@ -169,7 +169,7 @@ def damage_of_hub_loads(
 
     def counted() -> Iterator[Steps]:
         done = 0
-        for steps in path.steps(hub, speed, seconds):
+        for steps in path.steps(hub, speed_rpm, seconds):
             yield steps
             done += len(steps.loads)
             report(f"load steps ({done} of {count})")
