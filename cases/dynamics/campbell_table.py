@@ -177,6 +177,7 @@ def show_crossings(page: Page, found: dict[str, Train]) -> dict[str, int]:
         else:
             page.text("No crossing within the range of speeds.")
         page.data(f"crossings_{letter}", rows)
+        met = [c.speed / RPM for c in right]
         traces = []
         for name, turns in mesh_orders(train.stages).items():
             for harmonic in (1, 2, 3):
@@ -187,9 +188,7 @@ def show_crossings(page: Page, found: dict[str, Train]) -> dict[str, int]:
                 traces.append(
                     trace(f"mode {number + 1}", [low, high], [frequency] * 2, line={"dash": "dot"})
                 )
-        traces.append(
-            crosses("crossings", [c.speed / RPM for c in right], [c.frequency for c in right])
-        )
+        traces.append(crosses("crossings", met, [c.frequency for c in right]))
         page.chart(
             "Right mesh orders (lines) and natural frequencies (dotted)",
             traces,

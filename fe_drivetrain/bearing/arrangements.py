@@ -313,8 +313,8 @@ def ball_row(
     """
     if not -90.0 < contact_angle_deg < 90.0:
         raise InputError(
-            f"contact angle of {contact_angle_deg:g} deg: a ball bearing with races inside each other "
-            "needs one between -90 and 90 deg"
+            f"contact angle of {contact_angle_deg:g} deg: a ball bearing with races inside each "
+            "other needs one between -90 and 90 deg"
         )
     alpha = radians(contact_angle_deg)
     check_sizes(diameter, 0.5 * pitch_diameter)
@@ -348,7 +348,7 @@ def _inclined(what: str, contact_angle_deg: float) -> float:
     """A contact angle that must carry both axial and radial force [rad]."""
     if not 0.0 < contact_angle_deg < 90.0:
         raise InputError(
-            f"contact angle of a {what} is {contact_angle_deg:g} deg: it must be between 0 and 90 deg; "
-            "use a cylindrical bearing for 0"
+            f"contact angle of a {what} is {contact_angle_deg:g} deg: it must be between 0 and 90 "
+            "deg; use a cylindrical bearing for 0"
         )
     return radians(contact_angle_deg)

@@ -306,8 +306,8 @@ def _limits(page: Page, found: Sequence[BearingLife], rules: LifeRules) -> None:
     page.text(
         "Above P = C/2 the load is beyond the range of ISO 281. Below kappa = 0.1 a_ISO is "
         "its smallest value, 0.1; above 4 it stays that of 4. Below "
-        f"{rules.standing_rpm:g} 1/min a bearing stands: marks of standstill and of oscillation are no "
-        "fatigue of rolling contact, and no life is computed for them. P0 is of forces alone, too."
+        f"{rules.standing_rpm:g} 1/min a bearing stands: marks of standstill and of oscillation are "
+        "no fatigue of rolling contact, and no life is computed for them. P0 is of forces alone, too."
     )
 
 
