@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,12 +18,13 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.hub_loads.recorded import read_recorded
+from fe_drivetrain.hub_loads.turbines import vertical_forces
 from fe_drivetrain.life.limits import Limits
 from fe_drivetrain.life.roller_damage import Damage, LifeRules, Steps, damage_of_steps
 from fe_drivetrain.response.entering import entering
 from fe_drivetrain.scene.scene import Scene
 
-VERSION = 2
+VERSION = 3
 """Raise whenever a change alters a digest: kept ones of another version are not used."""
 
 WINDOWS = 60
@@ -76,6 +77,8 @@ class LifeDigest:
     worst : Floats
         (rows, 2, laminae) pressure along the roller that has the most of it, on the inner and the
         outer race [Pa].
+    vertical : tuple of float
+        Mean and standard deviation of Fz at the hub [N].
     """
 
     damage: Damage
@@ -87,6 +90,7 @@ class LifeDigest:
     times: Floats
     over_time: Floats
     worst: Floats
+    vertical: tuple[float, float]
 
 
 def content(
@@ -188,7 +192,8 @@ def digest(
         done += len(steps.loads)
         report(f"{one.name}, {file.stem}: load steps ({done} of {n})")
     wind = np.nan if found.wind_speed is None else float(found.wind_speed.mean())
-    return sums.digest(wind, float(np.abs(speed).mean()), float(n))
+    made = sums.digest(wind, float(np.abs(speed).mean()), float(n))
+    return replace(made, vertical=vertical_forces([history])[history.name])
 
 
 def kept_digest(
@@ -282,6 +287,7 @@ class _Sums:
             np.array(self.times),
             np.stack(self.windows),
             self.worst,
+            (np.nan, np.nan),
         )
 
 
@@ -318,6 +324,7 @@ def as_arrays(found: LifeDigest) -> dict[str, Floats]:
         "times": found.times,
         "over time": found.over_time,
         "worst": found.worst,
+        "vertical": np.array(found.vertical),
     }
 
 
@@ -345,4 +352,5 @@ def from_arrays(kept: Mapping[str, Floats]) -> LifeDigest:
         kept["times"],
         kept["over time"],
         kept["worst"],
+        (float(kept["vertical"][0]), float(kept["vertical"][1])),
     )

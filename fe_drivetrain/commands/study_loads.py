@@ -16,6 +16,7 @@ from fe_drivetrain.hub_loads.files import read_hub_load_files, read_hub_loads
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.recorded import read_mapped
 from fe_drivetrain.hub_loads.surrogate import hub_load_set, surrogate_grid
+from fe_drivetrain.hub_loads.turbines import different_turbines, vertical_forces
 from fe_drivetrain.response.entering import at_front
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.run import Run
@@ -96,6 +97,7 @@ def own_loads(
     moved = f" Their moments, about x = {at:g} m, are moved to the front face." * (at != front)
     if not any(history.loads.any() for history in histories):
         raise InputError(f"--loads {pattern!r}: all hub loads are zero: give histories with loads")
+    unlike = different_turbines(vertical_forces(histories))
     count, samples = len(histories), sum(map(len, histories))
     seconds = sum(history.seconds for history in histories)
     return StudyLoads(
@@ -103,7 +105,8 @@ def own_loads(
         f"Hub loads: {count} file{'s' if count > 1 else ''} of your own, {samples:,} load steps "
         f"over {seconds:,.6g} s"
         + (f"; the first {skip:g} s of each are left out." if skip else ".")
-        + moved,
+        + moved
+        + (f" {unlike}" if unlike else ""),
         True,
     )
 
