@@ -166,7 +166,7 @@ def test_moment_alone_has_its_closed_form_and_opposite_load_zones() -> None:
     assert_allclose(F[0, 3], M, rtol=3e-5)
     assert np.abs(F[0, :3]).max() < 1e-9 * M
     upwind, downwind = load_zones(S, [0, 0, 0, theta, 0])
-    assert_allclose((upwind.centre - downwind.centre) % 360.0, 180.0, rtol=1e-9)
+    assert_allclose((upwind.centre_deg - downwind.centre_deg) % 360.0, 180.0, rtol=1e-9)
     assert_allclose(superposed_peak(S, np.array([0, 0, 0, M, 0])), upwind.peak[0], rtol=0.03)
 
 
@@ -401,7 +401,7 @@ def test_clearance_concentrates_the_load_and_preload_spreads_it() -> None:
         (zone,) = load_zones(one, solved(one, (0, 0, -178e3, 0, 0)).displacements)
         peaks.append(float(zone.peak[0]))
         loaded.append(int(zone.loaded[0]))
-        assert_allclose(zone.at, 270.0)
+        assert_allclose(zone.at_deg, 270.0)
     assert peaks[1:] == sorted(peaks[1:])
     assert loaded == sorted(loaded, reverse=True)
     assert_allclose(np.array(peaks[1:]) / 1e3, [45.4, 51.1, 55.6, 62.5], rtol=3e-3)

@@ -390,7 +390,7 @@ def test_parquet_holds_what_the_csv_holds(tmp_path: Path) -> None:
     import pyarrow.parquet
 
     rows = [{"file": "a", "value": 1.5}, {"file": "b", "value": None}]
-    write_tables(tmp_path, {"t": rows, "none": []}, {"unit": "N"}, pyarrow.parquet)
+    write_tables(tmp_path, {"t": rows, "none": []}, {"t": {"unit": "N"}}, pyarrow.parquet)
     table = pyarrow.parquet.read_table(tmp_path / "t.parquet")
     assert table.to_pylist() == rows
     assert table.schema.metadata[b"unit"] == b"N"

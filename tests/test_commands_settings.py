@@ -69,7 +69,8 @@ def test_loads_are_factors_of_the_unit_loads() -> None:
     assert parse_loads([], LOADS) is None
     factors = parse_loads(["gearbox.weight=4", "hub.Fz=-2e5"], LOADS)
     expected = {"hub.Fz": -2e5, "gearbox.weight": 4.0}
-    np.testing.assert_array_equal(factors, [expected.get(name, 0.0) for name in LOADS])
+    assert factors is not None
+    np.testing.assert_array_equal(factors.values, [expected.get(name, 0.0) for name in LOADS])
 
 
 @pytest.mark.parametrize(("text", "share"), [("1%", 0.01), ("0.05", 0.05), ("2.5 %", 0.025)])

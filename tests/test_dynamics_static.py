@@ -157,9 +157,14 @@ def test_orders_and_crossings_of_the_tables() -> None:
     ]
     assert list(mesh_orders(C).values()) == [145, 648, 2664]
     assert list(absolute_sun_orders(C).values()) == [174, 648, 2664]
-    found = crossings([213, 257, 431, 834, 1720, 2110, 3750], mesh_orders(C), (10.8, 19.1))
+    rpm = np.pi / 30.0
+    found = crossings(
+        [213, 257, 431, 834, 1720, 2110, 3750], mesh_orders(C), (10.8 * rpm, 19.1 * rpm)
+    )
     speeds = [
-        (c.order, c.harmonic, c.frequency, round(c.speed, 2)) for c in found if c.frequency != 213
+        (c.order, c.harmonic, c.frequency, round(c.speed / rpm, 2))
+        for c in found
+        if c.frequency != 213
     ]
     assert speeds == [
         ("stage 2", 2, 257, 11.9),

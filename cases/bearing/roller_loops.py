@@ -190,7 +190,7 @@ def loop_table(page: Page, loops: dict[str, list[Loops]], duration: float) -> No
 def opposite(bearing: Bearing, displacements: Floats) -> float:
     """Share of steps in which the load zones of both rows point apart [%]."""
     upwind, downwind = load_zones(bearing, displacements)
-    apart = np.abs((upwind.centre - downwind.centre + 180.0) % 360.0 - 180.0)
+    apart = np.abs((upwind.centre_deg - downwind.centre_deg + 180.0) % 360.0 - 180.0)
     return 100.0 * float(np.mean(apart[np.isfinite(apart)] > 90.0))
 
 

@@ -26,6 +26,8 @@ from fe_drivetrain.torsion import (
 from fe_drivetrain.validation import published_drivetrains as published
 
 TABLE_4_8 = {"A": ("146", "730"), "B": ("154", "707.259", "2419.575"), "C": ("174", "648", "2664")}
+RPM = np.pi / 30.0
+
 #: Least, rated and largest speed of the rotor [rpm], Table 4.1.
 SPEEDS = {
     "A": (8.6, 14.8, 18.4),
@@ -146,9 +148,10 @@ def show_crossings(page: Page, found: dict[str, Train]) -> dict[str, int]:
     for letter, train in found.items():
         page.section(f"Drivetrain {letter}")
         low, rated, high = SPEEDS[letter]
-        right = crossings(train.printed, mesh_orders(train.stages), (low, high))
-        other = crossings(train.printed, absolute_sun_orders(train.stages), (low, high))
-        own = crossings(train.computed, mesh_orders(train.stages), (low, high))
+        within = (low * RPM, high * RPM)
+        right = crossings(train.printed, mesh_orders(train.stages), within)
+        other = crossings(train.printed, absolute_sun_orders(train.stages), within)
+        own = crossings(train.computed, mesh_orders(train.stages), within)
         counts["right"] += len(right)
         counts["printed"] += len(other)
         keys = sorted({key(c) for c in (*right, *other, *own)})
@@ -174,6 +177,7 @@ def show_crossings(page: Page, found: dict[str, Train]) -> dict[str, int]:
         else:
             page.text("No crossing within the range of speeds.")
         page.data(f"crossings_{letter}", rows)
+        met = [c.speed / RPM for c in right]
         traces = []
         for name, turns in mesh_orders(train.stages).items():
             for harmonic in (1, 2, 3):
@@ -184,7 +188,7 @@ def show_crossings(page: Page, found: dict[str, Train]) -> dict[str, int]:
                 traces.append(
                     trace(f"mode {number + 1}", [low, high], [frequency] * 2, line={"dash": "dot"})
                 )
-        traces.append(crosses("crossings", [c.speed for c in right], [c.frequency for c in right]))
+        traces.append(crosses("crossings", met, [c.frequency for c in right]))
         page.chart(
             "Right mesh orders (lines) and natural frequencies (dotted)",
             traces,
@@ -202,7 +206,7 @@ def key(crossing: Crossing) -> tuple[str, int, int]:
 
 def speed(crossing: Crossing | None) -> float | None:
     """[rpm], where there is one."""
-    return None if crossing is None else round(crossing.speed, 2)
+    return None if crossing is None else round(crossing.speed / RPM, 2)
 
 
 def show_assembly(page: Page, found: dict[str, Train]) -> None:

@@ -24,6 +24,7 @@ from fe_drivetrain.cases.main_bearing.study import (
 )
 from fe_drivetrain.common import GRAVITY, Floats
 from fe_drivetrain.compare import compare, statistics
+from fe_drivetrain.hub_loads import PointLoads
 from fe_drivetrain.response import ESTIMATORS
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.suite import Record, Run
@@ -61,9 +62,10 @@ class Linear:
     @classmethod
     def of_fe(cls, solved: Solved, gravity: float = 0.0) -> Linear:
         """The solid, with its gearbox weight and under gravity [m/s^2]."""
-        weight = solved.scene.gearbox.weight
-        constant = solved.response.history(solved.bearing, np.zeros(6), weight, gravity)
-        return cls(solved.response.history(solved.bearing, np.eye(6)), constant)
+        name, weight, front = solved.bearing, solved.scene.gearbox.weight, solved.scene.shaft.front
+        nothing, units = PointLoads(np.zeros(6), front), PointLoads(np.eye(6), front)
+        constant = solved.response.history(name, nothing, weight, gravity)
+        return cls(solved.response.history(name, units), constant)
 
     @classmethod
     def of_beam(

@@ -14,7 +14,6 @@ from fe_drivetrain.beam import main_bearing_beam
 from fe_drivetrain.cases.main_bearing import shown, study
 from fe_drivetrain.cases.main_bearing.secants import Cases
 from fe_drivetrain.cases.main_bearing.study import Solved
-from fe_drivetrain.commands import entering
 from fe_drivetrain.common import FORCES, Floats, InputError
 from fe_drivetrain.compare import resultant
 from fe_drivetrain.coupled import factors_of
@@ -29,7 +28,7 @@ from fe_drivetrain.fidelity import (
 )
 from fe_drivetrain.hub_loads import Condition, hub_loads
 from fe_drivetrain.report import trace
-from fe_drivetrain.response import LOADS, secant_stiffness
+from fe_drivetrain.response import LOADS, entering, secant_stiffness
 from fe_drivetrain.scene import Scene, change_scene
 from fe_drivetrain.suite import Page, Record, Run
 
@@ -315,7 +314,7 @@ def wall_page(run: Run, page: Page, scenes: Mapping[int, Scene]) -> None:
                 for label, which in ((STIFF, "stiff"), (SOFT, "soft"))
             },
         }
-        factors = factors_of(entering(scene, history), scene.gearbox.weight)
+        factors = factors_of(entering(scene, history), scene.gearbox.weight).values
         for unit in scene.bearing_units:
             name = unit.bearing.name
             row: Record = {
@@ -364,7 +363,7 @@ def secant_page(run: Run, page: Page, scene: Scene, cases: Cases) -> None:
     with run.step("bearing units, two bounds"):
         bounds = bounds_of(scene)
     shown.check_solution(page, solved, "scene")
-    factors = factors_of(hub, scene.gearbox.weight)
+    factors = factors_of(hub, scene.gearbox.weight).values
     page.section("The secant over load cases")
     page.text(cases.statement)
     rows: list[Record] = []
@@ -372,7 +371,7 @@ def secant_page(run: Run, page: Page, scene: Scene, cases: Cases) -> None:
     for name, bound in bounds.items():
         loads = factors @ solved.response.reactions[name].T
         motions = factors @ solved.response.motions[f"{name}.seat"].T
-        if np.abs(loads[:, 4:]).max() < _SMALL * np.abs(hub[:, 3:6]).max():
+        if np.abs(loads[:, 4:]).max() < _SMALL * np.abs(hub.values[:, 3:6]).max():
             page.text(f"{name} carries no moment in bending: its K_R is zero in all load cases.")
             continue
         fit = secant_stiffness.fitted_spring(loads, motions, weights)

@@ -17,13 +17,15 @@ from fe_drivetrain.hub_loads import (
     Condition,
     LoadHistory,
     assumptions,
+    different_turbines,
     hub_load_set,
     not_kept,
     read_hub_load_files,
-    require_points,
     surrogate_grid,
+    vertical_forces,
 )
 from fe_drivetrain.report import rounded, trace
+from fe_drivetrain.response import at_front
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.suite import Jobs, Page, Run, RunJob
 
@@ -48,7 +50,7 @@ class HubLoads:
     times : Floats
         (m, n) [s]: each history its own.
     loads : Floats
-        (m, n, 6) [N, N m].
+        (m, n, 6) about the shaft's front face [N, N m].
     names : tuple[str, ...]
         (m,) of the histories.
     conditions : tuple[Condition, ...]
@@ -166,24 +168,23 @@ def own_histories(run: Run, scene: Scene) -> tuple[list[LoadHistory], str] | Non
     return histories, (
         f"Load cases: {samples:,} samples over {seconds:,.6g} s of {count} "
         f"file{'s' if count > 1 else ''} of your own, each sample by the time that it stands for."
-        + _left_out(skip, scene)
+        + _left_out(skip, scene, histories)
     )
 
 
 def _histories(pattern: str, skip: float, scene: Scene) -> list[LoadHistory]:
-    front, at = scene.shaft.front, scene.loads_at
-    histories = [history.moved(at, front) for history in read_hub_load_files(pattern, skip)]
-    require_points(histories, list(scene.bands))
+    histories = [at_front(scene, history) for history in read_hub_load_files(pattern, skip)]
     if not any(history.loads.any() for history in histories):
         raise InputError(f"loads = {pattern!r}: all hub loads are zero: give histories with loads")
     return histories
 
 
-def _left_out(skip: float, scene: Scene) -> str:
+def _left_out(skip: float, scene: Scene, histories: Sequence[LoadHistory]) -> str:
     left_out = f" The first {skip:g} s of each are left out." if skip else ""
     if scene.loads_at != scene.shaft.front:
         left_out += f" Their moments, about x = {scene.loads_at:g} m, are moved to the front face."
-    return left_out
+    unlike = different_turbines(vertical_forces(histories))
+    return f"{left_out} {unlike}" if unlike else left_out
 
 
 def _read(pattern: str, skip: float, scene: Scene) -> HubLoads:
@@ -204,7 +205,7 @@ def _read(pattern: str, skip: float, scene: Scene) -> HubLoads:
         tuple(history.name for history in histories),
         (),
         f"Hub loads: {count} file{'s' if count > 1 else ''} of your own, "
-        f"{len(first):,} samples each.{_left_out(skip, scene)}",
+        f"{len(first):,} samples each.{_left_out(skip, scene, histories)}",
         [],
         None,
         tuple(str(history.attributes["channels"]) for history in histories),

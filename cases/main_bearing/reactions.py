@@ -16,9 +16,10 @@ from fe_drivetrain.common import (
     comment_line,
     table_head,
 )
+from fe_drivetrain.hub_loads import PointLoads
+from fe_drivetrain.response import Stated
 from fe_drivetrain.suite import Page, Record, Run
 
-FRAME = "x downwind along the shaft, z up, y = z cross x; does not turn with the rotor"
 STATISTICS = "reaction_statistics.csv"
 _COLUMNS = ("least", "mean", "largest", "standard deviation")
 _UNITS = 3 * ("N",) + 3 * ("N m",)
@@ -41,9 +42,13 @@ def has_self_weight(run: Run) -> bool:
 
 
 def reaction_of(solved: Solved, name: str, loads: Floats, self_weight: bool) -> Floats:
-    """(..., 6) one reaction [N, N m] to (..., 6) hub loads, the weight of the gearbox included."""
+    """(..., 6) one reaction [N, N m] to (..., 6) hub loads about the shaft's front face.
+
+    The weight of the gearbox is included.
+    """
     gravity = GRAVITY if self_weight else 0.0
-    return solved.response.history(name, loads, solved.scene.gearbox.weight, gravity)
+    at_hub = PointLoads(loads, solved.scene.shaft.front)
+    return solved.response.history(name, at_hub, solved.scene.gearbox.weight, gravity)
 
 
 def weight_statement(solved: Solved, self_weight: bool) -> str:
@@ -78,6 +83,13 @@ def meaning_of(solved: Solved, name: str) -> str:
     return f"the housing of {bearing} on its bedplate"
 
 
+def stated(solved: Solved, name: str, self_weight: bool) -> Stated:
+    """What a reaction is."""
+    return Stated(
+        meaning_of(solved, name), origin_of(solved, name), weight_statement(solved, self_weight)
+    )
+
+
 def write_files(
     folder: Path, hub: HubLoads, solved: Mapping[str, Solved], self_weight: bool
 ) -> None:
@@ -89,11 +101,9 @@ def write_files(
         reactions = reaction_of(of, of.bearing, hub.loads, self_weight)
         for k, name in enumerate(hub.names):
             facts = {
-                "reaction": f"{of.bearing}, {kind}: {meaning_of(of, of.bearing)}",
+                "reaction": f"{of.bearing}, {kind}",
                 "history": name,
-                "frame": FRAME,
-                "origin of moments": origin_of(of, of.bearing),
-                "weight": weight_statement(of, self_weight),
+                **stated(of, of.bearing, self_weight).facts(),
                 "channels": hub.channels[k],
                 "loads": hub.statement.removeprefix("Hub loads: "),
             }
@@ -151,8 +161,12 @@ def statistics_section(
         over_all = list(_write_statistics(run.folder / STATISTICS, hub, solved, self_weight))
     page.section("Reactions: extremes, means, standard deviations")
     any_solved = next(iter(solved.values()))
+    records = {
+        name: stated(any_solved, name, self_weight) for name in any_solved.response.reactions
+    }
+    common = next(iter(records.values()))
     page.text(
-        f"Weight {weight_statement(any_solved, self_weight)}. Frame: {FRAME}. What is compared "
+        f"Weight {common.weight}. Frame: {common.frame}. What is compared "
         "with beams is without self-weight, which the beams do not have. By history: "
         f"{STATISTICS}" + ("." if hub.conditions else "; over time: reactions_*.csv.")
     )
@@ -163,12 +177,8 @@ def statistics_section(
     page.table(
         "What each reaction is, and the origin of its moments",
         [
-            {
-                "reaction": name,
-                "load of": meaning_of(any_solved, name),
-                "moments about": origin_of(any_solved, name),
-            }
-            for name in any_solved.response.reactions
+            {"reaction": name, "load of": record.load, "moments about": record.origin}
+            for name, record in records.items()
         ],
     )
     page.data("reaction_statistics_kN", over_all)
@@ -180,12 +190,14 @@ def _write_statistics(
     """Write each history's statistics, and yield those over all as rows of the page [kN, kN m]."""
     with path.open("w", encoding="utf-8", newline="") as file:
         table = SafeWriter(file)
-        facts = [f"frame = {FRAME}", f"loads = {hub.statement.removeprefix('Hub loads: ')}"]
+        facts = [f"loads = {hub.statement.removeprefix('Hub loads: ')}"]
         for kind, of in solved.items():
-            facts.append(f"weight, {kind} = {weight_statement(of, self_weight)}")
+            records = {name: stated(of, name, self_weight) for name in of.response.reactions}
+            common = next(iter(records.values()))
+            facts += [f"frame, {kind} = {common.frame}", f"weight, {kind} = {common.weight}"]
             facts += [
-                f"{name}, {kind} = {meaning_of(of, name)}; moments about {origin_of(of, name)}"
-                for name in of.response.reactions
+                f"{name}, {kind} = {record.load}; moments about {record.origin}"
+                for name, record in records.items()
             ]
         facts += [
             f"channels of {history} = {channels}"

@@ -150,14 +150,14 @@ def run(run: Run, page: Page) -> None:
     bonded = study.scene_of(run, page, "bonded", coarsen=False)
     spherical = study.scene_of(run, page, "spherical", coarsen=False)
     cases = secants.hub_loads(run, EVERY, bonded)
-    hub = cases.hub
+    hub = cases.hub.values
     factors = QUICK_FACTORS if run.quick else FACTORS
     units = {
         "library": secants.series(run, bonded, factors["library"], cases),
         "tall": secants.series(run, secants.tall(bonded, TALL), factors["tall"], cases),
     }
     with run.step("spherical"):
-        free_loads, _, _ = secants.reacted(run, spherical, factors["tall"][-1], hub)
+        free_loads, _, _ = secants.reacted(run, spherical, factors["tall"][-1], cases.hub)
     finest = {key: meshes[-1] for key, meshes in units.items()}
     both = [(key, a) for key in units for a in (4, 5)]
     found = {(key, a): finest[key].secant(a) for key, a in both}

@@ -13,12 +13,24 @@ from fe_drivetrain.cases.main_bearing import (
     loads,
     study,
 )
-from fe_drivetrain.commands import entering
 from fe_drivetrain.common import FORCES, Floats, InputError, stiffness_transport
 from fe_drivetrain.compare import sample_weights, weighted_rms
 from fe_drivetrain.coupled import factors_of
-from fe_drivetrain.hub_loads import SHEARS, WIND_SPEEDS, Condition, LoadHistory, hub_load_set
-from fe_drivetrain.response import bearing_unit_stiffness, secant_stiffness, without_gearbox
+from fe_drivetrain.hub_loads import (
+    SHEARS,
+    WIND_SPEEDS,
+    Condition,
+    LoadHistory,
+    PointLoads,
+    hub_load_set,
+)
+from fe_drivetrain.response import (
+    bearing_unit_stiffness,
+    entering,
+    joined,
+    secant_stiffness,
+    without_gearbox,
+)
 from fe_drivetrain.scene import Scene, change_scene
 from fe_drivetrain.suite import Run
 
@@ -69,7 +81,7 @@ class Cases:
 
     Attributes
     ----------
-    hub : Floats
+    hub : PointLoads
         (m, 6) at the hub, then six columns more for each load point, with its weight [N, N m].
     weights : Floats or None
         (m,) share of each in the whole time; None where all are equal.
@@ -77,7 +89,7 @@ class Cases:
         What they are.
     """
 
-    hub: Floats
+    hub: PointLoads
     weights: Floats | None
     statement: str
 
@@ -94,14 +106,14 @@ def hub_loads(run: Run, every: int, scene: Scene) -> Cases:
         steps = [history.step for history in histories]
         unlike = np.ptp(steps) > 1e-9 * max(steps)
         weights = sample_weights([len(h) for h in histories], steps) if unlike else None
-        hub = np.concatenate([entering(scene, history) for history in histories])
+        hub = joined([entering(scene, history) for history in histories])
         return Cases(hub, weights, statement)
     speeds = WIND_SPEEDS[1:2] if run.quick else WIND_SPEEDS
     conditions = [Condition(speed, "medium", shear, 1) for speed in speeds for shear in SHEARS]
     with run.step("hub loads"):
         history = hub_load_set(conditions)
     chosen = history.loads[:, ::every].reshape(-1, 6)
-    samples = LoadHistory("samples", np.arange(float(len(chosen))), chosen)
+    samples = LoadHistory("samples", np.arange(float(len(chosen))), chosen, about="front face")
     return Cases(
         entering(scene, samples),
         None,
@@ -116,12 +128,12 @@ def tall(scene: Scene, centre_height: float) -> Scene:
     return change_scene(scene, {"bearing_units.0.housing.centre_height": centre_height})
 
 
-def reacted(run: Run, scene: Scene, factor: float, hub: Floats) -> tuple[Floats, Floats, Scene]:
+def reacted(run: Run, scene: Scene, factor: float, hub: PointLoads) -> tuple[Floats, Floats, Scene]:
     """Loads and motions (m, 6) of the bearing of a scene on its gearbox, on a coarser mesh."""
     scene = bands.coarser(scene, factor)
     label = f"{scene.bearing_units[0].interface}, sizes x {factor:g}"
     solved = study.solve_scene(run, scene, label)
-    factors = factors_of(hub, scene.gearbox.weight)
+    factors = factors_of(hub, scene.gearbox.weight).values
     response = solved.response
     return (
         factors @ response.reactions[solved.bearing].T,

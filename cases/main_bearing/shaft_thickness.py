@@ -142,7 +142,7 @@ def run(run: Run, page: Page) -> None:
             name = named(label, wall)
             scene, solved = scenes[name], solutions[name]
             shown.check_solution(page, solved, name)
-            reaction = solved.response.history(solved.bearing, history.loads, scene.gearbox.weight)
+            reaction = solved.response.history(solved.bearing, history, scene.gearbox.weight)
             force = np.asarray(resultant(reaction[:, 1], reaction[:, 2]))
             reference = force if reference is None else reference
             # a determinate reaction has no stiffness in it

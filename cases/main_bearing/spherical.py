@@ -15,6 +15,7 @@ from fe_drivetrain.common import (
     Floats,
 )
 from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
+from fe_drivetrain.hub_loads import PointLoads
 from fe_drivetrain.report import trace
 from fe_drivetrain.response import (
     LOADS,
@@ -84,15 +85,15 @@ def deflections(
 def causes(main: Solved, beam_load: Floats, mean_load: Floats) -> list[Record]:
     """Vertical loads on the bearing with what a drivetrain has and statics have not."""
     name, weight = main.bearing, main.scene.gearbox.weight
-    ahead = mean_load.copy()  # the same load, 50 mm in front of the shaft's face
-    ahead[4] += 0.05 * mean_load[2]
+    front = main.scene.shaft.front
+    at_hub, ahead = PointLoads(mean_load, front), PointLoads(mean_load, front - 0.05)
     loads = {
         "pinned beam (Eq 3.1)": beam_load,
         "FE, gearbox weight at the gearbox: goes into its spring, no lever arm": (
-            main.response.history(name, mean_load, weight)
+            main.response.history(name, at_hub, weight)
         ),
         "FE with self-weight of shaft, bearing and housing (Eq 3.1 has none)": (
-            main.response.history(name, mean_load, weight, GRAVITY)
+            main.response.history(name, at_hub, weight, GRAVITY)
         ),
         "FE, hub load 50 mm in front of the shaft's face (lever arm)": (
             main.response.history(name, ahead, weight)

@@ -51,6 +51,7 @@ FRONT, REAR, STIFFNESS, DAMPING = 150.34, 24.0, 5296.0, 19.86
 PAIR = chain((Inertia("rotor", FRONT), Inertia("generator", REAR)), [("shaft", STIFFNESS, DAMPING)])
 REDUCED = FRONT * REAR / (FRONT + REAR)
 STEP = 0.005  # s
+RPM = np.pi / 30.0
 
 
 def interfaces() -> list[Found]:
@@ -154,7 +155,7 @@ def energies() -> list[Found]:
     """Energy shares; crossings of constant modes."""
     system = gear_masses(TABLE, "free")
     modes = natural_modes(system)
-    met = resonances([Excitation("all", 6.0, system.names)], modes, (9.0, 18.0))
+    met = resonances([Excitation("all", 6.0, system.names)], modes, (9.0 * RPM, 18.0 * RPM))
     return [
         Found(
             "sum of energy shares - 1, largest",
@@ -163,8 +164,8 @@ def energies() -> list[Found]:
             "all inertias have the kinetic energy",
         ),
         Found(
-            "order x speed / 60 over the frequency at crossings, largest difference from 1",
-            max(abs(6.0 * m.crossing / 60.0 / m.frequency - 1.0) for m in met),
+            "order x speed / 2 pi over the frequency at crossings, largest difference from 1",
+            max(abs(6.0 * m.crossing / (2.0 * np.pi) / m.frequency - 1.0) for m in met),
             0.0,
             "n = 60 f / order",
         ),
@@ -174,9 +175,9 @@ def energies() -> list[Found]:
 def sweep() -> list[Found]:
     """The largest response at the crossing; decrement of a stop."""
     modes = natural_modes(PAIR)
-    (meeting,) = resonances([Excitation("6P", 6.0, ("rotor",))], modes, (20.0, 30.0))
-    speeds = np.linspace(20.0, 30.0, 2001)
-    turned = response(PAIR, "rotor", 6.0 * speeds / 60.0)
+    (meeting,) = resonances([Excitation("6P", 6.0, ("rotor",))], modes, (20.0 * RPM, 30.0 * RPM))
+    speeds = RPM * np.linspace(20.0, 30.0, 2001)
+    turned = response(PAIR, "rotor", 6.0 * speeds / (2.0 * np.pi))
     peak = float(speeds[np.abs(turned[:, 0] - turned[:, 1]).argmax()])
     time = np.arange(4000) * 0.002
     drive: Floats = np.interp(time, [0.0, 1.0, 1.002], [1000.0, 1000.0, 0.0])

@@ -40,6 +40,7 @@ from fe_drivetrain.validation import published_drivetrains as published
 
 TABLE = published.table("drivetrain_c")
 SPEEDS = (9.0, 18.0)  # rpm
+RPM = np.pi / 30.0
 CONTROLLER = 10.0  # Hz, of its communication
 SECOND = 1.2  # m, of a second main bearing
 TOLERANCE = 0.5e-3  # m
@@ -81,13 +82,13 @@ def resonance(page: Page) -> None:
         *drivetrain_excitations(TABLE.stages),
         Excitation("controller", 0.0, (GENERATOR,), fixed=CONTROLLER),
     )
-    found = resonances(register, modes, SPEEDS)
+    found = resonances(register, modes, (SPEEDS[0] * RPM, SPEEDS[1] * RPM))
     rows: list[Record] = [
         {
             "excitation": m.excitation,
             "mode": m.mode,
             "frequency [Hz]": m.frequency,
-            "crossing [rpm]": m.crossing if np.isfinite(m.crossing) else None,
+            "crossing [rpm]": m.crossing / RPM if np.isfinite(m.crossing) else None,
             "margin": m.margin,
             "energy share": m.share,
             "verdict": m.verdict,
@@ -118,7 +119,7 @@ def resonance(page: Page) -> None:
         "Campbell diagram: modes that are met, and what meets them; shaded: operation",
         [
             *(
-                trace(name, speeds, [by_name[name].frequency(float(v)) for v in speeds])
+                trace(name, speeds, [by_name[name].frequency(RPM * float(v)) for v in speeds])
                 for name in lines
             ),
             *(

@@ -33,6 +33,7 @@ from fe_drivetrain.torsion import mesh_orders
 
 MACHINE = library_machine("synthetic_2mw")
 SPEEDS = (8.0, 18.0)  # rpm, in operation
+RPM = np.pi / 30.0
 BEGIN, END = 6.0, 28.0  # rpm, of the run-up
 SECONDS, STEP = 20.0, 2.5e-4  # s
 RATIO, AT = 0.01, 60.0  # of critical damping, at that frequency [Hz], in proportion to it elsewhere
@@ -83,7 +84,8 @@ def run(run: Run, page: Page) -> None:
 def register(page: Page, system: System, modes: SystemModes) -> list[Meeting]:
     """All excitations against all modes, with energy shares; crossings of `dynamics` the same."""
     excitations = drivetrain_excitations(MACHINE.stages)
-    found = resonances(excitations, modes, SPEEDS)
+    operation = (SPEEDS[0] * RPM, SPEEDS[1] * RPM)
+    found = resonances(excitations, modes, operation)
     kinds = direction_kinds(system, modes)
     free = int(np.count_nonzero(modes.frequencies == 0.0))
     rows: list[Record] = [
@@ -92,7 +94,7 @@ def register(page: Page, system: System, modes: SystemModes) -> list[Meeting]:
             "mode": m.mode,
             "kind": kinds[free + m.mode - 1],
             "frequency [Hz]": m.frequency,
-            "crossing [rpm]": m.crossing,
+            "crossing [rpm]": m.crossing / RPM,
             "margin": m.margin,
             "energy share": m.share,
             "verdict": m.verdict,
@@ -102,7 +104,7 @@ def register(page: Page, system: System, modes: SystemModes) -> list[Meeting]:
     ]
     orders = mesh_orders(MACHINE.stages)
     names = {f"{name} mesh {k}x" for name in orders for k in (1, 2, 3)}
-    other = crossings(modes.frequencies[free:], orders, SPEEDS)
+    other = crossings(modes.frequencies[free:], orders, operation)
     ours = sorted(m.crossing for m in found if m.margin == 0.0 and m.excitation in names)
     page.holds(
         f"register and diagram of speeds have the same {len(other)} mesh crossings in operation",
@@ -112,7 +114,7 @@ def register(page: Page, system: System, modes: SystemModes) -> list[Meeting]:
     )
     page.vanishes(
         "speeds of these crossings, largest difference [rpm]",
-        float(np.abs(np.array(ours) - sorted(c.speed for c in other)).max()),
+        float(np.abs(np.array(ours) - sorted(c.speed for c in other)).max()) / RPM,
         **round_off(10 * SPEEDS[1], "a frequency over the same order, in other units"),
         source="crossings of `dynamics`",
     )

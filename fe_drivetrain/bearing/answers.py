@@ -26,17 +26,17 @@ class LoadZone:
         (n,) how many.
     peak, total : Floats
         (n,) largest load, and sum of all [N].
-    at : Floats
+    at_deg : Floats
         (n,) angle of the largest load [deg], 0 to 360.
-    centre : Floats
+    centre_deg : Floats
         (n,) direction of the row's radial force [deg]; not a number without one.
     """
 
     loaded: Ints
     peak: Floats
     total: Floats
-    at: Floats
-    centre: Floats
+    at_deg: Floats
+    centre_deg: Floats
 
 
 def by_row(bearing: Bearing, values: Floats) -> list[Floats]:

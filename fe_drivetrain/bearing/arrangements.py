@@ -24,7 +24,7 @@ def tapered_row(
     diameter: float,
     length: float,
     pitch_diameter: float,
-    contact_angle: float,
+    contact_angle_deg: float,
     place: float = 0.0,
     thrust: Literal[1, -1] = 1,
     law: ContactLaw | None = None,
@@ -38,7 +38,7 @@ def tapered_row(
         How many.
     diameter, length, pitch_diameter : float
         Of a roller, and of the circle of their middles [m].
-    contact_angle : float
+    contact_angle_deg : float
         Mean of inner and outer race [deg], between 0 and 90.
     place : float
         x of the rollers' middles [m].
@@ -54,7 +54,7 @@ def tapered_row(
     row : RollerRow
         The row.
     """
-    alpha = _inclined("tapered row", contact_angle)
+    alpha = _inclined("tapered row", contact_angle_deg)
     return RollerRow(
         rollers,
         place,
@@ -73,7 +73,7 @@ def double_row_tapered(
     diameter: float,
     length: float,
     pitch_diameter: float,
-    contact_angle: float,
+    contact_angle_deg: float,
     spread: float,
     arrangement: Arrangement,
     law: ContactLaw | None = None,
@@ -89,7 +89,7 @@ def double_row_tapered(
         In each row.
     diameter, length, pitch_diameter : float
         Of a roller, and of the circle of their middles [m].
-    contact_angle : float
+    contact_angle_deg : float
         [deg], between 0 and 90.
     spread : float
         Distance of the rows' middles [m].
@@ -119,7 +119,7 @@ def double_row_tapered(
                 diameter,
                 length,
                 pitch_diameter,
-                contact_angle,
+                contact_angle_deg,
                 place,
                 thrust,
                 law,
@@ -136,7 +136,7 @@ def spherical_roller(
     diameter: float,
     length: float,
     pitch_diameter: float,
-    contact_angle: float,
+    contact_angle_deg: float,
     law: ContactLaw | None = None,
     **more: float | int,
 ) -> Bearing:
@@ -150,7 +150,7 @@ def spherical_roller(
         In each row.
     diameter, length, pitch_diameter : float
         Of a roller, and of the circle of their middles [m].
-    contact_angle : float
+    contact_angle_deg : float
         [deg], between 0 and 90; the rows stand where their contact normals meet in the centre.
     law : ContactLaw, optional
         `iso_line` where left out: the conformity is close, and a roller under load touches along
@@ -163,7 +163,7 @@ def spherical_roller(
     bearing : Bearing
         Carries no moment: a load with one is refused.
     """
-    alpha = _inclined("spherical roller bearing", contact_angle)
+    alpha = _inclined("spherical roller bearing", contact_angle_deg)
     rows = tuple(
         RollerRow(
             rollers,
@@ -277,7 +277,7 @@ def ball_row(
     balls: int,
     diameter: float,
     pitch_diameter: float,
-    contact_angle: float = 0.0,
+    contact_angle_deg: float = 0.0,
     place: float = 0.0,
     inner_conformity: float = 0.52,
     outer_conformity: float = 0.53,
@@ -293,7 +293,7 @@ def ball_row(
         How many.
     diameter, pitch_diameter : float
         Of a ball, and of the circle of their centres [m].
-    contact_angle : float
+    contact_angle_deg : float
         [deg]: 0 is a deep groove; its sign says which push of the inner ring the row carries.
     place : float
         x of the balls' centres [m].
@@ -311,12 +311,12 @@ def ball_row(
     row : BallRow
         The row.
     """
-    if not -90.0 < contact_angle < 90.0:
+    if not -90.0 < contact_angle_deg < 90.0:
         raise InputError(
-            f"contact angle of {contact_angle:g} deg: a ball bearing with races inside each other "
-            "needs one between -90 and 90 deg"
+            f"contact angle of {contact_angle_deg:g} deg: a ball bearing with races inside each "
+            "other needs one between -90 and 90 deg"
         )
-    alpha = radians(contact_angle)
+    alpha = radians(contact_angle_deg)
     check_sizes(diameter, 0.5 * pitch_diameter)
     gamma = diameter * cos(alpha) / pitch_diameter
     across = 2.0 / diameter
@@ -344,11 +344,11 @@ def ball_row(
     )
 
 
-def _inclined(what: str, contact_angle: float) -> float:
+def _inclined(what: str, contact_angle_deg: float) -> float:
     """A contact angle that must carry both axial and radial force [rad]."""
-    if not 0.0 < contact_angle < 90.0:
+    if not 0.0 < contact_angle_deg < 90.0:
         raise InputError(
-            f"contact angle of a {what} is {contact_angle:g} deg: it must be between 0 and 90 deg; "
-            "use a cylindrical bearing for 0"
+            f"contact angle of a {what} is {contact_angle_deg:g} deg: it must be between 0 and 90 "
+            "deg; use a cylindrical bearing for 0"
         )
-    return radians(contact_angle)
+    return radians(contact_angle_deg)

@@ -83,7 +83,7 @@ def compare_command(
 
         names = scene_loads(next(iter(designs.values())))
         factors = parse_loads(load or (), names)
-        given = None if factors is None else dict(zip(names, factors.tolist(), strict=True))
+        given = None if factors is None else dict(zip(names, factors.values.tolist(), strict=True))
         asked = [Quantity(name) for name in quantity] if quantity else None
         for one in asked or ():
             for scene in designs.values():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,18 +12,18 @@ import numpy as np
 from fe_drivetrain.bearing.contact import line_pressure
 from fe_drivetrain.bearing.geometry import RollerRow, pitch_ratio
 from fe_drivetrain.commands.life_bearings import OneBearing
-from fe_drivetrain.commands.study_loads import entering
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.made_by import file_digest, program_hash
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.hub_loads.channel_map import ChannelMap
-from fe_drivetrain.hub_loads.files import require_points
 from fe_drivetrain.hub_loads.recorded import read_recorded
+from fe_drivetrain.hub_loads.turbines import vertical_forces
 from fe_drivetrain.life.limits import Limits
 from fe_drivetrain.life.roller_damage import Damage, LifeRules, Steps, damage_of_steps
 from fe_drivetrain.response.cached import whole_content
+from fe_drivetrain.response.entering import entering
 from fe_drivetrain.scene.scene import Scene
 
 WINDOWS = 60
@@ -76,6 +76,8 @@ class LifeDigest:
     worst : Floats
         (rows, 2, laminae) pressure along the roller that has the most of it, on the inner and the
         outer race [Pa].
+    vertical : tuple of float
+        Mean and standard deviation of Fz at the hub [N].
     """
 
     damage: Damage
@@ -87,6 +89,7 @@ class LifeDigest:
     times: Floats
     over_time: Floats
     worst: Floats
+    vertical: tuple[float, float]
 
 
 def content(
@@ -164,8 +167,7 @@ def digest(
         The file cannot be read, or has no rotor speed.
     """
     found = read_recorded(file, reading.names, reading.skip)
-    history = found.history.moved(scene.loads_at, scene.shaft.front)
-    require_points([history], list(scene.bands))
+    history = found.history
     if found.rotor_speed is not None:
         speed = found.rotor_speed * 30.0 / np.pi
     elif reading.rotor_speed is not None:
@@ -186,7 +188,8 @@ def digest(
         done += len(steps.loads)
         report(f"{one.name}, {file.stem}: load steps ({done} of {n})")
     wind = np.nan if found.wind_speed is None else float(found.wind_speed.mean())
-    return sums.digest(wind, float(np.abs(speed).mean()), float(n))
+    made = sums.digest(wind, float(np.abs(speed).mean()), float(n))
+    return replace(made, vertical=vertical_forces([history])[history.name])
 
 
 def kept_digest(
@@ -280,6 +283,7 @@ class _Sums:
             np.array(self.times),
             np.stack(self.windows),
             self.worst,
+            (np.nan, np.nan),
         )
 
 
@@ -316,6 +320,7 @@ def as_arrays(found: LifeDigest) -> dict[str, Floats]:
         "times": found.times,
         "over time": found.over_time,
         "worst": found.worst,
+        "vertical": np.array(found.vertical),
     }
 
 
@@ -343,4 +348,5 @@ def from_arrays(kept: Mapping[str, Floats]) -> LifeDigest:
         kept["times"],
         kept["over time"],
         kept["worst"],
+        (float(kept["vertical"][0]), float(kept["vertical"][1])),
     )

@@ -20,10 +20,12 @@ from fe_drivetrain.commands.loads_tables import write_tables
 from fe_drivetrain.commands.loads_together import require_winds, rounded_wind
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.histories.sites import Site
+from fe_drivetrain.hub_loads.turbines import different_turbines
 from fe_drivetrain.life.at_site import site_lives
 from fe_drivetrain.life.reference_life import reference_load
 from fe_drivetrain.life.roller_damage import KINDS, RINGS, LifeRules
 from fe_drivetrain.report.answer import value_with_band
+from fe_drivetrain.response.stated import HUB_LOADS
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
@@ -96,6 +98,9 @@ def lived(
     for one in bearings:
         if one.misfit is not None:
             page.note(one.misfit)
+    of_first = zip(files, found[0].digests, strict=True)
+    if unlike := different_turbines({file.stem: d.vertical for file, d in of_first}):
+        page.note(unlike)
     page.note(UNVERIFIED)
     _lives(page, found)
     _limits(page, found, rules)
@@ -112,11 +117,11 @@ def lived(
     _assumptions(page, found, rules, reading, choices, files)
     _checks(page, found)
     facts = {
-        "frame": "x downwind along the shaft, z up; places of rollers: 0 right, 90 deg on top",
+        "frame": f"{HUB_LOADS.frame}; places of rollers: 0 right, 90 deg on top",
         "units": "as in the heads of columns",
         "lives": "with 90 % reliability but for a_1 of modified ones",
     }
-    write_tables(run.folder, tables, facts)
+    write_tables(run.folder, tables, dict.fromkeys(tables, facts))
     page.section("Tables")
     names = ", ".join(f"{name}.csv" for name, rows in tables.items() if rows)
     page.text(f"Beside this page: {names}, and results.json with the numbers of all charts.")
@@ -305,8 +310,9 @@ def _limits(page: Page, found: Sequence[BearingLife], rules: LifeRules) -> None:
     page.text(
         "Above P = C/2 the load is beyond the range of ISO 281. Below kappa = 0.1 a_ISO is "
         "its smallest value, 0.1; above 4 it stays that of 4. Below "
-        f"{rules.standing:g} 1/min a bearing stands: marks of standstill and of oscillation are no "
-        "fatigue of rolling contact, and no life is computed for them. P0 is of forces alone, too."
+        f"{rules.standing_rpm:g} 1/min a bearing stands: marks of standstill and of oscillation "
+        "are no fatigue of rolling contact, and no life is computed for them. P0 is of forces "
+        "alone, too."
     )
 
 

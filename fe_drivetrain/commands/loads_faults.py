@@ -8,6 +8,7 @@ from fe_drivetrain.commands.loads_digest import LOADS, Options
 from fe_drivetrain.commands.loads_together import Together
 from fe_drivetrain.histories.faults import FAR
 from fe_drivetrain.histories.windows import TEN_MINUTES
+from fe_drivetrain.hub_loads.turbines import different_turbines
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.suite.page import Page
 
@@ -18,7 +19,7 @@ _NAMED = 5
 
 
 def faults(page: Page, found: Together, options: Options) -> None:
-    """Note spikes, channels that stand still, short files, and a residue that decides.
+    """Note files of several turbines, spikes, still channels, short files, a deciding residue.
 
     Parameters
     ----------
@@ -29,6 +30,8 @@ def faults(page: Page, found: Together, options: Options) -> None:
     options : Options
         How they were counted.
     """
+    if unlike := different_turbines(found.vertical):
+        page.note(unlike)
     for file, channel, number, first, far in found.lone[:_NAMED]:
         samples = "one sample stands" if number == 1 else f"{number} samples stand"
         most = "up to " if number > 1 else ""

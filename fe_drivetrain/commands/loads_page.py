@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
@@ -15,6 +15,7 @@ from fe_drivetrain.commands.loads_digest import CHANNELS, LOADS, UNITS, Digest, 
 from fe_drivetrain.commands.loads_faults import faults
 from fe_drivetrain.commands.loads_lifetime import Event, lifetime, mean_winds
 from fe_drivetrain.commands.loads_reactions import (
+    OF_REACTIONS,
     OTHER,
     SceneReactions,
     digest_with_reactions,
@@ -35,18 +36,13 @@ from fe_drivetrain.histories.sites import Site
 from fe_drivetrain.histories.windows import COLUMNS, CaptureMatrix, capture_matrix
 from fe_drivetrain.hub_loads.recorded import read_recorded
 from fe_drivetrain.report.charts import trace
+from fe_drivetrain.response.stated import Stated, stated_hub_loads
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
 from fe_drivetrain.suite.run import Run
 
 TURBULENCE_BIN = 0.02
 """Height of the capture matrix's rows; its columns are `WIND_BIN` wide, about whole m/s."""
-
-FRAME = "x downwind along the shaft, z up, y = z cross x; it does not turn with the rotor"
-ORIGIN = (
-    "about the hub, the apex of the rotor; those of a table are taken to be so, unless the key "
-    "moments_at of a mapping says another point"
-)
 
 _SHOWN = 20
 _MOST_BINS = 60
@@ -143,7 +139,7 @@ def loaded(
     )
     tables: dict[str, list[Record]] = {"files": found.files}
     faults(page, found, options)
-    _channels(page, found)
+    _channels(page, found, _at_hub(reactions))
     _statistics(page, found)
     tables["windows"] = windows_table(found, UNIT_OF)
     tables["wind_and_turbulence"] = _by_turbulence(found)
@@ -152,7 +148,7 @@ def loaded(
     tables |= counts(page, found, options, rule)
     if reactions is not None:
         of_scene = {name: every[name] for name in reactions.names}
-        tables |= reactions_section(page, of_scene, options, reactions.model, rule)
+        tables |= reactions_section(page, of_scene, options, reactions, rule)
     others = {name: one for name, one in every.items() if name.startswith(OTHER)}
     tables |= others_section(page, others, options, rule)
     if site is not None:
@@ -168,13 +164,11 @@ def loaded(
             tables["beside"] = beside(page, own, [d for _, d in made], options)
     _checks(page, found)
     facts = {
-        "frame": FRAME,
-        "origin": ORIGIN,
         "units": "N, N m, s, Hz, rad/s, m/s",
         "channels": " | ".join(found.read),
         "cycles": rule,
     }
-    write_tables(run.folder, tables, facts, parquet)
+    write_tables(run.folder, tables, _facts_of(tables, facts, reactions), parquet)
     page.section("Files")
     names = [name for name, rows in tables.items() if rows]
     page.text(
@@ -189,6 +183,29 @@ def loaded(
         "A file that has no wind speed or rotor speed under a known name leaves these cells empty: "
         "name its channels with --channel, as in --channel 'wind speed=Vhub'."
     )
+
+
+def _at_hub(reactions: SceneReactions | None) -> Stated:
+    return stated_hub_loads(None if reactions is None else reactions.scene)
+
+
+def _facts_of(
+    tables: Iterable[str], shared: Mapping[str, str], reactions: SceneReactions | None
+) -> dict[str, Mapping[str, str]]:
+    """Lines before each table, by its name: of hub loads, of reactions, or of other channels."""
+    found: dict[str, Mapping[str, str]] = {}
+    at_hub = _at_hub(reactions)
+    for name in tables:
+        if name.startswith("other_"):
+            found[name] = {**shared, "units": "of channels, those of the files"}
+        elif reactions is not None and name in OF_REACTIONS:
+            found[name] = {**reactions.stated.facts(), **shared, "model": reactions.model.title}
+        else:
+            found[name] = {**at_hub.facts(), **shared}
+    if reactions is not None and "beside" in found:
+        of_reactions = {f"{k}, of reactions": v for k, v in reactions.stated.facts().items()}
+        found["beside"] = {**found["beside"], **of_reactions}
+    return found
 
 
 def _digests(
@@ -241,10 +258,10 @@ def kept_digest(
     return found
 
 
-def _channels(page: Page, found: Together) -> None:
+def _channels(page: Page, found: Together, stated: Stated) -> None:
     """Frame and origin, and what was read."""
     page.section("Frame and channels")
-    page.text(f"Frame: {FRAME}. Moments: {ORIGIN}.")
+    page.text(stated.sentences())
     page.table(
         "What the loads were read from",
         [

@@ -18,21 +18,24 @@ from fe_drivetrain.commands.loads_digest import (
     digest,
 )
 from fe_drivetrain.commands.loads_together import Together
-from fe_drivetrain.commands.study_loads import entering
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.fidelity.ladder import LevelModel, assembly_level, shaft_level
 from fe_drivetrain.fidelity.over_loads import ROUND_OFF, reaction_history
 from fe_drivetrain.histories.spectra import MULTIPLES, SEGMENT
 from fe_drivetrain.histories.windows import COLUMNS
-from fe_drivetrain.hub_loads.files import require_points
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.recorded import Recorded
 from fe_drivetrain.report.charts import trace
 from fe_drivetrain.response.cached import whole_content
+from fe_drivetrain.response.entering import entering
+from fe_drivetrain.response.stated import Stated, stated_reactions
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
+
+OF_REACTIONS = ("reactions", "reaction_loops")
+"""Names of the tables of a scene's reactions."""
 
 OTHER = "channel "
 """Before the name of a part that is another channel of the files."""
@@ -63,6 +66,12 @@ class SceneReactions:
         """Of bearings, and "gearbox"; without those that hold nothing."""
         return [name for name, R in self.model.reaction_matrices.items() if np.nan_to_num(R).any()]
 
+    @property
+    def stated(self) -> Stated:
+        """What the reactions are."""
+        mass = sum(float(R[2, 8]) for R in self.model.reaction_matrices.values())
+        return stated_reactions(self.scene, {"shaft, rings and housings": mass})
+
     def content(self) -> dict[str, Any]:
         """All that reactions depend on."""
         return {"scene": whole_content(self.scene), "level": self.model.level}
@@ -80,9 +89,7 @@ class SceneReactions:
         InputError
             It has loads at a point that the scene does not have.
         """
-        require_points([history], list(self.scene.bands))
-        moved = history.moved(self.scene.loads_at, self.scene.shaft.front)
-        driving, weight = entering(self.scene, moved), self.scene.gearbox.weight
+        driving, weight = entering(self.scene, history), self.scene.gearbox.weight
         found = {n: reaction_history(self.model, n, driving, weight, GRAVITY) for n in self.names}
         size = max(float(np.abs(values).max()) for values in found.values())
         # what a support does not hold is round-off, and no load
@@ -147,7 +154,7 @@ def parts(found: Digest) -> dict[str, Digest]:
 
 
 def reactions_section(
-    page: Page, found: Mapping[str, Together], options: Options, model: LevelModel, rule: str
+    page: Page, found: Mapping[str, Together], options: Options, of: SceneReactions, rule: str
 ) -> dict[str, list[Record]]:
     """Add the section; the table that goes to a file.
 
@@ -159,16 +166,17 @@ def reactions_section(
         All files together, by reaction.
     options : Options
         How they were counted.
-    model : LevelModel
+    of : SceneReactions
         What solved the scene.
     rule : str
         How cycles were counted.
     """
+    model = of.model
     page.section("Bearing reactions")
     page.text(
-        f"What the drivetrain puts on its supports, all weights included: {model.title}"
+        f"{model.title}"
         + (f"; left out: {'; '.join(model.neglects)}. " if model.neglects else ". ")
-        + "Moments are about each bearing's centre, in the frame of the hub loads."
+        + of.stated.sentences()
     )
     rows: list[Record] = []
     loops: list[Record] = []
@@ -193,7 +201,8 @@ def reactions_section(
                 "xy",
             )
     page.data("reactions", rows)
-    return {"reactions": rows, "reaction_loops": loops}
+    page.data("reactions_stated", of.stated.facts())
+    return dict(zip(OF_REACTIONS, (rows, loops), strict=True))
 
 
 def others_section(

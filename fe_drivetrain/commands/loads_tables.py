@@ -34,7 +34,7 @@ def parquet_writer() -> ModuleType:
 def write_tables(
     folder: Path,
     tables: Mapping[str, Sequence[Record]],
-    facts: Mapping[str, str],
+    facts: Mapping[str, Mapping[str, str]],
     parquet: ModuleType | None = None,
 ) -> None:
     """Write tables, one file each.
@@ -46,7 +46,8 @@ def write_tables(
     tables : mapping
         Rows of equal keys, by name; tables without rows are left out.
     facts : mapping
-        Lines "# key = value" above each CSV; metadata of each Parquet file.
+        Lines "# key = value" above each CSV, and metadata of each Parquet file, by the table's
+        name.
     parquet : module, optional
         Of `parquet_writer`.
     """
@@ -56,14 +57,14 @@ def write_tables(
         columns = list(rows[0])
         with (folder / f"{name}.csv").open("w", encoding="utf-8", newline="") as file:
             writer = SafeWriter(file)
-            writer.comments(f"{key} = {value}" for key, value in facts.items())
+            writer.comments(f"{key} = {value}" for key, value in facts[name].items())
             writer.writerow(columns)
             writer.writerows([_cell(row[column]) for column in columns] for row in rows)
         if parquet is not None:
             import pyarrow
 
             table = pyarrow.table({column: [row[column] for row in rows] for column in columns})
-            table = table.replace_schema_metadata(dict(facts))
+            table = table.replace_schema_metadata(dict(facts[name]))
             parquet.write_table(table, folder / f"{name}.parquet")
 
 

@@ -57,6 +57,8 @@ class Together:
         Which channels were read, and in how many files.
     windows : list of Record
         Each window of each file, its statistics (channels, 4) under "values".
+    vertical : dict
+        Mean and standard deviation of Fz of each file [N].
     files : list of Record
         One for each.
     damages : list of ndarray
@@ -85,6 +87,7 @@ class Together:
     at_wind: dict[tuple[float, str], Classes] = field(default_factory=dict)
     directions: dict[str, Floats] = field(default_factory=dict)
     read: dict[str, int] = field(default_factory=dict)
+    vertical: dict[str, tuple[float, float]] = field(default_factory=dict)
     windows: list[Record] = field(default_factory=list)
     files: list[Record] = field(default_factory=list)
     damages: list[Floats] = field(default_factory=list)
@@ -126,6 +129,9 @@ class Together:
         wind = float(means[CHANNELS.index("wind speed")])
         self._add_classes(found, wind)
         self._add_windows(name, found)
+        z = found["window values"][:, LOADS.index("Fz")]
+        share, mean = found["window seconds"] / seconds, float(means[LOADS.index("Fz")])
+        self.vertical[name] = mean, float(np.sqrt(share @ (z[:, 3] ** 2 + (z[:, 1] - mean) ** 2)))
         self.files.append(
             {
                 "file": name,

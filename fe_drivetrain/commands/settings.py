@@ -10,7 +10,7 @@ import typer
 from fe_drivetrain.common.errors import InputError
 
 if TYPE_CHECKING:
-    from fe_drivetrain.common.arrays import Floats
+    from fe_drivetrain.response.entering import Factors
 
 CaseSettings = Annotated[
     list[str] | None,
@@ -129,7 +129,7 @@ def _is_plain(value: object) -> bool:
     return value is None or isinstance(value, str | int | float | bool)
 
 
-def parse_loads(texts: Iterable[str], known: Sequence[str]) -> Floats | None:
+def parse_loads(texts: Iterable[str], known: Sequence[str]) -> Factors | None:
     """Factors of the unit loads from ``--load NAME=VALUE``.
 
     Parameters
@@ -141,8 +141,8 @@ def parse_loads(texts: Iterable[str], known: Sequence[str]) -> Floats | None:
 
     Returns
     -------
-    ndarray or None
-        (n,) factors of these; None if there are no texts.
+    Factors or None
+        (n,) of these, those at the hub by their names; None if there are no texts.
 
     Raises
     ------
@@ -150,6 +150,8 @@ def parse_loads(texts: Iterable[str], known: Sequence[str]) -> Floats | None:
         A name is unknown, a value is not a number, or all loads are zero.
     """
     import numpy as np
+
+    from fe_drivetrain.response.entering import Factors
 
     factors = np.zeros(len(known))
     values = parse_settings(texts, "--load")
@@ -161,7 +163,7 @@ def parse_loads(texts: Iterable[str], known: Sequence[str]) -> Floats | None:
         factors[list(known).index(name)] = value
     if values and not factors.any():
         raise InputError("--load: all loads are zero: give at least one that is not zero")
-    return factors if values else None
+    return Factors(factors) if values else None
 
 
 def parse_tolerance(text: str) -> float:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.commands.study_loads import StudyLoads, entering
+from fe_drivetrain.commands.study_loads import StudyLoads
 from fe_drivetrain.commands.study_measures import measures
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.compare.time_weighted import weighted_rms
@@ -20,6 +20,7 @@ from fe_drivetrain.fidelity.over_loads import (
     relative_errors,
 )
 from fe_drivetrain.fidelity.shaft_bands import COARSER
+from fe_drivetrain.response.entering import entering, joined
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
@@ -109,7 +110,7 @@ def level_errors(scene: Scene, levels: Levels, loads: StudyLoads) -> LevelErrors
         Hub loads.
     """
     others = list(levels.models)[:-1]
-    hub = np.concatenate([entering(scene, history) for history in loads.histories])
+    hub = joined([entering(scene, history) for history in loads.histories])
     components: list[Record] = []
     shares: dict[str, dict[str, float]] = {}
     judged: list[Judged] = []

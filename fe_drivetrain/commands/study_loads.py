@@ -6,42 +6,22 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
-import numpy as np
-
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.compare.time_weighted import sample_weights
 from fe_drivetrain.hub_loads.aero_rotor import assumptions
 from fe_drivetrain.hub_loads.channel_map import ChannelMap
-from fe_drivetrain.hub_loads.files import read_hub_load_files, read_hub_loads, require_points
+from fe_drivetrain.hub_loads.files import read_hub_load_files, read_hub_loads
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.recorded import read_mapped
 from fe_drivetrain.hub_loads.surrogate import hub_load_set, surrogate_grid
+from fe_drivetrain.hub_loads.turbines import different_turbines, vertical_forces
+from fe_drivetrain.response.entering import at_front
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.run import Run
 
 _QUICK_SEEDS = 1
-
-
-def entering(scene: Scene, history: LoadHistory) -> Floats:
-    """Loads (n, 6 + 6 m) at the hub and at each load point of a scene, with the weights of these.
-
-    Parameters
-    ----------
-    scene : Scene
-        With m load points.
-    history : LoadHistory
-        Its loads at a point that it does not have are zero.
-    """
-    if not scene.load_points:
-        return history.loads
-    others = []
-    for point in scene.load_points:
-        found = np.array(history.at.get(point.name, np.zeros_like(history.loads)))
-        found[:, 2] -= point.weight
-        others.append(found)
-    return np.hstack([history.loads, *others])
 
 
 def weightless(scene: Scene) -> Scene:
@@ -113,11 +93,11 @@ def own_loads(
     front, at = scene.shaft.front, scene.loads_at
     read = read_hub_loads if mapping is None else partial(read_mapped, mapping)
     found = read_hub_load_files(pattern, skip, read)
-    histories = [history.moved(at, front) for history in found]
-    require_points(histories, list(scene.bands))
+    histories = [at_front(scene, history) for history in found]
     moved = f" Their moments, about x = {at:g} m, are moved to the front face." * (at != front)
     if not any(history.loads.any() for history in histories):
         raise InputError(f"--loads {pattern!r}: all hub loads are zero: give histories with loads")
+    unlike = different_turbines(vertical_forces(histories))
     count, samples = len(histories), sum(map(len, histories))
     seconds = sum(history.seconds for history in histories)
     return StudyLoads(
@@ -125,7 +105,8 @@ def own_loads(
         f"Hub loads: {count} file{'s' if count > 1 else ''} of your own, {samples:,} load steps "
         f"over {seconds:,.6g} s"
         + (f"; the first {skip:g} s of each are left out." if skip else ".")
-        + moved,
+        + moved
+        + (f" {unlike}" if unlike else ""),
         True,
     )
 

@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
-from fe_drivetrain.commands.study_loads import StudyLoads, entering
+from fe_drivetrain.commands.study_loads import StudyLoads
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.fidelity.ladder import LevelModel
@@ -23,6 +23,7 @@ from fe_drivetrain.histories.model_errors import (
     measured,
     model_errors,
 )
+from fe_drivetrain.response.entering import entering
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record

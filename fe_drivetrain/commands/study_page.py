@@ -9,7 +9,7 @@ import numpy as np
 
 from fe_drivetrain.commands.scene_page import checked_model, describe, quick_scene
 from fe_drivetrain.commands.study_errors import errors
-from fe_drivetrain.commands.study_loads import StudyLoads, entering, surrogate_loads, weightless
+from fe_drivetrain.commands.study_loads import StudyLoads, surrogate_loads, weightless
 from fe_drivetrain.commands.study_reactions import STATISTICS, reactions, write_reactions
 from fe_drivetrain.commands.uncertainty_page import bands, inputs
 from fe_drivetrain.commands.uncertainty_page import slopes as slopes_section
@@ -31,6 +31,7 @@ from fe_drivetrain.report.charts import trace
 from fe_drivetrain.report.pictures import NoPictureError, picture_of_model
 from fe_drivetrain.report.solid_view import deformed_shape
 from fe_drivetrain.response.cached import cached_response
+from fe_drivetrain.response.entering import Factors, entering, joined
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.unit_loads import Response
 from fe_drivetrain.scene.reading import scene_text
@@ -88,8 +89,8 @@ def studied(
             step.name += ", from the cache"
     with run.step("levels 1 and 2"):
         levels = levels_of(scene, response, run.report)
-    driving = np.concatenate([entering(scene, history) for history in loads.histories])
-    mean = weighted_statistics(driving, loads.weights)[:, 1]
+    driving = joined([entering(scene, history) for history in loads.histories])
+    mean = weighted_statistics(driving.values, loads.weights)[:, 1]
     factors = np.concatenate([mean[:6], [0.0, 0.0, -loads.gravity, scene.gearbox.weight], mean[6:]])
     _check(page, scene, response, levels)
 
@@ -111,14 +112,14 @@ def studied(
         level = errors(page, scene, levels, loads, slopes)
         _series(page, scene, loads, levels)
     if scene.uncertainty:
-        _uncertainty(run, page, scene, level, factors)
+        _uncertainty(run, page, scene, level, Factors(factors))
     with run.step("files"):
         _files(run, page, model, response, loads, levels)
     for assumption in loads.assumptions:
         page.assume(*assumption)
 
 
-def _uncertainty(run: Run, page: Page, scene: Scene, level: int, load: Floats) -> None:
+def _uncertainty(run: Run, page: Page, scene: Scene, level: int, load: Factors) -> None:
     """What the spreads that the scene states do to stiffnesses and bearing forces."""
     asked = [f"{name}.Fz" for name in scene.bearing_names]
     with run.step("uncertainty"):

@@ -8,16 +8,18 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_drivetrain.commands.study_loads import StudyLoads, entering
+from fe_drivetrain.commands.study_loads import StudyLoads
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.components import FORCES, GRAVITY
+from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.csv_cells import SafeWriter, comment_line, table_head
 from fe_drivetrain.compare.time_weighted import weighted_statistics
 from fe_drivetrain.fidelity.ladder import LevelModel
 from fe_drivetrain.fidelity.over_loads import Levels, reaction_history
 from fe_drivetrain.histories.cycles import RULE, Cycles, rainflow_cycles
 from fe_drivetrain.histories.damage import FREQUENCY, damage_equivalent_load
+from fe_drivetrain.response.entering import entering
 from fe_drivetrain.response.model import Model
+from fe_drivetrain.response.stated import Stated, stated_reactions
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
 from fe_drivetrain.suite.run import Run
@@ -28,7 +30,6 @@ _ROUND_OFF = 1e-9  # of a reaction's largest component: shown as zero
 _UNITS = 3 * ("N",) + 3 * ("N m",)
 _SHOWN_UNITS = 3 * ("kN",) + 3 * ("kN\u00a0m",)
 _COLUMNS = ("least", "mean", "largest", "standard deviation")
-_FRAME = "x downwind along the shaft, z up, y = z cross x; does not turn with the rotor"
 
 
 @dataclass(frozen=True)
@@ -77,9 +78,8 @@ def reactions(
     """
     page.section("Reactions")
     page.text(
-        f"What the drivetrain puts on its surroundings. Weight {_weights(model, loads.gravity)}. "
-        f"Frame: {_FRAME}. "
-        f"Origins of moments {_origins(model)}. Each sample counts by the time that it stands for."
+        f"{_stated(model, loads.gravity).sentences()} Each sample counts by the time that it "
+        "stands for."
     )
     names = list(levels.reference.reaction_matrices)
     found = {}
@@ -210,46 +210,10 @@ def _channels_of(attributes: object) -> str:
     return str(dict(attributes).get("channels", "as in the file"))  # type: ignore[call-overload]
 
 
-def _weights(model: Model, gravity: float) -> str:
-    """Which weights the reactions have."""
-    if gravity == 0.0:
-        return "left out, but for that of the rotor as far as the hub loads have it"
-    parts = ", ".join(
-        f"{part} {GRAVITY * float(mass.sum()) / 1e3:.4g} kN"
-        for part, mass in model.part_mass.items()
-        if part != "nose"
-    )
-    points = "".join(f", {p.name} {p.weight / 1e3:.4g} kN" for p in model.scene.load_points)
-    return (
-        f"included along -z: {parts}, gearbox {model.scene.gearbox.weight / 1e3:.4g} kN{points}; "
-        "that of the rotor as far as the hub loads have it" + _of_housings(model) + _of_nose(model)
-    )
-
-
-def _of_housings(model: Model) -> str:
-    """Which of the weights no roller feels."""
-    if not any(part.endswith(".housing") for part in model.part_mass):
-        return ""
-    return "; a bearing's reaction has the weight of its own housing, which its rollers do not feel"
-
-
-def _of_nose(model: Model) -> str:
-    """Where the weight of a nose goes."""
-    if "nose" not in model.part_mass:
-        return ""
-    weight = GRAVITY * float(model.part_mass["nose"].sum())
-    return (
-        f"; that of the nose, {weight / 1e3:.4g} kN, goes into what holds it, and its sag alone is "
-        "felt by the bearings"
-    )
-
-
-def _origins(model: Model) -> str:
-    at = {unit.bearing.name: unit.bearing.x for unit in model.scene.bearing_units}
-    at |= {bearing.name: bearing.x for bearing in model.scene.nose_bearings}
-    places = [f"{name} at x = {x:g} m" for name, x in at.items()]
-    places.append(f"gearbox at x = {model.scene.shaft.rear:g} m")
-    return f"on the shaft's axis: {', '.join(places)}"
+def _stated(model: Model, gravity: float) -> Stated:
+    """What the reactions are."""
+    masses = {part: float(mass.sum()) for part, mass in model.part_mass.items()}
+    return stated_reactions(model.scene, masses, gravity)
 
 
 def _write_statistics(
@@ -260,9 +224,7 @@ def _write_statistics(
     slopes: Sequence[float],
 ) -> None:
     facts = {
-        "frame": _FRAME,
-        "origin of moments": _origins(model),
-        "weight": _weights(model, loads.gravity),
+        **_stated(model, loads.gravity).facts(),
         "loads": loads.statement,
         "DEL": f"range of a sine of {FREQUENCY:g} Hz with the same damage; {RULE}",
         "mesh band": "by how much the mesh may change least, mean, largest or standard deviation",
@@ -304,10 +266,8 @@ def write_reactions(folder: Path, model: Model, loads: StudyLoads, levels: Level
     for history in loads.histories:
         facts = {
             "history": history.name,
-            "reactions": "what the drivetrain puts on its surroundings, by the assembly of solids",
-            "frame": _FRAME,
-            "origin of moments": _origins(model),
-            "weight": _weights(model, loads.gravity),
+            **_stated(model, loads.gravity).facts(),
+            "model": "the assembly of solids",
             "channels": _channels_of(history.attributes),
         }
         columns = ["time [s]"]

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.fidelity.adviser import Advice
 from fe_drivetrain.fidelity.quantities import Number
 from fe_drivetrain.report.charts import chart, rounded
 from fe_drivetrain.report.results import Cell, Chart, Section, Table, Text
+from fe_drivetrain.response.entering import Factors
 from fe_drivetrain.scene.reading import scene_text
 from fe_drivetrain.scene.scene import Scene, Spread
 from fe_drivetrain.suite.page import Page
@@ -187,7 +187,7 @@ def uncertain(
     page: Page,
     scene: Scene,
     asked: Sequence[str],
-    load: Floats | None,
+    load: Factors | None,
     tolerance: float,
     level: int | None,
     count: int,
@@ -206,7 +206,7 @@ def uncertain(
         The scene.
     asked : sequence of str
         Names of the quantities for which the level must be accurate.
-    load : ndarray or None
+    load : Factors or None
         (10,) factors of the unit loads; None for each hub load by itself.
     tolerance : float
         Allowed relative error of the level.

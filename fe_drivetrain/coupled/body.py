@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,7 +20,11 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import least_eigenvalue, scaled_solve
 from fe_drivetrain.common.spatial import wrench_transport
+from fe_drivetrain.hub_loads.histories import LoadHistory
+from fe_drivetrain.hub_loads.point_loads import PointLoads
+from fe_drivetrain.response.entering import Factors
 from fe_drivetrain.response.model import LOADS
+from fe_drivetrain.scene.entrance import AT_HUB, Entrance
 from fe_drivetrain.solve.condensation import Condensed, on_supports
 
 #: Of the six motions of a point, those that a bearing may resist.
@@ -54,6 +59,8 @@ class LinearBody:
         (5 k, 5 k) compliance between the bearings' outer rings and the ground.
     load_points : tuple of str
         Points where other loads enter.
+    entrance : Entrance
+        Of the scene: where loads enter.
     """
 
     bearings: tuple[str, ...]
@@ -65,6 +72,7 @@ class LinearBody:
     motions_of_bearings: Floats
     housings: Floats
     load_points: tuple[str, ...] = ()
+    entrance: Entrance = AT_HUB
 
     def forces(self, factors: Floats, deflections: Floats) -> Floats:
         """Loads (n, k, 5) on the bearings, from the body's side.
@@ -291,27 +299,50 @@ def applied(body: Condensed, load_points: Sequence[str] = ()) -> Floats:
     return F
 
 
-def factors_of(hub_loads: ArrayLike, gearbox_weight: float = 0.0, gravity: float = 0.0) -> Floats:
+@overload
+def factors_of(
+    hub_loads: PointLoads, gearbox_weight: float = 0.0, gravity: float = 0.0
+) -> Factors: ...
+
+
+@overload
+def factors_of(
+    hub_loads: ArrayLike, gearbox_weight: float = 0.0, gravity: float = 0.0
+) -> Floats: ...
+
+
+def factors_of(
+    hub_loads: PointLoads | ArrayLike, gearbox_weight: float = 0.0, gravity: float = 0.0
+) -> Factors | Floats:
     """Factors of the loads of `response.scene_loads`.
 
     Parameters
     ----------
-    hub_loads : array_like
-        (n, 6) or (6,): Fx, Fy, Fz [N], Mx, My, Mz [N m] on the shaft at the hub; then, six more
-        each, at the load points of a body that has such, with their weights.
+    hub_loads : PointLoads or array_like
+        As `response.entering` makes them of a history and a scene. An array, (n, 6) or (6,), has
+        Fx, Fy, Fz [N], Mx, My, Mz [N m] on the shaft at the hub; then, six more each, at the load
+        points of a body that has such, with their weights.
     gearbox_weight, gravity : float
         [N] and [m/s^2], both along -z.
 
     Returns
     -------
-    factors : Floats
-        (n, 10), or (n, 10 + 6 m) for m load points.
+    factors : Factors or Floats
+        (n, 10), or (n, 10 + 6 m) for m load points; an array of an array, which a scene refuses
+        that states another point than its front face.
 
     Raises
     ------
     InputError
-        The loads have another shape, or one is no number.
+        The loads have another shape, one is no number, or they are a history.
     """
+    if isinstance(hub_loads, PointLoads):
+        return Factors(factors_of(hub_loads.values, gearbox_weight, gravity))
+    if isinstance(hub_loads, LoadHistory):
+        raise InputError(
+            f"{hub_loads.name}: a history has no factors before it acts on a scene: give "
+            "entering(scene, history)"
+        )
     hub = np.atleast_2d(np.asarray(hub_loads, dtype=float))
     if hub.ndim != 2 or hub.shape[1] == 0 or hub.shape[1] % 6:
         raise InputError(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,9 +15,11 @@ from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.coupled.body import LinearBody, factors_of
 from fe_drivetrain.coupled.newton import coupled_equilibrium
 from fe_drivetrain.coupled.springs import on_springs, tilt_springs
+from fe_drivetrain.hub_loads.point_loads import PointLoads
 from fe_drivetrain.life.rated import RatedBearing
 from fe_drivetrain.life.roller_damage import Damage, LifeRules, Steps, damage_of_history
 from fe_drivetrain.life.roller_models import CHUNK, RollerModel, balanced, rigid_rings
+from fe_drivetrain.response.entering import Loads, entering
 
 PINNED = 0.0
 """Tilting stiffness of a support that carries no moment [N m/rad]."""
@@ -63,14 +65,14 @@ class LoadPath:
             )
         object.__setattr__(self, "_model", self.rollers or rigid_rings(self.bearings[self.name]))
 
-    def bearing_loads(self, hub_loads: ArrayLike) -> tuple[Floats, Bools]:
+    def bearing_loads(self, hub_loads: Loads) -> tuple[Floats, Bools]:
         """Loads on the inner ring of the named bearing.
 
         Parameters
         ----------
-        hub_loads : array_like
-            (n, 6) Fx, Fy, Fz [N], Mx, My, Mz [N m] of the rotor on the shaft at the hub; six
-            columns more for each load point of the body.
+        hub_loads : LoadHistory, PointLoads or array_like
+            As `response.entering` takes them; an array is (n, 6) Fx, Fy, Fz [N], Mx, My, Mz [N m]
+            of the rotor on the shaft at the hub; six columns more for each load point of the body.
 
         Returns
         -------
@@ -78,8 +80,13 @@ class LoadPath:
             (n, 5) Fx, Fy, Fz [N], My, Mz [N m] at its centre.
         converged : Bools
             (n,) whether there is equilibrium.
+
+        Raises
+        ------
+        InputError
+            `response.entering` refuses the loads.
         """
-        factors = factors_of(hub_loads, self.gearbox_weight, self.gravity)
+        factors = factors_of(entering(self.body, hub_loads), self.gearbox_weight, self.gravity)
         place = self.body.bearings.index(self.name)
         if self.tilt_stiffness is None:
             found = coupled_equilibrium(self.body, self.bearings, factors)
@@ -92,15 +99,15 @@ class LoadPath:
         return forces, np.ones(len(forces), dtype=bool)
 
     def steps(
-        self, hub_loads: ArrayLike, speed: ArrayLike, seconds: ArrayLike, chunk: int = CHUNK
+        self, hub_loads: Loads, speed_rpm: ArrayLike, seconds: ArrayLike, chunk: int = CHUNK
     ) -> Iterator[Steps]:
         """Load steps of the bearing, some hundred at a time.
 
         Parameters
         ----------
-        hub_loads : array_like
-            (n, 6) [N, N m].
-        speed, seconds : array_like
+        hub_loads : LoadHistory, PointLoads or array_like
+            (n, 6) [N, N m], as of `bearing_loads`.
+        speed_rpm, seconds : array_like
             (n,) or one for all: of the shaft [1/min], and how long each lasts [s].
         chunk : int
             Steps at a time.
@@ -110,9 +117,9 @@ class LoadPath:
         steps : Steps
             In order.
         """
-        hub = np.atleast_2d(np.asarray(hub_loads, dtype=float))
+        hub = _steps(self.body, hub_loads)
         turns, lasting = (
-            np.broadcast_to(np.asarray(v, dtype=float), (len(hub),)) for v in (speed, seconds)
+            np.broadcast_to(np.asarray(v, dtype=float), (len(hub),)) for v in (speed_rpm, seconds)
         )
         for part in chunks(len(hub), chunk):
             loads, found = self.bearing_loads(hub[part])
@@ -123,8 +130,8 @@ class LoadPath:
 
 def damage_of_hub_loads(
     path: LoadPath,
-    hub_loads: ArrayLike,
-    speed: ArrayLike,
+    hub_loads: Loads,
+    speed_rpm: ArrayLike,
     seconds: ArrayLike,
     rated: RatedBearing,
     rules: LifeRules,
@@ -136,9 +143,9 @@ def damage_of_hub_loads(
     ----------
     path : LoadPath
         From the hub to its laminae.
-    hub_loads : array_like
-        (n, 6) [N, N m].
-    speed, seconds : array_like
+    hub_loads : LoadHistory, PointLoads or array_like
+        (n, 6) [N, N m], as of `LoadPath.bearing_loads`.
+    speed_rpm, seconds : array_like
         (n,) or one for all: of the shaft [1/min], and how long each step lasts [s].
     rated : RatedBearing
         The named bearing with its ratings.
@@ -151,14 +158,26 @@ def damage_of_hub_loads(
     -------
     damage : Damage
         Of the whole history, in memory that does not grow with it.
+
+    Raises
+    ------
+    InputError
+        `response.entering` refuses the loads.
     """
-    count = len(np.atleast_2d(np.asarray(hub_loads)))
+    hub = _steps(path.body, hub_loads)
+    count = len(hub)
 
     def counted() -> Iterator[Steps]:
         done = 0
-        for steps in path.steps(hub_loads, speed, seconds):
+        for steps in path.steps(hub, speed_rpm, seconds):
             yield steps
             done += len(steps.loads)
             report(f"load steps ({done} of {count})")
 
     return damage_of_history(counted(), rated, rules)
+
+
+def _steps(body: LinearBody, hub_loads: Loads) -> PointLoads:
+    """Load steps (n, 6 or more) as they enter the body; a single one as one of one."""
+    found = entering(body, hub_loads)
+    return replace(found, values=np.atleast_2d(found.values))

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fe_drivetrain.bearing.contact_forces import MOTIONS, forces, roller_loads
 from fe_drivetrain.bearing.geometry import Bearing
@@ -17,6 +18,7 @@ from fe_drivetrain.bearing.rolling import TOLERANCE
 from fe_drivetrain.common.arrays import Bools, Floats, Ints, chunks
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.coupled.body import LinearBody
+from fe_drivetrain.response.entering import Factors, factor_values
 
 #: Load cases that are iterated together.
 CHUNK = 4096
@@ -105,7 +107,7 @@ class CoupledEquilibrium:
 def coupled_equilibrium(
     body: LinearBody,
     bearings: Mapping[str, Bearing],
-    factors: Floats,
+    factors: Factors | ArrayLike,
     *,
     tolerance: float = TOLERANCE,
 ) -> CoupledEquilibrium:
@@ -118,7 +120,7 @@ def coupled_equilibrium(
     bearings : Mapping
         Bearing by name, one for each of the body's. One that does not resist a motion, as a
         toroidal one along the axis, leaves it to its neighbours.
-    factors : Floats
+    factors : Factors or array_like
         (n, 10) of the loads of `response.LOADS`, six more for each load point of the body, see
         `factors_of`.
     tolerance : float
@@ -132,10 +134,11 @@ def coupled_equilibrium(
     Raises
     ------
     InputError
-        A bearing is missing, a load acts on a motion that nothing carries, or lifts a ring off.
+        A bearing is missing, `response.factor_values` refuses the factors, or a load acts
+        on a motion that nothing carries, or lifts a ring off.
     """
     given = _in_order(body, bearings)
-    p = np.atleast_2d(np.asarray(factors, dtype=float))
+    p = np.atleast_2d(factor_values(body, factors))
     columns = body.loads.shape[1]
     if p.ndim != 2 or p.shape[1] != columns or not np.isfinite(p).all():
         at = f" of loads at hub, {', '.join(body.load_points)}" if body.load_points else ""

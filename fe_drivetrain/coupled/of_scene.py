@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
@@ -47,4 +48,4 @@ def scene_body(
     gearbox = as_numbers(scene.gearbox.stiffness)
     supports = {"gearbox": gearbox} if gearbox.any() else {}
     body = linear_body(condensed_shaft(scene, level), names, supports, list(scene.bands))
-    return in_housings(body, housings or {})
+    return replace(in_housings(body, housings or {}), entrance=scene.entrance)

@@ -62,4 +62,5 @@ def body_on_races(body: LinearBody, races: Races) -> RollerAssembly:
         lengths[:, None] * (pushed @ follows[:, size:]),
         {},
         np.zeros(size),
+        body.entrance,
     )

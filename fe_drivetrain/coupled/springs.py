@@ -16,6 +16,7 @@ from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.coupled.body import LinearBody
 from fe_drivetrain.coupled.newton import contact_stiffness
+from fe_drivetrain.response.entering import Factors, factor_values
 
 #: The thesis's change of K_R at which its loop stops (Stirling 2023, section 4.3.1).
 CHANGE = 0.01
@@ -68,14 +69,14 @@ class StiffnessLoop:
     converged: Bools
 
 
-def on_springs(body: LinearBody, factors: Floats, springs: ArrayLike) -> OnSprings:
+def on_springs(body: LinearBody, factors: Factors | ArrayLike, springs: ArrayLike) -> OnSprings:
     """The body with a diagonal spring in place of each bearing.
 
     Parameters
     ----------
     body : LinearBody
         With or without housings in series.
-    factors : Floats
+    factors : Factors or array_like
         (n, 10) of the loads of `response.LOADS`.
     springs : array_like
         (k, 5) or (n, k, 5) against u_x, u_y, u_z, theta_y, theta_z; inf is rigid, in the same
@@ -89,16 +90,18 @@ def on_springs(body: LinearBody, factors: Floats, springs: ArrayLike) -> OnSprin
     Raises
     ------
     InputError
-        A spring is negative or no number, or the springs leave the body free.
+        A spring is negative or no number, `response.factor_values` refuses the factors, or
+        the springs leave the body free.
     """
     k = np.asarray(springs, dtype=float)
     if not (k >= 0.0).all():
         raise InputError("springs in place of bearings must be 0 or more, inf for rigid")
-    k = np.broadcast_to(k.reshape(-1, len(body.loads)), (len(factors), len(body.loads)))
+    p = np.atleast_2d(factor_values(body, factors))
+    k = np.broadcast_to(k.reshape(-1, len(body.loads)), (len(p), len(body.loads)))
     free = np.isfinite(k).all(axis=0)
     if np.isfinite(k[:, ~free]).any():
         raise InputError("a spring is rigid in some load cases alone: give the same in all")
-    F = factors @ body.loads.T
+    F = p @ body.loads.T
     q = np.zeros_like(F)
     K = np.broadcast_to(body.stiffness[np.ix_(free, free)], (len(F), free.sum(), free.sum())).copy()
     K[:, np.arange(free.sum()), np.arange(free.sum())] += k[:, free]
@@ -173,7 +176,7 @@ def tilting_stiffness(
 def stiffness_loop(
     body: LinearBody,
     bearings: Mapping[str, Bearing],
-    factors: Floats,
+    factors: Factors | ArrayLike,
     *,
     change: float = CHANGE,
     first: float = FIRST,
@@ -192,7 +195,7 @@ def stiffness_loop(
         With or without housings in series.
     bearings : Mapping
         Bearing by name.
-    factors : Floats
+    factors : Factors or array_like
         (n, 10) of the loads of `response.LOADS`, in the order of time.
     change : float
         Relative change of K_R that ends a loop.
@@ -209,9 +212,15 @@ def stiffness_loop(
     -------
     found : StiffnessLoop
         Of each load case the last round.
+
+    Raises
+    ------
+    InputError
+        `response.factor_values` refuses the factors.
     """
     given = [bearings[name] for name in body.bearings]
-    n, k = len(factors), len(given)
+    p = Factors(factor_values(body, factors))
+    n, k = len(p), len(given)
     now = np.array([tilt_springs(bearing, first, translations)[3] for bearing in given])
     loads, displacements = np.zeros((n, k, 5)), np.zeros((n, k, 5))
     stiffness, rounds = np.zeros((n, k)), np.zeros(n, np.int64)
@@ -221,7 +230,7 @@ def stiffness_loop(
             springs = np.array(
                 [tilt_springs(b, K, translations) for b, K in zip(given, now, strict=True)]
             )
-            f = on_springs(body, factors[case : case + 1], springs).forces[0]
+            f = on_springs(body, p[case : case + 1], springs).forces[0]
             u = np.array(
                 [
                     equilibrium(bearing, load).displacements[0]

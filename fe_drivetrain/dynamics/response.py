@@ -178,7 +178,7 @@ class Crossing:
     frequency : float
         [Hz].
     speed : float
-        Of the rotor [rpm].
+        Of the rotor [rad/s].
     mode : int
         Number of the frequency, from 0.
     """
@@ -205,7 +205,7 @@ def crossings(
     orders : mapping of str to float
         Cycles in a turn of the rotor.
     speeds : tuple of float
-        Least and largest of the rotor [rpm].
+        Least and largest of the rotor [rad/s].
     harmonics : iterable of int
         Multiples of each order.
     """

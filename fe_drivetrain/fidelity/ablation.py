@@ -100,10 +100,10 @@ def effects(
         bodies["shear deformation"] = beam_shaft(scene, shear=False)
     for detail, body in bodies.items():
         add(detail, quantity.of(shaft_level(scene, level, housings, body), length))
-    if quantity.load is not None:
+    if (given := quantity.factors) is not None:
         for detail, columns in (("self-weight", slice(6, 9)), ("gearbox weight", slice(9, 10))):
-            if np.any(quantity.load[columns]):
-                load = quantity.load.copy()
+            if np.any(given[columns]):
+                load = given.copy()
                 load[columns] = 0.0
                 add(detail, Quantity(quantity.name, load).of(base, length))
     return sorted(found, key=lambda effect: -abs(effect.change))

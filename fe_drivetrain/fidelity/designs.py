@@ -24,6 +24,7 @@ from fe_drivetrain.fidelity.ladder import housing_springs, shaft_level, statics_
 from fe_drivetrain.fidelity.quantities import NOISE
 from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.fidelity.shafts import condensed_shaft
+from fe_drivetrain.response.entering import Factors
 from fe_drivetrain.response.model import scene_loads
 from fe_drivetrain.scene.scene import Scene, coarser_scene
 
@@ -132,14 +133,14 @@ class Difference:
         return float(np.linalg.norm(change))
 
 
-def all_quantities(scene: Scene, load: Floats | None = None) -> list[Quantity]:
+def all_quantities(scene: Scene, load: Factors | None = None) -> list[Quantity]:
     """Stiffness at the hub, and reactions of the bearings and of the gearbox.
 
     Parameters
     ----------
     scene : Scene
         The scene.
-    load : Floats or None
+    load : Factors or None
         That causes the reactions, see `Quantity`.
     """
     names = [f"{owner}.{c}" for owner in (*scene.bearing_names, "gearbox") for c in FORCES]
@@ -230,12 +231,12 @@ def scene_changes(before: Scene, after: Scene) -> list[tuple[str, Any, Any]]:
     return [change for change in found if change[0] != "title"]
 
 
-def _factors(scene: Scene, load: Mapping[str, float]) -> Floats:
+def _factors(scene: Scene, load: Mapping[str, float]) -> Factors:
     names = scene_loads(scene)
     unknown = [name for name in load if name not in names]
     if unknown:
         raise InputError(f"load {unknown[0]!r} is unknown: use one of {', '.join(names)}")
-    return np.array([load.get(name, 0.0) for name in names])
+    return Factors(np.array([load.get(name, 0.0) for name in names]))
 
 
 def _named(report: Callable[[str], object], name: str) -> Callable[[str], object]:

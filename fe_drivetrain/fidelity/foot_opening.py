@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.response.entering import Loads
 from fe_drivetrain.response.foot_contact import clamped_foot, is_clamped
 from fe_drivetrain.response.unit_loads import Response
 from fe_drivetrain.scene.scene import Scene
@@ -16,7 +17,7 @@ _MOTIONS = ("along x", "along y", "along z", "about x", "about y", "about z")
 
 
 def foot_warnings(
-    scene: Scene, response: Response, loads: Floats, weights: Floats, gravity: float
+    scene: Scene, response: Response, loads: Loads, weights: Floats, gravity: float
 ) -> tuple[str, ...]:
     """A sentence for each clamped foot that loads open enough to move its seat otherwise.
 
@@ -26,7 +27,7 @@ def foot_warnings(
         The scene.
     response : Response
         Of its assembly, which is linear: no patch of a foot opens or closes.
-    loads : Floats
+    loads : LoadHistory, PointLoads or array_like
         (N, 6 + 6 m) at the hub and at load points, see `Response.history`.
     weights : Floats
         (N,) of the samples, their sum 1.

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache
@@ -30,8 +31,10 @@ from fe_drivetrain.fidelity.shafts import (
 )
 from fe_drivetrain.foreign.assembly import solids_of_unit
 from fe_drivetrain.response.cached import cached_response
+from fe_drivetrain.response.entering import Factors, factor_values
 from fe_drivetrain.response.model import LOADS, Model, build_model, mesh_scene, scene_loads
 from fe_drivetrain.response.unit_loads import Response
+from fe_drivetrain.scene.entrance import AT_HUB, Entrance
 from fe_drivetrain.scene.joint_springs import joint_stiffness
 from fe_drivetrain.scene.scene import Coupling, Scene
 from fe_drivetrain.solve.condensation import Condensed, supported
@@ -87,6 +90,8 @@ class LevelModel:
     points, compliance : tuple[str, ...], Floats
         Names of n points, and (6 n, 6 n) motions of each for unit forces and moments at each, on
         the scene's supports; no points at level 0.
+    entrance : Entrance
+        Of the scene: where loads enter.
     """
 
     level: int
@@ -96,10 +101,18 @@ class LevelModel:
     reaction_matrices: Mapping[str, Floats]
     points: tuple[str, ...] = ()
     compliance: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+    entrance: Entrance = AT_HUB
 
-    def reactions(self, load: Floats) -> dict[str, Floats]:
-        """Reactions (..., 6) [N, N m] to loads (..., n), factors of `model.scene_loads`."""
-        return {name: load @ matrix.T for name, matrix in self.reaction_matrices.items()}
+    def reactions(self, load: Factors | ArrayLike) -> dict[str, Floats]:
+        """Reactions (..., 6) [N, N m] to loads (..., n), factors of `model.scene_loads`.
+
+        Raises
+        ------
+        InputError
+            `response.factor_values` refuses them.
+        """
+        factors = factor_values(self, load)
+        return {name: factors @ matrix.T for name, matrix in self.reaction_matrices.items()}
 
     def stiffness(self, at: Sequence[str]) -> Floats:
         """(6 n, 6 n) stiffness at n points of the scene on its supports [N/m, N, N m/rad].
@@ -165,7 +178,7 @@ def statics_level(scene: Scene) -> LevelModel:
         neglects.append(f"cannot tell {', '.join(unknown)}: statics does not decide their shares")
     cost = Cost(time.perf_counter() - start, len(carried))
     reactions = _Weighed(matrices, scene, on_shaft=ringed_shaft(scene)[1])
-    return LevelModel(0, TITLES[0], tuple(neglects), cost, reactions)
+    return LevelModel(0, TITLES[0], tuple(neglects), cost, reactions, entrance=scene.entrance)
 
 
 def shaft_level(
@@ -229,7 +242,9 @@ def shaft_level(
     cost = Cost(time.perf_counter() - start, 6 * n)
     motions = found.motions[:, : 6 * n]
     weighed = _Weighed(reactions, scene, on_shaft)
-    return LevelModel(level, title, tuple(neglects), cost, weighed, body.names, motions)
+    return LevelModel(
+        level, title, tuple(neglects), cost, weighed, body.names, motions, scene.entrance
+    )
 
 
 def assembly_level(scene: Scene, cache: Cache | None = None) -> LevelModel:
@@ -261,7 +276,7 @@ def level_of_response(scene: Scene, response: Response, seconds: float) -> Level
     cost = Cost(seconds, response.diagnostics.n_unknowns)
     neglects = () if scene.nose is None else (_ROUND_A_NOSE,)
     motions = response.motions["hub"][:, :6]
-    return LevelModel(4, TITLES[4], neglects, cost, reactions, ("hub",), motions)
+    return LevelModel(4, TITLES[4], neglects, cost, reactions, ("hub",), motions, scene.entrance)
 
 
 def housing_springs(

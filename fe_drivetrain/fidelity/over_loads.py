@@ -24,6 +24,7 @@ from fe_drivetrain.fidelity.ladder import (
 from fe_drivetrain.fidelity.shaft_bands import APART, COARSER
 from fe_drivetrain.fidelity.shafts import condensed_shaft, reference_points
 from fe_drivetrain.mesh.measures import mean_size
+from fe_drivetrain.response.entering import Loads, entering
 from fe_drivetrain.response.model import mesh_scene
 from fe_drivetrain.response.unit_loads import Response, driving
 from fe_drivetrain.scene.scene import Scene
@@ -141,7 +142,7 @@ def levels_of(scene: Scene, response: Response, report: Progress = silent) -> Le
 
 
 def reaction_history(
-    model: LevelModel, name: str, hub_loads: Floats, gearbox_weight: float, gravity: float
+    model: LevelModel, name: str, hub_loads: Loads, gearbox_weight: float, gravity: float
 ) -> Floats:
     """One reaction over any number of load steps.
 
@@ -151,8 +152,9 @@ def reaction_history(
         The scene at a level.
     name : str
         Of a bearing, or "gearbox".
-    hub_loads : ndarray, (..., 6)
-        Hub forces [N] and moments [N m]; with (..., 6 + 6 m) those at the m load points, too.
+    hub_loads : LoadHistory, PointLoads or array_like
+        As `response.entering` takes them; an array is (..., 6) hub forces [N] and moments [N m]
+        about the front face, or (..., 6 + 6 m) with those at the m load points.
     gearbox_weight : float
         Weight of the gearbox [N], along -z.
     gravity : float
@@ -162,9 +164,15 @@ def reaction_history(
     -------
     ndarray, (..., 6)
         What the drivetrain puts on its support [N, N m].
+
+    Raises
+    ------
+    InputError
+        `response.entering` refuses the loads.
     """
     R = model.reaction_matrices[name]
-    result = hub_loads @ driving(R, hub_loads.shape[-1]).T
+    driven = entering(model, hub_loads).values
+    result = driven @ driving(R, driven.shape[-1]).T
     result += gearbox_weight * R[:, 9] - gravity * R[:, 8]
     return np.asarray(result)
 

@@ -16,6 +16,7 @@ from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.fidelity.ladder import LevelModel
 from fe_drivetrain.fidelity.quantity import Quantity
+from fe_drivetrain.response.entering import Factors, factor_values
 from fe_drivetrain.response.model import LOADS, scene_loads
 from fe_drivetrain.scene.bearing_unit import SPHERICAL_JOINTS
 from fe_drivetrain.scene.scene import Scene
@@ -129,7 +130,9 @@ def stiffness_names(scene: Scene) -> list[str]:
     return names
 
 
-def numbers(scene: Scene, names: Sequence[str], load: Floats | None = None) -> list[Number]:
+def numbers(
+    scene: Scene, names: Sequence[str], load: Factors | Floats | None = None
+) -> list[Number]:
     """The numbers of these names.
 
     Parameters
@@ -138,16 +141,17 @@ def numbers(scene: Scene, names: Sequence[str], load: Floats | None = None) -> l
         The scene.
     names : Sequence[str]
         Of `known_names`.
-    load : Floats or None
+    load : Factors, Floats or None
         (n,) factors of `model.scene_loads`, for reactions; else a reaction stands for six
         numbers, one for a unit of each hub load.
 
     Raises
     ------
     InputError
-        A name is unknown.
+        A name is unknown, or `response.factor_values` refuses the load.
     """
     known = known_names(scene)
+    given = None if load is None else factor_values(scene, load)
     found: list[Number] = []
     for name in dict.fromkeys(names):
         if name not in known:
@@ -161,8 +165,8 @@ def numbers(scene: Scene, names: Sequence[str], load: Floats | None = None) -> l
             found.append(Number(name, unit, _of_unit(owner, part)))
         elif owner == "hub":
             found.append(_of_model(name, Quantity(name)))
-        elif load is not None:
-            found.append(_of_model(name, Quantity(name, load)))
+        elif given is not None:
+            found.append(_of_model(name, Quantity(name, given)))
         else:
             for column, of in enumerate(LOADS[:6]):
                 one = np.zeros(len(scene_loads(scene)))
@@ -192,10 +196,10 @@ def without_zeros(found: Sequence[Number], solved: Solved) -> list[Number]:
 
 def _vanishes(number: Number, solved: Solved) -> bool:
     value = abs(number.of(solved))
-    if number.quantity is None or number.quantity.load is None:
+    load = None if number.quantity is None else number.quantity.factors
+    if load is None:
         return value == 0.0
     # against the largest reaction to any of the loads
-    load = number.quantity.load
     size = max(
         float(np.abs(matrix[:, load != 0] * load[load != 0]).max())
         for matrix in solved.model.reaction_matrices.values()

@@ -10,6 +10,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.fidelity.ladder import LevelModel
+from fe_drivetrain.response.entering import Factors, factor_values
 from fe_drivetrain.scene.scene import Scene
 
 
@@ -22,12 +23,17 @@ class Quantity:
     name : str
         "NAME.Fx" to "NAME.Mz", a reaction of a bearing or of the gearbox; "hub.stiffness.ux" to
         "hub.stiffness.rz", force over motion of the hub, all others of its loads zero.
-    load : Floats or None
+    load : Factors, Floats or None
         (n,) factors of `model.scene_loads`; None for a reaction to all hub loads, one at a time.
     """
 
     name: str
-    load: Floats | None = None
+    load: Factors | Floats | None = None
+
+    @property
+    def factors(self) -> Floats | None:
+        """(n,) factors of the load, as an array."""
+        return self.load.values if isinstance(self.load, Factors) else self.load
 
     def check(self, scene: Scene) -> None:
         """Refuse what the scene does not have.
@@ -35,8 +41,10 @@ class Quantity:
         Raises
         ------
         InputError
-            The name is none of the scene's.
+            The name is none of the scene's, or `response.factor_values` refuses the load.
         """
+        if self.load is not None:
+            factor_values(scene, self.load)
         names = [*scene.bearing_names, "gearbox"]
         known = [f"{name}.{c}" for name in names for c in FORCES]
         known += [f"hub.stiffness.{motion}" for motion in MOTIONS]
@@ -55,8 +63,8 @@ class Quantity:
         """(n, k) factors of the n unit loads of the scene that each value is of, see `of`."""
         if self.name.startswith("hub.stiffness"):
             return np.eye(n)[:, [MOTIONS.index(self.name.rpartition(".")[2])]]
-        if self.load is not None:
-            return self.load[:, None]
+        if self.factors is not None:
+            return self.factors[:, None]
         scale = np.array([1.0, 1.0, 1.0, length, length, length])
         return np.asarray(np.eye(n)[:, :6] * scale)
 
@@ -70,7 +78,7 @@ class Quantity:
             row = 6 * model.points.index("hub") + motion
             return np.array([1.0 / model.compliance[row, row]])
         row = model.reaction_matrices[owner][FORCES.index(component)]
-        if self.load is not None:
+        if (load := self.factors) is not None:
             # 0 times what is not known is 0
-            return np.array([row[self.load != 0] @ self.load[self.load != 0]])
+            return np.array([row[load != 0] @ load[load != 0]])
         return np.asarray(row[:6] * np.array([1.0, 1.0, 1.0, length, length, length]))

@@ -28,6 +28,7 @@ from .moving_turbine import even_inflow as even_inflow
 from .moving_turbine import simulate as simulate
 from .moving_turbine import turbine_histories as turbine_histories
 from .moving_turbine import turbine_history as turbine_history
+from .point_loads import PointLoads as PointLoads
 from .recorded import Recorded as Recorded
 from .recorded import read_recorded as read_recorded
 from .recorded import recorded_files as recorded_files
@@ -45,6 +46,8 @@ from .turbine import Physics as Physics
 from .turbine import Turbine as Turbine
 from .turbine import natural_frequencies as natural_frequencies
 from .turbine import similar_turbine as similar_turbine
+from .turbines import different_turbines as different_turbines
+from .turbines import vertical_forces as vertical_forces
 from .wind_boxes import WindBox as WindBox
 from .wind_boxes import box_hub_loads as box_hub_loads
 from .wind_boxes import read_bts as read_bts

@@ -138,19 +138,3 @@ def to_shaft_frame(loads: Floats, tilt: float) -> Floats:
         x, z = loads[:, first], loads[:, first + 2]
         turned[:, first], turned[:, first + 2] = cos * x - sin * z, sin * x + cos * z
     return turned
-
-
-def carried_to_hub(loads: Floats, distance: float) -> Floats:
-    """Loads (n, 6) about the hub, from those about a point downwind of it along the shaft.
-
-    Parameters
-    ----------
-    loads : ndarray, (n, 6)
-        In the shaft frame.
-    distance : float
-        From the hub to the point [m].
-    """
-    moved = loads.copy()
-    moved[:, 4] -= distance * loads[:, 2]
-    moved[:, 5] += distance * loads[:, 1]
-    return moved

@@ -28,10 +28,11 @@ from fe_drivetrain.hub_loads.channels import (
     not_utf8,
     parse_number,
 )
-from fe_drivetrain.hub_loads.histories import UNITS, Attribute, LoadHistory, require_sound
+from fe_drivetrain.hub_loads.histories import UNITS, About, Attribute, LoadHistory, require_sound
 
 _CSV_COLUMNS = ("time", *FORCES)
 _TABLES = (FORCE_UNITS,) * 3 + (MOMENT_UNITS,) * 3
+_ABOUT = "moments about"  # key of a line before the header: x [m], or "front face"
 _CSV_EXAMPLE = "time [s],Fx [N],Fy [N],Fz [N],Mx [N m],My [N m],Mz [N m]"
 
 
@@ -41,7 +42,8 @@ def read_csv(path: str | os.PathLike[str]) -> LoadHistory:
     The header is like ``time [s],Fx [kN],...,Mz [kN m]``, columns in any order, others ignored.
     Columns like ``brake.Fz [kN]`` are loads at another point of the shaft; those that a point does
     not have are zero.
-    Lines ``# key = value`` before it become the attributes.
+    Lines ``# key = value`` before it become the attributes; ``# moments about = 0.7`` is x [m] of
+    the point that moments are about, where that is another than a scene states.
 
     Raises
     ------
@@ -72,7 +74,10 @@ def read_csv(path: str | os.PathLike[str]) -> LoadHistory:
     require_sound(f"hub loads '{source}'", time, columns, rows)
     read = ", ".join(f"{name} [{channels[name].unit}]" for name in (*FORCES, *others))
     origin = {"source": file.name, "channels": f"{read}; signs as in the file, nothing turned"}
-    return LoadHistory(file.stem, time, np.column_stack(loads), origin | attributes, at, unread)
+    about = _about(attributes)
+    return LoadHistory(
+        file.stem, time, np.column_stack(loads), origin | attributes, at, unread, about
+    )
 
 
 def is_of_point(title: str) -> bool:
@@ -192,7 +197,9 @@ def write_csv(
     columns = [values[:, None] for values in more.values()]
     table = np.column_stack((history.time, history.loads, *history.at.values(), *columns))
     others = [f"{p}.{c} [{u}]" for p in history.at for c, u in zip(FORCES, UNITS, strict=True)]
-    lines = [comment_line(f"{key} = {value}") for key, value in history.attributes.items()]
+    facts = dict(history.attributes)
+    facts |= {} if history.about is None else {_ABOUT: str(history.about)}
+    lines = [comment_line(f"{key} = {value}") for key, value in facts.items()]
     lines.append(table_head([*_CSV_EXAMPLE.split(","), *others, *more]))
     lines += [",".join(map(repr, row)) for row in table.tolist()]
     try:
@@ -200,6 +207,15 @@ def write_csv(
             temporary.write_text("\n".join(lines) + "\n", encoding="utf-8")
     except OSError as error:
         raise InputError(f"hub loads '{file}': cannot be written ({error.strerror})") from error
+
+
+def _about(attributes: dict[str, Attribute]) -> About:
+    """The point that a file says its moments are about, taken from its attributes."""
+    stated = attributes.get(_ABOUT)
+    if stated != "front face" and not isinstance(stated, int | float):
+        return None
+    del attributes[_ABOUT]
+    return "front face" if isinstance(stated, str) else float(stated)
 
 
 def _csv_places(file: Path, header: Sequence[str]) -> dict[str, tuple[int, str]]:

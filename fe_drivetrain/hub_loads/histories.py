@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,6 +18,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.compare.statistics import CONSTANT
+from fe_drivetrain.hub_loads.point_loads import PointLoads
 from fe_drivetrain.plots.figures import load_lines
 
 UNITS = ("N", "N", "N", "N m", "N m", "N m")
@@ -38,6 +39,10 @@ SHORTEST_STEP, LONGEST_STEP = 1e-9, 1e9
 """Time steps [s] beyond these are a typing or unit error."""
 
 Attribute = float | int | str
+
+About = float | Literal["front face"] | None
+"""What moments at the hub are about: x on the shaft's axis [m], the front face of any shaft, or,
+of None, the point that a scene states for hub loads (`hub.loads_at`)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +65,8 @@ class LoadHistory:
     unread : Sequence[str]
         Titles of the other columns of the table that it was read from, in which `require_points`
         looks for misspelt load points.
+    about : float, "front face" or None
+        The point that moments at the hub are about, see `About`; None of a file.
 
     Raises
     ------
@@ -74,6 +81,7 @@ class LoadHistory:
     attributes: Mapping[str, Attribute] = field(default_factory=dict)
     at: Mapping[str, Floats] = field(default_factory=dict)
     unread: Sequence[str] = ()
+    about: About = None
 
     def __post_init__(self) -> None:
         time = _frozen(self.time)
@@ -132,6 +140,8 @@ class LoadHistory:
     def moved(self, start: float, stop: float) -> LoadHistory:
         """The same loads, those at the hub with moments about another point of the shaft's axis.
 
+        Loads that are to act on a scene are moved by `fe_drivetrain.response.entering`.
+
         Parameters
         ----------
         start, stop : float
@@ -140,16 +150,15 @@ class LoadHistory:
         Returns
         -------
         LoadHistory
-            Itself where both are one; its "channels" say that it was moved.
+            About the other point; where both differ, its "channels" say that it was moved.
         """
         if start == stop:
-            return self
-        loads = self.loads.copy()
-        loads[:, 4] -= (start - stop) * self.loads[:, 2]
-        loads[:, 5] += (start - stop) * self.loads[:, 1]
+            return replace(self, about=stop)
+        loads = PointLoads(self.loads, start).moved(stop).values
         read = self.attributes.get("channels", "as in the file")
         channels = f"{read}; moments about x = {start:g} m moved to x = {stop:g} m"
-        return replace(self, loads=loads, attributes={**self.attributes, "channels": channels})
+        attributes = {**self.attributes, "channels": channels}
+        return replace(self, loads=loads, attributes=attributes, about=stop)
 
     def plot(self) -> Any:
         """Forces and moments over time, as a Plotly figure; see `fe_drivetrain.plots.load_lines`.

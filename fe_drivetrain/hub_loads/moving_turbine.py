@@ -383,7 +383,8 @@ def _turbine_history(
 def _history(condition: Condition, arrays: dict[str, Floats], rate: float) -> TurbineHistory:
     attributes: dict[str, Attribute] = {**asdict(condition), "source": "moving turbine"}
     loads = arrays["loads"]
-    history = LoadHistory(condition.name, np.arange(len(loads)) / rate, loads, attributes)
+    time = np.arange(len(loads)) / rate
+    history = LoadHistory(condition.name, time, loads, attributes, about="front face")
     return TurbineHistory(history, **{name: arrays[name] for name in _KEPT[1:]})
 
 

@@ -23,7 +23,12 @@ from fe_drivetrain.hub_loads.channels import Channel, parse_number
 
 _WITH_TIME, _UNPACKED, _LONG_NAMES = 1, 3, 4
 _HEADER_LINES, _NAME_LINE = 8, 6
+_MOST_HEADER = 12  # bytes of a binary file up to its number of samples
 _BLOCK = 1 << 21  # values that are unpacked at once
+
+
+class _MoreRunsError(ValueError):
+    """A file has more than one run."""
 
 
 def openfast_channels(file: Path, wanted: Collection[str] | None = None) -> dict[str, Channel]:
@@ -49,6 +54,8 @@ def openfast_channels(file: Path, wanted: Collection[str] | None = None) -> dict
             names, units, values = _binary(file, wanted)
         else:
             names, units, values = _text(file, wanted)
+    except _MoreRunsError as error:
+        raise InputError(f"hub loads '{file}': {error}") from error
     except (OSError, ValueError, IndexError, OverflowError) as error:
         where = _first_bad_cell(file) or f"it cannot be read as OpenFAST output ({error})"
         raise InputError(f"hub loads '{file}': {where}; run OpenFAST again") from error
@@ -118,9 +125,24 @@ def _binary(
             count = min(rows, samples - start)
             part = _numbers(stream, kind.str, count * channels).reshape(count, channels)
             values[start : start + count] = (part[:, columns] - offset[columns]) / scale[columns]
+        if _begins_a_run(stream.read(_MOST_HEADER), size):
+            raise _MoreRunsError(
+                f"a second run begins after the {samples} samples of the first: give each run a "
+                "file of its own"
+            )
     if 0 in chosen:
         values = np.column_stack([time, values])
     return names, [unit.strip("()") for unit in units], values
+
+
+def _begins_a_run(block: bytes, size: int) -> bool:
+    """Whether bytes after a run are the header of another; other bytes may follow old files."""
+    if len(block) < _MOST_HEADER:
+        return False
+    (identifier,) = np.frombuffer(block[:2], "<i2").tolist()
+    at = 4 if identifier == _LONG_NAMES else 2
+    channels, samples = np.frombuffer(block[at : at + 8], "<i4").tolist()
+    return 1 <= identifier <= _LONG_NAMES and 0 < channels * samples < size and channels > 0
 
 
 def _numbers(stream: BinaryIO, kind: str, count: int) -> NDArray[np.generic]:
@@ -148,8 +170,15 @@ def _text(file: Path, wanted: Collection[str] | None) -> tuple[list[str], list[s
     """Names, units and values (samples, chosen) of a .out, time first."""
     with file.open("rb") as stream:
         header = [_decoded(line) for line in islice(stream, _HEADER_LINES)]
-        if any(re.search(rb"[_\x80-\xff]", line) for line in stream):
-            raise ValueError("a cell is not a number")
+        names = header[_NAME_LINE].split() if len(header) > _NAME_LINE else []
+        for number, line in enumerate(stream, start=_HEADER_LINES + 1):
+            if names and _decoded(line).split()[:2] == names[:2]:
+                raise _MoreRunsError(
+                    f"line {number} has the names of channels again, where a second run begins: "
+                    "give each run a file of its own"
+                )
+            if re.search(rb"[_\x80-\xff]", line):
+                raise ValueError("a cell is not a number")
     if len(header) < _HEADER_LINES:
         raise ValueError(f"it has {len(header)} lines")
     names, units = header[_NAME_LINE].split(), header[_NAME_LINE + 1].split()

@@ -16,7 +16,6 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.hub_loads.channel_map import (
     LOAD_NAMES,
     ChannelMap,
-    carried_to_hub,
     to_shaft_frame,
 )
 from fe_drivetrain.hub_loads.channels import (
@@ -42,6 +41,7 @@ from fe_drivetrain.hub_loads.openfast import (
     turn_to_fixed,
 )
 from fe_drivetrain.hub_loads.openfast_output import openfast_channels
+from fe_drivetrain.hub_loads.point_loads import moved_moments
 
 SPEED_UNITS = {"rad/s": 1.0, "rpm": np.pi / 30.0, "deg/s": np.pi / 180.0}
 WIND_UNITS = {"m/s": 1.0}
@@ -262,11 +262,12 @@ def _at_hub(history: LoadHistory, mapping: ChannelMap, own_names: bool) -> LoadH
         read = read.removesuffix(_NOTHING_TURNED)
         read += f"; turned from a horizontal frame by the shaft's tilt of {mapping.tilt:g} deg"
     if mapping.moments_at and (not own_names or "My" in mapping.channels):
-        loads = carried_to_hub(loads, mapping.moments_at)
+        loads = moved_moments(loads, mapping.moments_at)
         read += f"; moments carried to the hub from {mapping.moments_at:g} m downwind of it"
     if loads is history.loads:
         return history
-    return replace(history, loads=loads, at=at, attributes={**history.attributes, "channels": read})
+    attributes = {**history.attributes, "channels": read}
+    return replace(history, loads=loads, at=at, attributes=attributes, about=None)
 
 
 def _read_of(history: LoadHistory) -> str:

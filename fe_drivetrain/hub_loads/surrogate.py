@@ -337,7 +337,7 @@ def _time(duration: float, rate: float) -> Floats:
 
 def _history(condition: Condition, time: Floats, loads: Floats) -> LoadHistory:
     attributes: dict[str, Attribute] = {**asdict(condition), "source": "surrogate"}
-    return LoadHistory(condition.name, time, loads, attributes)
+    return LoadHistory(condition.name, time, loads, attributes, about="front face")
 
 
 # --- keeping -------------------------------------------------------------------------------------

@@ -215,7 +215,7 @@ def box_hub_loads(
         "source": f"surrogate in the wind of {box.name}",
         "wind_speed": mean,
     }
-    return LoadHistory(box.name, time, loads + rotor.weight(), source)
+    return LoadHistory(box.name, time, loads + rotor.weight(), source, about="front face")
 
 
 def read_bts(path: str | os.PathLike[str]) -> WindBox:

@@ -13,14 +13,14 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.histories.sites import HOURS_A_YEAR
 
 
-def years(life: ArrayLike, speed: ArrayLike) -> Floats:
+def years(life: ArrayLike, speed_rpm: ArrayLike) -> Floats:
     """Time that a life in revolutions lasts.
 
     Parameters
     ----------
     life : array_like
         [million revolutions].
-    speed : array_like
+    speed_rpm : array_like
         [1/min], at each step; its sign does not matter.
 
     Returns
@@ -28,7 +28,7 @@ def years(life: ArrayLike, speed: ArrayLike) -> Floats:
     years : Floats
         Infinite at standstill, which the method says nothing of.
     """
-    hours = 60.0 * np.abs(np.asarray(speed, dtype=float))
+    hours = 60.0 * np.abs(np.asarray(speed_rpm, dtype=float))
     with np.errstate(divide="ignore"):
         return np.asarray(1e6 * np.asarray(life, dtype=float) / (hours * HOURS_A_YEAR))
 

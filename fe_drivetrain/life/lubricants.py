@@ -118,9 +118,9 @@ class Lubricant:
         known = ((40.0, self.viscosity_40), (100.0, self.viscosity_100))
         return float(viscosity(self.temperature, known))
 
-    def kappa(self, speed: ArrayLike, pitch_diameter: float) -> Floats:
+    def kappa(self, speed_rpm: ArrayLike, pitch_diameter: float) -> Floats:
         """Viscosity ratio at speeds [1/min], whose sign does not matter; 0 at standstill."""
-        n = np.abs(np.asarray(speed, dtype=float))
+        n = np.abs(np.asarray(speed_rpm, dtype=float))
         with np.errstate(divide="ignore"):
             return np.asarray(self.viscosity / needed_viscosity(n, pitch_diameter))
 

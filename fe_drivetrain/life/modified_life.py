@@ -90,12 +90,12 @@ def viscosity(
     return np.asarray(10.0 ** np.exp(y) - 0.7)
 
 
-def needed_viscosity(speed: ArrayLike, pitch_diameter: float) -> Floats:
+def needed_viscosity(speed_rpm: ArrayLike, pitch_diameter: float) -> Floats:
     """Viscosity nu_1 that kappa = nu / nu_1 relates the lubricant's to (ISO 281).
 
     Parameters
     ----------
-    speed : array_like
+    speed_rpm : array_like
         [1/min].
     pitch_diameter : float
         D_pw [m].
@@ -110,7 +110,7 @@ def needed_viscosity(speed: ArrayLike, pitch_diameter: float) -> Floats:
     -----
     At 1000/min the second formula is 2.3 % below the first: both are as they stand.
     """
-    n = np.asarray(speed, dtype=float)
+    n = np.asarray(speed_rpm, dtype=float)
     slow, fast = 45000.0 * n**-0.83, 4500.0 * n**-0.5
     return np.asarray(np.where(n < 1000.0, slow, fast) / np.sqrt(1e3 * pitch_diameter))
 

@@ -79,7 +79,7 @@ class LifeRules:
         a_1 of ISO 281: 1 at 90 %, 0.64 at 95, 0.25 at 99.
     limit_per_row : bool
         The fatigue limit that a row's load meets is C_u over the number of rows; else the whole.
-    standing : float
+    standing_rpm : float
         Speed below which the bearing stands [1/min].
     """
 
@@ -89,7 +89,7 @@ class LifeRules:
     turning: Turning = "inner"
     reliability: float = 1.0
     limit_per_row: bool = True
-    standing: float = STANDING
+    standing_rpm: float = STANDING
 
     def __post_init__(self) -> None:
         if self.riser not in ("standard", "none"):
@@ -117,7 +117,7 @@ class Steps:
         (n, 5) on the inner ring [N, N m].
     laminae : tuple of Floats
         For each row (n, elements, laminae) loads [N]; of balls one lamina.
-    speed : Floats
+    speed_rpm : Floats
         (n,) of the turning ring against the other [1/min].
     seconds : Floats
         (n,) how long each lasts.
@@ -127,7 +127,7 @@ class Steps:
 
     loads: Floats
     laminae: tuple[Floats, ...]
-    speed: Floats
+    speed_rpm: Floats
     seconds: Floats
     converged: Bools
 
@@ -293,10 +293,10 @@ def damage_of_steps(steps: Steps, rated: RatedBearing, rules: LifeRules) -> Dama
         are counted in `Limits.lost`.
     """
     slope = _slope(rated)
-    speed = np.abs(steps.speed)
-    runs = (speed >= rules.standing) & steps.converged
+    speed = np.abs(steps.speed_rpm)
+    runs = (speed >= rules.standing_rpm) & steps.converged
     turns = np.where(runs, speed * steps.seconds / 60.0, 0.0)
-    kappa, factor = _lubrication(rated, rules, np.maximum(speed, max(rules.standing, 1e-3)))
+    kappa, factor = _lubrication(rated, rules, np.maximum(speed, max(rules.standing_rpm, 1e-3)))
     found = [_row_risks(rated, r, q, rules) for r, q in enumerate(steps.laminae)]
     a_iso = [factor(row.P) for _, row in found]
     basic_risks = [risk for risk, _ in found]
@@ -323,9 +323,9 @@ def damage_of_steps(steps: Steps, rated: RatedBearing, rules: LifeRules) -> Dama
     a_whole = factor(P[:, None] * (1 if not rules.limit_per_row else 1.0 / len(rated.bearing.rows)))
     standard = np.array([used.sum(), (used / a_whole[:, 0]).sum() / rules.reliability])
     time = steps.seconds
-    signs = np.sign(steps.speed[speed >= rules.standing])
+    signs = np.sign(steps.speed_rpm[speed >= rules.standing_rpm])
     limits = Limits(
-        standing=float(time[speed < rules.standing].sum()),
+        standing=float(time[speed < rules.standing_rpm].sum()),
         thin=float(time[runs & (kappa < BRANCHES[0][0])].sum()) if rules.lubricant else 0.0,
         thick=float(time[runs & (kappa > LAST_KAPPA)].sum()) if rules.lubricant else 0.0,
         heavy=float(time[runs & (0.5 * rated.dynamic < P)].sum()),

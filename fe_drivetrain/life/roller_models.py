@@ -121,7 +121,11 @@ def with_laminae(bearing: Bearing) -> Bearing:
 
 
 def steps_of(
-    model: RollerModel, loads: ArrayLike, speed: ArrayLike, seconds: ArrayLike, chunk: int = CHUNK
+    model: RollerModel,
+    loads: ArrayLike,
+    speed_rpm: ArrayLike,
+    seconds: ArrayLike,
+    chunk: int = CHUNK,
 ) -> Iterator[Steps]:
     """Load steps of a bearing, some hundred at a time.
 
@@ -131,7 +135,7 @@ def steps_of(
         How they are shared by its laminae.
     loads : array_like
         (n, 5) on the inner ring [N, N m].
-    speed, seconds : array_like
+    speed_rpm, seconds : array_like
         (n,) or one for all: of the turning ring [1/min], and how long each lasts [s].
     chunk : int
         Steps at a time.
@@ -149,10 +153,10 @@ def steps_of(
     F = np.atleast_2d(np.asarray(loads, dtype=float))
     n = len(F)
     try:
-        turns, lasting = (np.broadcast_to(np.asarray(v, float), (n,)) for v in (speed, seconds))
+        turns, lasting = (np.broadcast_to(np.asarray(v, float), (n,)) for v in (speed_rpm, seconds))
     except ValueError as error:
         raise InputError(
-            f"{n} load steps with speeds of shape {np.shape(speed)} and durations of shape "
+            f"{n} load steps with speeds of shape {np.shape(speed_rpm)} and durations of shape "
             f"{np.shape(seconds)}: give one for each step, or one for all"
         ) from error
     for part in chunks(n, chunk):

@@ -13,10 +13,11 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.fidelity.ladder import LevelModel
 from fe_drivetrain.fidelity.shafts import reference_points
 from fe_drivetrain.procedure.interface_loads import GROUND, Body, Interface, LoadTable
+from fe_drivetrain.response.entering import Loads, entering
 from fe_drivetrain.scene.scene import Scene
 
 
-def level_loads(scene: Scene, model: LevelModel, time: Floats, hub: Floats) -> LoadTable:
+def level_loads(scene: Scene, model: LevelModel, time: Floats, hub: Loads) -> LoadTable:
     """Loads and motions at hub, bearings and gearbox entrance, of the loads at the hub alone.
 
     Parameters
@@ -27,8 +28,9 @@ def level_loads(scene: Scene, model: LevelModel, time: Floats, hub: Floats) -> L
         A level of it, from 1 on.
     time : ndarray, (n,)
         Of uniform step [s].
-    hub : ndarray, (n, 6)
-        Of the rotor on the shaft, at the hub [N, N m].
+    hub : LoadHistory, PointLoads or array_like
+        (n, 6) of the rotor on the shaft, as `response.entering` takes them [N, N m]; those at load
+        points are left out.
 
     Returns
     -------
@@ -38,12 +40,13 @@ def level_loads(scene: Scene, model: LevelModel, time: Floats, hub: Floats) -> L
     Raises
     ------
     InputError
-        The level has no displacements.
+        The level has no displacements, or `response.entering` refuses the loads.
     """
     if not model.points:
         raise InputError(
             f"level {model.level} ({model.title}) has no displacements: take level 1 or a finer one"
         )
+    driven = entering(scene, hub).values[:, :6]
     names, positions = reference_points(scene)
     at = dict(zip(names, positions, strict=True))
     columns = slice(6 * model.points.index("hub"), 6 * model.points.index("hub") + 6)
@@ -53,13 +56,13 @@ def level_loads(scene: Scene, model: LevelModel, time: Floats, hub: Floats) -> L
         motion = acceleration = None
         if name in model.points:
             first = 6 * model.points.index(name)
-            motion = np.asarray(hub @ model.compliance[first : first + 6, columns].T)
+            motion = np.asarray(driven @ model.compliance[first : first + 6, columns].T)
             rate = np.gradient(motion, step, axis=0)
             acceleration = np.asarray(np.gradient(rate, step, axis=0))
         if name == "hub":
-            loads, of, on = np.asarray(hub, dtype=np.float64), GROUND, "shaft"
+            loads, of, on = driven, GROUND, "shaft"
         else:
-            loads = np.asarray(hub @ model.reaction_matrices[name][:, :6].T)
+            loads = np.asarray(driven @ model.reaction_matrices[name][:, :6].T)
             of, on = "shaft", GROUND
         called = "gearbox entrance" if name == "gearbox" else name.replace("_", " ")
         found.append(Interface(called, of, on, at[name], loads, motion, acceleration))

@@ -59,12 +59,12 @@ class Excitation:
         Parameters
         ----------
         speed : float
-            [rpm].
+            [rad/s].
         """
-        return self.fixed or self.per_turn * speed / 60.0
+        return self.fixed or self.per_turn * speed / (2.0 * np.pi)
 
     def crossing(self, frequency: float) -> float:
-        """Speed of the rotor at which it has a frequency [rpm]; infinite of a fixed one.
+        """Speed of the rotor at which it has a frequency [rad/s]; infinite of a fixed one.
 
         Parameters
         ----------
@@ -156,7 +156,7 @@ class Meeting:
     frequency : float
         Of the mode [Hz].
     crossing : float
-        Speed of the rotor at which they meet [rpm]; infinite of a fixed frequency.
+        Speed of the rotor at which they meet [rad/s]; infinite of a fixed frequency.
     margin : float
         Least distance of both frequencies over that of the mode, within the range of speeds.
     share : float
@@ -192,7 +192,7 @@ def resonances(
         Of a model with the parts at which they act: `torsion.natural_modes`, or
         `dynamics.system_modes` of bodies with six degrees of freedom.
     speeds : tuple of float
-        Least and largest speed of the rotor in operation [rpm].
+        Least and largest speed of the rotor in operation [rad/s].
     near : float
         Margin below which a mode is near.
     moved : float
@@ -210,7 +210,7 @@ def resonances(
     low, high = speeds
     if not 0.0 <= low < high:
         raise InputError(
-            f"speeds from {low:g} to {high:g} rpm are no range: give the least, from 0, and the "
+            f"speeds from {low:g} to {high:g} rad/s are no range: give the least, from 0, and the "
             "largest above it"
         )
     found = []

@@ -6,6 +6,11 @@ from .bearing_stiffness import bearing_unit_stiffness as bearing_unit_stiffness
 from .bearing_stiffness import tilt_stiffness as tilt_stiffness
 from .bearing_stiffness import without_gearbox as without_gearbox
 from .cached import cached_response as cached_response
+from .entering import Factors as Factors
+from .entering import at_front as at_front
+from .entering import entering as entering
+from .entering import factor_values as factor_values
+from .entering import joined as joined
 from .foot_contact import clamped_foot as clamped_foot
 from .influence_fields import influences_of_all_reactions as influences_of_all_reactions
 from .influence_fields import reaction_influences as reaction_influences
@@ -16,5 +21,7 @@ from .model import joint_pairs as joint_pairs
 from .model import mesh_scene as mesh_scene
 from .model import needed_faces as needed_faces
 from .model import scene_loads as scene_loads
+from .stated import Stated as Stated
+from .stated import stated_reactions as stated_reactions
 from .unit_loads import Response as Response
 from .unit_loads import unit_load_response as unit_load_response

@@ -59,16 +59,19 @@ def cached_response(
     arrays = used.load("solutions", content)
     if arrays is not None:
         try:
-            return replace(_from_arrays(arrays), kept=True)
+            kept = _from_arrays(arrays)
+            return replace(kept, kept=True, entrance=model.scene.entrance)
         except (KeyError, IndexError, TypeError, ValueError):
             pass  # not as it was written: solved again below
     arrays = _to_arrays(unit_load_response(model, method, seed))
     used.keep("solutions", content, arrays)
-    return _from_arrays(arrays)
+    return replace(_from_arrays(arrays), entrance=model.scene.entrance)
 
 
 def solved_content(scene: Scene) -> dict[str, Any]:
-    """What of a scene a solution depends on: not title, weights, sizes, spreads, catalogue names.
+    """What of a scene a solution depends on: no title, weights, sizes, spreads, catalogue names.
+
+    Nor the point that hub loads are about: the unit loads of a solution enter at the front face.
 
     Parameters
     ----------
@@ -83,6 +86,7 @@ def solved_content(scene: Scene) -> dict[str, Any]:
     content = whole_content(scene, {"title", "uncertainty", "mesh"})
     for described in content["bearing_units"]:
         del described["catalogue"]  # which is for lives
+    del content["hub"]["loads_at"]
     for loaded in (content["gearbox"], *content["load_points"]):
         del loaded["weight"]
     return content

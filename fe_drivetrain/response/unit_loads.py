@@ -13,9 +13,11 @@ from fe_drivetrain.common.spatial import resultant, wrench_transport
 from fe_drivetrain.interfaces.constraints import dofs
 from fe_drivetrain.operator import kernels
 from fe_drivetrain.plots.figures import load_bars
+from fe_drivetrain.response.entering import Loads, entering
 from fe_drivetrain.response.model import LOADS, Model, stood_on
 from fe_drivetrain.response.part_forces import part_forces
 from fe_drivetrain.response.prepared import prepared
+from fe_drivetrain.scene.entrance import AT_HUB, Entrance
 from fe_drivetrain.solve.solvers import Diagnostics
 
 
@@ -50,6 +52,8 @@ class Response:
         Of the solve.
     kept : bool
         Whether it was taken from the cache instead of solved.
+    entrance : Entrance
+        Of the scene: where loads enter.
     """
 
     reactions: Mapping[str, Floats]
@@ -61,6 +65,7 @@ class Response:
     superposition_error: float
     diagnostics: Diagnostics
     kept: bool = False
+    entrance: Entrance = AT_HUB
 
     def reaction_matrix(self) -> tuple[list[str], Floats]:
         """All reactions as one matrix.
@@ -76,7 +81,7 @@ class Response:
     def history(
         self,
         name: str,
-        hub_loads: Floats,
+        hub_loads: Loads,
         gearbox_weight: float = 0.0,
         gravity: float = 0.0,
     ) -> Floats:
@@ -86,9 +91,9 @@ class Response:
         ----------
         name : str
             A key of ``reactions``.
-        hub_loads : Floats
-            (..., 6) hub forces [N] and moments [N m]; with (..., 6 + 6 m) those at each of m load
-            points of the scene, too.
+        hub_loads : LoadHistory, PointLoads or array_like
+            As `entering` takes them; an array is (..., 6) hub forces [N] and moments [N m] about
+            the front face, or (..., 6 + 6 m) with those at each of m load points of the scene.
         gearbox_weight : float
             [N], along -z.
         gravity : float
@@ -102,22 +107,23 @@ class Response:
         Raises
         ------
         InputError
-            There is no reaction of that name.
+            There is no reaction of that name, or `entering` refuses the loads.
         """
         if name not in self.reactions:
             raise InputError(f"no reaction {name!r}: use one of {', '.join(self.reactions)}")
         R = self.reactions[name]
         constant = gearbox_weight * R[:, 9] - gravity * R[:, 8]
-        result = hub_loads @ driving(R, hub_loads.shape[-1]).T
+        driven = entering(self, hub_loads).values
+        result = driven @ driving(R, driven.shape[-1]).T
         result += constant
         return np.asarray(result)
 
-    def plot(self, hub_loads: Floats, gearbox_weight: float = 0.0, gravity: float = 0.0) -> Any:
+    def plot(self, hub_loads: Loads, gearbox_weight: float = 0.0, gravity: float = 0.0) -> Any:
         """What the drivetrain puts on its supports under one load, as a Plotly figure.
 
         Parameters
         ----------
-        hub_loads : Floats
+        hub_loads : PointLoads or array_like
             (6,) and more, as of `history`.
         gearbox_weight, gravity : float
             As of `history`.
@@ -127,7 +133,7 @@ class Response:
         plotly.graph_objects.Figure
             See `fe_drivetrain.plots.load_bars`.
         """
-        loads = np.asarray(hub_loads, dtype=np.float64)
+        loads = entering(self, hub_loads)
         supports = [name for name in self.reactions if "." not in name]
         found = {name: self.history(name, loads, gearbox_weight, gravity) for name in supports}
         return load_bars(found, "On the supports")
@@ -199,6 +205,7 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
         equilibrium_error=_equilibrium_error(model, reactions, positions),
         superposition_error=float(np.abs(direct - superposed).max() / np.abs(direct).max()),
         diagnostics=diagnostics,
+        entrance=model.scene.entrance,
     )
 
 

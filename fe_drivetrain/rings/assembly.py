@@ -31,11 +31,13 @@ from fe_drivetrain.bearing.rolling import TOLERANCE
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.interfaces.constraints import eliminate
+from fe_drivetrain.response.entering import Factors, factor_values
 from fe_drivetrain.response.kept import kept_arrays
 from fe_drivetrain.response.model import LOADS, Model, build_model, mesh_scene
 from fe_drivetrain.rings.housing import MADE_BY, contact_rows
 from fe_drivetrain.scene.bearing_unit import RollerRow as SceneRow
 from fe_drivetrain.scene.bearing_unit import Rollers
+from fe_drivetrain.scene.entrance import AT_HUB, Entrance
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.solve.reduction import reduce
 from fe_drivetrain.solve.solvers import solve
@@ -64,6 +66,8 @@ class RollerAssembly:
         springs, and (6, 2 total) for unit contact loads.
     springs : Floats
         (2 total,) that the solids were solved with [N/m]; zero of leans.
+    entrance : Entrance
+        Of the scene: where loads enter.
     """
 
     bearings: Mapping[str, Bearing]
@@ -71,6 +75,7 @@ class RollerAssembly:
     loads: Floats
     points: Mapping[str, tuple[Floats, Floats]]
     springs: Floats
+    entrance: Entrance = AT_HUB
 
     @property
     def together(self) -> Bearing:
@@ -236,6 +241,7 @@ def roller_assembly(
         found["loads"],
         {str(name): (motion, push) for name, motion, push in points},
         found["springs"],
+        scene.entrance,
     )
 
 
@@ -274,7 +280,7 @@ def _solved(scene: Scene, bearings: Mapping[str, Bearing], method: str) -> dict[
 
 def assembly_equilibrium(
     assembly: RollerAssembly,
-    factors: ArrayLike,
+    factors: Factors | ArrayLike,
     *,
     shapes: int | None = None,
     tolerance: float = TOLERANCE,
@@ -286,7 +292,7 @@ def assembly_equilibrium(
     ----------
     assembly : RollerAssembly
         The scene at its rollers.
-    factors : array_like
+    factors : Factors or array_like
         (n, 10) or (10,) of the loads of `response.LOADS`.
     shapes : int, optional
         How many shapes of the solids to take, see `RollerAssembly.shapes`.
@@ -303,12 +309,12 @@ def assembly_equilibrium(
     Raises
     ------
     InputError
-        The factors have another shape, or one is no number.
+        The factors have another shape, one is no number, or `response.factor_values` refuses them.
     """
-    f = np.atleast_2d(np.asarray(factors, dtype=float))
+    f = np.atleast_2d(factor_values(assembly, factors))
     if f.ndim != 2 or f.shape[1] != len(LOADS) or not np.isfinite(f).all():
         raise InputError(
-            f"factors of the loads have the shape {np.shape(factors)}: give finite numbers "
+            f"factors of the loads have the shape {f.shape}: give finite numbers "
             f"(n, {len(LOADS)}), for {', '.join(LOADS)}"
         )
     together = assembly.together

@@ -10,6 +10,8 @@ from .component import Component as Component
 from .component import HousingComponent as HousingComponent
 from .component import SomeComponent as SomeComponent
 from .component import material_of as material_of
+from .entrance import AT_HUB as AT_HUB
+from .entrance import Entrance as Entrance
 from .joint_springs import joint_stiffness as joint_stiffness
 from .joint_springs import roller_lines as roller_lines
 from .materials import HIGHEST_POISSON_RATIO as HIGHEST_POISSON_RATIO

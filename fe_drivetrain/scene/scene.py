@@ -13,6 +13,7 @@ from fe_drivetrain.common.reading import value_by_key
 from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.geometry import Band, Housing, MeshSizes, Shaft, within_walls
 from fe_drivetrain.scene.bearing_unit import BearingUnit, Keys, Springs
+from fe_drivetrain.scene.entrance import Entrance
 from fe_drivetrain.scene.gate import check_scene
 from fe_drivetrain.scene.materials import MATERIALS, Material, known_materials
 from fe_drivetrain.scene.nose import Nose, NoseBearing
@@ -181,6 +182,16 @@ class Scene(Keys):
     def loads_at(self) -> float:
         """x of the point that files of hub loads are about [m]."""
         return self.shaft.front if self.hub.loads_at is None else self.hub.loads_at
+
+    @property
+    def entrance(self) -> Entrance:
+        """Where loads enter, and which point they are about."""
+        return Entrance(
+            self.shaft.front,
+            self.loads_at,
+            tuple(point.name for point in self.load_points),
+            tuple(point.weight for point in self.load_points),
+        )
 
     def bearing_unit(self, name: str) -> BearingUnit:
         """The bearing unit of that name."""

@@ -1,5 +1,6 @@
 """Orders of gear meshes: how often teeth meet in a turn of the rotor, and where a mode is met."""
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Protocol
@@ -79,7 +80,7 @@ def _orders(stages: Iterable[Geared], absolute: bool) -> dict[str, float]:
 
 
 def crossing_speed(frequency: float, order: float) -> float:
-    """Speed of the rotor at which an order has a frequency, n = 60 f / order [rpm].
+    """Speed of the rotor at which an order has a frequency, 2 pi f / order [rad/s].
 
     Parameters
     ----------
@@ -88,4 +89,4 @@ def crossing_speed(frequency: float, order: float) -> float:
     order : float
         Periods in a turn of the rotor.
     """
-    return 60.0 * frequency / order
+    return 2.0 * math.pi * frequency / order

@@ -31,6 +31,7 @@ from fe_drivetrain.fidelity.quantities import (
 from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.fidelity.shafts import condensed_shaft, meridian_shaft
 from fe_drivetrain.response.cached import whole_content
+from fe_drivetrain.response.entering import Factors, factor_values
 from fe_drivetrain.response.makers import solved_by
 from fe_drivetrain.scene.scene import Coupling, Scene, Spread
 from fe_drivetrain.uncertainty.resolver import Resolver
@@ -123,7 +124,7 @@ class Study:
 def study(
     scene: Scene,
     asked: Sequence[str] = (),
-    load: Floats | None = None,
+    load: Factors | Floats | None = None,
     tolerance: float = 0.05,
     level: int | None = None,
     count: int = 128,
@@ -140,7 +141,7 @@ def study(
     asked : Sequence[str]
         Names, see `quantities.known_names`, before every stiffness that is reported; the adviser
         answers for these, or for `DEFAULT`.
-    load : Floats or None
+    load : Factors, Floats or None
         (n,) factors of `model.scene_loads`, for reactions.
     tolerance : float
         Of the level, relative.
@@ -209,7 +210,7 @@ def study(
         "level": level,
         "seed of surfaces": seed,
         "asked": list(asked),
-        "load": None if load is None else load.tolist(),
+        "load": None if load is None else factor_values(scene, load).tolist(),
         "made by": {"code": program_hash(), **solved_by()},
     }
     samples = sample(scene, evaluate, count, seed, report, content)
@@ -253,7 +254,11 @@ def level_error(advice: Advice, level: int) -> float:
 
 
 def _ladders(
-    scene: Scene, asked: Sequence[str], load: Floats | None, tolerance: float, workers: Pool
+    scene: Scene,
+    asked: Sequence[str],
+    load: Factors | Floats | None,
+    tolerance: float,
+    workers: Pool,
 ) -> list[Future[Advice]]:
     """The ladder of each quantity that has one, on its way."""
     names = [name for name in asked if name.startswith("hub.") or name[-2] in "FM"] or [DEFAULT]
