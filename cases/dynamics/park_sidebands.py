@@ -5,11 +5,11 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.dynamics.park_time import (
+from fe_drivetrain.cases.dynamics.park_models import (
     CONTACT_RATIO,
     DAMPING,
-    ECCENTRIC,
     MESHES,
+    eccentric_bodies,
     offset_mass,
     torque,
     varying_model,
@@ -34,7 +34,7 @@ from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.validation import park_2021 as park
 
 MESH, LINE = MESHES[3], park.MESH_LINES[2]
-TURNING = abs(ECCENTRIC["gear 3"].speed) / 10.0
+TURNING = abs(eccentric_bodies()["gear 3"].speed) / 10.0
 """Of gear 3 at 6 rpm of the rotor [Hz]."""
 HARMONICS = 2
 PADDED = 16
@@ -187,7 +187,7 @@ def eccentric(page: Page, system: System, dt: float, duration: float) -> None:
     def force(acting: Loads) -> Floats:
         return integrate(equations, acting, duration, dt, start=start).forces[:, mesh]
 
-    off = offset_mass(system, ECCENTRIC["gear 3"], times)
+    off = offset_mass(system, eccentric_bodies()["gear 3"], times)
     added = force(summed(steady(load), off)) - force(steady(load))
     spectrum = spectrum_of(added, dt)
     for side, at in zip(("below", "above"), sidebands(spectrum, 2.5, 5.0), strict=True):
