@@ -130,14 +130,18 @@ def mean_period(t: Floats, values: Floats) -> float:
     return float((t[kept[-1]] - t[kept[0]]) / (len(kept) - 1))
 
 
-def shaft_torque(share: float) -> float:
-    """Torque of the low-speed shaft without vibration, by statics of a turning chain [N m]."""
+def turning_inertia() -> float:
+    """All that turns, seen from the rotor, with inertias of Table 2 [kg m^2]."""
     speeds = {name: one.speed for name, one in eccentric_bodies().items()}
     speeds["planet"], speeds["generator"] = speeds.pop("planets"), park.ratio()
     times = {"planet": park.PLANETS}
-    whole = sum(J * times.get(name, 1) * speeds[name] ** 2 for name, J in park.INERTIAS.items())
+    return sum(J * times.get(name, 1) * speeds[name] ** 2 for name, J in park.INERTIAS.items())
+
+
+def shaft_torque(share: float) -> float:
+    """Torque of the low-speed shaft without vibration, by statics of a turning chain [N m]."""
     left = park.TORQUE * (1.0 - share * park.ratio())
-    return abs(park.TORQUE - left * park.INERTIAS["rotor"] / whole)
+    return abs(park.TORQUE - left * park.INERTIAS["rotor"] / turning_inertia())
 
 
 def operating(
