@@ -84,6 +84,7 @@ def run(run: Run, page: Page) -> None:
                 why="one over the time of the signal",
                 source="force k(t) times an elongation that rings as the low-speed shaft does",
                 measure="frequency",
+                basis="self-consistency",
             )
         rows.append(
             {
@@ -200,6 +201,7 @@ def eccentric(page: Page, system: System, dt: float, duration: float) -> None:
             why="one over the time of the signal",
             source="speed of gear 3 at 6 rpm of the rotor, of the radii of Table 2",
             measure="frequency",
+            basis="self-consistency",
         )
     near = np.abs(spectrum.frequencies - LINE) < 6.0
     page.section("With an eccentric gear 3")

@@ -411,6 +411,7 @@ def campaign(page: Page, seconds: float) -> list[Record]:
         why="three standard deviations of a share of 0.95 of sixty are 0.085",
         source="the simulated drivetrain, times the gain that the bridge's offset leaves",
         measure="identity",
+        basis="self-consistency",
     )
     page.text(
         f"Bridge: gain {GAUGE.gain:g}, offset {GAUGE.offset:g} N m, noise {GAUGE.noise:g} N m, "
@@ -441,6 +442,7 @@ def stop(page: Page) -> None:
         why="peaks are at parabolas through three samples",
         source="eigenvalues of the same drivetrain",
         measure="frequency",
+        basis="self-consistency",
     )
     inertia = STIFFNESS / ((2.0 * np.pi * decay.frequency) ** 2 / (1.0 - decay.ratio**2))
     page.equals(
@@ -451,6 +453,7 @@ def stop(page: Page) -> None:
         why="peaks are at parabolas through three samples",
         source="the simulated drivetrain",
         measure="identity",
+        basis="self-consistency",
     )
     found = spectrum(twist[round(1.05 / step) :], step, 10.0)
     page.section("Stop")
