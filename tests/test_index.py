@@ -28,6 +28,7 @@ def listed(page: Path) -> list[tuple[str, str]]:
 def test_cases_stand_worst_first_and_every_state_is_told_apart(tmp_path: Path) -> None:
     put(tmp_path, "a/easy", verdict(1.001))
     put(tmp_path, "a/tight", verdict(1.0), verdict(1.009))
+    put(tmp_path, "a/open", verdict(1.0), unsettled=["Not converged: the peak."])
     put(tmp_path, "b/wrong", verdict(1.02))
     put(tmp_path, "b/worse", verdict(2.0), verdict(1.0))
     problems = {
@@ -46,13 +47,15 @@ def test_cases_stand_worst_first_and_every_state_is_told_apart(tmp_path: Path) -
         ("running", "c/now"),
         ("planned", "c/later"),
         ("skipped", "c/tool"),
+        ("unsettled", "a/open"),
         ("pass", "a/tight"),
         ("pass", "a/easy"),
     ]
     words = re.findall(r'<span class="badge [^"]*">([^<]*)', page.read_text("utf-8"))
     assert set(words) == set(WORDS.values())
     text = " ".join(Page(page.read_text("utf-8")).text().split())
-    assert "2 of 8 cases pass, 1 not run, 1 running, 1 planned, 1 skipped" in text
+    assert "2 of 9 cases pass, 1 not run, 1 running, 1 planned, 1 skipped, 1 open" in text
+    assert "Not converged: the peak." in text
     assert "Incomplete: of the cases that were asked for 3 did not come to their end" in text
 
 

@@ -202,6 +202,19 @@ def test_failed_checks_are_marked(tmp_path: Path) -> None:
     assert "outcome pass" in [p.get("class") for p in passing.all("p")]
 
 
+def test_an_answer_that_has_not_converged_is_no_green_page(tmp_path: Path) -> None:
+    said = results(verdicts=[verdict()], unsettled=["Not converged: the peak."])
+    page = Page(page_of(tmp_path, said))
+    assert said.passed
+    assert not said.settled
+    assert "1 of 1 check passes" in page.text()
+    assert ", but not every answer has converged" in page.text()
+    assert "Not converged: the peak." in page.text()
+    classes = [p.get("class") for p in page.all("p")]
+    assert "outcome unsettled" in classes
+    assert "outcome pass" not in classes
+
+
 def test_a_page_without_checks_claims_none(tmp_path: Path) -> None:
     page = Page(page_of(tmp_path, results(verdicts=[])))
     assert "No checks" in page.text()

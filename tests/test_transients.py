@@ -1,5 +1,7 @@
 """Events: friction that slips and sticks, machines, shutdown of published drivetrains."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -110,6 +112,39 @@ def test_a_dense_stiffness_is_held_as_well_as_springs() -> None:
     phase = Phase(6.0, dense, steady([0.0, 0.0]), Brake(REAR, 4.0, 1.0))
     found = transient([phase], 2e-3, turning(2.0))
     assert_allclose([t for t, _ in found.events], [t for t, _ in braked(2e-3).events], rtol=1e-9)
+
+
+def test_a_dense_damping_is_held_as_well_as_dampers() -> None:
+    """Matrix or damper: the same events, and the same torque of a brake that holds.
+
+    The disc stands while the rotor swings, so that the damper of the shaft pulls at it.
+    """
+    law = spring_laws([[1.0, -1.0]], 50.0)
+    C = 0.8 * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    dampers = equations_of_motion(J, replace(law, damping=np.array([0.8])))
+    found, other = (
+        transient([Phase(6.0, one, steady([0.0, 0.0]), Brake(REAR, 4.0, 1.0))], 2e-3, turning(2.0))
+        for one in (equations_of_motion(J, law, C), dampers)
+    )
+    assert [what for _, what in found.events] == [what for _, what in other.events]
+    assert_allclose([t for t, _ in found.events], [t for t, _ in other.events], rtol=1e-9)
+    assert_allclose(found.brake, other.brake, atol=1e-7)
+    held = found.held
+    pulled = found.motion.forces[:, 0] + 0.8 * found.motion.velocity @ [1.0, -1.0]
+    assert_allclose(found.brake[held], -pulled[held], atol=1e-7)
+    assert np.abs(pulled - found.motion.forces[:, 0])[held].max() > 0.1
+
+
+def test_a_spring_with_an_offset_is_held_as_one_without() -> None:
+    """Displacements that begin elsewhere by the offset: the same brake, moved motion."""
+    moved = equations_of_motion(J, spring_laws([[1.0, -1.0]], 50.0, offset=0.3))
+    begin = State(np.array([0.3, 0.0]), np.full(2, 2.0), np.zeros(2))
+    phase = Phase(10.0, moved, steady([0.0, 0.0]), Brake(REAR, 4.0, 1.0))
+    found, plain = transient([phase], 2e-3, begin), braked(2e-3)
+    assert_allclose([t for t, _ in found.events], [t for t, _ in plain.events], rtol=1e-9)
+    assert_allclose(found.brake, plain.brake, atol=1e-7)
+    assert_allclose(found.motion.q, plain.motion.q + [0.3, 0.0], atol=1e-9)
+    assert_allclose(found.motion.energy, plain.motion.energy, atol=1e-9)
 
 
 def test_slip_line() -> None:

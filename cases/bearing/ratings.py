@@ -52,9 +52,17 @@ def run(run: Run, page: Page) -> None:
             unit = {"elements": "-", "contact_angle": "deg"}.get(field, "m")
             page.assume(f"{name}: {field.replace('_', ' ')}", value, unit, entry.sources[field])
         rows.append(record)
+    fitted = next(
+        row for row in rows if row["bearing"].startswith("bearing_s_") and row["C, printed [kN]"]
+    )
+    misfits = [
+        abs(fitted[f"{key}, from its insides [kN]"] / fitted[f"{key}, printed [kN]"] - 1.0)
+        for key, _ in NAMES
+    ]
     misfit = next(row for row in rows if row["bearing"] == "bearing_s")
     page.answer(
-        "The assumed rollers of bearing S fit its printed C, C0 and C_u to 3 % at 20 deg.",
+        "The assumed rollers of bearing S fit its printed C, C0 and C_u to "
+        f"{100.0 * max(misfits):.1f} % at {fitted['contact angle [deg]']:.0f} deg.",
         "At 38 deg, the angle that gives the thesis's tilting stiffness face to face, C would be "
         f"{misfit['C, from its insides [kN]']:.0f} kN, not {misfit['C, printed [kN]']:.0f}: that "
         "angle is a fit, no insight into the bearing.",

@@ -69,9 +69,10 @@ def run(run: Run, page: Page) -> None:
     page.data("contacts", rows)
     page.table("Printed, ours, verdict", verdicts(pressures, two))
     page.text(
-        "The thesis's 2.32 and 1.32 make sun over ring 1.757. For its teeth, 29, 58 and 145, with "
-        "equal forces and faces, Hertz leaves exactly the root of 5, 2.236: the two printed ratios "
-        "contradict each other, and no module meets both with one face width."
+        f"The thesis's 2.32 and 1.32 make sun over ring {2.32 / 1.32:.3f}. For its teeth, 29, 58 "
+        "and 145, with equal forces and faces, Hertz leaves exactly the root of 5, "
+        f"{np.sqrt(5.0):.3f}: the two printed ratios contradict each other, and no module meets "
+        "both with one face width."
     )
     page.text(
         "Its Eq 5.13, half the sum of curvatures, is 1 over a length where the half width of Eq "

@@ -3,6 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.dynamics.park_models import SPEED, turning_inertia
 from fe_drivetrain.common import InputError
 from fe_drivetrain.compare import as_printed, round_off
 from fe_drivetrain.dynamics import (
@@ -27,6 +28,7 @@ READINGS = (
     ("planetary meshes twice, as Eq 25 reads", 1.0, True),
 )
 PERIOD = "period of the first mode [s]"
+SHARE, ACCELERATION = "over the rotor's torque [%]", "acceleration [rad/s^2]"
 
 
 @case(
@@ -56,15 +58,16 @@ def run(run: Run, page: Page) -> None:
     forces = moments(page, machine)
     spectra(run, page)
     show_modes(page, corrected)
-    paradox(page)
+    printed_reading, balance, _ = paradox(page)
     page.answer(
         "As printed, the model has six free tilts beside the free turn, and shaft bending cannot "
         "reach a mesh force at all; what the source says of its effect cannot come of its "
         "equations.",
         "With hinges that move with their bodies a moment of 100 kN m on the rotor changes the "
         f"mesh forces of the planets by up to {forces:.2f} kN.",
-        "A generator torque of 30 % of the rotor's, as printed, would stop the machine after 19 s: "
-        "balance needs 2.9 %, one over the speed ratio, so that 3 % may have been meant.",
+        "A generator torque of 30 % of the rotor's, as printed, would stop the machine after "
+        f"{SPEED / -printed_reading[ACCELERATION]:.0f} s: balance needs "
+        f"{-balance[SHARE]:.1f} %, one over the speed ratio, so that 3 % may have been meant.",
     )
     for text in machine.assumed:
         page.assume(text.partition(":")[0], "", "", text.partition(":")[2].strip() or text)
@@ -129,7 +132,11 @@ def moments(page: Page, machine: Machine) -> float:
     springs = [n for n in system.spring_names if "planet" in n or "mesh" in n]
     meshes_of = sorted(springs)
     rows: list[Record] = [
-        {"mesh": n, "force with hinges [kN]": found.force(n) / 1e3, "force as printed [kN]": 0.0}
+        {
+            "mesh": n,
+            "force with hinges [kN]": found.force(n) / 1e3,
+            "force as printed [kN]": "no equilibrium" if refused else "an equilibrium",
+        }
         for n in meshes_of
     ]
     page.section("A bending moment of 100 kN m on the rotor")
@@ -190,11 +197,11 @@ def show_modes(page: Page, corrected: System) -> None:
     page.table("The first sixteen modes; bearings and masses are assumed", rows)
 
 
-def paradox(page: Page) -> None:
+def paradox(page: Page) -> list[Record]:
     """What torque of the generator balances the rotor's."""
     ratio, torque = park.ratio(), park.TORQUE
     rows: list[Record] = []
-    inertia = 4.29299e6
+    inertia = turning_inertia()
     for name, generator in (
         ("-30 % of 15 kN m at the generator, as printed", -0.3 * torque),
         ("balanced: -15 kN m over the ratio", -torque / ratio),
@@ -205,9 +212,9 @@ def paradox(page: Page) -> None:
             {
                 "reading": name,
                 "generator [N m]": generator,
-                "over the rotor's torque [%]": 100 * generator / torque,
+                SHARE: 100 * generator / torque,
                 "net on the rotor [kN m]": net / 1e3,
-                "acceleration [rad/s^2]": net / inertia,
+                ACCELERATION: net / inertia,
             }
         )
     page.section("Torque of the generator")
@@ -219,3 +226,4 @@ def paradox(page: Page) -> None:
         source="1 over the speed ratio",
         basis="self-consistency",
     )
+    return rows

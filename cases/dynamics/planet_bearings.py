@@ -119,10 +119,13 @@ def run(run: Run, page: Page) -> None:
         ("x",),
     )
     page.table("Printed, ours, verdict", verdicts(loose, worst, ratios, largest))
+    printed = 1.42
+    share = printed / (1.0 + printed)
     page.text(
         "A pin carries 2 F tangentially and a couple of the helix, which loads both bearings by "
-        "the same radial force. Only a shift of the load along the pin makes them differ: 1.42 has "
-        f"the share 0.587 of it, 0.087 of the distance of {1e3 * SPREAD:g} mm. A carrier whose "
+        "the same radial force. Only a shift of the load along the pin makes them differ: "
+        f"{printed:g} has the share {share:.3f} of it, {share - 0.5:.3f} of the distance of "
+        f"{1e3 * SPREAD:g} mm. A carrier whose "
         "upwind cheek leads does that; its drawing, the fit of its pins and all clearances of the "
         "gearbox are not public."
     )

@@ -1,38 +1,29 @@
 """Four drivetrains that are stopped: blades pitched, generator off, disc brake, standstill."""
 
-from typing import NamedTuple
-
 import numpy as np
-from scipy.optimize import brentq
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.dynamics.drivetrains import RATIOS, Rated, drivetrains
+from fe_drivetrain.cases.dynamics.shutdown_runs import (
+    PEAK,
+    SEQUENCE,
+    Stopped,
+    check_backlash,
+    check_dips,
+    check_peaks,
+    stop,
+    stopped_by,
+)
 from fe_drivetrain.common import Floats
-from fe_drivetrain.dynamics import Shutdown, StopSequence, shutdown
+from fe_drivetrain.compare import ConvergenceInTime, InTime, converge_in_time, peak_between
+from fe_drivetrain.dynamics import StopSequence
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.torsion import changed, natural_modes, two_masses
 
-#: Highest torque of a shaft in a shutdown over its rated one, printed: LSS of drivetrain B.
-PEAK = 1.38
-SEQUENCE = StopSequence(off=1.0, pitched=3.0, braked=3.0, end=20.0)
 NORMAL = 0.237
 """Range of torque in normal operation over rated: 250 kN m of 1.055 MN m, measured (chapter 3)."""
-STEP, QUICK_STEP = 5e-4, 2e-3
-BACKLASH = 1e-3  # rad
-
-
-class Stopped(NamedTuple):
-    """A drivetrain, its brake over the generator's rated torque, and what it did."""
-
-    of: Rated
-    brake: float
-    done: Shutdown
-
-    @property
-    def stops(self) -> float:
-        """When the disc stands for good [s]."""
-        return [t for t, what in self.done.transient.events if what == "sticks"][-1]
+STEP, QUICK_STEP = 1.25e-4, 5e-4
 
 
 @case(
@@ -47,23 +38,21 @@ def run(run: Run, page: Page) -> None:
         with run.step(f"drivetrain {one.letter}"):
             stopped.append(stop(one, dt))
     with run.step("instants of the brake"):
-        instants = [over_instants(one, run.quick) for one in drivetrains()]
-    losses = [check_loss(page, one, dt) for one in drivetrains()]
+        page.section("Instants of the brake")
+        instants = check_instants(page, run.quick)
+    with run.step("loss of the generator"):
+        losses = check_losses(page, dt / 4.0)
     rows = [row_of(each) for each in stopped]
     swings = [check_frequencies(page, each) for each in stopped]
+    with run.step("convergence of the shutdowns"):
+        page.section("Shutdown")
+        check_stops(page, stopped, dt)
     with run.step("dips of the grid"):
-        dips = [row for one in drivetrains() for row in dip_rows(one, run.quick)]
+        page.section("A dip of the grid")
+        dips = check_dips(page, 5e-5 if run.quick else 2.5e-5)
     with run.step("backlash"):
-        knocks = [row for each in stopped for row in with_backlash(page, each, run.quick)]
-    for each in stopped:
-        page.vanishes(
-            f"drivetrain {each.of.letter}: energy that appears from nowhere, over the largest",
-            each.done.transient.motion.relative_imbalance,
-            within=1e-8,
-            why="average acceleration conserves energy of linear systems: round-off of so many "
-            "steps, with modes of some kHz",
-            source="work of wind, generator and brake is kinetic and strain energy and losses",
-        )
+        page.section("With backlash")
+        knocks = check_backlash(page, stopped, run.quick)
     fast = {row["drivetrain"]: row["HSS, peak over rated"] for row in rows}
     page.answer(
         f"With a brake that brings the low-speed shaft to the printed {PEAK} of its rated torque, "
@@ -88,9 +77,9 @@ def run(run: Run, page: Page) -> None:
         "-",
         "section 4.1; D has the dampers of Table 4.2",
     )
-    page.section("Loss of the generator's torque, the rotor's held")
+    page.section("Loss of the generator's torque, in numbers")
     page.table("Least torque over rated; below zero it is reversed", losses)
-    page.section("Shutdown")
+    page.section("Shutdown, in numbers")
     page.table("Torques over rated, a mass for each gear", rows)
     page.table("Printed, ours, verdict", verdicts(rows, instants))
     page.table(
@@ -107,7 +96,7 @@ def run(run: Run, page: Page) -> None:
     )
     for each in stopped:
         show(page, each)
-    page.section("A dip of the grid")
+    page.section("Dips of the grid, in numbers")
     page.table(
         "Generator off and on again, rotor's torque held: torque of the high-speed shaft over "
         "rated",
@@ -118,7 +107,7 @@ def run(run: Run, page: Page) -> None:
         "speed the drivetrain has gained: the slip line has no breakdown torque, while a real "
         "machine carries no more than two to three times its rated torque."
     )
-    page.section("With backlash")
+    page.section("Backlash, in numbers")
     page.table(
         f"Torques over rated up to {SEQUENCE.braked + 3:g} s, the same brakes, backlash of all "
         "meshes about the planet's or the gear's axis",
@@ -128,7 +117,7 @@ def run(run: Run, page: Page) -> None:
         "The thesis has one linear spring in both directions (section 4.6). With backlash, teeth "
         "that part where torque is reversed strike their other flanks, and torques beyond the "
         "printed ones come of it. How large they are depends on the damping of the meshes, which "
-        "is only estimated; where a peak changes with the step, impacts follow so closely on each "
+        "is only estimated; where the band of a peak is wide, impacts follow so closely on each "
         "other that it is no more than a size."
     )
     page.section("What rings")
@@ -141,86 +130,124 @@ def run(run: Run, page: Page) -> None:
     )
 
 
-def stop(one: Rated, dt: float, late: float = 0.0, end: float = SEQUENCE.end) -> Stopped:
-    """With a brake so large that the low-speed shaft reaches the printed peak.
-
-    Parameters
-    ----------
-    one : Rated
-        Drivetrain.
-    dt, late, end : float
-        Step, how much later than `SEQUENCE` the brake comes, and the end [s].
-    """
-    braked = SEQUENCE.braked + late
-
-    def done(brake: float, end: float) -> Shutdown:
-        when = StopSequence(SEQUENCE.off, SEQUENCE.pitched, 0.0, braked, end)
-        return shutdown(one.table, one.torque, one.speed, brake, when, dt=dt, ratios=one.ratios)
-
-    def excess(brake: float) -> float:
-        found = done(brake, braked + 1.0)
-        after = found.transient.motion.times >= braked
-        return float(found.ratio("LSS")[after].max()) - PEAK
-
-    brake = float(brentq(excess, 0.05, 12.0, xtol=1e-5))
-    return Stopped(one, brake, done(brake, end))
-
-
-def over_instants(one: Rated, quick: bool) -> Record:
+def check_instants(page: Page, quick: bool) -> list[Record]:
     """Peaks of the high-speed shaft with brakes that come at other points of the first swing."""
-    period = 1.0 / float(natural_modes(two_masses(one.table, "free")).frequencies[1])
-    peaks, brakes = [], []
-    for share in (0.0, 0.5) if quick else np.arange(8) / 8.0:
-        late = float(share) * period
-        found = stop(one, QUICK_STEP if quick else 1e-3, late, SEQUENCE.braked + late + 1.0)
-        after = found.done.transient.motion.times >= SEQUENCE.braked + late
-        peaks.append(float(found.done.ratio("HSS")[after].max()))
-        brakes.append(found.brake)
-    return {
-        "drivetrain": one.letter,
-        "HSS, least peak over rated": min(peaks),
-        "HSS, largest peak over rated": max(peaks),
-        "least brake over rated": min(brakes),
-        "largest brake over rated": max(brakes),
-    }
+    shares = (0.0, 0.5) if quick else tuple(np.arange(8) / 8.0)
+    dt = QUICK_STEP if quick else STEP
+    sized: dict[str, list[tuple[float, Stopped]]] = {}
+    for one in drivetrains():
+        period = 1.0 / float(natural_modes(two_masses(one.table, "free")).frequencies[1])
+        lates = [float(share) * period for share in shares]
+        sized[one.letter] = [
+            (late, stop(one, dt, late, SEQUENCE.braked + late + 1.0)) for late in lates
+        ]
+
+    def run(step: float, _: int) -> InTime:
+        values, lost = {}, 0.0
+        for letter, each in sized.items():
+            peaks = []
+            for late, one in each:
+                braked = SEQUENCE.braked + late
+                when = StopSequence(SEQUENCE.off, SEQUENCE.pitched, 0.0, braked, braked + 1.0)
+                found = stopped_by(one.of, one.brake, when, step)
+                motion = found.transient.motion
+                peaks.append(peak_between(found.ratio("HSS")[motion.times >= braked]))
+                lost = max(lost, motion.relative_imbalance)
+            values[f"{letter}, HSS: least peak over rated"] = min(peaks)
+            values[f"{letter}, HSS: largest peak over rated"] = max(peaks)
+        return InTime(values, lost)
+
+    found = converge_in_time(run, 0.5 * dt)
+    check_peaks(page, "instants of the brake", found)
+    return [
+        {
+            "drivetrain": letter,
+            "HSS, least peak over rated": found.value(f"{letter}, HSS: least peak over rated"),
+            "HSS, largest peak over rated": found.value(f"{letter}, HSS: largest peak over rated"),
+            "least brake over rated": min(one.brake for _, one in each),
+            "largest brake over rated": max(one.brake for _, one in each),
+        }
+        for letter, each in sized.items()
+    ]
 
 
-def check_loss(page: Page, one: Rated, dt: float) -> Record:
+def check_stops(page: Page, stopped: list[Stopped], dt: float) -> None:
+    """Energy, and peaks of the same shutdowns with longer steps."""
+    braked = SEQUENCE.braked
+
+    def run(step: float, _: int) -> InTime:
+        values, lost = {}, 0.0
+        for one in stopped:
+            when = StopSequence(SEQUENCE.off, SEQUENCE.pitched, 0.0, braked, braked + 2.0)
+            found = stopped_by(one.of, one.brake, when, step)
+            motion = found.transient.motion
+            for shaft in ("LSS", "HSS"):
+                after = found.ratio(shaft)[motion.times >= braked]
+                values[f"{one.of.letter}, {shaft}: peak over rated"] = peak_between(after)
+                values[f"{one.of.letter}, {shaft}: least over rated"] = -peak_between(-after)
+            lost = max(lost, motion.relative_imbalance)
+        return InTime(values, lost)
+
+    found = converge_in_time(run, dt)
+    check_peaks(page, "shutdown", found)
+
+
+def check_losses(page: Page, dt: float) -> list[Record]:
     """Least torque of two masses against the closed form, and of all gears."""
     when = StopSequence(off=0.2, pitched=1e3, left=1.0, end=1.2)
-    least = {}
-    for lumped in (True, False):
-        found = shutdown(
-            one.table, one.torque, one.speed, 0.0, when, dt=dt / 4, lumped=lumped, ratios=one.ratios
-        )
-        least[lumped] = float(found.ratio("shafts" if lumped else "HSS").min())
-    undamped = shutdown(
-        one.table, one.torque, one.speed, 0.0, when, dt=dt / 4, lumped=True, ratios=(0.0, 0.0)
+    kinds = {
+        "two masses, undamped": {"lumped": True, "ratios": (0.0, 0.0)},
+        "two masses, damped": {"lumped": True},
+        "all gears, HSS": {},
+    }
+
+    def run(step: float, _: int) -> InTime:
+        values, lost = {}, 0.0
+        for one in drivetrains():
+            for kind, given in kinds.items():
+                found = stopped_by(one, 0.0, when, step, **given)  # type: ignore[arg-type]
+                torque = found.ratio("shafts" if "lumped" in given else "HSS")
+                values[f"{one.letter}, {kind}: least over rated"] = -peak_between(-torque)
+                lost = max(lost, found.transient.motion.relative_imbalance)
+        return InTime(values, lost)
+
+    found = converge_in_time(run, dt)
+    page.section("Loss of the generator's torque, the rotor's held")
+    check_peaks(page, "loss of the generator", found)
+    return [check_loss(page, one, found) for one in drivetrains()]
+
+
+def check_loss(page: Page, one: Rated, found: ConvergenceInTime) -> Record:
+    """Of one drivetrain."""
+    undamped, damped, gears = (
+        f"{one.letter}, {kind}: least over rated"
+        for kind in ("two masses, undamped", "two masses, damped", "all gears, HSS")
     )
     J1, J2 = two_masses(one.table, "free").J
     exact = float((J2 - J1) / (J1 + J2))
     page.equals(
         f"drivetrain {one.letter}, two masses: least torque over rated after loss of the generator",
-        float(undamped.ratio("shafts").min()),
+        found.value(undamped),
         exact,
         within=2e-3,
         relative=False,
         why="a lowest point between two steps",
         source="two masses: the shaft swings between T and T (J2 - J1) / (J1 + J2)",
+        band=found.band(undamped),
     )
     page.holds(
         f"drivetrain {one.letter}, all gears: torque "
         + ("stays positive" if one.tripped > 0.0 else "is reversed"),
-        (least[False] > 0.0) == (one.tripped > 0.0),
+        (found.value(gears) > 0.0) == (one.tripped > 0.0),
         why="gears knock on their other flanks where torque is reversed",
         source="sign of J2 - J1",
     )
     return {
         "drivetrain": one.letter,
         "two masses, closed form": exact,
-        "two masses, damped": least[True],
-        "all gears, HSS": least[False],
-        "reversed": least[False] < 0.0,
+        "two masses, damped": found.value(damped),
+        "all gears, HSS": found.value(gears),
+        "reversed": found.value(gears) < 0.0,
     }
 
 
@@ -287,78 +314,6 @@ def verdicts(rows: list[Record], instants: list[Record]) -> list[Record]:
             "verdict": "agrees in kind",
         },
     ]
-
-
-def dip_rows(one: Rated, quick: bool) -> list[Record]:
-    """Peaks after dips of several lengths."""
-    rows: list[Record] = []
-    for length in (0.05, 0.15, 0.3):
-        when = StopSequence(off=0.2, pitched=1e3, left=1.0, end=2.0, back=0.2 + length)
-        done = shutdown(
-            one.table,
-            one.torque,
-            one.speed,
-            0.0,
-            when,
-            dt=1e-3 if quick else 2e-4,
-            ratios=one.ratios,
-        )
-        fast = done.ratio("HSS")
-        rows.append(
-            {
-                "drivetrain": one.letter,
-                "off for [s]": length,
-                "largest": float(fast.max()),
-                "least": float(fast.min()),
-                "at the end": float(fast[-1]),
-            }
-        )
-    return rows
-
-
-def with_backlash(page: Page, one: Stopped, quick: bool) -> list[Record]:
-    """The same shutdown with teeth that part."""
-    when = StopSequence(
-        SEQUENCE.off, SEQUENCE.pitched, 0.0, SEQUENCE.braked, SEQUENCE.braked + (1 if quick else 3)
-    )
-    of = one.of
-    dt = 5e-4 if quick else 5e-5
-    rows: list[Record] = []
-    for backlash in (0.0, BACKLASH):
-        coarse, done = (
-            shutdown(
-                of.table,
-                of.torque,
-                of.speed,
-                one.brake,
-                when,
-                dt=step,
-                ratios=of.ratios,
-                backlash=backlash,
-            )
-            for step in (2.0 * dt, dt)
-        )
-        motion = done.transient.motion
-        shafts = {shaft.name for shaft in of.table.shafts}
-        meshes = [i for i, e in enumerate(done.system.elements) if e.name not in shafts]
-        row: Record = {"drivetrain": of.letter, "backlash [mrad]": 1e3 * backlash}
-        for shaft in ("LSS", "HSS"):
-            peak = float(done.ratio(shaft).max())
-            row[f"{shaft}, peak"] = peak
-            row[f"{shaft}, change with half the step"] = peak - float(coarse.ratio(shaft).max())
-        row["LSS, least"] = float(done.ratio("LSS").min())
-        row["time with parted teeth [%]"] = 100.0 * float(
-            (motion.forces[:, meshes] == 0.0).any(axis=1).mean()
-        )
-        rows.append(row)
-        page.holds(
-            f"drivetrain {of.letter}, backlash of {1e3 * backlash:g} mrad: Newton's method "
-            "converged in every step",
-            motion.converged,
-            why="forces of teeth would be wrong else",
-            source="its residual",
-        )
-    return rows
 
 
 def check_frequencies(page: Page, one: Stopped) -> Record:

@@ -67,11 +67,13 @@ def run(run: Run, page: Page) -> None:
     title = "Contact ratio 1.7: pairs in contact over a period"
     page.chart(title, curves, "phase [periods]", "stiffness [pairs]")
     page.table("Levels and shares of time, by sign", rows)
+    low = next(row for row in rows if row["sign"] == MINUS)
     page.text(
         "The paper prints a_l = -2 / (l pi) sin(l pi (C - 2 g)) sin(l pi C), b_l with a cosine, "
         "in a sum from l = 0 and with the order missing in sin(w t). With that minus a wave of "
-        "contact ratio 1.2 has 1.4 pairs for 80 % of the time and 0.4 pairs for the rest. Both "
-        "signs agree at C = 1.5 alone, but for half a period."
+        f"contact ratio {low['contact ratio']:g} has {low[MEASURED[0]]:.1f} pairs for "
+        f"{100.0 * low[MEASURED[2]]:.0f} % of the time and {low[MEASURED[1]]:.1f} pairs for the "
+        "rest. Both signs agree at C = 1.5 alone, but for half a period."
     )
     page.answer(
         "With a plus in place of the printed minus, Eq 4 to 9 of Park et al. have one pair of "

@@ -133,8 +133,9 @@ def run(run: Run, page: Page) -> None:
         "Ratios of pressures, beside those that the thesis prints of its 2 MW gearbox", ratios
     )
     page.text(
-        "The thesis's 2.32 and 1.32 make sun over ring 1.757. For its teeth (29, 58, 145), equal "
-        "forces and equal widths Hertz leaves exactly the root of 5, 2.236: the printed ratios "
+        f"The thesis's 2.32 and 1.32 make sun over ring {2.32 / 1.32:.3f}. For its teeth (29, 58, "
+        "145), equal forces and equal widths Hertz leaves exactly the root of 5, "
+        f"{np.sqrt(5.0):.3f}: the printed ratios "
         "contradict each other. Its Eq 5.13, half the sum of curvatures, is 1 over a length; the "
         "half width of Eq 5.14 needs the radius 1 / (1/R1 + 1/R2). Its 0.57 for von Mises' stress "
         "belongs to a Poisson ratio of 0.28 rather than 0.3, where it is 0.5575."

@@ -77,6 +77,7 @@ def slow(page: Page) -> None:
                 within=0.02,
                 why="two lines of one frequency cannot be distinguished; no other line leaks in",
                 source="sin(2 pi 1.2 n / 1.8) = -sin(2 pi 0.6 n / 1.8)",
+                basis="self-consistency",
             )
             continue
         page.equals(
@@ -86,6 +87,7 @@ def slow(page: Page) -> None:
             within=0.02,
             why="the line has its power wherever sampling puts it; other lines leak in a little",
             source="sampling theorem",
+            basis="self-consistency",
         )
     page.section("Sampling too slow for 6P")
     page.sweep(
@@ -207,6 +209,7 @@ def spikes(page: Page) -> None:
         places == [6000] and not len(lone_samples(load)),
         why="a load lies near the middle of its neighbours, a spike does not",
         source="where it was put",
+        basis="self-consistency",
     )
     page.section("Spikes")
     page.sweep(

@@ -111,6 +111,7 @@ def check_springs(page: Page, made: dict[str, tuple[Floats, Floats]], coupled: F
         within=1e-6,
         why="round-off times the condition of the motions, about 1e4",
         source="the spring that was put in",
+        basis="self-consistency",
     )
 
 

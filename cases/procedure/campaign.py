@@ -61,6 +61,7 @@ def run(run: Run, page: Page) -> None:
         why="the mean of the torque over a record that is cut by half a second at both ends",
         source="the driving torque",
         measure="reaction",
+        basis="self-consistency",
     )
     twist = recorded["rotor angle [rad]"] - recorded["gearbox angle [rad]"]
     fit = spectral_fit(gauge, twist, STEP, USED)
@@ -74,6 +75,7 @@ def run(run: Run, page: Page) -> None:
         source="the shaft of the simulated drivetrain",
         band=float(fit.bands[2]) / stiffness,
         measure="stiffness",
+        basis="self-consistency",
     )
     page.answer(
         f"Scaling by power leaves a gain of {gain:.4f} in the torque: the offset of "

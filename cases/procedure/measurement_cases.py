@@ -97,6 +97,7 @@ def momentum(page: Page, of: MeasurementCase, channels: dict[str, Floats]) -> No
         within=float(np.abs(np.diff(script)).max()) + 1e-9,
         why="one sample's change of the script's speed, at its corners",
         source="angular momentum",
+        basis="self-consistency",
     )
 
 
@@ -117,6 +118,7 @@ def stops(page: Page, found: dict[str, dict[str, Floats]], ratio: float) -> None
             why="peaks at parabolas through samples of 5 ms, which are a 79th of a period",
             source="eigenvalues of the drivetrain",
             measure="frequency",
+            basis="self-consistency",
         )
         rows.append(
             {

@@ -209,6 +209,7 @@ def shown(page: Page, modes: SystemModes, signal: Floats, step: float) -> None:
         why="half a class of 1 rpm, half the rise in a segment of 0.5 s, and two of its lines",
         source="excitation, or the decay of a mode that was passed",
         measure="frequency",
+        basis="self-consistency",
     )
     page.text(
         f"The ridge follows the mesh order to within {float(np.abs(ridge - met).max()):.1f} Hz, "

@@ -70,7 +70,8 @@ def run(run: Run, page: Page) -> None:
     by_series = [ring(ratio).share(of[CLOSING] / 1e6) for ratio, of in exact.items()]
     page.answer(
         f"A ring with R/h = {ratios[-1]:g} closes by {points[-1]:.5f} W R^3/(E' I) along the load "
-        f"(exact series {by_series[-1]:.5f}, thin ring 0.14878); one with R/h = {ratios[0]:g} by "
+        f"(exact series {by_series[-1]:.5f}, thin ring {np.pi / 4.0 - 2.0 / np.pi:.5f}); "
+        f"one with R/h = {ratios[0]:g} by "
         f"{points[0]:.4f} (exact {by_series[0]:.4f}): there the thin ring is of no use."
     )
     lines = run.timed("series", rings.shares, ring, np.geomspace(1.5, 30.0, 25))

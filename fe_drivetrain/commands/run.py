@@ -334,7 +334,8 @@ def results_text(results: Results, page: Path) -> str:
     -------
     str
     """
-    lines = [*results.notes, *([""] if results.notes else [])]
+    before = [*results.notes, *results.unsettled]
+    lines = [*before, *([""] if before else [])]
     lines += [verdict_line(verdict) for verdict in results.verdicts]
     lines += ["", *results.summary[:_SUMMARY_SENTENCES], ""]
     lines += [f"{_count(results)}: {page}"]
@@ -403,12 +404,15 @@ def several_results_text(
             lines.append(f"{kind}  {name}: {problem.message}")
             continue
         found = results[name]
-        outcome = "pass" if found.passed else "FAIL"
+        outcome = "pass" if found.settled else "open" if found.passed else "FAIL"
         lines.append(f"{outcome}  {name}: {_count(found)}, {sum(found.times.values()):.1f} s")
         lines += [f"      {note}" for note in found.notes if not found.environment.quick]
+        lines += [f"      {sentence}" for sentence in found.unsettled]
         lines += [f"      {verdict_line(v)}" for v in found.verdicts if not v.passed]
-    passed = sum(found.passed for found in results.values())
-    lines += ["", f"{passed} of {len(names)} cases pass: {page}"]
+    passed = sum(found.settled for found in results.values())
+    left = sum(found.passed and not found.settled for found in results.values())
+    still = f", {left} open" if left else ""
+    lines += ["", f"{passed} of {len(names)} cases pass{still}: {page}"]
     return "".join(f"{line}\n" for line in lines)
 
 

@@ -14,6 +14,10 @@ from .convergence import band_of as band_of
 from .convergence import grid_convergence as grid_convergence
 from .convergence import observed_order as observed_order
 from .convergence import richardson as richardson
+from .in_time import ConvergenceInTime as ConvergenceInTime
+from .in_time import InTime as InTime
+from .in_time import converge_in_time as converge_in_time
+from .in_time import peak_between as peak_between
 from .moments import moments as moments
 from .pareto import cheapest_within as cheapest_within
 from .pareto import growth_exponent as growth_exponent

@@ -38,6 +38,7 @@ WORDS = {
     "running": "running",
     "planned": "planned",
     "skipped": "skipped",
+    "unsettled": "open",
     "pass": "pass",
 }
 """Verdicts of cases, worst first, as the page prints them."""
@@ -208,7 +209,7 @@ def _rows(folder: Path, problems: Mapping[str, Problem]) -> Sequence[Row]:
             rows.append(Row(name, "failed", problem=problem))
             continue
         worst = max(results.verdicts, key=share_of_tolerance, default=None)
-        state = "pass" if results.passed else "fail"
+        state = "pass" if results.settled else "unsettled" if results.passed else "fail"
         answer = headline(results)
         points = points_over_runs(folder, results, answer) if answer else []
         rows.append(Row(name, state, "", results, worst, answer, points, checks))

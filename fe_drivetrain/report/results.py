@@ -341,6 +341,9 @@ class Results(_Result):
     notes: list[str] = Field(
         default=[], description="what must be known before any figure, in sentences"
     )
+    unsettled: list[str] = Field(
+        default=[], description="answers that have not converged, in sentences"
+    )
     summary: list[str] = Field(description="the answer first, in a few sentences")
     answers: list[Figure] = Field(default=[], description="values that answer what was asked")
     headline: str = Field(
@@ -360,6 +363,11 @@ class Results(_Result):
     def passed(self) -> bool:
         """Whether every verdict passed."""
         return all(verdict.passed for verdict in self.verdicts)
+
+    @property
+    def settled(self) -> bool:
+        """Whether every verdict passed, and every answer has converged."""
+        return self.passed and not self.unsettled
 
 
 def results_below(folder: Path) -> dict[str, Path]:

@@ -86,6 +86,7 @@ class Case:
             title=f"{page.subject}: {self.title}" if page.subject else self.title,
             source=page.source or self.source,
             notes=[*self._of_quick_runs(run.quick), *page.notes],
+            unsettled=page.unsettled,
             summary=page.summary,
             answers=page.answers,
             verdicts=page.verdicts,

@@ -48,6 +48,8 @@ class Page:
         What a page is about, and from where, if the user gave it; empty where it is the case's own.
     notes : list of str
         What must be known before any figure, in sentences.
+    unsettled : list of str
+        Answers that have not converged, in sentences.
     verdicts : list of Verdict
         Of all checks so far.
     summary : list of str
@@ -71,6 +73,7 @@ class Page:
     def __init__(self) -> None:
         self.subject = self.source = self.scene = self.headline = ""
         self.notes: list[str] = []
+        self.unsettled: list[str] = []
         self.verdicts: list[Verdict] = []
         self.summary: list[str] = []
         self.answers: list[Figure] = []
@@ -239,7 +242,15 @@ class Page:
         """The computed value is no smaller than `low`, and no larger than `high`."""
         self._judge("between", quantity, computed, low, why, source, upper=high, **more)
 
-    def holds(self, statement: str, condition: bool, *, why: str, source: str) -> None:
+    def holds(
+        self,
+        statement: str,
+        condition: bool,
+        *,
+        why: str,
+        source: str,
+        basis: Basis = "independent",
+    ) -> None:
         """A statement is true.
 
         Parameters
@@ -252,9 +263,11 @@ class Page:
             What would follow if it were not.
         source : str
             Where the statement comes from.
+        basis : str
+            As of `equals`.
         """
         truth = float(bool(condition))
-        self._judge("holds", statement, truth, 1.0, why, source, measure="identity")
+        self._judge("holds", statement, truth, 1.0, why, source, measure="identity", basis=basis)
 
     def _judge(
         self,
@@ -463,31 +476,9 @@ class Page:
         """Keep numbers for other programs in results.json, under a name with its unit."""
         self.figures[name] = as_json(value)
 
-    def limit(
-        self,
-        method: str,
-        parameter: str,
-        *,
-        low: float | None = None,
-        high: float | None = None,
-        criterion: str,
-        beyond: str,
-        program: str,
-        remedy: str,
-    ) -> None:
-        """State how far a method can be trusted; see `fe_drivetrain.report.Limit`."""
-        self.limits.append(
-            Limit(
-                method=method,
-                parameter=parameter,
-                low=low,
-                high=high,
-                criterion=criterion,
-                beyond=beyond,
-                program=program,
-                remedy=remedy,
-            )
-        )
+    def limit(self, method: str, parameter: str, **more: Any) -> None:
+        """State how far a method can be trusted; `more` is the rest of `report.Limit`."""
+        self.limits.append(Limit(method=method, parameter=parameter, **more))
 
     def assume(self, name: str, value: Cell, unit: str, source: str) -> None:
         """State a value that the sources do not give, and where it comes from."""

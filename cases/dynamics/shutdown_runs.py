@@ -1,0 +1,196 @@
+"""Shutdowns of published drivetrains with ever shorter steps: brakes, dips, backlash."""
+
+from collections.abc import Collection
+from typing import NamedTuple
+
+from scipy.optimize import newton
+
+from fe_drivetrain.cases.dynamics.drivetrains import Rated, drivetrains
+from fe_drivetrain.compare import ConvergenceInTime, InTime, converge_in_time, peak_between
+from fe_drivetrain.dynamics import Shutdown, StopSequence, shutdown
+from fe_drivetrain.suite import Page, Record, check_in_time
+
+#: Highest torque of a shaft in a shutdown over its rated one, printed: LSS of drivetrain B.
+PEAK = 1.38
+SEQUENCE = StopSequence(off=1.0, pitched=3.0, braked=3.0, end=20.0)
+
+BACKLASH = 1e-3  # rad
+DIPS = (0.05, 0.15, 0.3)  # s
+SETTLED = 0.02
+"""What the step may leave uncertain of a torque, over rated."""
+
+
+class Stopped(NamedTuple):
+    """A drivetrain, its brake over the generator's rated torque, and what it did."""
+
+    of: Rated
+    brake: float
+    done: Shutdown
+
+    @property
+    def stops(self) -> float:
+        """When the disc stands for good [s]."""
+        return [t for t, what in self.done.transient.events if what == "sticks"][-1]
+
+
+def stop(one: Rated, dt: float, late: float = 0.0, end: float = SEQUENCE.end) -> Stopped:
+    """With a brake so large that the low-speed shaft reaches the printed peak.
+
+    Parameters
+    ----------
+    one : Rated
+        Drivetrain.
+    dt, late, end : float
+        Step, how much later than `SEQUENCE` the brake comes, and the end [s].
+    """
+    braked = SEQUENCE.braked + late
+
+    def done(brake: float, end: float) -> Shutdown:
+        when = StopSequence(SEQUENCE.off, SEQUENCE.pitched, 0.0, braked, end)
+        return stopped_by(one, brake, when, dt)
+
+    def excess(brake: float) -> float:
+        found = done(brake, braked + 1.0)
+        after = found.transient.motion.times >= braked
+        return peak_between(found.ratio("LSS")[after]) - PEAK
+
+    # the peak goes with the torque of the brake, as long as the disc turns
+    brake = float(newton(excess, 1.0, x1=3.0, tol=1e-6))
+    return Stopped(one, brake, done(brake, end))
+
+
+def check_peaks(
+    page: Page, of: str, found: ConvergenceInTime, open_for: Collection[str] = ()
+) -> None:
+    """Energy and convergence of torques over rated, without gaps."""
+    check_in_time(
+        page,
+        of,
+        found,
+        dict.fromkeys(found.finest.values, SETTLED),
+        energy=1e-8,
+        why="average acceleration conserves energy of linear systems: round-off of so many steps, "
+        "with modes of some kHz",
+        open_for=open_for,
+        scale=dict.fromkeys(found.finest.values, 1.0),
+    )
+
+
+def stopped_by(
+    one: Rated,
+    brake: float,
+    when: StopSequence,
+    dt: float,
+    *,
+    lumped: bool = False,
+    backlash: float = 0.0,
+    ratios: tuple[float, float] | None = None,
+) -> Shutdown:
+    """A drivetrain stopped, with its own damping ratios where others are not given."""
+    return shutdown(
+        one.table,
+        one.torque,
+        one.speed,
+        brake,
+        when,
+        dt=dt,
+        lumped=lumped,
+        ratios=ratios or one.ratios,
+        backlash=backlash,
+    )
+
+
+def check_dips(page: Page, dt: float) -> list[Record]:
+    """Peaks after dips of several lengths."""
+    ends = {"largest": 1.0, "least": -1.0}
+
+    def run(step: float, _: int) -> InTime:
+        values, lost = {}, 0.0
+        for one in drivetrains():
+            for length in DIPS:
+                when = StopSequence(off=0.2, pitched=1e3, left=1.0, end=0.9, back=0.2 + length)
+                found = stopped_by(one, 0.0, when, step)
+                fast, name = found.ratio("HSS"), f"{one.letter}, off for {length} s"
+                for end, sign in ends.items():
+                    values[f"{name}: {end} over rated"] = sign * peak_between(sign * fast)
+                values[f"{name}: at the end over rated"] = float(fast[-1])
+                lost = max(lost, found.transient.motion.relative_imbalance)
+        return InTime(values, lost)
+
+    found = converge_in_time(run, dt)
+    # a generator that is on at once excites modes of some kHz, and peaks stand on them
+    peaks = [key for key in found.finest.values if "largest" in key]
+    check_peaks(page, "dip of the grid", found, peaks)
+    return [
+        {
+            "drivetrain": one.letter,
+            "off for [s]": length,
+            **{
+                end: found.value(f"{one.letter}, off for {length} s: {end} over rated")
+                for end in (*ends, "at the end")
+            },
+        }
+        for one in drivetrains()
+        for length in DIPS
+    ]
+
+
+def check_backlash(page: Page, stopped: list[Stopped], quick: bool) -> list[Record]:
+    """The same shutdowns with teeth that part."""
+    end = SEQUENCE.braked + (1 if quick else 3)
+    when = StopSequence(SEQUENCE.off, SEQUENCE.pitched, 0.0, SEQUENCE.braked, end)
+    parted: Record = {}
+
+    def run(step: float, _: int) -> InTime:
+        values, lost, all_met = {}, 0.0, True
+        for one in stopped:
+            for backlash in (0.0, BACKLASH):
+                found = stopped_by(one.of, one.brake, when, step, backlash=backlash)
+                name = f"{one.of.letter}, backlash of {1e3 * backlash:g} mrad"
+                for shaft in ("LSS", "HSS"):
+                    peak = peak_between(found.ratio(shaft))
+                    values[f"{name}, {shaft}: peak over rated"] = peak
+                low = -peak_between(-found.ratio("LSS"))
+                values[f"{name}, LSS: least over rated"] = low
+                parted[name] = time_parted(one.of, found)
+                motion = found.transient.motion
+                lost = max(lost, motion.relative_imbalance)
+                all_met = all_met and motion.converged
+        return InTime(values, lost, all_met)
+
+    found = converge_in_time(run, 2.5e-4 if quick else 5e-5)
+    check_in_time(
+        page,
+        "shutdown with backlash",
+        found,
+        dict.fromkeys(found.finest.values, SETTLED),
+        energy=1e-2,
+        why="teeth that part and strike within a step: a hundredth of the energy is half a "
+        "hundredth of the torques",
+        open_for=found.finest.values,
+        scale=dict.fromkeys(found.finest.values, 1.0),
+    )
+    page.holds(
+        "shutdown with backlash: Newton's method converged in every step",
+        found.converged,
+        why="forces of teeth would be wrong else",
+        source="its residual",
+    )
+    rows: list[Record] = []
+    for one in stopped:
+        for backlash in (0.0, BACKLASH):
+            name = f"{one.of.letter}, backlash of {1e3 * backlash:g} mrad"
+            row: Record = {"drivetrain": one.of.letter, "backlash [mrad]": 1e3 * backlash}
+            for what in ("LSS: peak", "HSS: peak", "LSS: least"):
+                key = f"{name}, {what} over rated"
+                row[what.replace(":", ",")] = found.value(key)
+                row[f"{what.replace(':', ',')}, band"] = found.band(key)
+            rows.append(row | {"time with parted teeth [%]": parted[name]})
+    return rows
+
+
+def time_parted(one: Rated, found: Shutdown) -> float:
+    """Share of the time in which teeth of a mesh do not touch [%]."""
+    shafts = {shaft.name for shaft in one.table.shafts}
+    meshes = [i for i, e in enumerate(found.system.elements) if e.name not in shafts]
+    return 100.0 * float((found.transient.motion.forces[:, meshes] == 0.0).any(axis=1).mean())

@@ -1,0 +1,109 @@
+"""Checks of what is computed in time: error of the energy, convergence over step and harmonics."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+
+from fe_drivetrain.compare.in_time import ConvergenceInTime
+from fe_drivetrain.report.number_text import with_unit
+from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.records import Record
+from fe_drivetrain.suite.targets import split_unit
+
+_ENERGY = "work of loads, clocks and dampers is kinetic and strain energy"
+_STEP, _WAVE = "step", "number of harmonics"
+_SERIES = {
+    _STEP: "a step, twice and four times it",
+    _WAVE: "all harmonics, a half and a quarter of them",
+}
+
+
+def check_in_time(
+    page: Page,
+    of: str,
+    found: ConvergenceInTime,
+    within: Mapping[str, float],
+    *,
+    energy: float,
+    why: str,
+    open_for: Collection[str] = (),
+    scale: Mapping[str, float] | None = None,
+) -> None:
+    """Check the energy of runs in time and that their values have converged; show both as a table.
+
+    Parameters
+    ----------
+    page : Page
+        Takes checks, table, and what has not converged.
+    of : str
+        What was run, put before each quantity.
+    found : ConvergenceInTime
+        The runs.
+    within : mapping of str to float
+        By quantity how much of its size step and harmonics may leave uncertain, each.
+    energy : float
+        Energy that may appear from nowhere, over the largest.
+    why : str
+        Why as much of it may.
+    open_for : collection of str
+        Quantities that no number of harmonics settles: where their band is larger than allowed,
+        the page has no check of it but says that the value has not converged.
+    scale : mapping of str to float, optional
+        Size by which the band of a quantity is measured, in place of its value.
+    """
+    page.at_most(
+        f"{of}: energy that appears from nowhere, over the largest",
+        found.energy_error,
+        energy,
+        why=why,
+        source=_ENERGY,
+        measure="identity",
+    )
+    if not found.converged:
+        page.unsettled.append(f"Not converged: {of}, iterations of some steps.")
+    rows: list[Record] = []
+    for key, allowed in within.items():
+        size = abs((scale or {}).get(key, found.value(key)))
+        bands = {_STEP: found.step_band(key)}
+        if found.harmonics:
+            bands[_WAVE] = found.harmonics_band(key)
+        _check_bands(page, f"{of}: {key}", bands, size, allowed, key in open_for)
+        rows.append(
+            {
+                "quantity": key,
+                "value": found.value(key),
+                **{f"band by {name}": band for name, band in bands.items()},
+                **{
+                    f"{count} harmonics": one.values[key]
+                    for count, one in zip(found.harmonics, found.by_harmonics, strict=True)
+                },
+                **{
+                    f"step {1e3 * dt:.3g} ms": one.values[key]
+                    for dt, one in zip(found.steps, found.by_step, strict=True)
+                },
+            }
+        )
+    page.table(f"{of}: convergence", rows)
+    page.data(f"{of}: convergence", rows)
+
+
+def _check_bands(
+    page: Page, name: str, bands: Mapping[str, float], size: float, allowed: float, is_open: bool
+) -> None:
+    """A check for each band within what is allowed, and a sentence for what is open beyond it."""
+    quantity, unit = split_unit(name)
+    shares = {by: band / size if size else float("inf") for by, band in bands.items()}
+    beyond = [by for by, share in shares.items() if is_open and not share <= allowed]
+    for by, share in shares.items():
+        if by not in beyond:
+            page.at_most(
+                f"{quantity}: left uncertain by the {by}, over it",
+                share,
+                allowed,
+                why=f"the answer would be one of the {by}, not of the drivetrain",
+                source=_SERIES[by],
+                measure="identity",
+            )
+    if beyond:
+        parts = [f"± {with_unit(f'{bands[by]:.2g}', unit)} by the {by}" for by in beyond]
+        page.unsettled.append(f"Not converged: {quantity}, uncertain by {' and '.join(parts)}.")
