@@ -175,6 +175,31 @@ def test_a_fixed_frequency_is_as_near_at_every_speed() -> None:
         assert met.crossing == np.inf
 
 
+@pytest.mark.parametrize(
+    ("share", "margin"),
+    [
+        # f = k n / 60 at the end that is nearest: beyond the top it is high / crossing - 1
+        (1.05, 1.0 - 1.0 / 1.05),
+        (1.25, 1.0 - 1.0 / 1.25),
+        # below the bottom low / crossing - 1, of a crossing at share of the least speed
+        (0.95, 1.0 / 0.95 - 1.0),
+        (0.6, 1.0 / 0.6 - 1.0),
+    ],
+)
+@pytest.mark.parametrize("per_turn", [1.0, 6.0])
+def test_the_margin_beyond_the_range_is_that_at_its_nearest_end(
+    share: float, margin: float, per_turn: float
+) -> None:
+    modes = natural_modes(two_masses(table("drivetrain_c"), "free"))
+    crossing = 60.0 * float(modes.frequencies[1]) / per_turn
+    nearest = crossing / share
+    speeds = (0.5 * nearest, nearest) if share > 1.0 else (nearest, 2.0 * nearest)
+    (met,) = resonances([Excitation("rotor", per_turn, (GENERATOR,))], modes, speeds)
+    assert met.crossing == pytest.approx(crossing)
+    assert met.margin == pytest.approx(margin, rel=1e-9)
+    assert met.verdict == ("near" if margin < 0.1 else "clear")
+
+
 def test_a_sweep_has_its_peak_where_the_register_has_the_crossing() -> None:
     parts = Inertia("rotor", 150.0), Inertia("generator", 24.0)
     system = chain(parts, [("shaft", 5300.0, 20.0)])
