@@ -96,6 +96,7 @@ def _validated(path: Path, out: Path | None) -> int:
     from fe_drivetrain.commands.validate_page import show_project
     from fe_drivetrain.procedure.iteration_log import log_file
     from fe_drivetrain.procedure.project import read_project
+    from fe_drivetrain.procedure.steps import STEPS
     from fe_drivetrain.suite.case import Case
     from fe_drivetrain.suite.result_folders import run_case
 
@@ -114,7 +115,12 @@ def _validated(path: Path, out: Path | None) -> int:
     )
     with show_steps() as report:
         results = run_case(case, folder, report=report)
-    lines = [*results.notes, *([""] if results.notes else []), *results.summary, ""]
+    lines = [*results.notes, *([""] if results.notes else []), results.summary[0]]
+    for state in standing.states:
+        if not state.complete:
+            lines += ["", f"Step {state.number}, {STEPS[state.number - 1]}:"]
+            lines += [f"  {text}." for text in standing.reasons(state)]
+    lines.append("")
     if commands:
         lines += ["Run next:", *(f"  {command}" for command in commands), ""]
     lines += [f"Report: {folder / 'report.html'}"]

@@ -91,7 +91,9 @@ def _machine(project: Project, folder: Path) -> str:
 
 
 def _run(cases: list[Case], project: Project, reports: Path, machine: str) -> str:
-    words = ["fe-drivetrain", "run", "--out", str(reports)]
+    # of one case, --out is its own folder
+    out = reports if len(cases) > 1 else reports / cases[0].name
+    words = ["fe-drivetrain", "run", "--out", str(out)]
     words += ["--quick"] if "quick" in project.accept else []
     words += ["--set", f"machine={machine}"] if machine else []
     return shlex.join([*words, *(case.name for case in cases)])

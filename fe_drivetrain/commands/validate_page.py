@@ -100,8 +100,8 @@ def _show_answer(page: Page, standing: Standing) -> None:
         word = "step" if len(open_steps) == 1 else "steps"
         page.answer(f"Not complete: {word} {numbers} of 6.")
         for state in open_steps:
-            more = f" (and {len(state.lacks) - 1} more)" if len(state.lacks) > 1 else ""
-            page.answer(f"Step {state.number}, {STEPS[state.number - 1]}: {state.lacks[0]}{more}.")
+            why = "; ".join(standing.reasons(state))
+            page.answer(f"Step {state.number}, {STEPS[state.number - 1]}: {why}.")
     page.found("complete steps of six", float(len(states) - len(open_steps)))
     reasons: dict[str, list[str]] = {}
     for found in (one for state in states for one in state.evidence):

@@ -51,8 +51,24 @@ class Standing:
 
     @property
     def complete(self) -> bool:
-        """Whether all six steps are, and something was linked at all."""
+        """Whether all six steps are."""
         return all(state.complete for state in self.states)
+
+    def reasons(self, state: StepState) -> list[str]:
+        """Why a step is open, in sentences; what was not run yet in one of them, at the end.
+
+        Parameters
+        ----------
+        state : StepState
+            One of the six.
+        """
+        absent = [one for one in state.evidence if one.results is None]
+        said = {f"{one.claim.name}: {one.why}" for one in absent}
+        reasons = [text for text in state.lacks if text not in said]
+        if absent:
+            names = ", ".join(dict.fromkeys(one.link.case for one in absent))
+            reasons.append(f"its evidence is not there: run {names}")
+        return reasons
 
 
 def evidence_table(evidence: Sequence[Found], reports: Path, folder: Path) -> Table:

@@ -84,6 +84,7 @@ from .measurement_cases import protest_measurement_cases as protest_measurement_
 from .measurement_cases import read_measurement_cases as read_measurement_cases
 from .misalignment import Misalignment as Misalignment
 from .misalignment import influence_of_offsets as influence_of_offsets
+from .misalignment import machine_misalignment as machine_misalignment
 from .motions import Motions as Motions
 from .motions import band_torque as band_torque
 from .motions import driven_motions as driven_motions

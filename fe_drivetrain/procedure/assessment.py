@@ -206,6 +206,8 @@ def _model(project: Project, evidence: Evidence) -> list[str]:
             if f.results and f.record and (needed := needed_of(f.results, f.record, need))
         ]
         wanted = f"{need.quantity} within {100 * need.tolerance:g} %"
+        if not found and len(own) < len(step.evidence):
+            continue  # that is said of the evidence
         if not found:
             lacks.append(
                 f"no evidence says which level {wanted} needs: link dynamics/drivetrain_levels for "
@@ -302,12 +304,12 @@ def _load_cases(project: Project, loads: Mapping[str, DesignLoad], evidence: Evi
         if not case.evidence:
             lacks.append(f"{name} was not run: link where it was under evidence")
         lacks += [f"{name}: {_unknown(one, loads)}" for one in case.loads if one not in loads]
-        answers = [evidence[Claim(link, case.loads)].answer for link in case.evidence]
-        answered = {load for answer in answers if answer for load in answer.loads}
+        found = [evidence[Claim(link, case.loads)] for link in case.evidence]
+        answered = {load for one in found if one.answer for load in one.answer.loads}
         lacks += [
             f"{name}: no evidence answers {one!r}: link a quantity of that load with its limit"
             for one in case.loads
-            if one in loads and case.evidence and one not in answered
+            if one in loads and found and one not in answered and all(f.counts for f in found)
         ]
     modes = project.failure_modes
     brought = {load for case in step.cases for load in case.loads}

@@ -61,10 +61,16 @@ def lacks_of_inputs(project: Project, spreads: Mapping[str, float]) -> list[str]
     lacks = [] if step.values else ["no input is named: add some under values"]
     signals = {signal.name for signal in project.campaign.signals} if project.campaign else None
     for value in step.values:
-        lacks += _of_value(value) + _of_spread(value, signals, spreads)
+        lacks += _of_value(value) + _of_spread(value, signals, spreads, _identified(project))
     if _ITS_SYSTEMS & set(project.systems):
         lacks += _of_table(step)
     return lacks
+
+
+def _identified(project: Project) -> set[str]:
+    """Inputs that step 6 is to determine."""
+    rows = project.comparison.identified if project.comparison else ()
+    return {name for one in rows for name in (one.stiffness_of, one.damping_of)}
 
 
 def _of_value(value: InputValue) -> list[str]:
@@ -84,7 +90,10 @@ def _of_value(value: InputValue) -> list[str]:
 
 
 def _of_spread(
-    value: InputValue, signals: set[str] | None, spreads: Mapping[str, float]
+    value: InputValue,
+    signals: set[str] | None,
+    spreads: Mapping[str, float],
+    identified: set[str],
 ) -> list[str]:
     """What its spread lacks: it is stated, or signals have determined it."""
     if value.measured_by and signals is not None and value.measured_by not in signals:
@@ -102,9 +111,11 @@ def _of_spread(
         ]
     spread = spreads.get(value.name)
     if spread is None:
+        why = "the channels that determine it are not there"
+        if value.name not in identified:
+            why = "nothing under identified of step 6 is named to be it: name it there"
         return [
-            f"{value.name!r} has no band yet: {value.measured_by!r} is to measure it, and nothing "
-            "under identified of step 6 is named to be it"
+            f"{value.name!r} has no band yet: {value.measured_by!r} is to measure it, and {why}"
         ]
     if is_vacuous(spread):
         return [f"{value.name!r}: {why_vacuous('the band that signals determine', spread)}"]

@@ -33,6 +33,7 @@ State = Literal[
     "of another drivetrain",
     "skipped checks",
     "vacuous",
+    "no limit",
     "no answer",
     "beyond its limit",
     "used twice",
@@ -241,12 +242,12 @@ def _judged(claim: Claim, results: Results, subject: Subject | None) -> Found:
     if why := _why_no_answer(claim, results, answer, record.hash):
         return no("no answer", why)
     if answer is not None:
-        if why := why_no_limit(answer.computed, answer.at_most, answer.at_least):
-            return no("vacuous", why)
+        if why := why_no_limit(answer.computed, answer.unit, answer.at_most, answer.at_least):
+            return no("no limit", why)
         if is_guess(claim.link.limit_from):
             source = claim.link.limit_from or "not stated"
             why = f"the source of its limit is {source!r}: name a document under limit_from"
-            return no("vacuous", why)
+            return no("no limit", why)
         if not answer.met:
             return no(
                 "beyond its limit", f"{answer.quantity} is {answer.value}, asked: {answer.asked}"

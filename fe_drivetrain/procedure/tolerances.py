@@ -1,13 +1,13 @@
 """When a tolerance, a spread, a limit or a source says nothing: rules with their reasons.
 
-A share w allows values from 1 - w to 1 + w. Where the ends are a factor of two or more apart, w from
-a third on, it says nothing of a drivetrain: a load that acts at once has twice the effect of one
-that comes slowly, and a load on one of two bearings is twice that on both, so that a model without
-dynamics, or without the load path, would pass as well as the right one.
+A share w allows values from 1 - w to 1 + w. Where the ends are a factor of two or more apart, w
+from a third on, it says nothing of a drivetrain: a load that acts at once has twice the effect of
+one that comes slowly, and a load on one of two bearings is twice that on both, so that a model
+without dynamics, or without the load path, would pass as well as the right one.
 
-A lower limit of 0 or less is met by every margin. An upper limit of more than a hundred times the
-value is no limit of that load: safety factors are one to ten, and a unit that was mistaken (N for
-kN) is a factor of a thousand.
+A lower limit of 0 or less is met by every margin. A limit that is more than a hundred times the
+value away from 0 is no limit of that load: safety factors are one to ten, and a unit that was
+mistaken (N for kN) is a factor of a thousand.
 """
 
 from __future__ import annotations
@@ -72,25 +72,30 @@ def is_guess(source: str) -> bool:
     return _GUESS.search(source) is not None
 
 
-def why_no_limit(value: float, at_most: float | None, at_least: float | None) -> str:
+def why_no_limit(value: float, unit: str, at_most: float | None, at_least: float | None) -> str:
     """That a limit is none, in a sentence; empty where it is one.
 
     Parameters
     ----------
     value : float
         What is held against it.
+    unit : str
+        Of both; a margin has none.
     at_most, at_least : float or None
         The limit.
     """
     if at_most is None and at_least is None:
         return "no limit is stated: give at_most, as a capacity, or at_least, as a margin"
-    if at_least is not None and at_least <= 0.0:
-        return (
-            f"at_least {at_least:g} says nothing: every margin is at least that: give one above 0"
-        )
-    if at_most is not None and value != 0.0 and at_most > FARTHEST * abs(value):
-        return (
-            f"at_most {at_most:g} is more than {FARTHEST:g} times the value, {value:.4g}: it is no "
-            "limit of this load: correct its unit, or give that of the part"
-        )
+    if at_least is not None and at_least <= 0.0 and unit in ("", "-"):
+        return f"at_least {at_least:g} says nothing, as every margin has it: give one above 0"
+    far = FARTHEST * abs(value)
+    for side, limit, beyond in (
+        ("at_most", at_most, at_most is not None and at_most > far),
+        ("at_least", at_least, at_least is not None and at_least < -far),
+    ):
+        if beyond and value != 0.0:
+            return (
+                f"{side} {limit:g} is more than {FARTHEST:g} times the value, {value:.4g}: it is "
+                "no limit of this load: correct its unit, or give that of the part"
+            )
     return ""
