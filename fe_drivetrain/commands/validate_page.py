@@ -105,11 +105,12 @@ def _show_answer(page: Page, standing: Standing) -> None:
     page.found("complete steps of six", float(len(states) - len(open_steps)))
     reasons: dict[str, list[str]] = {}
     for found in (one for state in states for one in state.evidence):
-        if found.state not in ("passed", "missing"):
-            said = found.why if found.counts else f"{found.why} (does not count)"
-            reasons.setdefault(f"{found.state}, {said}", []).append(found.link.case)
-    for reason, cases in reasons.items():
-        page.note(f"Evidence {reason}: {', '.join(dict.fromkeys(cases))}.")
+        if found.state != "passed" and found.results is not None:
+            how = f"that counts although {found.why}" if found.counts else "that does not count"
+            which = found.link.case if found.counts else f"{found.link.case} ({found.state})"
+            reasons.setdefault(how, []).append(which)
+    for how, which_ones in reasons.items():
+        page.note(f"Evidence {how}: {', '.join(dict.fromkeys(which_ones))}.")
     inputs = standing.project.inputs
     if inputs and inputs.waived:
         names = ", ".join(one.name for one in inputs.waived)

@@ -86,7 +86,11 @@ class Case:
             case=self.name,
             title=f"{page.subject}: {self.title}" if page.subject else self.title,
             source=page.source or self.source,
-            notes=[*self._of_quick_runs(run.quick), *page.notes],
+            notes=[
+                *self._of_quick_runs(run.quick),
+                *page.notes,
+                *(f"Not checked: {one}." for one in page.skipped),
+            ],
             summary=page.summary,
             answers=page.answers,
             verdicts=page.verdicts,

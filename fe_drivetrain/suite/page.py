@@ -97,16 +97,29 @@ class Page(Checks):
         name : str
             As the results call it, where they are of several.
         """
-        from fe_drivetrain.report.seal import drivetrain_record
         from fe_drivetrain.scene.reading import scene_text
         from fe_drivetrain.scene.scene import Scene
+
+        self._of = self.concerns(drivetrain, name)
+        if isinstance(drivetrain, Scene):
+            self.scene = scene_text(drivetrain)
+
+    def concerns(self, drivetrain: Described, name: str = "") -> str:
+        """State one of several drivetrains that the results compare; its hash.
+
+        Parameters
+        ----------
+        drivetrain : Described
+            A scene, machine or gear table, with all changes made.
+        name : str
+            As the results call it.
+        """
+        from fe_drivetrain.report.seal import drivetrain_record
 
         record = drivetrain_record(drivetrain, name)
         if record not in self.drivetrains:
             self.drivetrains.append(record)
-        self._of = record.hash
-        if isinstance(drivetrain, Scene):
-            self.scene = scene_text(drivetrain)
+        return record.hash
 
     def answer(self, *sentences: str) -> None:
         """The answer first: added to the summary on top of the page."""
