@@ -7,7 +7,10 @@ from fe_drivetrain.beam.frame import beam_stiffness, round_section
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import rigid_motions
-from fe_drivetrain.procedure.misalignment import influence_of_offsets
+from fe_drivetrain.dynamics.bodies import assemble
+from fe_drivetrain.dynamics.levels import Level, assembly
+from fe_drivetrain.dynamics.tables import library_machine
+from fe_drivetrain.procedure.misalignment import influence_of_offsets, machine_misalignment
 from fe_drivetrain.procedure.motions import driven_motions, element_torques
 from fe_drivetrain.procedure.resonance import Excitation, drivetrain_excitations, resonances
 from fe_drivetrain.procedure.voltage_dips import Dip
@@ -175,6 +178,31 @@ def test_a_fixed_frequency_is_as_near_at_every_speed() -> None:
         assert met.crossing == np.inf
 
 
+@pytest.mark.parametrize(
+    ("share", "margin"),
+    [
+        # f = k n / 60 at the end that is nearest: beyond the top it is high / crossing - 1
+        (1.05, 1.0 - 1.0 / 1.05),
+        (1.25, 1.0 - 1.0 / 1.25),
+        # below the bottom low / crossing - 1, of a crossing at share of the least speed
+        (0.95, 1.0 / 0.95 - 1.0),
+        (0.6, 1.0 / 0.6 - 1.0),
+    ],
+)
+@pytest.mark.parametrize("per_turn", [1.0, 6.0])
+def test_the_margin_beyond_the_range_is_that_at_its_nearest_end(
+    share: float, margin: float, per_turn: float
+) -> None:
+    modes = natural_modes(two_masses(table("drivetrain_c"), "free"))
+    crossing = 60.0 * float(modes.frequencies[1]) / per_turn
+    nearest = crossing / share
+    speeds = (0.5 * nearest, nearest) if share > 1.0 else (nearest, 2.0 * nearest)
+    (met,) = resonances([Excitation("rotor", per_turn, (GENERATOR,))], modes, speeds)
+    assert met.crossing == pytest.approx(crossing)
+    assert met.margin == pytest.approx(margin, rel=1e-9)
+    assert met.verdict == ("near" if margin < 0.1 else "clear")
+
+
 def test_a_sweep_has_its_peak_where_the_register_has_the_crossing() -> None:
     parts = Inertia("rotor", 150.0), Inertia("generator", 24.0)
     system = chain(parts, [("shaft", 5300.0, 20.0)])
@@ -226,3 +254,37 @@ def test_torque_of_a_shaft_overshoots_after_a_total_loss_as_an_oscillator_does()
     # twist follows this exactly; the damper's torque adds 2 zeta of a quarter period, squared
     assert torque.min() == pytest.approx(least, rel=0.01)
     assert torque.min() < 0.0
+
+
+@pytest.mark.parametrize("level", [Level.RIGID, Level.FLEXIBLE])
+def test_offsets_of_a_machines_bearings_are_loads_on_its_springs(level: Level) -> None:
+    machine = library_machine("nrel_750kw")
+    found = machine_misalignment(machine, level)
+    assert {name.rpartition(" ")[0] for name in found.names} == {b.name for b in machine.bearings}
+    made = assembly(machine, level)
+    system = assemble(made.bodies, made.springs, made.superelements)
+    places = [system.spring(name) for name in found.names]
+    H, k = system.rows[places], system.stiffness[places]
+    for name in ("main bearing uz", "PLC-B uy", "LSS-A uz"):
+        offset = 1e-3 * np.array([other == name for other in found.names])
+        moved = np.linalg.solve(system.K, H.T @ (k * offset))
+        forces = k * (offset - H @ moved)
+        assert found.forces(offset) == pytest.approx(forces, abs=1e-7 * np.abs(forces).max())
+
+
+def test_a_main_bearing_out_of_line_is_held_by_the_two_of_the_carrier() -> None:
+    machine = library_machine("nrel_750kw")
+    stiff, soft = (machine_misalignment(machine, level) for level in (Level.RIGID, Level.FLEXIBLE))
+    assert soft.names == stiff.names
+    largest = np.abs(stiff.influence).max()
+    assert soft.influence == pytest.approx(stiff.influence, abs=0.02 * largest)
+    up = soft.forces(np.array([1e-3 * (name == "main bearing uz") for name in soft.names]))
+    by = dict(zip(soft.names, up, strict=True))
+    assert by["main bearing uz"] > 0.0
+    assert by["PLC-A uz"] * by["PLC-B uz"] < 0.0
+
+
+def test_machines_whose_bearings_do_not_hold_them_are_refused() -> None:
+    machine = library_machine("nrel_750kw").model_copy(update={"bearings": ()})
+    with pytest.raises(InputError, match="rigid motions"):
+        machine_misalignment(machine)

@@ -40,6 +40,7 @@ def run(run: Run, page: Page) -> None:
     """Frequencies, shapes, shares of energy and damping at three levels of detail."""
     given = run.settings.get("table")
     table = published.table("nrel_750kw") if given is None else read_drivetrain(str(given))
+    page.about(table)
     states = [s for s in published.STATES if s == "free" or table.generator.stiffness > 0]
     rows: list[Record] = []
     found = {}

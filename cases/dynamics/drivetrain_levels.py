@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.common import InputError
 from fe_drivetrain.dynamics import (
     QUESTIONS,
     RUNGS,
@@ -20,6 +21,7 @@ from fe_drivetrain.dynamics import (
     ladder,
     library_machine,
     machine_system,
+    named_machine,
     needed_level,
     system_modes,
     torsional,
@@ -48,13 +50,20 @@ FIRST = "first torsional frequency [Hz]"
 @case(
     "Levels of one drivetrain: torsional, rigid bodies, flexible shafts",
     source="Al-Hamadani 2018, chapters 4 and 5; Nejad et al. 2016 for the 5 MW gearbox",
+    settings={
+        "machine": "nrel_5mw, nrel_750kw and synthetic_2mw, or FILE",
+        "torque": "rated (of the rotor of a machine of one's own, kN m)",
+        "moment": "0 (about y at its hub, kN m)",
+        "speed": "rated (of its rotor, rpm)",
+    },
 )
 def run(run: Run, page: Page) -> None:
     """Tables recovered, answers of each level beside its cost, and which level is needed."""
     recover(run, page)
     needed: list[Record] = []
-    for name, operation in OPERATIONS.items():
-        machine = library_machine(name)
+    for name, operation in operations(run).items():
+        machine = named_machine(name)
+        page.about(machine, name)
         rungs = [*RUNGS, *more_rungs(run, name)]
         with run.step(f"ladder of {name}"):
             answers = ladder(machine, operation, rungs)
@@ -94,7 +103,7 @@ def run(run: Run, page: Page) -> None:
             source="Rayleigh's principle of constraints",
         )
         show_modes(page, machine)
-        show_turning(page, name, machine)
+        show_turning(page, name, machine, RPM.get(name) or number(run, "speed"))
         if name == "nrel_5mw":
             stiffness_of_5mw(page)
         if name == "synthetic_2mw":
@@ -116,13 +125,32 @@ def run(run: Run, page: Page) -> None:
     )
     page.answer(
         "All levels are one assembly: the torsional tables come back to round-off from it.",
-        "The 5 MW gearbox, within 5 % of the finest level: "
+        f"{needed[0]['drivetrain']}, within 5 % of the finest level: "
         + "; ".join(
             f"{str(row['question']).partition(' [')[0]}: {row['level']}"
             for row in needed[: len(QUESTIONS)]
         )
         + ".",
     )
+
+
+def operations(run: Run) -> dict[str, Operation]:
+    """Machines and their loads: those of the case, or the one that the user names."""
+    if "machine" not in run.settings:
+        return OPERATIONS
+    name = str(run.settings["machine"])
+    if name in OPERATIONS:
+        return {name: OPERATIONS[name]}
+    moment = number(run, "moment") if "moment" in run.settings else 0.0
+    return {name: Operation(1e3 * number(run, "torque"), 1e3 * moment)}
+
+
+def number(run: Run, key: str) -> float:
+    """A value of operation of a machine of one's own."""
+    value = run.settings.get(key)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
+        raise InputError(f"a machine of one's own needs {key}, a number, as in --set {key}=20")
+    return float(value)
 
 
 def error_curves(answers: Sequence[Answer]) -> list[dict[str, Any]]:
@@ -255,16 +283,16 @@ def with_teeth(table: Drivetrain) -> Drivetrain:
 RPM = {"nrel_5mw": 12.1, "nrel_750kw": 22.1, "synthetic_2mw": 18.1}
 
 
-def show_turning(page: Page, name: str, machine: Machine) -> None:
+def show_turning(page: Page, name: str, machine: Machine, rpm: float) -> None:
     """What spinning adds to the frequencies at rated speed, by the gyroscopic terms."""
     system = machine_system(machine, Level.RIGID)
     at_rest = turning_modes(system, 0.0, damped=False).frequencies
-    turning = turning_modes(system, RPM[name] * 2 * np.pi / 60, damped=False).frequencies
+    turning = turning_modes(system, rpm * 2 * np.pi / 60, damped=False).frequencies
     count = min(len(at_rest), len(turning))
     change = float(np.abs(turning[-count:] / at_rest[-count:] - 1).max())
     page.data(f"gyroscopic_change_{name}", change)
     page.text(
-        f"At {RPM[name]} rpm of the rotor the gyroscopic terms of all spinning bodies change no "
+        f"At {rpm:g} rpm of the rotor the gyroscopic terms of all spinning bodies change no "
         f"frequency by more than {100 * change:.2g} %."
     )
 

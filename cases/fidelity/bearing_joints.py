@@ -26,7 +26,6 @@ from fe_drivetrain.scene import (
     joint_stiffness,
     library_scene,
     roller_lines,
-    scene_text,
 )
 from fe_drivetrain.suite import Page, Run
 
@@ -125,7 +124,7 @@ def run(run: Run, page: Page) -> None:
     """Sweep the tilt stiffness of the joint from none to all, and set the other joints beside."""
     scene = change_scene(library_scene(SCENE), run.settings)
     scene = scene.model_copy(update={"mesh": scene.mesh.scaled(*SIZES[run.quick])})
-    page.scene = scene_text(scene)
+    page.about(scene)
     with run.step("the two limits"):
         limits = Limits(
             spherical=solved(with_joint(scene, interface="averaged")),

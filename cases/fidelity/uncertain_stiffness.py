@@ -38,7 +38,7 @@ from fe_drivetrain.response import (
     unit_load_response,
     without_gearbox,
 )
-from fe_drivetrain.scene import Scene, change_scene, library_scene, scene_text
+from fe_drivetrain.scene import Scene, change_scene, library_scene
 from fe_drivetrain.suite import Page, Record, Run, column
 from fe_drivetrain.uncertainty import (
     BORE,
@@ -91,7 +91,7 @@ def run(run: Run, page: Page) -> None:
     scene = change_scene(library_scene(SCENE), run.settings)
     size = SIZES[run.quick]
     scene = _meshed(scene, size)
-    page.scene = scene_text(scene)
+    page.about(scene)
     load = np.zeros(len(LOADS))
     load[LOADS.index(LOAD)] = 1e6
     samples = 64 if run.quick else 128

@@ -28,7 +28,6 @@ from fe_drivetrain.scene import (
     coarser_scene,
     library_scene,
     read_scene,
-    scene_text,
 )
 from fe_drivetrain.solve import METHODS
 from fe_drivetrain.suite import Page, Run
@@ -102,7 +101,7 @@ def scene_of(run: Run, page: Page, kind: str, coarsen: bool = True) -> Scene:
         )
     if run.quick and coarsen:
         scene = coarser_scene(scene, *QUICK)
-    page.scene = scene_text(scene)
+    page.about(scene)
     return scene
 
 

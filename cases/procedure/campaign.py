@@ -5,7 +5,10 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
 from fe_drivetrain.dynamics import Machine, library_machine, torsional
+from fe_drivetrain.histories import damage_equivalent_load, rainflow_cycles
 from fe_drivetrain.procedure import (
+    ROTOR_TORQUE,
+    TORQUE_AND_BENDING,
     Sensor,
     band_torque,
     element_torques,
@@ -27,11 +30,17 @@ from fe_drivetrain.torsion import (
 )
 
 MACHINE, SHAFT = "nrel_750kw", "LSS"
-SPEED, MEAN, DEVIATION = 22.1 * np.pi / 30.0, 3.25e5, 4e4  # rad/s, N m
-STEP, BAND, USED = 0.01, (0.05, 5.0), (0.2, 3.0)  # s, Hz
+SPEED, RATED, DEVIATION = 22.1 * np.pi / 30.0, 3.25e5, 2e4  # rad/s, N m
+RATED_WIND = 14.0  # m/s
+FINE, EVERY = 0.01, 5  # s of the simulation, samples of it for each that is recorded
+STEP, BAND, USED = EVERY * FINE, (0.05, 5.0), (0.2, 3.0)  # s, Hz
 DAMPING, EFFICIENCY, PULSES = 4e5, 0.95, 4096  # N m s/rad of the shaft, -, a turn
-GAUGE = Sensor(gain=0.93, offset=1e3, noise=1e3)
-WINDS, WINDOWS, TURBULENCE = (6, 7, 8, 9, 10), 3, 0.1
+SLOPE = 4.0
+GAUGE = Sensor(gain=0.93, offset=1e3, noise=2e2)
+WINDS, WINDOWS, TURBULENCE = (8, 9, 10), 3, 0.1
+WINDOW, MARGIN = 600.0, 0.5  # s, of a window, and cut off at either end of the record
+RECORDED = slice(round(MARGIN / FINE), -round(MARGIN / FINE), EVERY)
+MEASURED = "measured.csv"
 
 
 @case(
@@ -41,22 +50,24 @@ WINDS, WINDOWS, TURBULENCE = (6, 7, 8, 9, 10), 3, 0.1
 def run(run: Run, page: Page) -> None:
     """Record torque and angles with sensors, write them as a campaign would, compare a model."""
     machine = library_machine(MACHINE)
+    page.about(machine, MACHINE)
     truth, simple = eleven_inertias(machine), two_inertias(machine)
-    count = round((120.0 if run.quick else 300.0) / STEP)
-    torque = MEAN + band_torque(count, STEP, BAND, DEVIATION, seed=5)
+    wind = winds(1 if run.quick else WINDOWS)
+    mean = RATED * (wind / RATED_WIND) ** 3
+    torque = mean + band_torque(len(wind), FINE, BAND, DEVIATION, seed=5)
     with run.step("virtual measurement"):
         recorded, gain = measurement(truth, torque)
-        write_channels(run.folder / "measured.csv", STEP, recorded)
-        write_channels(run.folder / "wind.csv", 1.0, {"wind speed [m/s]": winds()})
+        recorded["wind speed [m/s]"] = wind[RECORDED]
+        write_channels(run.folder / MEASURED, STEP, recorded)
     with run.step("model"):
-        inner = slice(round(0.5 / STEP), -round(0.5 / STEP))
-        computed = shaft_torque(simple, torque, "drivetrain")[inner]
+        computed = shaft_torque(simple, torque, "drivetrain")[RECORDED]
         write_channels(run.folder / "computed.csv", STEP, {"LSS torque [N m]": computed})
+    loads(page, computed)
     gauge = recorded["LSS torque [N m]"]
     page.equals(
         "mean torque, scaled to electrical power [kN m]",
         float(gauge.mean()) / 1e3,
-        MEAN / 1e3,
+        float(torque[RECORDED].mean()) / 1e3,
         within=1e-3,
         why="the mean of the torque over a record that is cut by half a second at both ends",
         source="the driving torque",
@@ -80,7 +91,7 @@ def run(run: Run, page: Page) -> None:
     page.answer(
         f"Scaling by power leaves a gain of {gain:.4f} in the torque: the offset of "
         f"{GAUGE.offset:g} N m has become an error of gain, and the stiffness found has it, too.",
-        "measured.csv, computed.csv and wind.csv are what a campaign would hand on.",
+        f"{MEASURED}, wind included, and computed.csv are what a campaign would hand on.",
     )
     page.section("Torque of the main shaft")
     shown = slice(0, round(20.0 / STEP))
@@ -112,6 +123,27 @@ def run(run: Run, page: Page) -> None:
     page.assume("damping of the main shaft", DAMPING, "N m s/rad", "the table has none")
     page.assume("efficiency", EFFICIENCY, "", "of a virtual measurement of power")
     page.assume("wind", f"{WINDOWS} windows each of {WINDS} m/s", "", "of a virtual campaign")
+    page.assume(
+        "torque of the rotor",
+        f"cube of the wind, rated at {RATED_WIND:g} m/s, and a band up to {BAND[1]:g} Hz",
+        "",
+        "of a virtual campaign, at a constant speed",
+    )
+
+
+def loads(page: Page, torque: Floats) -> None:
+    """What the model gives in production: values of design loads."""
+    size = damage_equivalent_load([rainflow_cycles(torque)], len(torque) * STEP, SLOPE)
+    of = (ROTOR_TORQUE, TORQUE_AND_BENDING)
+    page.found(
+        "largest torque of the main shaft in production [kN m]", torque.max() / 1e3, None, of
+    )
+    page.found(
+        f"equivalent torque of the main shaft in production, slope {SLOPE:g} [kN m]",
+        size / 1e3,
+        None,
+        of,
+    )
 
 
 def eleven_inertias(machine: Machine) -> Torsional:
@@ -141,7 +173,7 @@ def two_inertias(machine: Machine) -> Torsional:
 
 def shaft_torque(system: Torsional, torque: Floats, element: str) -> Floats:
     """(n,) torque in an element while the rotor is driven [N m]."""
-    motions = periodic_motions(system, on_rotor(system, torque), STEP)
+    motions = periodic_motions(system, on_rotor(system, torque), FINE)
     place = [e.name for e in system.elements].index(element)
     return np.asarray(element_torques(system, motions)[place])
 
@@ -155,17 +187,17 @@ def on_rotor(system: Torsional, torque: Floats) -> Floats:
 
 def measurement(system: Torsional, torque: Floats) -> tuple[dict[str, Floats], float]:
     """Torque by a bridge, scaled to power, and angles by timed pulses; the gain that is left."""
-    motions = periodic_motions(system, on_rotor(system, torque), STEP)
+    motions = periodic_motions(system, on_rotor(system, torque), FINE)
     names = [part.name for part in system.inertias]
     place = [e.name for e in system.elements].index(SHAFT)
-    time, inner = motions.time, slice(round(0.5 / STEP), -round(0.5 / STEP))
-    bridge = measured(GAUGE, element_torques(system, motions)[place], seed=6)[inner]
-    speed = (SPEED + motions.speed[names.index("rotor")])[inner]
-    power = EFFICIENCY * torque[inner] * speed
+    time = motions.time
+    bridge = measured(GAUGE, element_torques(system, motions)[place], seed=6)[RECORDED]
+    speed = (SPEED + motions.speed[names.index("rotor")])[RECORDED]
+    power = EFFICIENCY * torque[RECORDED] * speed
     factor = scaled_to_power(bridge, speed, power, EFFICIENCY)
     angles = {
         f"{name} angle [rad]": timed_angle(
-            time, SPEED * time + motions.angle[names.index(part)], PULSES, time[inner]
+            time, SPEED * time + motions.angle[names.index(part)], PULSES, time[RECORDED]
         )
         for name, part in (("rotor", "rotor"), ("gearbox", "stage 1 carrier"))
     }
@@ -173,11 +205,11 @@ def measurement(system: Torsional, torque: Floats) -> tuple[dict[str, Floats], f
     return columns, factor * GAUGE.gain
 
 
-def winds() -> Floats:
-    """Wind at 1 Hz in windows of ten minutes, some of each mean [m/s]."""
+def winds(windows: int) -> Floats:
+    """(n,) wind of one run in windows of ten minutes, some of each mean, and a margin [m/s]."""
     parts = [
-        v + band_torque(600, 1.0, (0.002, 0.2), TURBULENCE * v, seed=100 * v + k)
+        v + band_torque(round(WINDOW / FINE), FINE, (0.002, 0.2), TURBULENCE * v, seed=100 * v + k)
         for v in WINDS
-        for k in range(WINDOWS)
+        for k in range(windows)
     ]
-    return np.concatenate(parts)
+    return np.pad(np.concatenate(parts), round(MARGIN / FINE), mode="wrap")

@@ -41,6 +41,7 @@ SHOWN = ("main bearing", "gearbox entrance")
 def run(run: Run, page: Page) -> None:
     """One history of hub loads through three models; each in equilibrium in every row."""
     scene = library_scene(SCENE)
+    page.about(scene)
     places, mounts = drivetrain(scene)
     made = hub_loads(Condition(16.0, "medium", 0.2, 1), duration=30.0 if run.quick else 600.0)
     time, hub = made.time, made.loads

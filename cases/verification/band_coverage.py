@@ -155,6 +155,7 @@ def run(run: Run, page: Page) -> None:
         others = [run.timed("NGSolve", independent, seed) for seed in alone]
     except MissingToolError as error:
         others, missing = [], f"{error}; without it no shaft is compared with it."
+        page.skip("level 2: share of bands that hold against NGSolve", str(error))
     if others:
         page.at_least(
             "level 2: share of bands that hold against NGSolve",

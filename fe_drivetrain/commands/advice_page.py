@@ -13,7 +13,6 @@ from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.report.charts import chart, rounded, trace
 from fe_drivetrain.report.pictures.sketch import shaft_with_rings
 from fe_drivetrain.report.results import Cell, Chart, Section, Table, Text
-from fe_drivetrain.scene.reading import scene_text
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.run import Run
@@ -211,7 +210,7 @@ def advised(
     InputError
         See `fe_drivetrain.fidelity.adviser.advise`.
     """
-    page.scene = scene_text(scene)
+    page.about(scene)
     with run.step("model levels"):
         advice = advise(scene, quantity, tolerance, to_the_top, run.report)
     chosen = None if advice.chosen is None else advice.results[advice.chosen]

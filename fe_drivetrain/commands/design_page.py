@@ -75,6 +75,8 @@ def compared(
     """
     with run.step("designs at their levels"):
         found = compare_designs(designs, quantities, tolerance, load, run.report)
+    for name, scene in designs.items():
+        page.concerns(scene, name)
     names = list(designs)
     known = [one for one in found if one.is_known]
     for one in known[:_NAMED]:

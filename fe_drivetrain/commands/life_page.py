@@ -24,6 +24,7 @@ from fe_drivetrain.hub_loads.turbines import different_turbines
 from fe_drivetrain.life.at_site import site_lives
 from fe_drivetrain.life.reference_life import reference_load
 from fe_drivetrain.life.roller_damage import KINDS, RINGS, LifeRules
+from fe_drivetrain.procedure.failure_modes import TORQUE_AND_BENDING
 from fe_drivetrain.report.answer import value_with_band
 from fe_drivetrain.response.stated import HUB_LOADS
 from fe_drivetrain.scene.scene import Scene
@@ -84,6 +85,7 @@ def lived(
         A file cannot be read, or a site is asked for and files have no wind speed.
     """
     page.seed = None
+    page.about(scene)
     found: list[BearingLife] = []
     with run.step("load steps"):
         items = [
@@ -160,7 +162,8 @@ def _answer(page: Page, found: Sequence[BearingLife], rules: LifeRules, site: Si
         words = f"Bearing {life.one.name} lives {_years(years['L10mr'])} {at} (L10mr"
         band = _scatter(life)
         if np.isfinite(years["L10mr"]):
-            page.found(f"L10mr of bearing {life.one.name} [years]", years["L10mr"], band)
+            which = f"L10mr of bearing {life.one.name} [years]"
+            page.found(which, years["L10mr"], band, (TORQUE_AND_BENDING,))
         if band is not None:
             shown = value_with_band(page.answers[-1])
             words = f"Bearing {life.one.name} lives {shown} {at} (L10mr, ± two standard errors of "

@@ -8,6 +8,7 @@ from fe_drivetrain.commands.loads_digest import LOADS, POWER, UNITS, Options
 from fe_drivetrain.commands.loads_together import Together
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.histories.damage import FREQUENCY
+from fe_drivetrain.procedure.failure_modes import ROTOR_TORQUE
 from fe_drivetrain.report.answer import value_with_band
 from fe_drivetrain.report.charts import heat_map, trace
 from fe_drivetrain.suite.page import Page
@@ -56,7 +57,7 @@ def answer_of_counts(page: Page, found: Together, options: Options) -> str:
         )
         band = (most - load) / 1e3 if options.residue == "half" else None
         quantity = f"equivalent load of {name}, slope {slope:g} [kN m]"
-        page.found(quantity, load / 1e3, band)
+        page.found(quantity, load / 1e3, band, (ROTOR_TORQUE,) if name == "Mx" else ())
         words.append(f"{value_with_band(page.answers[-1])} in {name}")
     if not words:
         return ""

@@ -114,6 +114,8 @@ def loaded(
         A file cannot be read, or holds no loads, or a site is given and files have no wind speed.
     """
     page.seed = None
+    if reactions is not None:
+        page.about(reactions.scene)
     every = {name: Together() for name in ("", *(reactions.names if reactions else ()))}
     found = every[""]
     own: list[Digest] = []

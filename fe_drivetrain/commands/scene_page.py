@@ -15,7 +15,6 @@ from fe_drivetrain.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.scene.bearing_unit import SPHERICAL_JOINTS, BearingUnit, Springs
 from fe_drivetrain.scene.left_out import left_out
 from fe_drivetrain.scene.nose import NoseBearing
-from fe_drivetrain.scene.reading import scene_text
 from fe_drivetrain.scene.scene import Scene, coarser_scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
@@ -85,7 +84,7 @@ def describe(page: Page, model: Model) -> None:
         The model, meshed, so that masses are those of what is solved.
     """
     scene = model.scene
-    page.scene = scene_text(scene)
+    page.about(scene)
     page.assume_all(left_out(scene))
     parts: list[Record] = [
         {

@@ -34,7 +34,6 @@ from fe_drivetrain.response.cached import cached_response
 from fe_drivetrain.response.entering import Factors, entering, joined
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.unit_loads import Response
-from fe_drivetrain.scene.reading import scene_text
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
@@ -76,7 +75,7 @@ def studied(
     InputError
         The scene cannot be solved.
     """
-    page.scene = scene_text(scene)
+    page.about(scene)
     scene = quick_scene(scene) if run.quick else scene
     scene = scene if weight else weightless(scene)
     model = checked_model(run, scene)

@@ -13,7 +13,6 @@ from fe_drivetrain.fidelity.quantities import Number
 from fe_drivetrain.report.charts import chart, rounded
 from fe_drivetrain.report.results import Cell, Chart, Section, Table, Text
 from fe_drivetrain.response.entering import Factors
-from fe_drivetrain.scene.reading import scene_text
 from fe_drivetrain.scene.scene import Scene, Spread
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.run import Run
@@ -224,7 +223,7 @@ def uncertain(
     InputError
         See `fe_drivetrain.uncertainty.input_study.study`.
     """
-    page.scene = scene_text(scene)
+    page.about(scene)
     with run.step("uncertainty"):
         found = study(scene, asked, load, tolerance, level, count, seed, sobol, run.report)
     page.seed = seed

@@ -136,6 +136,7 @@ from .system import without_massless as without_massless
 from .tables import MACHINES as MACHINES
 from .tables import Machine as Machine
 from .tables import library_machine as library_machine
+from .tables import named_machine as named_machine
 from .tables import parse_machine as parse_machine
 from .tables import read_machine as read_machine
 from .travelling import Travelled as Travelled

@@ -56,6 +56,24 @@ def library_machine(name: str) -> Machine:
     return parse_machine(text, name)
 
 
+def named_machine(name: str) -> Machine:
+    """The machine in a file or of the library.
+
+    Parameters
+    ----------
+    name : str
+        A file, or one of `MACHINES`.
+
+    Raises
+    ------
+    InputError
+        There is none of that name, or the file does not describe a machine.
+    """
+    if name not in MACHINES and (Path(name).suffix or Path(name).exists()):
+        return read_machine(name)
+    return library_machine(name)
+
+
 def read_machine(path: str | Path) -> Machine:
     """Read a machine's table from a YAML file of at most 1 MB.
 

@@ -9,32 +9,22 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
-from itertools import chain
 from typing import Any
 
-from fe_drivetrain.procedure.evidence import Found
+from fe_drivetrain.procedure.certainty import lacks_of_inputs
+from fe_drivetrain.procedure.evidence import Claim, Found
 from fe_drivetrain.procedure.failure_modes import NUMBERS, Catalogue, DesignLoad
 from fe_drivetrain.procedure.project import (
     SECTIONS,
-    EvidenceLink,
+    Identified,
     Need,
     Project,
 )
 from fe_drivetrain.procedure.sensors import sampling_rates
-from fe_drivetrain.report.results import Results, Verdict
+from fe_drivetrain.procedure.tolerances import is_guess, why_vacuous
+from fe_drivetrain.report.results import DrivetrainRecord, Results, Verdict
 
-TABLE_4_7 = (
-    "mass of drivetrain parts",
-    "inertia of drivetrain parts",
-    "stiffness of shafts",
-    "stiffness of meshes",
-    "stiffness of gearbox mount",
-    "damping of shafts",
-    "damping of meshes",
-)
-"""Inputs of a drivetrain in Table 4.7; of the masses alone is the certainty known, 3 %."""
-
-Evidence = Mapping[EvidenceLink, Found]
+Evidence = Mapping[Claim, Found]
 
 
 @dataclass(frozen=True)
@@ -49,11 +39,17 @@ class Measured:
         Comparisons of step 6.
     missing : Mapping[int, str]
         Files that are not there, in a sentence, by the step that needs them.
+    faults : tuple of str
+        Why files of campaign and comparison are none of a measurement, in sentences.
+    spreads : Mapping[str, float]
+        Half width, as a share, of inputs that signals determine, by the input's name.
     """
 
     windows: Mapping[int, int] | None = None
     verdicts: tuple[Verdict, ...] = ()
     missing: Mapping[int, str] = field(default_factory=dict)
+    faults: tuple[str, ...] = ()
+    spreads: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -88,8 +84,8 @@ class StepState:
         return not self.lacks
 
 
-def links_of(project: Project) -> tuple[tuple[EvidenceLink, ...], ...]:
-    """All links of each step, each once.
+def claims_of(project: Project) -> tuple[tuple[Claim, ...], ...]:
+    """All links of each step with what they stand for, each once.
 
     Parameters
     ----------
@@ -98,13 +94,14 @@ def links_of(project: Project) -> tuple[tuple[EvidenceLink, ...], ...]:
     """
     found = []
     for step, key in zip(project.steps, SECTIONS, strict=True):
-        rows: Sequence[object] = ()
+        claims = [Claim(link) for link in (step.evidence if step else ())]
         if key == "failure_modes" and project.failure_modes:
-            rows = project.failure_modes.gaps
+            gaps = project.failure_modes.gaps
+            claims += [Claim(link, (gap.load,), True) for gap in gaps for link in gap.evidence]
         if key == "load_cases" and project.load_cases:
-            rows = project.load_cases.cases
-        inner = chain.from_iterable(getattr(row, "evidence", ()) for row in rows)
-        found.append(tuple(dict.fromkeys([*(step.evidence if step else ()), *inner])))
+            cases = project.load_cases.cases
+            claims += [Claim(link, case.loads) for case in cases for link in case.evidence]
+        found.append(tuple(dict.fromkeys(claims)))
     return tuple(found)
 
 
@@ -119,8 +116,8 @@ def assessed(
         As read.
     catalogue : Catalogue
         Design loads.
-    evidence : mapping of EvidenceLink to Found
-        Of all `links_of` the project.
+    evidence : mapping of Claim to Found
+        Of all `claims_of` the project.
     measured : Measured
         Of its files.
 
@@ -137,22 +134,26 @@ def assessed(
     rules: Sequence[Callable[[], list[str]]] = (
         lambda: _failure_modes(project, loads),
         lambda: _model(project, evidence),
-        lambda: _load_cases(project, loads),
-        lambda: _inputs(project),
+        lambda: _load_cases(project, loads, evidence),
+        lambda: lacks_of_inputs(project, measured.spreads),
         lambda: _campaign(project, measured),
         lambda: _comparison(project, measured),
     )
     states = []
-    for number, (step, links, rule) in enumerate(
-        zip(project.steps, links_of(project), rules, strict=True), start=1
+    for number, (step, claims, rule) in enumerate(
+        zip(project.steps, claims_of(project), rules, strict=True), start=1
     ):
-        found = tuple(evidence[link] for link in links)
+        found = tuple(evidence[claim] for claim in claims)
         if step is None:
             key = SECTIONS[number - 1]
             states.append(StepState(number, "", (f"it was not begun: add the section {key}",), ()))
             continue
         files = [measured.missing[number]] if number in measured.missing else []
-        lacks = [*rule(), *files, *(f"{one.name}: {one.why}" for one in found if not one.counts)]
+        lacks = [
+            *rule(),
+            *files,
+            *(f"{one.claim.name}: {one.why}" for one in found if not one.counts),
+        ]
         states.append(StepState(number, step.decision, tuple(lacks), found))
     return tuple(states)
 
@@ -174,7 +175,8 @@ def _failure_modes(project: Project, loads: Mapping[str, DesignLoad]) -> list[st
             lacks.append(_unknown(name, loads))
     for load in loads.values():
         gap = answered.get(load.name)
-        if load.covered != "yes" and (gap is None or not (gap.evidence or gap.dismissed)):
+        dismissed = gap is not None and not is_guess(gap.dismissed)
+        if load.covered != "yes" and (gap is None or not (gap.evidence or dismissed)):
             lacks.append(
                 f"{load.name!r} is covered by no load case: run {load.remedy} and link it under "
                 "gaps, or state there why it is dismissed"
@@ -194,10 +196,18 @@ def _model(project: Project, evidence: Evidence) -> list[str]:
     step = project.model
     assert step is not None
     lacks = [] if step.needs else ["no quantity decides the level: name one under needs"]
-    results = [f.results for link in step.evidence if (f := evidence[link]).results is not None]
+    own = [f for link in step.evidence if (f := evidence[Claim(link)]).record is not None]
     for need in step.needs:
-        found = [n for r in results if (n := needed_of(r, step.machine, need)) is not None]
+        if why := why_vacuous(f"the tolerance of {need.quantity!r}", need.tolerance):
+            lacks.append(why)
+        found = [
+            needed
+            for f in own
+            if f.results and f.record and (needed := needed_of(f.results, f.record, need))
+        ]
         wanted = f"{need.quantity} within {100 * need.tolerance:g} %"
+        if not found and len(own) < len(step.evidence):
+            continue  # that is said of the evidence
         if not found:
             lacks.append(
                 f"no evidence says which level {wanted} needs: link dynamics/drivetrain_levels for "
@@ -221,7 +231,7 @@ def _place(level: str, levels: Sequence[tuple[str, str]]) -> int | None:
 
 
 def needed_of(
-    results: Results, machine: str, need: Need
+    results: Results, record: DrivetrainRecord, need: Need
 ) -> tuple[list[tuple[str, str]], int | None] | None:
     """Which level a quantity needs, by the adviser's or the ladder's results.
 
@@ -229,8 +239,8 @@ def needed_of(
     ----------
     results : Results
         Of ``fe-drivetrain advise``, or of the case of levels of a machine.
-    machine : str
-        Name of its ladder; empty for a scene.
+    record : DrivetrainRecord
+        How the results call the drivetrain.
     need : Need
         Quantity and tolerance.
 
@@ -243,7 +253,8 @@ def needed_of(
         where the results say nothing of the quantity.
     """
     figures = results.figures
-    rows = figures.get(f"ladder_{machine}") if machine else figures.get("levels")
+    machine = record.kind != "scene"
+    rows = figures.get(f"ladder_{record.name}") if machine else figures.get("levels")
     if not rows or (not machine and figures.get("quantity") != need.quantity):
         return None
     if machine:
@@ -276,7 +287,7 @@ def _of_advice(rows: Sequence[Mapping[str, Any]], tolerance: float) -> int | Non
     return None
 
 
-def _load_cases(project: Project, loads: Mapping[str, DesignLoad]) -> list[str]:
+def _load_cases(project: Project, loads: Mapping[str, DesignLoad], evidence: Evidence) -> list[str]:
     step = project.load_cases
     assert step is not None
     lacks = [] if step.cases else ["no load case is named: add some under cases"]
@@ -293,31 +304,19 @@ def _load_cases(project: Project, loads: Mapping[str, DesignLoad]) -> list[str]:
         if not case.evidence:
             lacks.append(f"{name} was not run: link where it was under evidence")
         lacks += [f"{name}: {_unknown(one, loads)}" for one in case.loads if one not in loads]
+        found = [evidence[Claim(link, case.loads)] for link in case.evidence]
+        answered = {load for one in found if one.answer for load in one.answer.loads}
+        lacks += [
+            f"{name}: no evidence answers {one!r}: link a quantity of that load with its limit"
+            for one in case.loads
+            if one in loads and found and one not in answered and all(f.counts for f in found)
+        ]
     modes = project.failure_modes
     brought = {load for case in step.cases for load in case.loads}
     brought |= {gap.load for gap in modes.gaps} if modes else set()
     for one in modes.critical if modes else ():
         if one.load not in brought:
             lacks.append(f"no load case brings {one.load!r} about, which step 1 calls critical")
-    return lacks
-
-
-def _inputs(project: Project) -> list[str]:
-    step = project.inputs
-    assert step is not None
-    lacks = [] if step.values else ["no input is named: add some under values"]
-    signals = {signal.name for signal in project.campaign.signals} if project.campaign else set()
-    for value in step.values:
-        if value.band is None and not value.measured_by:
-            lacks.append(
-                f"{value.name!r} has no band, and no signal measures it: state either, or go back "
-                "to step 2 for a model that does not need it"
-            )
-        if value.measured_by and project.campaign and value.measured_by not in signals:
-            lacks.append(
-                f"{value.name!r} is measured by {value.measured_by!r}, which is no signal of the "
-                "campaign: add it there"
-            )
     return lacks
 
 
@@ -332,6 +331,8 @@ def _campaign(project: Project, measured: Measured) -> list[str]:
                 f"{signal.name!r} is sampled at {signal.rate:g} Hz, but {signal.highest:g} Hz need "
                 f"{least:g} Hz or more"
             )
+        if why := why_vacuous(f"the accuracy of {signal.name!r}", signal.accuracy):
+            lacks.append(why)
     if step.capture is None:
         lacks.append("there is no capture matrix: add capture")
     elif measured.windows is not None:
@@ -349,10 +350,35 @@ def _comparison(project: Project, measured: Measured) -> list[str]:
     lacks = []
     if not (step.quantities or step.identified):
         lacks.append("nothing is compared: add quantities or identified")
+    wide = {f"{one.channel}: {one.statistic}": one.tolerance for one in step.quantities}
+    wide |= {f"what {one.torque!r} determines": one.tolerance for one in step.identified}
+    lacks += filter(None, (why_vacuous(f"the tolerance of {k!r}", t) for k, t in wide.items()))
+    for one in step.identified:
+        lacks += _other_inputs(project, one)
+    lacks += measured.faults
     lacks += [
         f"{v.quantity} is {v.computed:.4g} {v.unit} in the model and {v.reference:.4g} {v.unit} "
         f"as measured, {100 * v.tolerance:g} % are allowed: improve model or campaign"
         for v in measured.verdicts
         if not v.passed
     ]
+    return lacks
+
+
+def _other_inputs(project: Project, one: Identified) -> list[str]:
+    """Inputs of step 4 that signals are said to determine, where these are other values."""
+    values = {value.name: value for value in project.inputs.values} if project.inputs else {}
+    lacks = []
+    for name, model, unit in (
+        (one.stiffness_of, one.stiffness, "N m/rad"),
+        (one.damping_of, one.damping, "N m s/rad"),
+    ):
+        value = values.get(name)
+        if name and value is None:
+            lacks.append(f"{name!r} is identified but is no input of step 4: add it there")
+        elif value is not None and (value.value, value.unit) != (model, unit):
+            lacks.append(
+                f"{name!r} is {value.value} {value.unit} in step 4 and {model} {unit} where it is "
+                "identified: state the model's in both"
+            )
     return lacks

@@ -77,6 +77,8 @@ class Channels:
     ----------
     source : str
         The file, for messages.
+    span : tuple of float
+        Time of the first and of the last sample, as the file has it [s].
     step : float
         Between two samples [s].
     values : Mapping[str, ndarray]
@@ -86,6 +88,7 @@ class Channels:
     """
 
     source: str
+    span: tuple[float, float]
     step: float
     values: Mapping[str, Floats]
     units: Mapping[str, str]
@@ -173,7 +176,9 @@ def read_channels(given: ChannelFile, folder: Path, wanted: frozenset[str]) -> C
                 f"{file}: column {channel.name!r} has a sample that is not finite: remove it"
             )
         values[name], bases[name] = np.asarray(sign * size * channel.values), base
-    return Channels(str(file), _step(file, values.pop("time"), bases.pop("time")), values, bases)
+    time, unit = values.pop("time"), bases.pop("time")
+    step = _step(file, time, unit)
+    return Channels(str(file), (float(time[0]), float(time[-1])), step, values, bases)
 
 
 def _unit(file: Path, name: str, unit: str) -> tuple[float, str]:

@@ -19,6 +19,14 @@ from fe_drivetrain.common.reading import parse_mapping, read_text, validated
 Kind = Literal["ultimate", "fatigue", "contact", "rating", "interference", "constraint", "wear"]
 """Of a load: what it is checked for."""
 
+ROTOR_TORQUE = "rotor torque"
+REVERSALS = "torque reversals"
+MISALIGNMENT = "misalignment in the drivetrain"
+DIPS = "low voltage ride through"
+RESONANCE = "resonance"
+TORQUE_AND_BENDING = "torque and bending of main shaft, high-speed shaft, couplings, bearings"
+"""Design loads of the catalogue that results of the program are values of."""
+
 Covered = Literal["yes", "partly", "no"]
 """Whether the external condition that brings the load about is one of the load cases."""
 

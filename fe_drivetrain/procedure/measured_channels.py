@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -12,10 +13,10 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.histories.cycles import rainflow_cycles
 from fe_drivetrain.histories.damage import damage_equivalent_load
 from fe_drivetrain.histories.windows import CaptureMatrix, capture_matrix, window_statistics
-from fe_drivetrain.procedure.channels import Channels, read_channels
+from fe_drivetrain.procedure.channels import ChannelFile, Channels, read_channels
 from fe_drivetrain.procedure.project import Capture, Compared, Comparison, Identified
 from fe_drivetrain.procedure.spectral_fit import spectral_fit
-from fe_drivetrain.report.results import Verdict, judge
+from fe_drivetrain.report.results import Results, Verdict, judge, read_results
 
 WIND = "wind speed"
 """Channel of a capture matrix."""
@@ -93,7 +94,86 @@ def statistic(values: Floats, step: float, which: Compared) -> float:
     return float(found[which.statistic])
 
 
-def compared(comparison: Comparison, folder: Path) -> tuple[Verdict, ...]:
+@dataclass(frozen=True)
+class Outcome:
+    """What measured channels say of a model.
+
+    Attributes
+    ----------
+    verdicts : tuple of Verdict
+        Computed against measured.
+    spreads : Mapping[str, float]
+        Half width, as a share of the value, of each input that signals determine, by its name.
+    """
+
+    verdicts: tuple[Verdict, ...] = ()
+    spreads: Mapping[str, float] = field(default_factory=dict)
+
+
+def faults_of_files(
+    capture: Capture | None, comparison: Comparison, drivetrain: str, folder: Path
+) -> tuple[str, ...]:
+    """Why files of campaign and comparison are none of one measurement, in sentences.
+
+    Channels that a case wrote are no measurement, and those of another drivetrain none of this one.
+    Wind and measured channels are of one run where they begin and end together, or are one file.
+
+    Parameters
+    ----------
+    capture : Capture or None
+        Of step 5.
+    comparison : Comparison
+        Of step 6, whose file is there.
+    drivetrain : str
+        Hash of the project's.
+    folder : Path
+        What names of files are relative to.
+    """
+    faults = []
+    made = _made_by(comparison.measured, folder)
+    if made is not None:
+        faults.append(
+            f"{comparison.measured.file} is no measurement: {made.case} made it by a model: record "
+            "these channels on the machine"
+        )
+    for name, given in (("measured", comparison.measured), ("computed", comparison.computed)):
+        by = _made_by(given, folder) if given else None
+        if by is not None and drivetrain not in {one.hash for one in by.drivetrains}:
+            of = ", ".join(repr(one.title) for one in by.drivetrains) or "no stated drivetrain"
+            faults.append(
+                f"{name} channels of {by.case} are of {of}: give those of this drivetrain"
+            )
+    if capture is not None and (folder / capture.files.file).is_file():
+        faults += _apart(capture, comparison, folder)
+    return tuple(faults)
+
+
+def _made_by(given: ChannelFile, folder: Path) -> Results | None:
+    """The results of the case that wrote a file; None of a file that no case wrote."""
+    beside = (folder / given.file).with_name("results.json")
+    try:
+        return read_results(beside) if beside.is_file() else None
+    except (OSError, ValueError):
+        return None
+
+
+def _apart(capture: Capture, comparison: Comparison, folder: Path) -> list[str]:
+    if (folder / capture.files.file).resolve() == (folder / comparison.measured.file).resolve():
+        return []
+    both = [
+        read_channels(given, folder, frozenset()) for given in (capture.files, comparison.measured)
+    ]
+    late = [abs(a - b) for a, b in zip(both[0].span, both[1].span, strict=True)]
+    if max(late) <= max(one.step for one in both):
+        return []
+    spans = [f"{one.span[0]:.6g} to {one.span[1]:.6g} s" for one in both]
+    return [
+        f"{capture.files.file} is from {spans[0]} and {comparison.measured.file} from {spans[1]}: "
+        "they are not of one run: give wind and measured channels that begin and end together"
+    ]
+
+
+def compared(comparison: Comparison, folder: Path) -> Outcome:
     """Statistics of the model against those measured, and what signals determine.
 
     Parameters
@@ -105,7 +185,7 @@ def compared(comparison: Comparison, folder: Path) -> tuple[Verdict, ...]:
 
     Returns
     -------
-    tuple of Verdict
+    Outcome
 
     Raises
     ------
@@ -119,9 +199,12 @@ def compared(comparison: Comparison, folder: Path) -> tuple[Verdict, ...]:
     if comparison.quantities and comparison.computed is not None:
         computed = read_channels(comparison.computed, folder, names)
         verdicts = [_judged(q, measured, computed) for q in comparison.quantities]
+    spreads: dict[str, float] = {}
     for one in comparison.identified:
-        verdicts += _identified(one, measured)
-    return tuple(verdicts)
+        found, determined = _identified(one, measured)
+        verdicts += found
+        spreads |= determined
+    return Outcome(tuple(verdicts), spreads)
 
 
 def _judged(which: Compared, measured: Channels, computed: Channels) -> Verdict:
@@ -143,7 +226,7 @@ def _judged(which: Compared, measured: Channels, computed: Channels) -> Verdict:
     )
 
 
-def _identified(one: Identified, measured: Channels) -> list[Verdict]:
+def _identified(one: Identified, measured: Channels) -> tuple[list[Verdict], Mapping[str, float]]:
     """K and D of ``T = K x + D x'``: the torque is that in the shaft, so that I comes out as 0."""
     for name, unit in ((one.torque, "N m"), (one.front, "rad"), (one.rear, "rad")):
         if measured.units[name] != unit:
@@ -156,6 +239,12 @@ def _identified(one: Identified, measured: Channels) -> list[Verdict]:
     wanted = [("stiffness", one.stiffness, 2, "N m/rad")]
     if one.damping is not None:
         wanted.append(("damping", one.damping, 1, "N m s/rad"))
+    names = {2: one.stiffness_of, 1: one.damping_of}
+    spreads = {
+        name: float(abs(fit.bands[place] / fit.values[place]))
+        for place, name in names.items()
+        if name
+    }
     return [
         judge(
             f"{name} from {one.torque}, {one.front}, {one.rear}",
@@ -169,4 +258,4 @@ def _identified(one: Identified, measured: Channels) -> list[Verdict]:
             unit=unit,
         )
         for name, model, place, unit in wanted
-    ]
+    ], spreads

@@ -20,6 +20,9 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.dynamics.bodies import assemble
+from fe_drivetrain.dynamics.levels import Level, assembly
+from fe_drivetrain.dynamics.tables import Machine
 
 _SMALL = 1e-9
 
@@ -127,3 +130,34 @@ def influence_of_offsets(
     C = np.diag(1.0 / k) + bent @ (bent / values[~free]).T
     influence = N @ np.linalg.solve(N.T @ C @ N, N.T)
     return Misalignment(names, np.asarray(0.5 * (influence + influence.T)))
+
+
+def machine_misalignment(machine: Machine, level: Level = Level.FLEXIBLE) -> Misalignment:
+    """Influence of offsets of a machine's bearings, each of which the ground may move.
+
+    Parameters
+    ----------
+    machine : Machine
+        With bearings in the housing; gears mesh where they stand, and the grid holds the generator.
+    level : Level
+        What may move: shafts bend at the flexible one.
+
+    Returns
+    -------
+    Misalignment
+        Rows are bearing and motion, as in "main bearing uz".
+
+    Raises
+    ------
+    InputError
+        Its bearings do not hold it.
+    """
+    made = assembly(machine, level)
+    # with all of its motions: the condensed system has bearings within its stiffness
+    system = assemble(made.bodies, made.springs, made.superelements)
+    bearings = {bearing.name for bearing in machine.bearings}
+    held = np.array([name.rpartition(" ")[0] in bearings for name in system.spring_names])
+    rows, stiffness = system.rows[~held], system.stiffness[~held]
+    free = rows.T @ (stiffness[:, None] * rows) + system.extra
+    names = tuple(str(name) for name in np.array(system.spring_names)[held])
+    return influence_of_offsets(free, system.rows[held], system.stiffness[held], names)

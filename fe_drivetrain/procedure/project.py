@@ -21,6 +21,7 @@ PROJECT_SCHEMA_FILE = "project.schema.json"
 """Name under which the schema stands beside a project, and in the documentation."""
 
 Share = Annotated[float, Field(gt=0.0, le=1.0)]
+Number = Annotated[float, Field(allow_inf_nan=False)]
 Name = Annotated[str, Field(min_length=1)]
 Accepted = Literal["quick", "other version"]
 
@@ -36,6 +37,27 @@ class EvidenceLink(_Part):
         description="GROUP/NAME below the folder of reports, as in procedure/gaps or advise/mine"
     )
     check: str = Field(default="", description="one of its checks, by name; empty: all of them")
+    quantity: str = Field(
+        default="", description="value among its answers or checks that answers the load"
+    )
+    unit: str = Field(default="", description="of quantity and limit, as the results have it")
+    at_most: Number | None = Field(default=None, description="limit of the quantity, as a capacity")
+    at_least: Number | None = Field(default=None, description="limit of the quantity, as a margin")
+    limit_from: str = Field(default="", description="where the limit comes from")
+
+    @model_validator(mode="after")
+    def _limit_of_a_quantity(self) -> Self:
+        bounded = self.at_most is not None or self.at_least is not None
+        if (bounded or self.unit or self.limit_from) and not self.quantity:
+            raise InputError(
+                f"evidence {self.case} has a limit and no quantity: name the value of its results "
+                "that is held against it under quantity"
+            )
+        if self.quantity and self.check:
+            raise InputError(
+                f"evidence {self.case} has a check and a quantity: link them one by one"
+            )
+        return self
 
 
 class _Step(_Part):
@@ -80,7 +102,7 @@ class ModelChoice(_Step):
     """Step 2."""
 
     scene: str = Field(default="", description="scene file, or a scene of the library")
-    machine: str = Field(default="", description="gear table by its name in the library")
+    machine: str = Field(default="", description="machine file, or a machine of the library")
     level: Name = Field(description="level of the ladder by its name or number")
     needs: tuple[Need, ...] = Field(description="quantities that decide the level")
 
@@ -112,21 +134,48 @@ class LoadCases(_Step):
     cases: tuple[CaseOfLoad, ...] = Field(description="load cases that are run")
 
 
+KnownBy = Literal[
+    "weighing",
+    "measurement",
+    "drawing",
+    "data sheet",
+    "calculation",
+    "standard",
+    "publication",
+    "assumption",
+]
+
+
 class InputValue(_Part):
     """An input of the model."""
 
     name: Name = Field(description="as in 'stiffness of shafts'")
+    value: Number | None = Field(default=None, description="what the model has")
+    unit: str = Field(default="", description="of the value, as in 'N m/rad'")
     band: Share | None = Field(
         default=None, description="half width of what it may be, as a share; left out: not known"
     )
-    source: Name = Field(description="where the value comes from")
+    known_by: KnownBy | None = Field(
+        default=None, description="how the value is known; an assumption does not count"
+    )
+    source: Name = Field(description="where the value comes from: document, page, date")
     measured_by: str = Field(default="", description="signal of the campaign that determines it")
+
+
+class Waived(_Part):
+    """An input of Table 4.7 that the project does without."""
+
+    name: Name = Field(description="as Table 4.7 has it")
+    reason: Name = Field(description="why the project does without it")
 
 
 class Inputs(_Step):
     """Step 4."""
 
     values: tuple[InputValue, ...] = Field(description="inputs of the model")
+    waived: tuple[Waived, ...] = Field(
+        default=(), description="inputs of Table 4.7 that are not among the values, and why"
+    )
 
 
 class Signal(_Part):
@@ -188,6 +237,8 @@ class Identified(_Part):
         default=None, description="the model's [N m s/rad]"
     )
     tolerance: Share = Field(description="allowed difference over the identified value")
+    stiffness_of: str = Field(default="", description="input of step 4 that the stiffness is")
+    damping_of: str = Field(default="", description="input of step 4 that the damping is")
 
 
 class Comparison(_Step):
@@ -291,7 +342,7 @@ def parse_project(text: str, source: str = "project") -> Project:
 
 
 def starting_project() -> str:
-    """The project to start from: the 750 kW reference drivetrain, complete once its cases ran."""
+    """The project to start from: the 750 kW reference drivetrain, with what it leaves open."""
     return (
         package_files("fe_drivetrain.procedure").joinpath("project_750kw.yaml").read_text("utf-8")
     )

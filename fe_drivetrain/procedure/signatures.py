@@ -12,15 +12,18 @@ from collections.abc import Sequence
 
 from fe_drivetrain.procedure.assessment import StepState
 from fe_drivetrain.procedure.project import Project
-from fe_drivetrain.report.results import Verdict
+from fe_drivetrain.report.results import DrivetrainRecord, Verdict
 
 _DIGITS = 16
 
 
 def content_digest(
-    project: Project, states: Sequence[StepState], verdicts: Sequence[Verdict]
+    project: Project,
+    states: Sequence[StepState],
+    verdicts: Sequence[Verdict],
+    drivetrain: DrivetrainRecord | None,
 ) -> str:
-    """Digest of all that is signed: decisions, evidence with its values, comparisons.
+    """Digest of all that is signed: decisions, drivetrain, evidence with its values, comparisons.
 
     Parameters
     ----------
@@ -30,6 +33,8 @@ def content_digest(
         Its six steps.
     verdicts : sequence of Verdict
         Measured against computed.
+    drivetrain : DrivetrainRecord or None
+        What the project is of, by the hash of its values.
 
     Returns
     -------
@@ -38,8 +43,10 @@ def content_digest(
     """
     content = {
         "project": project.model_dump(mode="json", exclude={"signed"}),
+        "drivetrain": drivetrain.hash if drivetrain else "",
         "evidence": [
             [found.link.model_dump(), found.state, found.counts, found.version]
+            + [f"{found.answer.value}, {found.answer.asked}" if found.answer else ""]
             + [v.model_dump(mode="json") for v in found.verdicts]
             for state in states
             for found in state.evidence

@@ -67,6 +67,7 @@ class Verdict(_Result):
         description="half width of the numerical uncertainty of computed, in its unit; computed "
         "itself, or absent",
     )
+    of: str = Field(default="", description="hash of the drivetrain, where results state one")
     passed: bool
 
 
@@ -145,6 +146,7 @@ def judge(
     measure: Measure | None = None,
     basis: Basis = "independent",
     band: float | None = None,
+    of: str = "",
 ) -> Verdict:
     """Judge one quantity; a NaN never passes. For the arguments see `Verdict`."""
     verdict = Verdict(
@@ -161,6 +163,7 @@ def judge(
         measure=measure,
         basis=basis,
         band=None if band is None else float(band),
+        of=of,
         passed=False,
     )
     return verdict.model_copy(update={"passed": is_met(verdict)})
@@ -227,6 +230,19 @@ class Figure(_Result):
     band: float | None = Field(
         default=None, ge=0, description="half width of its numerical uncertainty, in its unit"
     )
+    of: str = Field(default="", description="hash of the drivetrain, where results state one")
+    loads: tuple[str, ...] = Field(
+        default=(), description="design loads, as the catalogue calls them, that it is a value of"
+    )
+
+
+class DrivetrainRecord(_Result):
+    """A drivetrain that results are of."""
+
+    kind: str = Field(description="scene, machine, or drivetrain of a gear table")
+    name: str = Field(default="", description="as the results call it; empty: they do not")
+    title: str
+    hash: str = Field(description="of all values that describe it")
 
 
 class Text(_Result):
@@ -357,7 +373,14 @@ class Results(_Result):
     times: dict[str, float] = Field(default={}, description="wall time of each step [s]")
     figures: dict[str, Any] = Field(default={}, description="named numbers for other programs")
     scene: str = Field(default="", description="the scene as a file, of a case that has one")
+    drivetrains: list[DrivetrainRecord] = Field(
+        default=[], description="what the results are of, of a case or command that says so"
+    )
+    skipped: list[str] = Field(
+        default=[], description="checks that were not made, and why, in sentences"
+    )
     environment: Environment
+    digest: str = Field(default="", description="SHA-256 of all other values")
 
     @property
     def passed(self) -> bool:

@@ -77,15 +77,20 @@ class Case:
         """Run the case; what it found."""
         from fe_drivetrain.report.environment import environment
         from fe_drivetrain.report.results import Results
+        from fe_drivetrain.report.seal import sealed
         from fe_drivetrain.suite.page import Page
 
         page = Page()
         self.run(run, page)
-        return Results(
+        found = Results(
             case=self.name,
             title=f"{page.subject}: {self.title}" if page.subject else self.title,
             source=page.source or self.source,
-            notes=[*self._of_quick_runs(run.quick), *page.notes],
+            notes=[
+                *self._of_quick_runs(run.quick),
+                *page.notes,
+                *(f"Not checked: {one}." for one in page.skipped),
+            ],
             unsettled=page.unsettled,
             summary=page.summary,
             answers=page.answers,
@@ -96,11 +101,14 @@ class Case:
             times=run.times,
             figures=page.figures,
             scene=page.scene,
+            drivetrains=page.drivetrains,
+            skipped=page.skipped,
             headline=page.headline,
             environment=environment(
                 run.settings, page.seed, run.quick, self.command or self._typed(run)
             ),
         )
+        return sealed(found)
 
     def _of_quick_runs(self, quick: bool) -> list[str]:
         beside = self.alone and not self.runs_alone(quick)

@@ -3,27 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fe_drivetrain.report.charts import chart, instead_of_chart, rounded, trace
 from fe_drivetrain.report.results import (
     AssumptionRow,
-    Basis,
     Cell,
     Chart,
+    DrivetrainRecord,
     Figure,
     Image,
     Limit,
-    Measure,
     Section,
     Solid,
     Table,
     Text,
-    Verdict,
-    judge,
 )
+from fe_drivetrain.suite.checks import Checks
 from fe_drivetrain.suite.records import (
     MeshSeries,
     Record,
@@ -33,10 +31,13 @@ from fe_drivetrain.suite.records import (
     curves,
     plain_cells,
 )
-from fe_drivetrain.suite.targets import MEASURES, Target, split_unit
+from fe_drivetrain.suite.targets import Target, split_unit
+
+if TYPE_CHECKING:
+    from fe_drivetrain.report.seal import Described
 
 
-class Page:
+class Page(Checks):
     """Collects what a case finds.
 
     Checks stand in a table of their own, whatever section is open; what else is added goes below
@@ -66,250 +67,101 @@ class Page:
         Named numbers for other programs.
     scene, headline : str
         The scene as a file; quantity of the check that answers, or empty for the first value.
+    drivetrains : list of DrivetrainRecord
+        What the page is of, by `about`.
+    skipped : list of str
+        Checks that were not made, by `skip`.
     seed : int or None
         Of random numbers; None where there are none.
     """
 
     def __init__(self) -> None:
+        super().__init__()
         self.subject = self.source = self.scene = self.headline = ""
         self.notes: list[str] = []
         self.unsettled: list[str] = []
-        self.verdicts: list[Verdict] = []
         self.summary: list[str] = []
         self.answers: list[Figure] = []
         self.sections: list[Section] = []
         self.limits: list[Limit] = []
         self.assumptions: list[AssumptionRow] = []
         self.figures: dict[str, Any] = {}
+        self.drivetrains: list[DrivetrainRecord] = []
+        self.skipped: list[str] = []
         self.seed: int | None = 0
 
-    def equals(
-        self,
-        quantity: str,
-        computed: float,
-        reference: float,
-        *,
-        within: float,
-        why: str,
-        source: str,
-        unit: str = "",
-        relative: bool = True,
-        measure: Measure | None = None,
-        basis: Basis = "independent",
-        band: float | None = None,
-    ) -> None:
-        """The computed value is the reference, within a tolerance.
+    def about(self, drivetrain: Described, name: str = "") -> None:
+        """State what drivetrain the checks and answers from here on are of, by its hash.
 
         Parameters
         ----------
-        quantity : str
-            What was computed, with its unit: "deflection [mm]"; a pure number has none.
-        computed, reference : float
-            In that unit.
-        within : float
-            Allowed difference, relative to the reference.
-        why : str
-            Why the tolerance is what it is: a physical or numerical reason.
-        source : str
-            Where the reference comes from.
-        unit : str
-            Of both, where the quantity is stated without it.
-        relative : bool
-            False where `within` is in the unit.
-        measure : str, optional
-            Kind of quantity, for bias and scatter over all cases; that of the unit in brackets
-            where left out.
-        basis : str
-            "self-consistency" of what is true by construction, "second-hand" of a source that was
-            not read itself: both are shown as such, and stay out of bias and scatter.
-        band : float, optional
-            Half width of the numerical uncertainty of `computed`, in its unit. It is computed, from
-            a series of meshes or an error estimate; where there is none, it is left out.
+        drivetrain : Described
+            A scene, machine or gear table, with all changes made; a scene is kept as a file, too.
+        name : str
+            As the results call it, where they are of several.
         """
-        self._judge(
-            "equals",
-            quantity,
-            computed,
-            reference,
-            why,
-            source,
-            tolerance=within,
-            relative=relative,
-            unit=unit,
-            measure=measure,
-            basis=basis,
-            band=band,
-        )
+        from fe_drivetrain.scene.reading import scene_text
+        from fe_drivetrain.scene.scene import Scene
 
-    def vanishes(
-        self,
-        quantity: str,
-        computed: float,
-        *,
-        within: float,
-        why: str,
-        source: str,
-        unit: str = "",
-        measure: Measure | None = "identity",
-        basis: Basis = "independent",
-        band: float | None = None,
-    ) -> None:
-        """The computed value is zero, but for `within`, in its unit; see `equals`."""
-        self._judge(
-            "vanishes",
-            quantity,
-            computed,
-            0.0,
-            why,
-            source,
-            tolerance=within,
-            relative=False,
-            unit=unit,
-            measure=measure,
-            basis=basis,
-            band=band,
-        )
+        self._of = self.concerns(drivetrain, name)
+        if isinstance(drivetrain, Scene):
+            self.scene = scene_text(drivetrain)
 
-    def finest(self, series: MeshSeries, *targets: Target, of: str = "") -> None:
-        """The finest of several meshes meets targets; the band of each value is that of them all.
+    def concerns(self, drivetrain: Described, name: str = "") -> str:
+        """State one of several drivetrains that the results compare; its hash.
 
         Parameters
         ----------
-        series : MeshSeries
-            What each mesh gave.
-        *targets : Target
-            What the finest should give.
-        of : str
-            Whose quantities they are, put before each of them: "solid shaft".
+        drivetrain : Described
+            A scene, machine or gear table, with all changes made.
+        name : str
+            As the results call it.
         """
-        for target in targets:
-            band = series.band(target.key, target.order)
-            self.meets(series.last[target.key], target, band, of)
+        from fe_drivetrain.report.seal import drivetrain_record
 
-    def settled(self, series: MeshSeries, *targets: Target, of: str = "") -> None:
-        """As `finest`, but the band is the change from the mesh before.
-
-        For what has no steady order of convergence, as the largest error of a field.
-        """
-        for target in targets:
-            self.meets(series.last[target.key], target, series.change(target.key), of)
-
-    def meets(
-        self, computed: float, target: Target, band: float | None = None, of: str = ""
-    ) -> None:
-        """The computed value meets a target; `band` as for `equals`, `of` as for `finest`."""
-        quantity, unit = split_unit(target.key)
-        quantity = target.name or quantity
-        zero = target.value == 0.0
-        self._judge(
-            "vanishes" if zero else "equals",
-            f"{of}: {quantity}" if of else quantity,
-            computed,
-            target.value,
-            target.why,
-            target.source,
-            tolerance=target.within,
-            relative=target.relative and not zero,
-            unit=unit,
-            measure=target.measure or MEASURES.get(unit) or ("identity" if zero else None),
-            basis=target.basis,
-            band=band,
-        )
-
-    def at_most(
-        self, quantity: str, computed: float, bound: float, *, why: str, source: str, **more: Any
-    ) -> None:
-        """The computed value is no larger than a bound; `more` is unit, measure, basis, band."""
-        self._judge("at most", quantity, computed, bound, why, source, **more)
-
-    def at_least(
-        self, quantity: str, computed: float, bound: float, *, why: str, source: str, **more: Any
-    ) -> None:
-        """The computed value is no smaller than a bound; `more` is unit, measure, basis, band."""
-        self._judge("at least", quantity, computed, bound, why, source, **more)
-
-    def between(
-        self,
-        quantity: str,
-        computed: float,
-        low: float,
-        high: float,
-        *,
-        why: str,
-        source: str,
-        **more: Any,
-    ) -> None:
-        """The computed value is no smaller than `low`, and no larger than `high`."""
-        self._judge("between", quantity, computed, low, why, source, upper=high, **more)
-
-    def holds(
-        self,
-        statement: str,
-        condition: bool,
-        *,
-        why: str,
-        source: str,
-        basis: Basis = "independent",
-    ) -> None:
-        """A statement is true.
-
-        Parameters
-        ----------
-        statement : str
-            In words, as a sentence that is true or false.
-        condition : bool
-            Whether it is.
-        why : str
-            What would follow if it were not.
-        source : str
-            Where the statement comes from.
-        basis : str
-            As of `equals`.
-        """
-        truth = float(bool(condition))
-        self._judge("holds", statement, truth, 1.0, why, source, measure="identity", basis=basis)
-
-    def _judge(
-        self,
-        check: Any,
-        quantity: str,
-        computed: float,
-        reference: float,
-        why: str,
-        source: str,
-        tolerance: float = 0.0,
-        relative: bool = False,
-        unit: str = "",
-        measure: Measure | None = None,
-        **more: Any,
-    ) -> None:
-        if not unit:
-            quantity, unit = split_unit(quantity)
-            measure = measure or MEASURES.get(unit)
-        self.verdicts.append(
-            judge(
-                quantity,
-                computed,
-                reference,
-                check=check,
-                tolerance=tolerance,
-                relative=relative,
-                reason=why,
-                source=source,
-                unit=unit,
-                measure=measure,
-                **more,
-            )
-        )
+        record = drivetrain_record(drivetrain, name)
+        if record not in self.drivetrains:
+            self.drivetrains.append(record)
+        return record.hash
 
     def answer(self, *sentences: str) -> None:
         """The answer first: added to the summary on top of the page."""
         self.summary.extend(sentences)
 
-    def found(self, quantity: str, value: float, band: float | None = None) -> None:
-        """A value that answers what was asked, and is not judged; `band` as for `equals`."""
+    def found(
+        self,
+        quantity: str,
+        value: float,
+        band: float | None = None,
+        loads: tuple[str, ...] = (),
+    ) -> None:
+        """A value that answers what was asked, and is not judged; `band` as for `equals`.
+
+        Parameters
+        ----------
+        quantity : str
+            With its unit.
+        value, band : float
+            In that unit.
+        loads : tuple of str
+            Design loads of the catalogue that it is a value of: `validate` holds it against a limit
+            where a project names it for one of these.
+        """
         quantity, unit = split_unit(quantity)
-        self.answers.append(Figure(quantity=quantity, unit=unit, computed=value, band=band))
+        figure = Figure(quantity=quantity, unit=unit, computed=value, band=band)
+        self.answers.append(figure.model_copy(update={"of": self._of, "loads": loads}))
+
+    def skip(self, check: str, why: str) -> None:
+        """State that a check was not made; results with such a gap are no evidence of a project.
+
+        Parameters
+        ----------
+        check : str
+            Which, as its quantity.
+        why : str
+            As "NGSolve is not installed".
+        """
+        self.skipped.append(f"{check}: {why}")
 
     def note(self, sentence: str) -> None:
         """State, above all else, what must be known before any figure; the same sentence once."""

@@ -1,0 +1,253 @@
+"""What load cases leave out, of one machine: values that a project holds against its limits."""
+
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.compare import round_off
+from fe_drivetrain.dynamics import (
+    Level,
+    Machine,
+    assemble,
+    assembly,
+    damped_by_ratio,
+    machine_system,
+    named_machine,
+    system_modes,
+    torsional,
+)
+from fe_drivetrain.procedure import (
+    DIPS,
+    MISALIGNMENT,
+    RESONANCE,
+    REVERSALS,
+    Dip,
+    driven_motions,
+    drivetrain_excitations,
+    element_torques,
+    machine_misalignment,
+    resonances,
+)
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.torsion import GENERATOR, ROTOR, Torsional, natural_modes
+
+DEFAULT = "nrel_750kw"
+OPERATION = {"low": 21.9, "high": 22.3, "torque": 325.0}  # rpm, rpm, kN m of the default machine
+OFFSET, RATIO = 0.5, 0.01  # mm of a bearing, of critical damping
+DEPTHS, SECONDS = (0.2, 0.5, 0.8, 1.0), (0.1, 0.15, 0.25, 0.5)  # of the torque, s
+MARGIN = "least margin of an excited frequency"
+FORCE = "largest force of misalignment on a bearing [kN]"
+MOST, LEAST = "largest torque of the main shaft in a dip", "least torque of the main shaft in a dip"
+
+
+@case(
+    "What load cases leave out, of one machine: resonance, misalignment, voltage dips",
+    source="PROTEST 2010, ECN-E--10-100, section 4.2 and appendix A",
+    settings={
+        "machine": "nrel_750kw, or FILE",
+        "low": "21.9 (lowest speed of the rotor, rpm)",
+        "high": "22.3 (highest, rpm)",
+        "torque": "325 (of the rotor before a dip, kN m)",
+        "offset": "0.5 (of each bearing that holds a shaft, mm)",
+    },
+)
+def run(run: Run, page: Page) -> None:
+    """One value for each gap, of the machine that the page states."""
+    name = str(run.settings.get("machine", DEFAULT))
+    machine = named_machine(name)
+    page.about(machine, name)
+    page.subject = machine.title
+    low, high, torque = (operation(run, name, key) for key in OPERATION)
+    with run.step("resonance"):
+        resonance(page, machine, (low, high))
+    with run.step("misalignment"):
+        misalignment(page, machine, 1e-3 * positive(run, "offset", OFFSET))
+    with run.step("voltage dips"):
+        dips(page, machine, 1e3 * torque)
+
+
+def operation(run: Run, name: str, key: str) -> float:
+    """A value of operation; of another machine than the default one it has to be given."""
+    if name != DEFAULT and key not in run.settings:
+        raise InputError(
+            f"machine {name!r} has no {key} of operation: give it, as in --set "
+            f"{key}={OPERATION[key]:g}"
+        )
+    return positive(run, key, OPERATION[key])
+
+
+def positive(run: Run, key: str, default: float) -> float:
+    """A setting that is a number above 0."""
+    value = run.settings.get(key, default)
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    if not number or not 0.0 < value < np.inf:
+        raise InputError(f"{key} = {value!r} must be a number above 0, as in {key}={default:g}")
+    return float(value)
+
+
+def resonance(page: Page, machine: Machine, speeds: tuple[float, float]) -> None:
+    """Least margin of all excitations at all frequencies that they excite."""
+    register = drivetrain_excitations(machine.stages)
+    found = resonances(register, system_modes(machine_system(machine, Level.RIGID)), speeds)
+    met = sorted((m for m in found if m.verdict != "not excited"), key=lambda m: m.margin)
+    by_name = {e.name: e for e in register}
+    page.vanishes(
+        "frequencies of excitations at their crossings, largest relative error",
+        max(abs(by_name[m.excitation].frequency(m.crossing) / m.frequency - 1.0) for m in met),
+        **round_off(10, "a frequency divided by its order, and multiplied again"),
+        source="n = 60 f / order",
+        basis="self-consistency",
+    )
+    at = np.linspace(*speeds, 4001)
+    nearest = min(
+        float(np.abs(by_name[m.excitation].per_turn * at / 60.0 / m.frequency - 1.0).min())
+        for m in met
+    )
+    # both ends are among the speeds, so that a crossing within them alone may be missed
+    steps = [0.5 * by_name[m.excitation].per_turn / 60.0 / m.frequency for m in met if not m.margin]
+    page.equals(
+        f"{MARGIN}, by speeds one after another",
+        met[0].margin,
+        nearest,
+        within=1e-12 + float(at[1] - at[0]) * max(steps, default=0.0),
+        relative=False,
+        why="rounding; a crossing between two speeds is missed by half of what a step changes",
+        source="all frequencies at 4001 speeds",
+        measure="frequency",
+    )
+    page.found(MARGIN, met[0].margin, loads=(RESONANCE,))
+    page.section("Resonance")
+    page.table(
+        f"Nearest of {len(met)} excited, from {speeds[0]:g} to {speeds[1]:g} rpm",
+        [
+            {
+                "excitation": m.excitation,
+                "frequency [Hz]": m.frequency,
+                "crossing [rpm]": m.crossing,
+                "margin": m.margin,
+                "energy share": m.share,
+                "verdict": m.verdict,
+            }
+            for m in met[:12]
+        ],
+    )
+    page.answer(
+        f"From {speeds[0]:g} to {speeds[1]:g} rpm the least margin is {met[0].margin:.3g}: "
+        f"{met[0].excitation} at {met[0].frequency:.4g} Hz."
+    )
+
+
+def misalignment(page: Page, machine: Machine, offset: float) -> None:
+    """Largest force on any bearing while those of shafts are anywhere within an offset."""
+    found = machine_misalignment(machine)
+    shafts = {shaft.name for shaft in machine.shafts}
+    moved = {bearing.name for bearing in machine.bearings if bearing.holds in shafts}
+    places = [name.rpartition(" ")[0] for name in found.names]
+    shifts = [name[-2] == "u" for name in found.names]
+    wide = [offset * (p in moved and u) for p, u in zip(places, shifts, strict=True)]
+    forces, _ = found.worst(np.array(wide))
+    other = by_stiffness(machine)
+    page.vanishes(
+        "influence of offsets, largest difference of two ways over the largest",
+        float(np.abs(other - found.influence).max() / np.abs(other).max()),
+        within=1e-8,
+        why="a pseudo-inverse of stiffnesses that lie ten powers of ten apart",
+        source="stiffness equations of the machine on its bearings",
+        measure="identity",
+    )
+    sizes = np.where(shifts, forces, 0.0)
+    most = int(sizes.argmax())
+    page.found(FORCE, float(sizes[most]) / 1e3, loads=(MISALIGNMENT,))
+    page.section("Misalignment")
+    rows = [
+        {"bearing": name, "force [kN]": float(force) / 1e3}
+        for name, force, shift in zip(found.names, forces, shifts, strict=True)
+        if shift
+    ]
+    words = ", ".join(sorted(moved)) or "none"
+    page.table(f"Worst force while {words} is within {1e3 * offset:g} mm of its place", rows)
+    page.answer(
+        f"Offsets of {1e3 * offset:g} mm ({words}) load {found.names[most]} by up to "
+        f"{sizes[most] / 1e3:.3g} kN."
+    )
+    page.text("Bearings in the gearbox are bored in one housing, and keep their places.")
+
+
+def by_stiffness(machine: Machine) -> Floats:
+    """Influence of offsets by the stiffness equations of the machine on its bearings."""
+    made = assembly(machine, Level.FLEXIBLE)
+    system = assemble(made.bodies, made.springs, made.superelements)
+    bearings = {bearing.name for bearing in machine.bearings}
+    held = np.array([name.rpartition(" ")[0] in bearings for name in system.spring_names])
+    H, k = system.rows[held], system.stiffness[held]
+    flexible = np.linalg.pinv(system.K, hermitian=True)
+    return np.asarray(np.diag(k) - (k[:, None] * H) @ flexible @ (H.T * k))
+
+
+def dips(page: Page, machine: Machine, torque: float) -> None:
+    """Torque of the main shaft while the generator's dips, over depth and duration."""
+    system = off_grid(machine)
+    frequency = float(natural_modes(system).frequencies[1])
+    step = 1.0 / (200.0 * frequency)
+    shaft = machine.shafts[0].name
+    rows: list[Record] = []
+    shown = []
+    for depth in DEPTHS:
+        for seconds in SECONDS:
+            dip = Dip(0.2, depth, seconds)
+            fine, coarse = (torque_of(system, machine, dip, s, shaft) for s in (step, 2.0 * step))
+            rows.append(
+                {
+                    "depth": depth,
+                    "duration [s]": seconds,
+                    "largest [kN m]": torque * float(fine.max()) / 1e3,
+                    "least [kN m]": torque * float(fine.min()) / 1e3,
+                    "change by half the step": float(np.abs(fine[::2] - coarse).max()),
+                }
+            )
+            if seconds == SECONDS[1]:
+                time = step * np.arange(len(fine))
+                shown.append(trace(f"depth {depth:g}", time[::4], torque * fine[::4] / 1e3))
+    band = torque / 1e3 * max(row["change by half the step"] for row in rows)
+    front = machine.rotor.inertia
+    rear = machine.speeds[-1] ** 2 * machine.generator.inertia
+    most = max(row["largest [kN m]"] for row in rows)
+    page.at_most(
+        f"{MOST}, over that before",
+        1e3 * most / torque,
+        1.0 + 2.0 * max(DEPTHS) * front / (front + rear),
+        why="without damping two steps leave an amplitude of twice one step at most",
+        source="an oscillator: 1 + 2 depth J_r / (J_r + J_g)",
+        measure="reaction",
+        band=1e3 * band / torque,
+    )
+    page.found(f"{MOST} [kN m]", most, band, (DIPS,))
+    least = min(row["least [kN m]"] for row in rows)
+    page.found(f"{LEAST} [kN m]", least, band, (REVERSALS,))
+    page.section("Voltage dips")
+    page.chart("Torque of the main shaft", shown, "time [s]", "torque [kN m]")
+    page.table(f"By depth and duration; first frequency {frequency:.3g} Hz", rows)
+    page.answer(
+        f"A dip of the generator's torque leaves {least:.4g} to {most:.4g} kN m in the main shaft, "
+        f"of {torque / 1e3:.4g} kN m before."
+    )
+    page.assume("damping ratio of the drivetrain", RATIO, "", "the machine's table has none")
+
+
+def off_grid(machine: Machine) -> Torsional:
+    """The machine in torsion, its generator with a torque in place of the grid's spring."""
+    free = machine.generator.model_copy(update={"stiffness": 0.0})
+    system = torsional(machine.model_copy(update={"generator": free}))
+    return damped_by_ratio(system, {element.name: RATIO for element in system.elements})
+
+
+def torque_of(system: Torsional, machine: Machine, dip: Dip, step: float, shaft: str) -> Floats:
+    """(n,) torque in a shaft over that of the rotor, in four seconds."""
+    time = np.arange(0.0, 4.0, step)
+    torques = np.zeros((len(system.names), len(time)))
+    torques[system.place(ROTOR)] = 1.0
+    torques[system.place(GENERATOR)] = -dip.shares(time) / machine.speeds[-1]
+    motions = driven_motions(system, torques, step)
+    row = [element.name for element in system.elements].index(shaft)
+    return np.asarray(element_torques(system, motions)[row])
