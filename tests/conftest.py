@@ -287,7 +287,7 @@ def kept_folder(request: pytest.FixtureRequest, shared_folder: Path) -> Path:
     Its keys hold the sources of all that makes what is in it. What a test patches they do not, so
     only what is not patched may be kept here.
     """
-    kept = request.config.cache
+    kept = getattr(request.config, "cache", None)  # none with ``-p no:cacheprovider``
     return kept.mkdir("fe-drivetrain") if kept else shared_folder / "cache"
 
 

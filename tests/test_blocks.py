@@ -97,6 +97,19 @@ def test_divergence_theorem_of_a_quadratic_traction(nodes):
     assert forces @ block.points[:, [1, 2, 0]].ravel() == pytest.approx(work, rel=1e-12)
 
 
+@pytest.mark.parametrize("nodes", KINDS)
+def test_body_loads_of_the_fifth_degree_do_their_exact_work(nodes):
+    """On displacements that the elements hold: linear ones, and squares of quadratic elements."""
+    block = brick((2, 2, 2), nodes)
+    power = 1 if nodes in (4, 8) else 2
+    forces = body_loads(block.points, block.cells, lambda x: x**5 * [1.0, 2.0, -3.0])
+    moved = block.points**power * [1.0, 0.5, 2.0]
+    exact = (1.0 + 1.0 - 6.0) / (6.0 + power)  # of integrals from 0 to 1 of x^(5 + power)
+    assert forces @ moved.ravel() == pytest.approx(exact, rel=1e-12)
+    # and no force is lost
+    assert forces.reshape(-1, 3).sum(axis=0) == pytest.approx(np.array([1, 2, -3]) / 6, rel=1e-12)
+
+
 def test_graded_edges_are_kept():
     block = brick((0, 1, 1), 8, edges=([0.0, 0.1, 1.0], None, None))
     assert set(np.round(block.points[:, 0], 12)) == {0.0, 0.1, 1.0}

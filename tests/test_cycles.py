@@ -17,6 +17,7 @@ from fe_drivetrain.compare.time_weighted import (
 )
 from fe_drivetrain.histories import cycles as cycles_module
 from fe_drivetrain.histories.cycles import (
+    Cycles,
     Residue,
     exceedance,
     gated,
@@ -187,6 +188,18 @@ def test_goodman_shifts_the_mean_at_equal_damage() -> None:
     np.testing.assert_allclose(back.ranges, shifted.ranges * 0.75)
     with pytest.raises(InputError, match="reach the ultimate load 10"):
         goodman(cycles, 10.0)
+
+
+def test_goodman_takes_negative_means_as_positive_ones() -> None:
+    history = 10.0 + np.array(EXAMPLE)
+    for target in (0.0, 10.0, -10.0):
+        one, other = (goodman(rainflow_cycles(s * history), 40.0, target) for s in (1.0, -1.0))
+        np.testing.assert_allclose(other.ranges, one.ranges)
+        cycles = rainflow_cycles(history)
+        expected = cycles.ranges * (40.0 - abs(target)) / (40.0 - cycles.means)
+        np.testing.assert_allclose(one.ranges, expected)
+    both = goodman(Cycles(np.ones(2), np.ones(2), np.array([-15.0, 15.0])), 40.0)
+    np.testing.assert_allclose(both.ranges, 1.6)
 
 
 def test_exceedance_matrix_and_gate_hold_every_cycle(rng: np.random.Generator) -> None:

@@ -293,6 +293,25 @@ def test_damping_in_proportion_to_stiffness_rises_with_the_frequency(table):
     assert_allclose(damped_modes(system).ratios, expected, rtol=1e-7)
 
 
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("model", MODELS)
+def test_dampers_of_a_table_are_seen_from_the_rotor_as_its_springs_are(name, model):
+    """Damping in proportion to stiffness, row by row, is so in every model: C = beta K."""
+    beta = 1e-4
+    data = published.table(name).model_dump()
+    for shaft in data["shafts"]:
+        shaft["damping"] = beta * shaft["stiffness"]
+    data["generator"]["stiffness"] = data["generator"]["stiffness"] or 1e6
+    data["generator"]["damping"] = beta * data["generator"]["stiffness"]
+    for stage in data["stages"]:
+        for mesh in ("mesh", "ring_planet", "sun_planet"):
+            if mesh in stage:
+                stage[f"{mesh}_damping"] = beta * stage[mesh]
+    system = model(type(published.table(name)).model_validate(data), "fixed")
+    size = np.sqrt(np.outer(np.diag(system.K), np.diag(system.K)))
+    assert_allclose(system.C / size, beta * system.K / size, atol=1e-14 * beta)
+
+
 def test_free_turning_has_no_damping_ratio(table):
     assert np.isnan(modal_damping(gear_masses(table, "free"))[0])
     assert len(damped_modes(gear_masses(table, "free")).eigenvalues) == 10

@@ -40,6 +40,10 @@ from fe_drivetrain.hub_loads.moving_turbine import (
 from fe_drivetrain.hub_loads.recorded import read_recorded
 from fe_drivetrain.hub_loads.surrogate import Condition
 from fe_drivetrain.hub_loads.turbine import (
+    _PLACES,
+    _TWIST,
+    EDGE_SHAPE,
+    FLAP_SHAPE,
     RIGID,
     Physics,
     Turbine,
@@ -402,3 +406,23 @@ def test_what_has_no_motion_is_refused() -> None:
         turbine_history(Condition(12.0, "low", 0.2, 1), LEVEL, CONTROLLER, duration=0.0)
     with pytest.raises(InputError, match="pitch_rate is 0"):
         Tuning(pitch_rate=0.0)
+
+
+def test_each_mode_bends_about_its_sections_as_structural_twist_turns_them() -> None:
+    """The suction side of a twisted section looks downwind and into the sense of rotation, its
+    leading edge upwind: so a blade that the air bends downwind moves as the rotor turns."""
+    modes = blade_modes(LEVEL, 4000)
+    root = modes.place < 2.0 / 17.0  # up to there twist is the same
+    flap, edge = modes.shape[0][:, root], modes.shape[1][:, root]
+    slope = math.tan(math.radians(13.308))
+    np.testing.assert_allclose(flap[1] / flap[0], slope, rtol=1e-9)
+    np.testing.assert_allclose(edge[0] / edge[1], -slope, rtol=1e-9)
+    assert modes.shape[0, 1, -1] > 0.0 > modes.shape[1, 0, -1]
+    # twice integrated to the tip, where both shapes have 1 without a twist
+    twist = np.radians(np.interp(modes.place, _PLACES, _TWIST))
+    for mode, polynomial in enumerate((FLAP_SHAPE, EDGE_SHAPE)):
+        bent = (1.0 - modes.place) * polynomial.deriv(2)(modes.place)
+        along = float((np.cos(twist) * bent).mean())
+        across = float((np.sin(twist) * bent).mean()) * (1.0 - 2.0 * mode)
+        np.testing.assert_allclose(modes.shape[mode, mode, -1], along, rtol=1e-3)
+        np.testing.assert_allclose(modes.shape[mode, 1 - mode, -1], across, rtol=3e-3)
