@@ -288,7 +288,9 @@ def kept_folder(request: pytest.FixtureRequest, shared_folder: Path) -> Path:
     only what is not patched may be kept here.
     """
     kept = getattr(request.config, "cache", None)  # none with ``-p no:cacheprovider``
-    return kept.mkdir("fe-drivetrain") if kept else shared_folder / "cache"
+    folder = Path(kept.mkdir("fe-drivetrain")) if kept else shared_folder / "cache"
+    folder.mkdir(exist_ok=True)
+    return folder
 
 
 @pytest.fixture(scope="module")

@@ -219,6 +219,13 @@ def test_exceedance_matrix_and_gate_hold_every_cycle(rng: np.random.Generator) -
         joined([cycles, kept])
 
 
+def test_a_gate_keeps_the_cycles_that_reach_it() -> None:
+    cycles = rainflow_cycles(EXAMPLE)
+    kept = gated(cycles, 4.0)
+    assert kept.ranges.min() == 4.0
+    assert kept.left_out == cycles.counts[cycles.ranges < 4.0].sum()
+
+
 def test_what_lies_between_two_reversals_does_not_count(rng: np.random.Generator) -> None:
     fine: list[float] = [EXAMPLE[0]]
     for a, b in pairwise(EXAMPLE):

@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from fe_drivetrain.bearing.arrangements import ball_row, cylindrical, double_row_tapered, tapered_row
+from fe_drivetrain.bearing.arrangements import (
+    ball_row,
+    cylindrical,
+    double_row_tapered,
+    tapered_row,
+)
 from fe_drivetrain.bearing.geometry import BallRow, Bearing
 from fe_drivetrain.bearing.rating import ball_dynamic_rating, ratings
 from fe_drivetrain.life.lubricants import SUPPLIES, Lubricant, contamination_factor
@@ -68,7 +73,9 @@ def test_two_rows_of_balls_equally_loaded_live_as_weibulls_slope_has_it() -> Non
 @pytest.mark.parametrize(
     ("kappa", "a", "b"), [(0.2, 2.2649, 0.054381), (0.7, 1.9987, 0.19087), (2.0, 1.9987, 0.071739)]
 )
-def test_life_factors_of_balls_are_the_standards_equations(kappa: float, a: float, b: float) -> None:
+def test_life_factors_of_balls_are_the_standards_equations(
+    kappa: float, a: float, b: float
+) -> None:
     """ISO 281:2007, Eq 31 to 33, as public code prints them."""
     ratio = 0.05
     expected = 0.1 * (1 - (2.5671 - a / kappa**b) ** 0.83 * ratio ** (1 / 3)) ** -9.3
@@ -116,7 +123,9 @@ def test_factors_change_one_way_with_the_contact_angle_and_the_load() -> None:
     ],
     ids=lambda bearing: f"{bearing.name}, {len(bearing.rows)} rows",
 )
-def test_equivalent_loads_do_not_know_directions_and_are_not_below_the_radial_force(bearing) -> None:
+def test_equivalent_loads_do_not_know_directions_and_are_not_below_the_radial_force(
+    bearing,
+) -> None:
     rated = rated_bearing(bearing, 1e6, 1e6, 1e5)
     F = np.random.default_rng(3).uniform(0.0, 1e4, (20, 3))
     F[0] = 0.0, 3e3, 4e3

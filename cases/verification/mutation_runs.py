@@ -18,7 +18,7 @@ from pathlib import Path
 from fe_drivetrain.cases.verification.mutation_rows import PACKAGE, Fault, copy_of, with_fault
 from fe_drivetrain.common import CORES_VARIABLE, Progress
 
-PASSED, ASSERTION = "passed", "assertion"
+PASSED, SKIPPED, ASSERTION = "passed", "skipped", "assertion"
 
 CAUGHT, SURVIVES = "caught", "survives"
 HANGS = "survives: its tests do not end in time"
@@ -125,7 +125,8 @@ class Bench:
         with self._copy(fault) as folder:
             lines, end = self._pytest(folder, fault.tests, True, self._limit)
         catches = [test for test, _, how in lines if how == ASSERTION and test in passing]
-        errors = [f"{test}: {how}" for test, _, how in lines if how not in (PASSED, "skipped")]
+        silent = (PASSED, SKIPPED, ASSERTION)
+        errors = [f"{test}: {how}" for test, _, how in lines if how not in silent]
         if catches:
             outcome, by = CAUGHT, catches[0]
         elif end == HANGS:
@@ -169,7 +170,9 @@ class Bench:
         if status is None:
             return lines, HANGS
         last = (printed.strip().splitlines() or [""])[-1]
-        return lines, "" if status in (0, 1) and lines else f"status {status}: {last}"
+        # the first failed assertion stops pytest, which then ends as if it were interrupted
+        sound = (0, 1, 2) if any(how == ASSERTION for *_, how in lines) else (0, 1)
+        return lines, "" if status in sound and lines else f"status {status}: {last}"
 
     def _run(self, command: Sequence[str], copy: Path, limit: float) -> tuple[int | None, str]:
         """Exit status, or None where it took too long, and what it printed."""

@@ -14,7 +14,13 @@ from fe_drivetrain.cases.verification.mutation_rows import (
     is_there_once,
     source_of,
 )
-from fe_drivetrain.cases.verification.mutation_runs import Bench, Tried, all_tried, controlled
+from fe_drivetrain.cases.verification.mutation_runs import (
+    SKIPPED,
+    Bench,
+    Tried,
+    all_tried,
+    controlled,
+)
 from fe_drivetrain.common import InputError, cores
 from fe_drivetrain.report import bars
 from fe_drivetrain.suite import Page, Record, Run
@@ -67,12 +73,13 @@ def _chosen(run: Run, root: Path) -> list[Fault]:
 def _judge(
     page: Page, tried: Sequence[Tried], others: dict[str, str], stale: Sequence[Fault]
 ) -> None:
+    failing = [f"{test} ({how})" for test, how in others.items() if how != SKIPPED]
     page.vanishes(
-        "tests that do not pass without a fault, or are skipped",
-        len(others),
+        "tests that fail without a fault",
+        len(failing),
         within=0.0,
         why="what fails without a fault says nothing of the fault: "
-        + ("; ".join(f"{test} ({how})" for test, how in others.items()) or "there is none"),
+        + ("; ".join(failing) or "there is none"),
         source="the same tests on the same copy of the program, without a fault",
     )
     page.vanishes(
@@ -123,6 +130,9 @@ def _show(page: Page, root: Path, tried: Sequence[Tried], others: dict[str, str]
         "do not end within the limit of time: both count as survivors. Faults are chosen by hand: "
         "a sign, a factor, an index, an axis, a unit, a term left out, the wrong end, one too many."
     )
+    skipped = [test for test, how in others.items() if how == SKIPPED]
+    if skipped:
+        page.text(f"Skipped, for want of a program or package: {', '.join(skipped)}.")
     page.data("caught [%], with interval", [rate, low, high])
     page.data("tests not passing without a fault", dict(others))
 
