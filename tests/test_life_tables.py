@@ -1,4 +1,4 @@
-"""Side branches of rating life: two rows of balls, tables of factors, limits that some steps pass."""
+"""Side branches of rating life: two rows of balls, tables of factors, limits of some steps."""
 
 from math import log
 

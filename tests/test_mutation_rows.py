@@ -2,11 +2,11 @@
 
 import os
 import shutil
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
+from fe_drivetrain.cases.verification import mutation_rows
 from fe_drivetrain.cases.verification.mutation_rows import (
     Fault,
     clone,
@@ -23,6 +23,7 @@ from fe_drivetrain.cases.verification.mutation_runs import (
     Bench,
     controlled,
 )
+from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.common.progress import silent
 
 ROOT = Path(__file__).parents[1]
@@ -154,8 +155,6 @@ def test_loops_that_hold_a_fault_are_compiled_again(tiny: Path, tmp_path: Path) 
 
 
 def test_a_row_with_another_key_is_refused(tmp_path: Path) -> None:
-    from fe_drivetrain.common.errors import InputError
-
     rows = tmp_path / "tests" / "mutations"
     rows.mkdir(parents=True)
     (rows / "a.yaml").write_text("- {what: w, file: f, line: l, fault: g, test: t}\n")
@@ -164,10 +163,7 @@ def test_a_row_with_another_key_is_refused(tmp_path: Path) -> None:
 
 
 def test_an_installed_wheel_has_no_tests(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from fe_drivetrain.cases.verification import mutation_rows
-    from fe_drivetrain.common.errors import MissingToolError
-
-    place: Callable[..., Path] = lambda *parts: tmp_path.joinpath(*parts)
-    monkeypatch.setattr(mutation_rows, "__file__", str(place("site", "cases", "x", "rows.py")))
+    elsewhere = tmp_path / "site" / "cases" / "verification" / "mutation_rows.py"
+    monkeypatch.setattr(mutation_rows, "__file__", str(elsewhere))
     with pytest.raises(MissingToolError, match="installed wheel"):
         clone()

@@ -15,7 +15,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from fe_drivetrain.cases.verification.mutation_rows import PACKAGE, Fault, copy_of, with_fault
+from fe_drivetrain.cases.verification.mutation_rows import Fault, copy_of, with_fault
 from fe_drivetrain.common import CORES_VARIABLE, Progress
 
 PASSED, SKIPPED, ASSERTION = "passed", "skipped", "assertion"
