@@ -114,7 +114,7 @@ def is_there_once(root: Path, fault: Fault) -> bool:
 
 
 def copy_of(root: Path, folder: Path) -> None:
-    """Copy program and tests of a clone, compiled loops among them, as they would be installed.
+    """Copy program, tests and what these read, compiled loops among them, as if installed.
 
     Parameters
     ----------
@@ -123,11 +123,14 @@ def copy_of(root: Path, folder: Path) -> None:
     folder : Path
         An empty folder.
     """
-    for name in (PACKAGE, "tests"):
-        shutil.copytree(root / name, folder / name)
+    for name in (PACKAGE, "tests", "docs"):
+        if (root / name).is_dir():
+            shutil.copytree(root / name, folder / name)
     for name in TOP_LEVEL:
         shutil.copytree(root / name, folder / PACKAGE / name)
-    shutil.copy2(root / "pyproject.toml", folder)
+        (folder / name).symlink_to(Path(PACKAGE) / name)
+    for file in (root / "pyproject.toml", *root.glob("*.md")):
+        shutil.copy2(file, folder)
 
 
 def with_fault(base: Path, folder: Path, fault: Fault) -> None:
@@ -143,7 +146,7 @@ def with_fault(base: Path, folder: Path, fault: Fault) -> None:
     fault : Fault
         What to put in.
     """
-    shutil.copytree(base, folder, copy_function=os.link)
+    shutil.copytree(base, folder, symlinks=True, copy_function=os.link)
     path = folder / PACKAGE / fault.file
     text = path.read_text(encoding="utf-8")
     path.unlink()
