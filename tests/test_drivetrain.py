@@ -345,6 +345,21 @@ def test_response_is_reciprocal_and_static_at_rest(table):
     assert_allclose(still.real, 1 / drive + 1 / ground, rtol=1e-8)
 
 
+def test_what_a_torque_puts_in_is_what_dampers_take_out(table):
+    """Mean powers of a harmonic motion; and at resonance it lags by a quarter of a period."""
+    system = gear_masses(table, "fixed")
+    system = damped(system, {e.name: 1e-5 * e.stiffness for e in system.elements})
+    frequencies = np.array([0.3, 2.0, 9.0, 40.0, 300.0])
+    omega = 2 * np.pi * frequencies
+    theta = response(system, ROTOR, frequencies)
+    put_in = 0.5 * (1j * omega * theta[:, system.place(ROTOR)]).real
+    c = np.array([e.damping for e in system.elements])
+    taken_out = 0.5 * omega**2 * (np.abs(theta @ system.B.T) ** 2 @ c)
+    assert_allclose(put_in, taken_out, rtol=1e-6)
+    one = chain([Inertia("a", 2.0)], [], ("g", 50.0, 0.3))
+    assert_allclose(response(one, "a", 5.0 / (2 * np.pi)), [[1 / (0.3 * 5.0j)]], rtol=1e-9)
+
+
 def test_direct_drive_has_no_stages():
     text = "{title: d, rotor: 5.0, shafts: [{name: s, stiffness: 80.0}], generator: {inertia: 3.0}}"
     table = parse_drivetrain(text)
