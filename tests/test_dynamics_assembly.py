@@ -202,3 +202,14 @@ def test_names_are_checked() -> None:
     with pytest.raises(InputError, match="no spring"):
         with_stiffness(system, {"nothing": 1.0})
     assert with_stiffness(system, {"line": 7.0}).stiffness[system.spring("line")] == 7.0
+
+
+def test_a_tied_body_has_its_mass_where_it_is() -> None:
+    """Felt at its host, which holds it by a rigid arm in space."""
+    host = Body("host", (0.3, -0.1, 0.2), 2.0, 3.0, 4.0)
+    tied = Body("tied", (1.4, 0.6, -0.5), 5.0, 0.7, 0.9, free=frozenset(), tied_to="host")
+    system = assemble([host, tied], [])
+    T = wrench_transport(np.subtract(tied.position, host.position))
+    expected = np.diag([2.0, 2.0, 2.0, 3.0, 4.0, 4.0])
+    expected = expected + T @ np.diag([5.0, 5.0, 5.0, 0.7, 0.9, 0.9]) @ T.T
+    np.testing.assert_allclose(system.mass, expected, atol=1e-14)
