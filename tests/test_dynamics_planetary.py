@@ -257,7 +257,9 @@ def test_free_motions_are_of_one_direction_each_however_the_solver_combines_them
 def test_a_whirl_at_rest_is_seen_from_a_turning_frame_at_more_and_at_less() -> None:
     """A mass on equal springs moves at w: seen from a frame that turns at W at w + W and w - W."""
     body = Body("mass", mass=2.0, free=frozenset({"uy", "uz"}))
-    springs = bushing("spring", Place("mass", (0.0, 0.0, 0.0)), None, (0, 0, 0), [0, 800, 800, 0, 0, 0])
+    springs = bushing(
+        "spring", Place("mass", (0.0, 0.0, 0.0)), None, (0, 0, 0), [0, 800, 800, 0, 0, 0]
+    )
     system = assemble([body], springs, frame_speed=1.0)
     for speed in (0.0, 3.0, 7.5):
         found = 2.0 * np.pi * turning_modes(system, speed).frequencies

@@ -328,19 +328,24 @@ def entries(path: Path) -> list[tuple[str, str, str]]:
 def test_a_dmig_names_grid_and_component_of_each_entry(tmp_path: Path) -> None:
     """Read by its columns alone: fields of 8, then of 16 characters (MSC Nastran, DMIG)."""
     element = moderate_element(3)
-    found = {"K": np.zeros((18, 18)), "M": np.zeros((18, 18))}
+    found: dict[str, dict[tuple[int, ...], float]] = {"K": {}, "M": {}}
+    column: tuple[int, ...] = ()
     for line in written(tmp_path, element, "dmig").read_text().splitlines():
         if line.startswith("DMIG*"):
-            letter, grid, component = line[8], int(line[24:40]), int(line[40:56])
-            column = 6 * (grid - 1) + component - 1
-        elif line.startswith("*") and len(line[8:24].strip()) == 1 and line[24:40].strip():
-            row = 6 * (int(line[8:24]) - 1) + int(line[24:40]) - 1 if "." not in line[24:40] else -1
-            if row >= 0:
-                value = float(line[40:56].replace("D", "e"))
-                found[letter][row, column] = found[letter][column, row] = value
+            letter, column = line[8], (int(line[24:40]), int(line[40:56]))
+        elif line.startswith("*") and column:
+            row = int(line[8:24]), int(line[24:40])
+            found[letter][row + column] = float(line[40:56].replace("D", "e"))
+    motions = [(grid, component) for grid in (1, 2, 3) for component in range(1, 7)]
     for letter, matrix in (("K", element.stiffness), ("M", element.mass)):
         assert matrix is not None
-        assert difference(found[letter], matrix) < 1e-9
+        lower = {
+            row + column: matrix[i, j]
+            for j, column in enumerate(motions)
+            for i, row in enumerate(motions)
+            if i >= j
+        }
+        assert found[letter] == pytest.approx(lower, rel=1e-9)
 
 
 @pytest.mark.needs("pyNastran")
