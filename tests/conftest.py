@@ -287,8 +287,10 @@ def kept_folder(request: pytest.FixtureRequest, shared_folder: Path) -> Path:
     Its keys hold the sources of all that makes what is in it. What a test patches they do not, so
     only what is not patched may be kept here.
     """
-    kept = request.config.cache
-    return kept.mkdir("fe-drivetrain") if kept else shared_folder / "cache"
+    kept = getattr(request.config, "cache", None)  # none with ``-p no:cacheprovider``
+    folder = Path(kept.mkdir("fe-drivetrain")) if kept else shared_folder / "cache"
+    folder.mkdir(exist_ok=True)
+    return folder
 
 
 @pytest.fixture(scope="module")

@@ -537,6 +537,39 @@ def test_ratings_of_balls_grow_with_their_number_and_size() -> None:
         ball_dynamic_rating(size())
 
 
+def test_ratings_of_balls_grow_more_slowly_above_an_inch() -> None:
+    """All sizes of a bearing scaled, its rating grows as D^1.8, and as D^1.4 above 25.4 mm."""
+
+    def rating(diameter: float) -> float:
+        row = ball_row(8, diameter, 6.0 * diameter)
+        return ball_dynamic_rating(Bearing("balls", (row,)))
+
+    assert rating(0.024) / rating(0.012) == pytest.approx(2.0**1.8, rel=1e-12)
+    assert rating(0.06) / rating(0.03) == pytest.approx(2.0**1.4, rel=1e-12)
+    # 3.647 is 25.4^0.4 in four digits
+    assert rating(0.025401) / rating(0.0254) == pytest.approx(1.0, abs=2e-4)
+
+
+def test_clearance_holds_laminae_back_as_it_does_rollers() -> None:
+    bearing = double_row_tapered("S", 36, 0.065, 0.095, 0.7874, 38.0, 0.152, "X", clearance=3e-5)
+    u = np.array([[2e-5, 4e-5, -9e-5, 2e-4, 1e-4], [0.0, 0.0, 1.2e-4, 0.0, 3e-4]])
+    rollers = roller_loads(bearing, u)
+    free = roller_loads(bearing.with_rows(clearance=0.0), u)
+    assert (rollers.sum(axis=1) < 0.9 * free.sum(axis=1)).all()
+    laminae = [lamina_loads(row, u).sum(axis=2) for row in bearing.rows]
+    np.testing.assert_allclose(np.hstack(laminae), rollers, atol=1e-9 * rollers.max())
+
+
+def test_grooves_stand_where_the_free_contact_angle_has_them() -> None:
+    """ISO/TS 16281: R_i = D_pw/2 + (r_i - D_w/2) cos(alpha_0), cos(alpha_0) = 1 - s / (2 A)."""
+    clearance = 4e-5
+    row = ball_row(8, 0.02, 0.1, radial_clearance=clearance)
+    A = 0.02 * (0.52 + 0.53 - 1.0)
+    expected = 0.05 + 0.02 * (0.52 - 0.5) * (1.0 - clearance / (2.0 * A))
+    assert row.groove_centre == pytest.approx((0.0, expected), rel=1e-14)
+    assert row.groove_centre[1] < ball_row(8, 0.02, 0.1).groove_centre[1]
+
+
 def test_ratings_are_those_of_masta_and_of_the_catalogue() -> None:
     one = Bearing("A4", (tapered_row(87, 0.11051, 0.238048, 3.3309, 19.0),))
     found = ratings(one)

@@ -7,8 +7,11 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.mesh.blocks import FACES, brick, joined
 from fe_drivetrain.mesh.facets import facet_points, local_facets
+from fe_drivetrain.mesh.measures import mass_moments
 from fe_drivetrain.operator.elasticity import assemble
 from fe_drivetrain.operator.loads import body_loads, pressure, traction_loads
+from fe_drivetrain.operator.mass import mass_matrix
+from fe_drivetrain.operator.stress import nodal_stresses, tensor
 
 KINDS = (4, 10, 8, 20, 27)
 LAME = (1.0, 0.7)
@@ -95,6 +98,50 @@ def test_divergence_theorem_of_a_quadratic_traction(nodes):
     displaced = at.positions.reshape(-1, 3)[:, [1, 2, 0]]
     work = float(np.einsum("qi,qi,q->", t, displaced, at.areas.ravel()))
     assert forces @ block.points[:, [1, 2, 0]].ravel() == pytest.approx(work, rel=1e-12)
+
+
+@pytest.mark.parametrize("nodes", KINDS)
+def test_body_loads_of_the_fifth_degree_do_their_exact_work(nodes):
+    """On displacements that the elements hold: linear ones, and squares of quadratic elements."""
+    block = brick((2, 2, 2), nodes)
+    power = 1 if nodes in (4, 8) else 2
+    forces = body_loads(block.points, block.cells, lambda x: x**5 * [1.0, 2.0, -3.0])
+    moved = block.points**power * [1.0, 0.5, 2.0]
+    exact = (1.0 + 1.0 - 6.0) / (6.0 + power)  # of integrals from 0 to 1 of x^(5 + power)
+    assert forces @ moved.ravel() == pytest.approx(exact, rel=1e-12)
+    # and no force is lost
+    assert forces.reshape(-1, 3).sum(axis=0) == pytest.approx(np.array([1, 2, -3]) / 6, rel=1e-12)
+
+
+@pytest.mark.parametrize("nodes", KINDS)
+def test_a_parallelepiped_has_the_mass_centre_and_inertia_of_its_edges(nodes):
+    """The second moments of one with the edges A about its centre are V A A^T / 12."""
+    block = brick((2, 1, 2), nodes, lambda p: skewed(p) + np.array([5.0, -7.0, 11.0]))
+    A = skewed(np.eye(3)).T
+    V, density = abs(np.linalg.det(A)), 7.0
+    centre = A @ [0.5, 0.5, 0.5] + [5.0, -7.0, 11.0]
+    second = V * A @ A.T / 12.0
+    inertia = np.trace(second) * np.eye(3) - second
+    volume, middle, about = mass_moments(block.points, block.cells)
+    assert volume == pytest.approx(V, rel=1e-12)
+    np.testing.assert_allclose(middle, centre, rtol=1e-12)
+    np.testing.assert_allclose(about, inertia, atol=1e-11 * np.abs(inertia).max())
+    motions = rigid_motions(block.points, centre)
+    M = motions.T @ mass_matrix(block.points, block.cells, density, block.points.size) @ motions
+    rigid = np.zeros((6, 6))
+    rigid[:3, :3], rigid[3:, 3:] = density * V * np.eye(3), density * inertia
+    np.testing.assert_allclose(M, rigid, atol=1e-10 * np.abs(rigid).max())
+
+
+@pytest.mark.parametrize("nodes", KINDS)
+def test_stresses_of_a_uniform_displacement_gradient_are_hookes_law(nodes):
+    block = brick((1, 2, 1), nodes, skewed)
+    H = np.random.default_rng(2).standard_normal((3, 3))
+    u = (block.points @ H.T).ravel()
+    found = tensor(nodal_stresses(block.points, block.cells, u, LAME))
+    lam, mu = LAME
+    expected = lam * np.trace(H) * np.eye(3) + mu * (H + H.T)
+    np.testing.assert_allclose(found, np.broadcast_to(expected, found.shape), atol=1e-11)
 
 
 def test_graded_edges_are_kept():

@@ -24,6 +24,7 @@ from fe_drivetrain.bearing.arrangements import (
 )
 from fe_drivetrain.bearing.catalogue import catalogue_bearing
 from fe_drivetrain.bearing.contact import linear
+from fe_drivetrain.bearing.contact_forces import forces, turn
 from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.bearing.rolling import equilibrium
 from fe_drivetrain.common.errors import InputError
@@ -317,6 +318,20 @@ def test_the_rear_bearing_of_a_scene_may_float(level: int) -> None:
     assert np.abs(found.of(rear)[:, 0]).max() == 0.0
     axial = found.reactions()["gearbox"][:, 0]
     assert_allclose(found.of(front)[:, 0] + axial, HUB[:, 0], rtol=1e-7)
+
+
+def test_a_bearing_resists_tilting_about_any_axis_as_it_does_about_y() -> None:
+    """Turned by whole pitches of its rollers, a tilt and its moment are the same."""
+    bearing = double_row_tapered("S", 36, 0.065, 0.095, 0.7874, 38.0, 0.152, "X")
+    u = np.array([2e-5, 1e-5, -3e-5, 4e-4, 1e-4])
+    turned = turn(np.tile(u, (6, 1)), 2.0 * np.pi * np.array([0, 3, 9, 16, 18, 31]) / 36)
+    for kind in ("tangent", "secant"):
+        K = tilting_stiffness(bearing, turned, kind)
+        np.testing.assert_allclose(K, K[0], rtol=1e-9)
+    axis = turned[:, 3:] / np.hypot(4e-4, 1e-4)
+    steps = [forces(bearing, turned + s * np.pad(axis, ((0, 0), (3, 0))))[0] for s in (-1e-9, 1e-9)]
+    slope = np.einsum("ni,ni->n", steps[1][:, 3:] - steps[0][:, 3:], axis) / 2e-9
+    np.testing.assert_allclose(tilting_stiffness(bearing, turned), slope, rtol=1e-4)
 
 
 def test_mechanisms_are_refused_in_one_sentence() -> None:

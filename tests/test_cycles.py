@@ -17,6 +17,7 @@ from fe_drivetrain.compare.time_weighted import (
 )
 from fe_drivetrain.histories import cycles as cycles_module
 from fe_drivetrain.histories.cycles import (
+    Cycles,
     Residue,
     exceedance,
     gated,
@@ -189,6 +190,18 @@ def test_goodman_shifts_the_mean_at_equal_damage() -> None:
         goodman(cycles, 10.0)
 
 
+def test_goodman_takes_negative_means_as_positive_ones() -> None:
+    history = 10.0 + np.array(EXAMPLE)
+    for target in (0.0, 10.0, -10.0):
+        one, other = (goodman(rainflow_cycles(s * history), 40.0, target) for s in (1.0, -1.0))
+        np.testing.assert_allclose(other.ranges, one.ranges)
+        cycles = rainflow_cycles(history)
+        expected = cycles.ranges * (40.0 - abs(target)) / (40.0 - cycles.means)
+        np.testing.assert_allclose(one.ranges, expected)
+    both = goodman(Cycles(np.ones(2), np.ones(2), np.array([-15.0, 15.0])), 40.0)
+    np.testing.assert_allclose(both.ranges, 1.6)
+
+
 def test_exceedance_matrix_and_gate_hold_every_cycle(rng: np.random.Generator) -> None:
     cycles = rainflow_cycles(rng.standard_normal(400))
     ranges, counts = exceedance(cycles)
@@ -204,6 +217,13 @@ def test_exceedance_matrix_and_gate_hold_every_cycle(rng: np.random.Generator) -
     assert "of a range below 1 are left out" in kept.rule
     with pytest.raises(InputError, match="different rules"):
         joined([cycles, kept])
+
+
+def test_a_gate_keeps_the_cycles_that_reach_it() -> None:
+    cycles = rainflow_cycles(EXAMPLE)
+    kept = gated(cycles, 4.0)
+    assert kept.ranges.min() == 4.0
+    assert kept.left_out == cycles.counts[cycles.ranges < 4.0].sum()
 
 
 def test_what_lies_between_two_reversals_does_not_count(rng: np.random.Generator) -> None:

@@ -292,6 +292,25 @@ def test_damping_in_proportion_to_stiffness_rises_with_the_frequency(table):
     assert_allclose(damped_modes(system).ratios, expected, rtol=1e-7)
 
 
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("model", MODELS)
+def test_dampers_of_a_table_are_seen_from_the_rotor_as_its_springs_are(name, model):
+    """Damping in proportion to stiffness, row by row, is so in every model: C = beta K."""
+    beta = 1e-4
+    data = published.table(name).model_dump()
+    for shaft in data["shafts"]:
+        shaft["damping"] = beta * shaft["stiffness"]
+    data["generator"]["stiffness"] = data["generator"]["stiffness"] or 1e6
+    data["generator"]["damping"] = beta * data["generator"]["stiffness"]
+    for stage in data["stages"]:
+        for mesh in ("mesh", "ring_planet", "sun_planet"):
+            if mesh in stage:
+                stage[f"{mesh}_damping"] = beta * stage[mesh]
+    system = model(type(published.table(name)).model_validate(data), "fixed")
+    size = np.sqrt(np.outer(np.diag(system.K), np.diag(system.K)))
+    assert_allclose(system.C / size, beta * system.K / size, atol=1e-14 * beta)
+
+
 def test_free_turning_has_no_damping_ratio(table):
     assert np.isnan(modal_damping(gear_masses(table, "free"))[0])
     assert len(damped_modes(gear_masses(table, "free")).eigenvalues) == 10
@@ -323,6 +342,21 @@ def test_response_is_reciprocal_and_static_at_rest(table):
     drive = static_stiffness(gear_masses(table, "free"), ROTOR, GENERATOR)
     ground = table.speeds[-1] ** 2 * table.generator.stiffness
     assert_allclose(still.real, 1 / drive + 1 / ground, rtol=1e-8)
+
+
+def test_what_a_torque_puts_in_is_what_dampers_take_out(table):
+    """Mean powers of a harmonic motion; and at resonance it lags by a quarter of a period."""
+    system = gear_masses(table, "fixed")
+    system = damped(system, {e.name: 1e-5 * e.stiffness for e in system.elements})
+    frequencies = np.array([0.3, 2.0, 9.0, 40.0, 300.0])
+    omega = 2 * np.pi * frequencies
+    theta = response(system, ROTOR, frequencies)
+    put_in = 0.5 * (1j * omega * theta[:, system.place(ROTOR)]).real
+    c = np.array([e.damping for e in system.elements])
+    taken_out = 0.5 * omega**2 * (np.abs(theta @ system.B.T) ** 2 @ c)
+    assert_allclose(put_in, taken_out, rtol=1e-6)
+    one = chain([Inertia("a", 2.0)], [], ("g", 50.0, 0.3))
+    assert_allclose(response(one, "a", 5.0 / (2 * np.pi)), [[1 / (0.3 * 5.0j)]], rtol=1e-9)
 
 
 def test_direct_drive_has_no_stages():

@@ -3,7 +3,13 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain.beam.frame import beam_stiffness, round_section
+from fe_drivetrain.beam.frame import (
+    Member,
+    SpatialFrame,
+    beam_stiffness,
+    rectangle,
+    round_section,
+)
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import point_motions, wrench_transport
 from fe_drivetrain.dynamics.bodies import Body, Superelement, assemble, disc, stretched
@@ -202,3 +208,39 @@ def test_names_are_checked() -> None:
     with pytest.raises(InputError, match="no spring"):
         with_stiffness(system, {"nothing": 1.0})
     assert with_stiffness(system, {"line": 7.0}).stiffness[system.spring("line")] == 7.0
+
+
+def test_a_tied_body_has_its_mass_where_it_is() -> None:
+    """Felt at its host, which holds it by a rigid arm in space."""
+    host = Body("host", (0.3, -0.1, 0.2), 2.0, 3.0, 4.0)
+    tied = Body("tied", (1.4, 0.6, -0.5), 5.0, 0.7, 0.9, free=frozenset(), tied_to="host")
+    system = assemble([host, tied], [])
+    T = wrench_transport(np.subtract(tied.position, host.position))
+    expected = np.diag([2.0, 2.0, 2.0, 3.0, 4.0, 4.0])
+    expected = expected + T @ np.diag([5.0, 5.0, 5.0, 0.7, 0.9, 0.9]) @ T.T
+    np.testing.assert_allclose(system.mass, expected, atol=1e-14)
+
+
+@pytest.mark.parametrize(("axis", "width", "height"), [(1, 0.08, 0.02), (2, 0.02, 0.08)])
+def test_a_rectangle_is_stiff_across_its_long_side(axis: int, width: float, height: float) -> None:
+    """Sides along the first axis (y) and the second (z): F L^3 / 3 E I, and shear beside it."""
+    section, length = rectangle(width, height, 0.3), 2.0
+    force = np.zeros(6)
+    force[axis] = 1.0
+    tip = np.linalg.solve(beam_stiffness(section, length, STEEL)[6:, 6:], force)[axis]
+    bending = length**3 / (3.0 * STEEL.youngs_modulus * 0.02 * 0.08**3 / 12.0)
+    shear = length / (STEEL.shear_modulus * section.shear_areas[axis - 1])
+    assert tip == pytest.approx(bending + shear, rel=1e-12)
+
+
+def test_a_frame_has_the_mass_of_its_beams_and_bodies() -> None:
+    section, ends = round_section(0.1, 0.3), np.array([[0.0, 0.0, 0.0], [0.0, 3.0, 4.0]])
+    member = Member((0, 1), (ends[0], ends[1]), section, np.array([1.0, 0.0, 0.0]))
+    body = np.diag([7.0, 7.0, 7.0, 0.1, 0.2, 0.3])
+    frame = SpatialFrame(ends, [member], STEEL, {1: body})
+    motions = point_motions(ends)
+    whole = motions.T @ frame.mass @ motions
+    mass = STEEL.density * section.area * 5.0
+    np.testing.assert_allclose(whole[:3, :3], (mass + 7.0) * np.eye(3), atol=1e-9)
+    # of a beam halves at its ends, and the body: m c x
+    assert whole[0, 4] == pytest.approx(4.0 * (0.5 * mass + 7.0))

@@ -253,3 +253,30 @@ def test_free_motions_are_of_one_direction_each_however_the_solver_combines_them
     assert direction_kinds(system, modes)[:6] == [TORSIONAL, AXIAL, *[LATERAL] * 4]
     unit = modes.shapes.T @ system.mass @ modes.shapes
     assert np.abs(unit - np.eye(12)).max() < 1e-12
+
+
+def test_a_whirl_at_rest_is_seen_from_a_turning_frame_at_more_and_at_less() -> None:
+    """A mass on equal springs moves at w: seen from a frame that turns at W at w + W and w - W."""
+    body = Body("mass", mass=2.0, free=frozenset({"uy", "uz"}))
+    springs = bushing(
+        "spring", Place("mass", (0.0, 0.0, 0.0)), None, (0, 0, 0), [0, 800, 800, 0, 0, 0]
+    )
+    system = assemble([body], springs, frame_speed=1.0)
+    for speed in (0.0, 3.0, 7.5):
+        found = 2.0 * np.pi * turning_modes(system, speed).frequencies
+        np.testing.assert_allclose(found, [20.0 - speed, 20.0 + speed], rtol=1e-7)
+
+
+@pytest.mark.parametrize("hand", [1, -1])
+def test_axial_forces_of_sun_and_ring_on_a_helical_planet_cancel(hand: int) -> None:
+    """One base cylinder, one hand: where their torques on the planet are in balance."""
+    stage = replace(helical_stage(4), hand=hand)
+    springs = {spring.name: spring for spring in springs_of(stage)}
+    for k, planet in enumerate(stage.planet_names, 1):
+        sun, ring = (
+            sum(s.by[planet] for name, s in springs.items() if name.startswith(f"{mesh} {k}"))
+            for mesh in ("sun-planet", "ring-planet")
+        )
+        assert abs(sun[0]) > 0.01
+        balance = sun - ring * sun[3] / ring[3]
+        assert abs(balance[0]) < 1e-12

@@ -181,3 +181,19 @@ def test_a_speed_diagram_begins_with_the_modes_at_rest() -> None:
     assert np.allclose(at_rest, system_modes(system).frequencies[1:], rtol=1e-6)
     assert len(turning_fast) >= len(at_rest)
     assert not np.allclose(turning_fast[-len(at_rest) :], at_rest, rtol=1e-4)
+
+
+@pytest.mark.parametrize("gap", [2e-4, -3e-4])
+def test_a_spring_behind_a_gap_leaves_the_load_to_its_neighbour(gap: float) -> None:
+    """Forces of both balance the load, and the one is short of its elongation by the gap."""
+    place = Place("mass", (0.0, 0.0, 0.0))
+    springs = [
+        *bushing("near", place, None, (0, 0, 0), [1e6, 0, 0, 0, 0, 0]),
+        *bushing("far", place, None, (0, 0, 0), [3e6, 0, 0, 0, 0, 0]),
+    ]
+    system = assemble([Body("mass", mass=1.0, free=frozenset({"ux"}))], springs)
+    found = static(system, np.array([5e3]), {"far ux": gap})
+    q = (5e3 + 3e6 * gap) / 4e6
+    assert found.q == pytest.approx([q])
+    assert found.forces == pytest.approx([1e6 * q, 3e6 * (q - gap)])
+    assert found.forces.sum() == pytest.approx(5e3)

@@ -325,6 +325,29 @@ def entries(path: Path) -> list[tuple[str, str, str]]:
     return found
 
 
+def test_a_dmig_names_grid_and_component_of_each_entry(tmp_path: Path) -> None:
+    """Read by its columns alone: fields of 8, then of 16 characters (MSC Nastran, DMIG)."""
+    element = moderate_element(3)
+    found: dict[str, dict[tuple[int, ...], float]] = {"K": {}, "M": {}}
+    column: tuple[int, ...] = ()
+    for line in written(tmp_path, element, "dmig").read_text().splitlines():
+        if line.startswith("DMIG*"):
+            letter, column = line[8], (int(line[24:40]), int(line[40:56]))
+        elif line.startswith("*") and column:
+            row = int(line[8:24]), int(line[24:40])
+            found[letter][row + column] = float(line[40:56].replace("D", "e"))
+    motions = [(grid, component) for grid in (1, 2, 3) for component in range(1, 7)]
+    for letter, matrix in (("K", element.stiffness), ("M", element.mass)):
+        assert matrix is not None
+        lower = {
+            row + column: matrix[i, j]
+            for j, column in enumerate(motions)
+            for i, row in enumerate(motions)
+            if i >= j
+        }
+        assert found[letter] == pytest.approx(lower, rel=1e-9)
+
+
 @pytest.mark.needs("pyNastran")
 def test_one_triangle_of_a_symmetric_dmig_is_the_whole_matrix(tmp_path: Path) -> None:
     """Columns from the diagonal down, as here; and down to it, as Nastran punches them."""

@@ -263,6 +263,26 @@ def test_subdyn_spring_stores_the_same_energy_in_either_frame(tmp_path: Path) ->
     assert found == pytest.approx(local @ element.stiffness @ local, rel=1e-12)
 
 
+def test_subdyn_mass_has_the_same_kinetic_energy_in_either_frame(tmp_path: Path) -> None:
+    root = np.random.default_rng(5).standard_normal((3, 3))
+    M = np.zeros((6, 6))
+    M[:3, :3], M[3:, 3:] = 250.0 * np.eye(3), root @ root.T + np.eye(3)
+    element, path = replace(sprung(3), mass=M), tmp_path / "subdyn.dat"
+    axes = tilted(6.0) @ turned_about_x(20.0)
+    subdyn.write(path, element, axes)
+    spring = subdyn.read_spring(path)
+    rates = np.random.default_rng(2).standard_normal(6)
+    # components along the element's axes, from those along SubDyn's
+    local = np.concatenate([axes @ rates[:3], axes @ rates[3:]])
+    found = spring.mass * rates[:3] @ rates[:3] + rates[3:] @ spring.inertia @ rates[3:]
+    assert found == pytest.approx(local @ M @ local, rel=1e-12)
+
+
+def turned_about_x(degrees: float) -> np.ndarray:
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
+
+
 def test_subdyn_takes_one_point_on_the_ground_and_a_rigid_body(tmp_path: Path) -> None:
     path = tmp_path / "subdyn.dat"
     with pytest.raises(InputError, match="takes one point"):

@@ -246,3 +246,12 @@ def test_example_of_the_docs() -> None:
     assert round(names["pair"].transverse_ratio, 3) == 1.463
     assert round(names["iso"].mesh / 1e9, 2) == 18.63
     assert float(names["series"].at(0.3)) > 0.0
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_force_along_the_normal_is_that_of_reference_circle_and_normal_section(name: str) -> None:
+    """F_n = F_t / (cos(alpha_n) cos(beta)), from both angles at the reference circle."""
+    pair = PAIRS[name]
+    gear = pair.first
+    expected = pair.tangential_force(1e4) / cos(gear.pressure_angle) / cos(gear.helix)
+    assert pair.normal_force(1e4) == pytest.approx(expected, rel=1e-12)

@@ -184,6 +184,19 @@ def test_influences_are_one_for_the_test_gear() -> None:
     assert hardness_factor(130.0, static=True) == pytest.approx(1.05)
 
 
+def test_notches_and_rough_mates_count_by_layer_and_roughness() -> None:
+    """The thicker the slip layer (ISO 6336-3: 0.0030 mm of case-hardened, 0.1005 of nitrided), the
+    more a notch sharper than the test gear's is supported; a rough mate hardens less (6336-2)."""
+    nitrided = replace(HARD, kind="nitrided")
+    soft = replace(SOFT, yield_strength=500e6)
+    for notch, sign in ((5.0, 1.0), (1.2, -1.0)):
+        factors = np.array([notch_factor(m, notch) for m in (HARD, soft, nitrided)])
+        assert (sign * np.diff(factors) > 0.0).all()
+    smooth, rough = (hardness_factor(150.0, r) for r in (3e-6, 4.5e-6))
+    assert rough / smooth == pytest.approx((3.0 / 4.5) ** 0.15)
+    assert hardness_factor(150.0, 16e-6) == 1.0
+
+
 def test_a_larger_fillet_of_the_rack_lowers_the_notch_effect() -> None:
     gear = SUN.pair.first
     sharp = replace(gear, rack=replace(gear.rack, fillet=0.2))

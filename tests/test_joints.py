@@ -50,6 +50,15 @@ def test_a_row_of_rollers_adds_up_as_theory_has_it() -> None:
     np.testing.assert_allclose(K.diagonal(), expected, rtol=1e-12, atol=1e-9 * radial)
 
 
+def test_rollers_know_their_bearing_s_centre_and_no_other_point() -> None:
+    unit = tapered().bearing_units[0]
+    moved = unit.model_copy(update={"bearing": unit.bearing.model_copy(update={"x": 1.7})})
+    assert unit.bearing.x != 1.7
+    for of in (joint_stiffness, roller_lines):
+        size = np.abs(of(unit)).max()
+        np.testing.assert_allclose(of(moved), of(unit), rtol=1e-9, atol=1e-9 * size)
+
+
 def test_rollers_on_a_sphere_carry_no_moment() -> None:
     rollers = {"count": 11, "stiffness": 1e9, "rows": [{"x": -0.06}, {"x": 0.05}]}
     unit = with_unit(coarse_scene("spherical"), interface="rollers", rollers=rollers)

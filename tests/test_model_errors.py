@@ -71,6 +71,12 @@ def test_a_load_that_never_changes_has_no_ratio_of_ranges() -> None:
     assert np.isnan(found["DEL, m = 3"])
 
 
+def test_samples_count_by_the_time_that_they_last() -> None:
+    found = measured([np.array([1.0, 3.0]), np.array([10.0, 14.0])], [0.1, 0.4])
+    assert found.weights.sum() == pytest.approx(1.0)
+    assert found.mean == pytest.approx((0.1 * 2.0 * 2.0 + 0.4 * 2.0 * 12.0) / (0.1 * 2 + 0.4 * 2))
+
+
 def test_the_answer_names_a_level_for_each_use() -> None:
     errors = {
         "1 beam": {"front, Fz": {"DEL, m = 3": 0.2, "DEL, m = 8": -0.4, "mean": 0.5}},

@@ -40,6 +40,11 @@ from fe_drivetrain.hub_loads.moving_turbine import (
 from fe_drivetrain.hub_loads.recorded import read_recorded
 from fe_drivetrain.hub_loads.surrogate import Condition
 from fe_drivetrain.hub_loads.turbine import (
+    _MASS,
+    _PLACES,
+    _TWIST,
+    EDGE_SHAPE,
+    FLAP_SHAPE,
     RIGID,
     Physics,
     Turbine,
@@ -402,3 +407,79 @@ def test_what_has_no_motion_is_refused() -> None:
         turbine_history(Condition(12.0, "low", 0.2, 1), LEVEL, CONTROLLER, duration=0.0)
     with pytest.raises(InputError, match="pitch_rate is 0"):
         Tuning(pitch_rate=0.0)
+
+
+def test_each_mode_bends_about_its_sections_as_structural_twist_turns_them() -> None:
+    """The suction side of a twisted section looks downwind and into the sense of rotation, its
+    leading edge upwind: so a blade that the air bends downwind moves as the rotor turns."""
+    modes = blade_modes(LEVEL, 4000)
+    root = modes.place < 2.0 / 17.0  # up to there twist is the same
+    flap, edge = modes.shape[0][:, root], modes.shape[1][:, root]
+    slope = math.tan(math.radians(13.308))
+    np.testing.assert_allclose(flap[1] / flap[0], slope, rtol=1e-9)
+    np.testing.assert_allclose(edge[0] / edge[1], -slope, rtol=1e-9)
+    assert modes.shape[0, 1, -1] > 0.0 > modes.shape[1, 0, -1]
+    # twice integrated to the tip, where both shapes have 1 without a twist
+    twist = np.radians(np.interp(modes.place, _PLACES, _TWIST))
+    for mode, polynomial in enumerate((FLAP_SHAPE, EDGE_SHAPE)):
+        bent = (1.0 - modes.place) * polynomial.deriv(2)(modes.place)
+        along = float((np.cos(twist) * bent).mean())
+        across = float((np.sin(twist) * bent).mean()) * (1.0 - 2.0 * mode)
+        np.testing.assert_allclose(modes.shape[mode, mode, -1], along, rtol=1e-3)
+        np.testing.assert_allclose(modes.shape[mode, 1 - mode, -1], across, rtol=3e-3)
+
+
+def test_tension_takes_the_work_that_shortening_a_turning_blade_does() -> None:
+    """A bent blade draws its mass in against the centrifugal force m r W^2, by integrals of half of
+    the slopes squared."""
+    modes = blade_modes(LEVEL, 4000)
+    length = LEVEL.rotor.radius - LEVEL.blade_root
+    density = np.interp(modes.place, _PLACES, _MASS)
+    mass = LEVEL.blade_mass * density / density.sum()
+    radius = LEVEL.blade_root + length * modes.place
+    slope = np.gradient(modes.shape, modes.place, axis=2)
+    products = np.einsum("acx,bcx->abx", slope, slope)
+    drawn_in = np.cumsum(products, axis=2) / modes.place.size / length
+    np.testing.assert_allclose(modes.stiffening, drawn_in @ (mass * radius), rtol=2e-3)
+
+
+def test_frequencies_of_a_similar_turbine_grow_with_its_speed() -> None:
+    small = similar_turbine(Rotor(radius=31.5, hub_height=60.0, rotor_mass=20e3))
+    large = similar_turbine(Rotor(radius=63.0, hub_height=90.0, rotor_mass=110e3))
+    rate = small.rotor.tip_speed_limit / 31.5 / (large.rotor.tip_speed_limit / 63.0)
+    assert rate > 1.5
+    one, other = natural_frequencies(small, 0.9 * rate, 0.1), natural_frequencies(large, 0.9, 0.1)
+    assert {k: v / rate for k, v in one.items()} == pytest.approx(other, rel=1e-9)
+
+
+@pytest.mark.parametrize("azimuth", [0.3, 2.1, 4.6])
+def test_force_on_the_shaft_is_the_weight_less_the_momentum_that_the_rotor_takes(
+    azimuth: float,
+) -> None:
+    """In still air, all moving: hub, blades that bend, and a surplus of mass on one of them."""
+    turbine = replace(LEVEL, mass_imbalance=4e4)
+    parts = _parts(turbine, Physics(), even_inflow(turbine, 10.0, [0.0], 10.0))
+    state = np.zeros(air.STATES)
+    state[[air.PSI, air.SPEED, air.TWIST, air.GENERATOR]] = azimuth, 1.3, 0.01, 1.2
+    at = air.RATES + np.array([[6 * a + i for a in range(2)] for i in range(3)])
+    state[at] = np.random.default_rng(4).normal(size=(3, 2))
+    rates, loads = np.zeros(air.STATES), np.zeros(6)
+    kernel.moving(parts, state, np.zeros((5, 20)), 0.0, 1e6, rates, loads)
+    speed, faster = state[air.SPEED], rates[air.SPEED]
+    assert abs(faster) > 1e-2
+    angle = azimuth + 2.0 * np.pi * np.arange(3) / 3.0
+    # x, y and z: along the blades, and as these turn
+    out = np.stack([0.0 * angle, -np.sin(angle), np.cos(angle)], axis=1)
+    along = np.stack([0.0 * angle, -np.cos(angle), -np.sin(angle)], axis=1)
+    hub = np.array([rates[air.FORE_RATE], rates[air.SIDE_RATE], 0.0])
+    momentum = turbine.rotor.rotor_mass * hub
+    # d2/dt2 of S e, S the bent blade's first moment along e, which turns; no blade is bent yet
+    momentum += np.outer(rates[at] @ parts.force[:, 0], [1.0, 0.0, 0.0]).sum(axis=0)
+    bends, bent = state[at] @ parts.force[:, 1], rates[at] @ parts.force[:, 1]
+    momentum += (bent[:, None] * along - 2.0 * speed * bends[:, None] * out).sum(axis=0)
+    momentum += turbine.mass_imbalance * (faster * along[0] - speed**2 * out[0])
+    weight = np.array([0.0, 0.0, -turbine.rotor.rotor_mass * turbine.rotor.gravity])
+    np.testing.assert_allclose(loads[:3], weight - momentum, atol=1e-6 * np.abs(weight).max())
+    # the tower, which stands straight and still, holds nothing yet: its top takes the same force
+    rest = turbine.top_mass - turbine.rotor.rotor_mass
+    np.testing.assert_allclose(rest * hub[:2], loads[:2], atol=1e-6 * np.abs(weight).max())

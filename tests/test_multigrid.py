@@ -204,6 +204,15 @@ def test_energy_error_of_a_geometric_sequence():
     assert estimate < 3.0 * np.sqrt(rest / total)
 
 
+@pytest.mark.parametrize("q", [0.5, 0.9, 0.99])
+def test_energy_error_of_a_slow_sequence_is_one_step_behind_at_most(q):
+    """Terms q^k for ever: after n of them the rest is q^n of all, and q^(n - 1) one step before."""
+    n = round(np.log(1e-12) / np.log(q))
+    estimate = energy_error(q ** np.arange(n, dtype=float)[:, None])
+    # steps of the last hundredth of all are judged by: so many terms of the sum are not in it
+    assert q ** (0.5 * n) * (1.0 - 1e-2) <= estimate <= q ** (0.5 * (n - 1)) * (1.0 + 1e-9)
+
+
 @pytest.mark.parametrize("flatness", [0.0, 0.9, 0.99])
 def test_smoother_knows_the_largest_eigenvalue(flatness):
     """Also that of one all but flat element, which a random vector hardly sees."""

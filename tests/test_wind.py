@@ -58,6 +58,15 @@ def distance(ring: int, other: int, node: int) -> float:
 # --- formulas ------------------------------------------------------------------------------------
 
 
+def test_slow_gusts_are_smaller_than_the_coherence_scale() -> None:
+    """IEC 61400-1 Ed. 3, Eq B.16: 0.12 r / L_c under the root, whatever the frequency."""
+    still = coherence_decay(0.0, SPEED, LENGTH)
+    assert still == pytest.approx(12.0 * 0.12 / LENGTH, rel=1e-14)
+    f = 0.05
+    fast = 12.0 * np.sqrt((f / SPEED) ** 2 + (0.12 / LENGTH) ** 2)
+    assert coherence_decay(f, SPEED, LENGTH) == pytest.approx(fast, rel=1e-14)
+
+
 def test_kaimal_spectrum_holds_the_variance() -> None:
     variance, _ = quad(
         lambda x: float(np.exp(x) * kaimal_spectrum(np.exp(x), SPEED, 1.7, LENGTH)),
