@@ -420,7 +420,7 @@ def test_reactions_of_a_study_balance_loads_and_weights(
             "frame = x downwind",
             "origin of moments",
             "weight = included along -z",
-            "the weight of its own housing, which its rollers do not feel",
+            "the weight of its own ring and housing, which its rollers do not feel",
         ):
             assert word in head
         for component, column in zip(("Fx", "Fy", "Fz"), range(3), strict=True):
