@@ -54,7 +54,7 @@ def element_stiffness(
     stiffness
         (n_cells, k, k, 3, 3): blocks of each pair of an element's nodes [N/m].
     """
-    lam, mu = lame
+    _, mu = lame
     physical, determinant = jacobian(points, cells, rule.gradients)
     n_cells, n_q, _, k = physical.shape
     rows = physical.reshape(n_cells, n_q, 3 * k)
@@ -62,16 +62,44 @@ def element_stiffness(
     products = (weighted.transpose(0, 2, 1) @ rows).reshape(n_cells, 3, k, 3, k)
     H = products.transpose(0, 2, 4, 1, 3)
     K = mu * H.swapaxes(3, 4)
-    if not functions:
-        K += lam * H
+    within, averaged = split(lame, k) if functions else (lame, 0.0)
+    if within[0]:
+        K += within[0] * H
     trace = mu * np.einsum("eabii->eab", H)
     for i in range(3):
         K[..., i, i] += trace
     if functions:
         R = projected(points, cells, rule, functions)[0].reshape(n_cells, functions, 3 * k)
         volumetric = (R.transpose(0, 2, 1) @ R).reshape(n_cells, k, 3, k, 3)
-        K += lam * volumetric.transpose(0, 1, 3, 2, 4)
+        K += averaged * volumetric.transpose(0, 1, 3, 2, 4)
     return np.ascontiguousarray(K)
+
+
+def split(lame: tuple[float, float], k: int) -> tuple[tuple[float, float], float]:
+    """What stays at each point and what multiplies the projected dilatation.
+
+    Of hexahedra the whole volumetric part is projected, 3 K = 3 lambda + 2 mu (Hughes 1980, Int. J.
+    Numer. Meth. Eng. 15, 1413-1418: B-bar). Of tetrahedra of 10 nodes it is lambda's alone: with
+    the mean of the whole, u = 2 (a x) x - |x|^2 a about the middle, which has no deviatoric strain,
+    would cost no energy.
+
+    Parameters
+    ----------
+    lame : tuple[float, float]
+        Lame's constants (lambda, mu) [Pa].
+    k : int
+        Nodes of an element.
+
+    Returns
+    -------
+    tuple[float, float]
+        Lame's constants of the plain part.
+    float
+        Factor of the projected part [Pa].
+    """
+    lam, mu = lame
+    whole = 0.0 if k == 10 else 2.0 * mu / 3.0
+    return (-whole, mu), lam + whole
 
 
 def projected(points: Floats, cells: Ints, rule: Rule, count: int) -> tuple[Floats, Floats]:

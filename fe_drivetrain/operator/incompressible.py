@@ -1,12 +1,13 @@
 """The elastic operator of nearly incompressible solids: dilatation averaged inside each element.
 
 Near nu = 1/2 any change of volume costs more than all else, and elements that can bend only by
-changing it somewhere inside do not bend: they lock. Here Lame's constant lambda multiplies not the
+changing it somewhere inside do not bend: they lock. Here the bulk modulus multiplies not the
 dilatation div u but its projection on few functions of each element, the mean alone or with it the
-slopes. That is the mixed form with the pressure p = -lambda div u, discontinuous from element to
-element and condensed out of each (Herrmann 1965; Malkus and Hughes 1978, Comput. Methods Appl.
-Mech. Eng. 15, 63-81, who show that it is selective reduced integration), so that the matrix has
-the pattern of the plain one and goes to the same solvers.
+slopes. That is the mixed form with the pressure, discontinuous from element to element and
+condensed out of each (Herrmann 1965; Malkus and Hughes 1978, Comput. Methods Appl. Mech. Eng. 15,
+63-81, who show that it is selective reduced integration), so that the matrix has the pattern of the
+plain one and goes to the same solvers. Of hexahedra the whole volumetric part is projected, as
+Hughes (1980) has it; of tetrahedra that of lambda alone, see `element_matrices.split`.
 
 How many functions an element bears is a matter of the inf-sup condition (Boffi, Brezzi and Fortin
 2013, Mixed Finite Element Methods and Applications, chapter 8): the mean for hexahedra of 8 nodes
@@ -26,7 +27,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.mesh.shapes import ElementKind, element_kind
 from fe_drivetrain.operator import elasticity
 from fe_drivetrain.operator.elasticity import Pattern
-from fe_drivetrain.operator.element_matrices import Rule, element_functions, projected
+from fe_drivetrain.operator.element_matrices import Rule, element_functions, projected, split
 from fe_drivetrain.operator.stress import strains
 
 AVERAGED_FROM = 0.45
@@ -57,8 +58,9 @@ def assemble(
     InputError
         The elements are tetrahedra of four nodes.
     """
-    plain = elasticity.assemble(points, cells, (0.0, lame[1]), n_dofs, pattern)
-    return _with_averaged(plain, points, cells, lame[0])
+    within, averaged = split(lame, cells.shape[1])
+    plain = elasticity.assemble(points, cells, within, n_dofs, pattern)
+    return _with_averaged(plain, points, cells, averaged)
 
 
 def _with_averaged(
@@ -104,14 +106,15 @@ def assemble_materials(
         (n_dofs, n_dofs) in 3x3 blocks, added [N/m].
     """
     averaged = [poisson_ratio(lame) >= AVERAGED_FROM for _, lame in materials]
+    k = cells.shape[1]
     plain = [
-        (some, (0.0, lame[1]) if projects else lame)
+        (some, split(lame, k)[0] if projects else lame)
         for (some, lame), projects in zip(materials, averaged, strict=True)
     ]
     K = elasticity.assemble_materials(points, cells, plain, n_dofs, others=others)
     for (some, lame), projects in zip(materials, averaged, strict=True):
         if projects:
-            K = _with_averaged(K, points, cells[some], lame[0])
+            K = _with_averaged(K, points, cells[some], split(lame, k)[1])
     return K
 
 
@@ -147,7 +150,11 @@ def stresses(
     """
     kind = element_kind(cells.shape[1])
     values = kind.shape(at)[0]
-    found = 2.0 * lame[1] * strains(points, cells, u, at)
+    (lam, mu), averaged = split(lame, cells.shape[1])
+    found = strains(points, cells, u, at)
+    trace = found[:, :, :3].sum(axis=2, keepdims=True)
+    found *= 2.0 * mu
+    found[:, :, :3] += lam * trace
     displacements = u[: points.size].reshape(-1, 3)
     for chunk in chunks(len(cells), CHUNK // 4):
         some = cells[chunk]
@@ -157,7 +164,7 @@ def stresses(
         functions = element_functions(points[some], positions, rows.shape[1])
         orthonormal = np.linalg.solve(factor[:, None], functions[..., None])[..., 0]
         dilatation = np.einsum("eqp,ep->eq", orthonormal, coefficients)
-        found[chunk, :, :3] += lame[0] * dilatation[..., None]
+        found[chunk, :, :3] += averaged * dilatation[..., None]
     return found
 
 
