@@ -24,7 +24,7 @@ def test_mutants_follow_from_the_seed_and_are_of_every_kind():
     assert [m.change for m in found] == [m.change for m in mutants(300, 5)]
     assert [m.change for m in found] != [m.change for m in mutants(300, 6)]
     kinds = Counter(m.kind for m in found)
-    assert len(kinds) == 8
+    assert len(kinds) == 9
     assert min(kinds.values()) >= 5
     assert {m.library for m in found} == {*mutated_scenes.SCENES, *mutated_scenes.COMPONENTS}
 
@@ -59,7 +59,7 @@ def test_a_compliance_that_does_not_follow_the_modulus_is_found(monkeypatch):
 
     # twice as stiff, the part that is added is not halved: its share of the largest motion
     fixed = solve(mutated_scenes.parse_scene(library_text(NAME)), 1).compliance
-    added = 1e-6 * np.diag(fixed).max()
+    added = 1e-5 * np.diag(fixed).max()
 
     def constant(scene, level):
         model = solve(scene, level)
@@ -73,7 +73,7 @@ def test_a_compliance_that_does_not_follow_the_modulus_is_found(monkeypatch):
     ("error", "fault"),
     [
         (InputError("scene: math domain error"), "in words that are not the program's"),
-        (InputError("scene: one\nand two"), "in words that are not the program's"),
+        (InputError("no"), "in words that are not the program's"),
         (ZeroDivisionError("division by zero"), "read with ZeroDivisionError"),
     ],
 )

@@ -71,7 +71,7 @@ FOREIGN_WORDS = (
 #: condition number of the motions, between these bounds.
 ROUNDINGS, MOST = 20, 1e-6
 #: The least of it by level: level 2 solves some 10,000 unknowns, whose condition is about 1e7.
-LEAST = {1: 1e-12, 2: 1e-9}
+LEAST = {1: 1e-12, 2: 1e7 * float(np.finfo(np.float64).eps)}
 
 
 @dataclass(frozen=True)
