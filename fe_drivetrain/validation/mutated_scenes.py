@@ -354,7 +354,7 @@ def weight_over_mass(scene: Scene, model: LevelModel) -> float | None:
         if found is None:
             return None
         mass += found
-    carried = sum(matrix[2, 8] for matrix in model.reaction_matrices.values())
+    carried = math.fsum(matrix[2, 8] for matrix in model.reaction_matrices.values())
     if mass <= 0:
         return None if carried == 0 else math.inf
     return abs(carried - mass) / mass
