@@ -14,7 +14,7 @@ from fe_drivetrain.common import (
     InputError,
     SafeWriter,
     comment_line,
-    table_head,
+    table_row,
 )
 from fe_drivetrain.suite import Page, Record, Run
 
@@ -105,7 +105,7 @@ def write_files(
                 delimiter=",",
                 fmt="%.9g",
                 header="\n".join(
-                    [*(comment_line(f"{f} = {v}") for f, v in facts.items()), table_head(columns)]
+                    [*(comment_line(f"{f} = {v}") for f, v in facts.items()), table_row(columns)]
                 ),
                 comments="",
                 encoding="utf-8",

@@ -11,7 +11,7 @@ from .components import MOTIONS as MOTIONS
 from .components import STRESSES as STRESSES
 from .csv_cells import SafeWriter as SafeWriter
 from .csv_cells import comment_line as comment_line
-from .csv_cells import table_head as table_head
+from .csv_cells import table_row as table_row
 from .errors import InputError as InputError
 from .errors import MissingToolError as MissingToolError
 from .exact_sums import ExactSum as ExactSum

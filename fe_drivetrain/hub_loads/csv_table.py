@@ -14,7 +14,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
-from fe_drivetrain.common.csv_cells import cell_as_given, comment_as_given, comment_line, table_head
+from fe_drivetrain.common.csv_cells import cell_as_given, comment_as_given, comment_line, table_row
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.common.strict_yaml import shown
@@ -193,7 +193,7 @@ def write_csv(
     table = np.column_stack((history.time, history.loads, *history.at.values(), *columns))
     others = [f"{p}.{c} [{u}]" for p in history.at for c, u in zip(FORCES, UNITS, strict=True)]
     lines = [comment_line(f"{key} = {value}") for key, value in history.attributes.items()]
-    lines.append(table_head([*_CSV_EXAMPLE.split(","), *others, *more]))
+    lines.append(table_row([*_CSV_EXAMPLE.split(","), *others, *more]))
     lines += [",".join(map(repr, row)) for row in table.tolist()]
     try:
         with atomic_path(file) as temporary:
