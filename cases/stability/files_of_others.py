@@ -93,8 +93,8 @@ def run(run: Run, page: Page) -> None:
     page.text(
         "A run lists in `fe-drivetrain-files.json` what it wrote, each file with the SHA-256 of "
         "its content. A later run replaces these alone. All else is linked into the new folder "
-        "before that is exchanged for the old one in one operation, so that it is never missing; a file "
-        "that was changed since the run is kept, with `.kept` added to its name. A folder without "
-        "such a list, which is not empty, is refused before any work."
+        "before that is exchanged for the old one in one operation, so that it is never missing; "
+        "a file that was changed since the run is kept, with `.kept` added to its name. A folder "
+        "without such a list, which is not empty, is refused before any work."
     )
     page.data("commands", found)
