@@ -57,7 +57,7 @@ def run(run: Run, page: Page) -> None:
             f"{name}, in time",
             series,
             dict.fromkeys(series.finest.values, 0.05),
-            energy=5e-2,
+            energy=1e-2,
             why="generalised alpha takes energy out of what the jumps of stiffness excite",
         )
         linear = linear_ripple(found, at)
@@ -210,7 +210,6 @@ def balanced_ripple(found: TransmissionError, ratio: float, orders: int = 60) ->
     right = right + damper * (np.fft.fft(error) / len(k))[np.arange(-orders, orders + 1)]
     right[orders] += found.force
     x = np.linalg.solve(K, right)
-    turned = np.exp(
-        2j * np.pi * np.outer(np.arange(PHASES) / PHASES, np.arange(-orders, orders + 1))
-    )
+    phases = np.arange(PHASES) / PHASES
+    turned = np.exp(2j * np.pi * np.outer(phases, np.arange(-orders, orders + 1)))
     return float(np.ptp((turned @ x).real))
