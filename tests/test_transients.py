@@ -143,7 +143,7 @@ def test_a_spring_with_an_offset_is_held_as_one_without() -> None:
     found, plain = transient([phase], 2e-3, begin), braked(2e-3)
     assert_allclose([t for t, _ in found.events], [t for t, _ in plain.events], rtol=1e-9)
     assert_allclose(found.brake, plain.brake, atol=1e-7)
-    assert_allclose(found.motion.q, plain.motion.q + [0.3, 0.0], atol=1e-9)
+    assert_allclose(found.motion.q, plain.motion.q + np.array([0.3, 0.0]), atol=1e-9)
     assert_allclose(found.motion.energy, plain.motion.energy, atol=1e-9)
 
 
