@@ -22,7 +22,7 @@ from fe_drivetrain.cases.verification.mutation_runs import (
     controlled,
 )
 from fe_drivetrain.common import InputError, cores
-from fe_drivetrain.report import bars
+from fe_drivetrain.report import Chart, bars
 from fe_drivetrain.suite import Page, Record, Run
 
 LIMIT, GOAL, CONFIDENCE = 240, 95.0, 0.95
@@ -98,6 +98,13 @@ def _judge(
         + ("; ".join(f"{t.fault.file}: {t.fault.what}" for t in unnamed) or "there is none"),
         source="rows of tests/mutations",
     )
+    page.vanishes(
+        "reasons why a fault survives, of one that is caught",
+        sum(one.caught and bool(one.fault.survives) for one in tried),
+        within=0.0,
+        why="a reason that no longer holds is to be taken out of its row",
+        source="rows of tests/mutations",
+    )
 
 
 def _show(page: Page, root: Path, tried: Sequence[Tried], others: dict[str, str]) -> None:
@@ -136,7 +143,7 @@ def _show(page: Page, root: Path, tried: Sequence[Tried], others: dict[str, str]
     page.data("tests not passing without a fault", dict(others))
 
 
-def _bars(tried: Sequence[Tried]):  # type: ignore[no-untyped-def]
+def _bars(tried: Sequence[Tried]) -> Chart:
     rooms = sorted({one.fault.room for one in tried})
     groups = {
         name: {
