@@ -34,6 +34,7 @@ from fe_drivetrain.torsion import GENERATOR, ROTOR, Torsional, natural_modes
 
 DEFAULT = "nrel_750kw"
 RATIO = 0.01  # of critical damping
+RPM = 2.0 * np.pi / 60.0  # rad/s
 DEPTHS, SECONDS = (0.2, 0.5, 0.8, 1.0), (0.1, 0.15, 0.25, 0.5)  # of the torque, s
 MARGIN = "least margin of an excited frequency"
 FORCE = "largest force of misalignment on a bearing [kN]"
@@ -80,23 +81,22 @@ def require_operation(run: Run, name: str) -> None:
 def resonance(page: Page, machine: Machine, speeds: tuple[float, float]) -> None:
     """Least margin of all excitations at all frequencies that they excite."""
     register = drivetrain_excitations(machine.stages)
-    found = resonances(register, system_modes(machine_system(machine, Level.RIGID)), speeds)
+    within = speeds[0] * RPM, speeds[1] * RPM
+    found = resonances(register, system_modes(machine_system(machine, Level.RIGID)), within)
     met = sorted((m for m in found if m.verdict != "not excited"), key=lambda m: m.margin)
     by_name = {e.name: e for e in register}
     page.vanishes(
         "frequencies of excitations at their crossings, largest relative error",
         max(abs(by_name[m.excitation].frequency(m.crossing) / m.frequency - 1.0) for m in met),
         **round_off(10, "a frequency divided by its order, and multiplied again"),
-        source="n = 60 f / order",
+        source="speed = 2 pi f / order",
         basis="self-consistency",
     )
-    at = np.linspace(*speeds, 4001)
-    nearest = min(
-        float(np.abs(by_name[m.excitation].per_turn * at / 60.0 / m.frequency - 1.0).min())
-        for m in met
-    )
+    at = np.linspace(*within, 4001)
+    orders = [by_name[m.excitation].per_turn / (2.0 * np.pi * m.frequency) for m in met]
+    nearest = min(float(np.abs(order * at - 1.0).min()) for order in orders)
     # both ends are among the speeds, so that a crossing within them alone may be missed
-    steps = [0.5 * by_name[m.excitation].per_turn / 60.0 / m.frequency for m in met if not m.margin]
+    steps = [0.5 * order for order, m in zip(orders, met, strict=True) if not m.margin]
     page.equals(
         f"{MARGIN}, by speeds one after another",
         met[0].margin,
@@ -115,7 +115,7 @@ def resonance(page: Page, machine: Machine, speeds: tuple[float, float]) -> None
             {
                 "excitation": m.excitation,
                 "frequency [Hz]": m.frequency,
-                "crossing [rpm]": m.crossing,
+                "crossing [rpm]": m.crossing / RPM,
                 "margin": m.margin,
                 "energy share": m.share,
                 "verdict": m.verdict,
