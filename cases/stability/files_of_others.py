@@ -33,7 +33,7 @@ def experiment(kills: int, quick: bool) -> list[dict[str, Any]]:
 @case(
     "Files of others: kills of every kind of command, and folders that are not theirs",
     source="renameat2(2), link(2) and flock(2), Linux man-pages 6",
-    settings={"kills": "100 of each kind of command (quick 3; from 1)"},
+    settings={"kills": "100 (quick 3; from 1)"},
 )
 def run(run: Run, page: Page) -> None:
     """Kill each kind of command while its folders hold files of others, and look at every file."""
