@@ -205,7 +205,7 @@ def energy_error(
     stretch, force = q @ s.rows.T - s.offset, loads.at(times)
     bent, damped = q @ equations.extra, velocity @ C.T
     inside = (stretch * s.stiffness) @ s.rows + bent + damped
-    a = np.linalg.solve(equations.mass, (force - inside).T).T
+    a: Floats = np.asarray(np.linalg.solve(equations.mass, (force - inside).T).T, np.float64)
     dt = np.diff(times)
     rise = np.diff(force, axis=0) / dt[:, None]
 
