@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.bearing.contact import line_pressure
-from fe_drivetrain.bearing.geometry import RollerRow, pitch_ratio
+from fe_drivetrain.bearing.answers import race_pressures
+from fe_drivetrain.bearing.geometry import RollerRow
 from fe_drivetrain.commands.life_bearings import OneBearing
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import user_cache
@@ -21,7 +21,8 @@ from fe_drivetrain.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.hub_loads.recorded import read_recorded
 from fe_drivetrain.hub_loads.turbines import vertical_forces
 from fe_drivetrain.life.limits import Limits
-from fe_drivetrain.life.roller_damage import Damage, LifeRules, Steps, damage_of_steps
+from fe_drivetrain.life.roller_damage import Damage, LifeRules, damage_of_steps
+from fe_drivetrain.life.steps import Steps
 from fe_drivetrain.response.cached import whole_content
 from fe_drivetrain.response.entering import entering
 from fe_drivetrain.scene.scene import Scene
@@ -266,10 +267,7 @@ class _Sums:
         if not isinstance(row, RollerRow):
             return np.zeros((2, q.shape[2]))
         step, roller, _ = np.unravel_index(int(np.argmax(q)), q.shape)
-        per_length = q[step, roller] * q.shape[2] / row.length
-        gamma = pitch_ratio(row)
-        curvatures = (2.0 / row.diameter / (1.0 - gamma), 2.0 / row.diameter / (1.0 + gamma))
-        return np.stack([line_pressure(per_length, c) for c in curvatures])
+        return np.stack(race_pressures(row, q[step, roller], q.shape[2]))
 
     def digest(self, wind: float, speed: float, samples: float) -> LifeDigest:
         assert self.damage is not None

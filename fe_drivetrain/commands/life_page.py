@@ -22,8 +22,8 @@ from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.histories.sites import Site
 from fe_drivetrain.hub_loads.turbines import different_turbines
 from fe_drivetrain.life.at_site import site_lives
-from fe_drivetrain.life.reference_life import reference_load
-from fe_drivetrain.life.roller_damage import KINDS, RINGS, LifeRules
+from fe_drivetrain.life.reference_life import RINGS, reference_load
+from fe_drivetrain.life.roller_damage import KINDS, LifeRules
 from fe_drivetrain.procedure.failure_modes import TORQUE_AND_BENDING
 from fe_drivetrain.report.answer import value_with_band
 from fe_drivetrain.response.stated import HUB_LOADS

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.errors import InputError, require_known
 from fe_drivetrain.life.modified_life import LAST_KAPPA, needed_viscosity, viscosity
 
 Supply = Literal["grease", "filtered oil", "oil bath"]
@@ -95,13 +95,7 @@ class Lubricant:
     cleanliness: str = "normal"
 
     def __post_init__(self) -> None:
-        if self.supply not in SUPPLIES:
-            raise InputError(f"lubrication {self.supply!r}: choose {', '.join(SUPPLIES)}")
-        if self.cleanliness not in SUPPLIES[self.supply]:
-            raise InputError(
-                f"cleanliness {self.cleanliness!r} of {self.supply}: choose "
-                f"{', '.join(SUPPLIES[self.supply])}"
-            )
+        _check_cleanliness(self.supply, self.cleanliness)
         if not 2.0 < self.viscosity_100 < self.viscosity_40 < np.inf:
             raise InputError(
                 f"viscosity of a lubricant is {self.viscosity_40:g} mm2/s at 40 degC and "
@@ -156,11 +150,15 @@ def contamination_factor(
     InputError
         There is no such cleanliness.
     """
-    if cleanliness not in SUPPLIES.get(supply, {}):
-        Lubricant(460.0, 30.5, supply=supply, cleanliness=cleanliness)  # raises
+    _check_cleanliness(supply, cleanliness)
     c1, c2 = SUPPLIES[supply][cleanliness]
     if (supply, cleanliness) == ("grease", "slight to typical") and 1e3 * pitch_diameter < 500.0:
         c2 = SMALL_SLIGHT
     mm = 1e3 * pitch_diameter
     film = np.minimum(np.asarray(kappa, dtype=float), LAST_KAPPA) ** 0.68
     return np.asarray(np.minimum(c1 * film * mm**0.55, 1.0) * max(1.0 - c2 / mm ** (1 / 3), 0.0))
+
+
+def _check_cleanliness(supply: Supply, cleanliness: str) -> None:
+    require_known("lubrication", supply, SUPPLIES)
+    require_known(f"cleanliness of {supply}", cleanliness, SUPPLIES[supply])
