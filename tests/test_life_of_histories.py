@@ -1,12 +1,20 @@
 """Life over load histories: sums that close, Miner's rule step by step, limits, levels."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from fe_drivetrain.beam.of_scene import beam_of_scene
 from fe_drivetrain.beam.shaft import solve
-from fe_drivetrain.bearing.arrangements import ball_row, double_row_tapered
+from fe_drivetrain.bearing.answers import pressures, race_pressures
+from fe_drivetrain.bearing.arrangements import (
+    ball_row,
+    cylindrical,
+    double_row_tapered,
+    tapered_row,
+)
 from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.bearing.races import rigid_races
 from fe_drivetrain.bearing.rolling import equilibrium
@@ -16,11 +24,18 @@ from fe_drivetrain.coupled.of_scene import scene_body
 from fe_drivetrain.fidelity.shafts import ringed_shaft
 from fe_drivetrain.histories.sites import Site, site_life
 from fe_drivetrain.life.at_site import site_lives
+from fe_drivetrain.life.limits import centrifugal_load, check_speed, static_use
 from fe_drivetrain.life.load_series import equivalent_life
 from fe_drivetrain.life.lubricants import SUPPLIES, Lubricant, contamination_factor
 from fe_drivetrain.life.modified_life import equivalent_loads, life_factor, modified_lamina_life
 from fe_drivetrain.life.rated import Factors, of_geometry, rated_bearing, rated_from_catalogue
-from fe_drivetrain.life.reference_life import basic_life, lamina_life, reference_load, rows_of
+from fe_drivetrain.life.reference_life import (
+    ball_life,
+    basic_life,
+    lamina_life,
+    reference_load,
+    rows_of,
+)
 from fe_drivetrain.life.roller_damage import (
     Damage,
     LifeRules,
@@ -50,6 +65,11 @@ def history() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     means, spreads = [2e5, 0, -4e5, 3e5, 0], [5e4, 5e4, 1e5, 3e5, 3e5]
     loads = rng.normal(means, spreads, (40, 5))
     return loads, rng.uniform(8, 20, 40), rng.uniform(0.5, 2, 40)
+
+
+def largest_of_all(of_rows) -> np.ndarray:
+    """(n,) of pressures by row, ring and roller."""
+    return np.max([p.max(axis=1) for row in of_rows for p in row], axis=0)
 
 
 @pytest.fixture(scope="module")
@@ -151,8 +171,12 @@ def test_limits_of_the_methods_are_timed(history) -> None:
     steps = next(steps_of(rigid_rings(BEARING), 30 * loads, 18.0, 1.0))
     found = damage_of_steps(steps, RATED, LifeRules(Lubricant(460, 30.5, 100.0)))
     P, P0 = RATED.equivalent_load(steps.loads), RATED.static_load(steps.loads)
-    assert 0 < found.limits.heavy == (P > 0.5 * 6.71e6).sum()
-    assert 0 < found.limits.weak == (P0 > 1.66e7).sum()
+    of_rollers = 6.71e6 / step_lives(RATED, steps.laminae, RULES) ** 0.25
+    assert 0 < found.limits.heavy == (np.maximum(P, of_rollers) > 0.5 * 6.71e6).sum()
+    assert_allclose(found.limits.largest_reference, of_rollers.max(), rtol=1e-12)
+    p = largest_of_all(pressures(BEARING, equilibrium(BEARING, steps.loads).displacements))
+    assert (P0 > 1.66e7).sum() < found.limits.weak == ((P0 > 1.66e7) | (p > 4e9)).sum()
+    assert_allclose(found.limits.largest_pressure, p.max(), rtol=1e-6)
     assert found.limits.thin == found.limits.thick == 0.0
     slow = damage_of_steps(
         next(steps_of(rigid_rings(BEARING), loads, 1.0, 1.0)),
@@ -161,6 +185,58 @@ def test_limits_of_the_methods_are_timed(history) -> None:
     )
     assert slow.limits.thin == len(loads)
     assert_allclose(slow.totals["L10mr"], 10 * slow.totals["L10r"], rtol=1e-12)
+
+
+def test_a_moment_alone_brings_the_static_safety_of_the_rollers_below_1() -> None:
+    """P0 of a moment is 0, and so is P; pressure in line contact goes with the root of the load."""
+    model = rigid_rings(BEARING)
+    one = damage_of_steps(next(steps_of(model, [0, 0, 0, 2e6, 0], 18.0, 1.0)), RATED, RULES).limits
+    M = 2e6 * (4.8e9 / one.largest_pressure) ** 2
+    found = damage_of_steps(next(steps_of(model, [0, 0, 0, M, 0], 18.0, 1.0)), RATED, RULES).limits
+    assert found.largest_pressure == pytest.approx(4.8e9, rel=1e-6)
+    assert found.static_safety == pytest.approx((4.0 / 4.8) ** 2, rel=1e-6)
+    assert found.largest_load == found.largest_static == 0.0
+    assert found.weak == found.heavy == 1.0
+
+
+def test_ratings_stand_for_the_pressures_of_iso_76() -> None:
+    """Q = 5 F / (i Z cos alpha) under C_0 has 4,000 MPa on rollers, and 4,200 MPa on balls."""
+    rollers = rated_bearing(cylindrical("c", 20, 0.03, 0.05, 0.3, laminae=1), 1e6)
+    most = max(race_pressures(rollers.bearing.rows[0], 5.0 * rollers.static / 20.0))
+    assert most == pytest.approx(rollers.static_pressure, rel=0.005)
+    balls = rated_bearing(Bearing("b", (ball_row(8, 0.01, 0.05),)), 1e4)
+    most = max(race_pressures(balls.bearing.rows[0], 5.0 * balls.static / 8.0))
+    assert most == pytest.approx(balls.static_pressure, rel=0.005)
+    # the load of a ball goes with the cube of its pressure
+    doubled = [0.0, 0.0, 0.0, 0.0, 0.0], 2.0 * balls.static_pressure
+    assert static_use(balls, *doubled) == pytest.approx(8.0)
+
+
+def test_speeds_that_no_bearing_has_are_refused() -> None:
+    step = next(steps_of(rigid_rings(BEARING), [0, 0, -4e5, 0, 0], -1.2e7, 1.0))
+    with pytest.raises(InputError, match=r"1\.2e\+07 1/min: .* 787\.4 mm .* 3\.81e\+03 1/min"):
+        damage_of_steps(step, RATED, RULES)
+    with pytest.raises(InputError, match="nan 1/min"):
+        check_speed(RATED, [18.0, np.nan])
+    check_speed(RATED, [-3800.0, 3800.0])
+    slow = replace(RATED, limiting_speed=17.0)
+    seconds = np.array([1.0, 2.0, 4.0])
+    steps = next(
+        steps_of(rigid_rings(BEARING), np.tile([0, 0, -4e5, 0, 0], (3, 1)), [16, -18, 18], seconds)
+    )
+    assert damage_of_steps(steps, slow, RULES).limits.fast == 6.0
+    assert damage_of_steps(steps, RATED, RULES).limits.fast == 0.0
+
+
+def test_a_roller_is_pressed_out_by_its_weight_as_the_cage_turns() -> None:
+    """m r omega^2 of 2.475 kg on 393.7 mm, the cage at 0.4612 of the ring's speed."""
+    mass = 7850.0 * np.pi / 4 * 0.065**2 * 0.095
+    gamma = 65 * np.cos(np.radians(20)) / 787.4
+    cage = 0.5 * (1 - gamma) * 2 * np.pi * 1000 / 60
+    assert centrifugal_load(BEARING, 1000.0) == pytest.approx(mass * 0.3937 * cage**2, rel=1e-12)
+    ball = Bearing("b", (ball_row(8, 0.01, 0.05),))
+    mass = 7850.0 * np.pi / 6 * 0.01**3
+    assert centrifugal_load(ball, 60.0) == pytest.approx(mass * 0.025 * (0.8 * np.pi) ** 2)
 
 
 def test_reliability_scales_modified_life_alone(history) -> None:
@@ -314,10 +390,29 @@ def test_life_factors_of_balls_meet_between_branches() -> None:
         assert_allclose(life_factor(0.5, kappa, "point"), below, rtol=1e-3)
 
 
+def damage_of_nothing() -> Damage:
+    steps = next(steps_of(rigid_rings(BEARING), np.zeros((1, 5)), 18.0, 1.0))
+    return damage_of_steps(steps, RATED, RULES)
+
+
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: LifeRules(riser="both"), "standard"),
+        (lambda: LifeRules(riser="both"), "'standard' or 'none'"),
+        (lambda: life_factor(1.0, 1.0, "ball"), "'ball': choose 'line' or 'point'"),
+        (
+            lambda: ball_life(ball_row(7, 0.01, 0.04), np.ones((1, 7)), 1e4, turning="both"),
+            "'inner' or 'outer'",
+        ),
+        (lambda: damage_of_nothing().lives("days"), "'Mrev', 'hours' or 'years'"),
+        (
+            lambda: site_lives(
+                [(8.0, damage_of_nothing())], Site(8.0), np.array([6.0, 9.0])
+            ).of_winds("L20"),
+            "'L10r' or 'L10mr'",
+        ),
+        (lambda: contamination_factor(1.0, 0.7, "water", "high"), "'grease', 'filtered oil'"),
+        (lambda: tapered_row(36, 0.065, 0.095, 0.7874, 20.0, thrust=3), "choose 1 or -1"),
         (lambda: LifeRules(turning="both"), "inner"),
         (lambda: LifeRules(reliability=0.0), "a_1"),
         (lambda: Lubricant(10.0, 30.0), "fall"),

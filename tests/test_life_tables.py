@@ -27,7 +27,8 @@ from fe_drivetrain.life.rated import (
     rated_bearing,
 )
 from fe_drivetrain.life.reference_life import ball_capacities
-from fe_drivetrain.life.roller_damage import RELIABILITY, LifeRules, Steps, damage_of_steps
+from fe_drivetrain.life.roller_damage import RELIABILITY, LifeRules, damage_of_steps
+from fe_drivetrain.life.steps import Steps
 
 OIL = Lubricant(100.0, 11.0, 50.0, "oil bath", "-/15/12")
 

@@ -7,6 +7,7 @@ from .answers import lamina_loads as lamina_loads
 from .answers import laminae_of_contacts as laminae_of_contacts
 from .answers import load_zones as load_zones
 from .answers import pressures as pressures
+from .answers import race_pressures as race_pressures
 from .answers import secant_stiffness as secant_stiffness
 from .answers import toroidal_clearance_loss as toroidal_clearance_loss
 from .answers import truncations as truncations

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.bearing.contact import STEEL_E, PointContact, line_pressure, point_contact
 from fe_drivetrain.bearing.contact_forces import elements, forces
-from fe_drivetrain.bearing.geometry import BallRow, Bearing, RollerRow, angles, pitch_ratio
+from fe_drivetrain.bearing.geometry import BallRow, Bearing, RollerRow, Row, angles, pitch_ratio
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 
@@ -235,21 +235,50 @@ def pressures(
         most loaded lamina (a barrel roller counts as a cylinder), point contact of balls.
     """
     loads = by_row(bearing, elements(bearing, displacements)[0])
-    found = []
-    for row, Q in zip(bearing.rows, loads, strict=True):
-        if isinstance(row, BallRow):
-            inner, outer = ball_contacts(row, youngs_modulus)
-            found.append((inner.pressure(Q), outer.pressure(Q)))
-        else:
-            gamma = pitch_ratio(row)
-            q = lamina_loads(row, displacements).max(axis=2) * max(row.laminae, 1) / row.length
-            found.append(
-                (
-                    line_pressure(q, 2.0 / row.diameter / (1.0 - gamma), youngs_modulus),
-                    line_pressure(q, 2.0 / row.diameter / (1.0 + gamma), youngs_modulus),
-                )
-            )
-    return found
+    return [
+        race_pressures(row, Q, 1, youngs_modulus)
+        if isinstance(row, BallRow)
+        else race_pressures(
+            row,
+            lamina_loads(row, displacements).max(axis=2),
+            max(row.laminae, 1),
+            youngs_modulus,
+        )
+        for row, Q in zip(bearing.rows, loads, strict=True)
+    ]
+
+
+def race_pressures(
+    row: Row, loads: ArrayLike, laminae: int = 1, youngs_modulus: float = STEEL_E
+) -> tuple[Floats, Floats]:
+    """Largest Hertz pressures on the inner and on the outer race under loads of laminae, or balls.
+
+    Parameters
+    ----------
+    row : RollerRow or BallRow
+        The row.
+    loads : array_like
+        Of laminae, or of balls [N], any shape.
+    laminae : int
+        In how many equal ones a roller is cut.
+    youngs_modulus : float
+        Of rolling elements and rings [Pa].
+
+    Returns
+    -------
+    inner, outer : Floats
+        In the shape of the loads [Pa]: line contact of a lamina, point contact of a ball.
+    """
+    Q = np.asarray(loads, dtype=float)
+    if isinstance(row, BallRow):
+        inner, outer = ball_contacts(row, youngs_modulus)
+        return inner.pressure(Q), outer.pressure(Q)
+    gamma, q = pitch_ratio(row), Q * laminae / row.length
+    on_inner, on_outer = (
+        line_pressure(q, 2.0 / row.diameter / (1.0 + side * gamma), youngs_modulus)
+        for side in (-1.0, 1.0)
+    )
+    return on_inner, on_outer
 
 
 def truncations(

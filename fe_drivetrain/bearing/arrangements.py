@@ -13,7 +13,7 @@ from fe_drivetrain.bearing.contact import (
     point_contact,
 )
 from fe_drivetrain.bearing.geometry import BallRow, Bearing, RollerRow, check_sizes
-from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.errors import InputError, require_known
 
 Arrangement = Literal["X", "O"]
 """Face to face (X, TDI: contact lines meet outside) or back to back (O, TDO)."""
@@ -53,7 +53,13 @@ def tapered_row(
     -------
     row : RollerRow
         The row.
+
+    Raises
+    ------
+    InputError
+        The thrust is neither 1 nor -1, or sizes do not fit each other.
     """
+    require_known("thrust of a tapered row", thrust, (1, -1))
     alpha = _inclined("tapered row", contact_angle_deg)
     return RollerRow(
         rollers,

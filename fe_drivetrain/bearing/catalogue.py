@@ -47,6 +47,7 @@ _SOURCED = (
     "spread",
     "bore",
     "ratings",
+    "limiting_speed",
 )
 
 #: What each kind needs beside number, diameter and pitch diameter, and nothing else of these.
@@ -90,6 +91,9 @@ class Entry(BaseModel):
     laminae: int = Field(default=LAMINAE, description="of a roller; 0 is the closed form")
     crown: float = Field(default=0.0, description="profile factor over the diameter [-]")
     ratings: Printed | None = Field(default=None, description="as printed in a catalogue")
+    limiting_speed: float | None = Field(
+        default=None, gt=0, description="that the catalogue allows [1/min]"
+    )
     scenes: list[str] = Field(default=[], description="library scenes that it stands in")
     sources: dict[str, str] = Field(description="where each number comes from, or assumed: why")
 

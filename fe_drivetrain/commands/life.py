@@ -31,10 +31,14 @@ from fe_drivetrain.common.threads import hold_threads
 if TYPE_CHECKING:
     from fe_drivetrain.life.lubricants import Lubricant
 
+_ASSUMED = ("lubricant", "temperature", "cleanliness", "profile", "riser", "turning")
+"""Options whose defaults change lives, though the user may never have thought of them."""
+
 _KEPT = "files that are done are kept: run again with --resume"
 
 
 def life_command(
+    context: typer.Context,
     scene: SceneName,
     loads: Annotated[
         list[str],
@@ -194,7 +198,14 @@ def life_command(
         names = names.with_columns(parse_channels(channel or ()))
         reading = Reading(names, skip, every, rotor_speed)
         choices = Choices(
-            _pairs(bearing or ()), tuple(catalogue or ()), profile, support, rings, weight, only
+            _pairs(bearing or ()),
+            tuple(catalogue or ()),
+            profile,
+            support,
+            rings,
+            weight,
+            only,
+            tuple(name for name in _ASSUMED if _left_out(context, name)),
         )
         place = None if site is None else parse_site(site)
         files = recorded_files(loads)
@@ -257,6 +268,12 @@ def parse_lubricant(
             ) from error
     usual = "normal" if supply == "grease" else "-/15/12"
     return Lubricant(at_40, at_100, temperature, supply, cleanliness or usual)  # type: ignore[arg-type]
+
+
+def _left_out(context: typer.Context, option: str) -> bool:
+    """Whether an option stands at its default."""
+    source = context.get_parameter_source(option)
+    return source is not None and source.name == "DEFAULT"
 
 
 def _a_1(percent: float) -> float:

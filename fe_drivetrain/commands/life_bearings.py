@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from fe_drivetrain.bearing.catalogue import Entry, read_catalogue
-from fe_drivetrain.bearing.geometry import RollerRow
+from fe_drivetrain.bearing.geometry import Bearing, RollerRow
 from fe_drivetrain.commands.named_bearings import named_bearings
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.coupled.load_paths import PINNED, LoadPath
 from fe_drivetrain.coupled.of_scene import scene_body
 from fe_drivetrain.life.rated import RatedBearing, rated_from_catalogue
-from fe_drivetrain.life.roller_models import flexible_rings, three_degree_rings
+from fe_drivetrain.life.roller_models import (
+    RollerModel,
+    flexible_rings,
+    rigid_rings,
+    three_degree_rings,
+)
 from fe_drivetrain.scene.scene import Scene
 
 SUPPORTS = ("rollers", "pinned")
@@ -47,6 +52,8 @@ class Choices:
         Whether the weight of gearbox and shaft counts.
     only : str or None
         The one bearing whose life is asked for.
+    assumed : tuple of str
+        Options that were not given: their defaults are assumptions.
     """
 
     named: Mapping[str, str]
@@ -56,6 +63,7 @@ class Choices:
     rings: str
     weight: bool
     only: str | None = None
+    assumed: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +82,8 @@ class OneBearing:
         From the hub to its rollers.
     seat : float
         Diameter of the shaft there [m].
+    rollers : callable
+        From a bearing as this one, but for clearance and profile, to how its load is shared.
     misfit : str or None
         What does not fit there, though it may be meant, as a sentence.
     """
@@ -84,7 +94,13 @@ class OneBearing:
     rated: RatedBearing
     path: LoadPath
     seat: float
+    rollers: Callable[[Bearing], RollerModel]
     misfit: str | None = None
+
+    def path_with(self, bearing: Bearing) -> LoadPath:
+        """The load path with another clearance or profile of this bearing."""
+        bearings = {**self.path.bearings, self.name: bearing}
+        return replace(self.path, bearings=bearings, rollers=self.rollers(bearing))
 
 
 def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
@@ -140,24 +156,30 @@ def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
     for name, (entry_name, entry, seat, misfit) in named.items():
         if choices.only not in (None, name):
             continue
-        model = None
-        if choices.rings == "three-degree":
-            model = three_degree_rings(rolling[name])
-        elif choices.rings == "housing":
-            from fe_drivetrain.rings.housing import housing_races
-
-            model = flexible_rings(housing_races(scene, name, rolling[name]))
+        rollers = _rollers(scene, name, rolling[name], choices.rings)
         path = LoadPath(
             body,
             rolling,
             name,
-            model,
+            rollers(rolling[name]),
             stiffness,
             scene.gearbox.weight if choices.weight else 0.0,
             GRAVITY if choices.weight else 0.0,
         )
-        result.append(OneBearing(name, entry_name, entry, rated[name], path, seat, misfit))
+        result.append(OneBearing(name, entry_name, entry, rated[name], path, seat, rollers, misfit))
     return result
+
+
+def _rollers(
+    scene: Scene, name: str, bearing: Bearing, rings: str
+) -> Callable[[Bearing], RollerModel]:
+    """How a bearing's load is shared, for any clearance and profile of its rollers."""
+    if rings != "housing":
+        return three_degree_rings if rings == "three-degree" else rigid_rings
+    from fe_drivetrain.rings.housing import housing_races
+
+    races = housing_races(scene, name, bearing)
+    return lambda changed: flexible_rings(replace(races, bearing=changed))
 
 
 def rollers_in_words(one: OneBearing, riser: str) -> str:

@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.bearing.contact import line_pressure
-from fe_drivetrain.bearing.geometry import RollerRow, pitch_ratio
-from fe_drivetrain.commands.life_bearings import OneBearing
+from fe_drivetrain.bearing.answers import race_pressures
+from fe_drivetrain.bearing.geometry import RollerRow
+from fe_drivetrain.commands.life_assumed import ratios, what_ifs
+from fe_drivetrain.commands.life_bearings import Choices, OneBearing
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
@@ -20,8 +21,9 @@ from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.hub_loads.recorded import read_recorded
 from fe_drivetrain.hub_loads.turbines import vertical_forces
-from fe_drivetrain.life.limits import Limits
-from fe_drivetrain.life.roller_damage import Damage, LifeRules, Steps, damage_of_steps
+from fe_drivetrain.life.limits import Limits, check_speed
+from fe_drivetrain.life.roller_damage import Damage, LifeRules, damage_of_steps
+from fe_drivetrain.life.steps import Steps
 from fe_drivetrain.response.cached import whole_content
 from fe_drivetrain.response.entering import entering
 from fe_drivetrain.scene.scene import Scene
@@ -78,6 +80,8 @@ class LifeDigest:
         outer race [Pa].
     vertical : tuple of float
         Mean and standard deviation of Fz at the hub [N].
+    ratios : Floats
+        Damage with other values of what was assumed, see `fe_drivetrain.commands.life_assumed`.
     """
 
     damage: Damage
@@ -90,10 +94,11 @@ class LifeDigest:
     over_time: Floats
     worst: Floats
     vertical: tuple[float, float]
+    ratios: Floats
 
 
 def content(
-    file: Path, one: OneBearing, rules: LifeRules, reading: Reading, scene: Scene, choices: object
+    file: Path, one: OneBearing, rules: LifeRules, reading: Reading, scene: Scene, choices: Choices
 ) -> dict[str, Any]:
     """All that a digest depends on.
 
@@ -109,7 +114,7 @@ def content(
         Of the file.
     scene : Scene
         The shaft.
-    choices : object
+    choices : Choices
         Of the model.
 
     Returns
@@ -137,6 +142,7 @@ def digest(
     rules: LifeRules,
     reading: Reading,
     scene: Scene,
+    choices: Choices,
     report: Progress = silent,
 ) -> LifeDigest:
     """Damage, load zone and pressures of a bearing under a file.
@@ -153,6 +159,8 @@ def digest(
         Of the file.
     scene : Scene
         Says which point of the shaft hub loads are about.
+    choices : Choices
+        Of the model.
     report : Progress
         Told how far it is.
 
@@ -178,6 +186,7 @@ def digest(
             "--rotor-speed in 1/min, or --channel 'rotor speed=COLUMN'"
         )
     loads, speed = entering(scene, history)[:: reading.every], speed[:: reading.every]
+    check_speed(one.rated, speed)
     n = len(loads)
     step = history.step * reading.every
     sums = _Sums(one)
@@ -189,7 +198,8 @@ def digest(
         report(f"{one.name}, {file.stem}: load steps ({done} of {n})")
     wind = np.nan if found.wind_speed is None else float(found.wind_speed.mean())
     made = sums.digest(wind, float(np.abs(speed).mean()), float(n))
-    return replace(made, vertical=vertical_forces([history])[history.name])
+    changed = ratios(one, rules, what_ifs(one, rules, choices), loads, speed, sums.weights)
+    return replace(made, vertical=vertical_forces([history])[history.name], ratios=changed)
 
 
 def kept_digest(
@@ -199,7 +209,7 @@ def kept_digest(
     rules: LifeRules,
     reading: Reading,
     scene: Scene,
-    choices: object,
+    choices: Choices,
     resume: bool,
 ) -> LifeDigest:
     """As `digest`, or what an earlier run kept where that is asked for.
@@ -218,7 +228,7 @@ def kept_digest(
         Of the file.
     scene : Scene
         As of `digest`.
-    choices : object
+    choices : Choices
         Of the model.
     resume : bool
         Take what is kept.
@@ -226,7 +236,7 @@ def kept_digest(
     cache, key = user_cache(), content(file, one, rules, reading, scene, choices)
     kept = cache.load("life-digests", key) if resume else None
     if kept is None:
-        kept = as_arrays(digest(file, one, rules, reading, scene, report))
+        kept = as_arrays(digest(file, one, rules, reading, scene, choices, report))
         cache.keep("life-digests", key, kept)
     return from_arrays(kept)
 
@@ -242,6 +252,12 @@ class _Sums:
         self.times: list[float] = []
         self.windows: list[Floats] = []
         self.worst = np.zeros(0)
+        self._weights: list[Floats] = []
+
+    @property
+    def weights(self) -> Floats:
+        """(n,) of all steps so far, about in proportion to their damage."""
+        return np.concatenate(self._weights)
 
     def add(self, steps: Steps, damage: Damage, time: float) -> None:
         rollers = [q.sum(axis=2) for q in steps.laminae]
@@ -255,6 +271,8 @@ class _Sums:
             self.load_seconds = self.load_seconds + seconds
             self.peak = np.maximum(self.peak, peaks)
             self.worst = worse(self.worst, worst)
+        turns = np.abs(steps.speed_rpm) * steps.seconds
+        self._weights.append(turns * np.sum([(Q**4).mean(axis=1) for Q in rollers], axis=0))
         self.times.append(time)
         self.windows.append(
             np.stack([damage.of_positions(r).sum(axis=0) for r in range(len(rollers))])
@@ -266,10 +284,7 @@ class _Sums:
         if not isinstance(row, RollerRow):
             return np.zeros((2, q.shape[2]))
         step, roller, _ = np.unravel_index(int(np.argmax(q)), q.shape)
-        per_length = q[step, roller] * q.shape[2] / row.length
-        gamma = pitch_ratio(row)
-        curvatures = (2.0 / row.diameter / (1.0 - gamma), 2.0 / row.diameter / (1.0 + gamma))
-        return np.stack([line_pressure(per_length, c) for c in curvatures])
+        return np.stack(race_pressures(row, q[step, roller], q.shape[2]))
 
     def digest(self, wind: float, speed: float, samples: float) -> LifeDigest:
         assert self.damage is not None
@@ -284,6 +299,7 @@ class _Sums:
             np.stack(self.windows),
             self.worst,
             (np.nan, np.nan),
+            np.zeros(0),
         )
 
 
@@ -321,6 +337,7 @@ def as_arrays(found: LifeDigest) -> dict[str, Floats]:
         "over time": found.over_time,
         "worst": found.worst,
         "vertical": np.array(found.vertical),
+        "ratios": found.ratios,
     }
 
 
@@ -349,4 +366,5 @@ def from_arrays(kept: Mapping[str, Floats]) -> LifeDigest:
         kept["over time"],
         kept["worst"],
         (float(kept["vertical"][0]), float(kept["vertical"][1])),
+        kept["ratios"],
     )

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 
 import numpy as np
 
+from fe_drivetrain.commands.life_assumed import in_words, what_ifs
 from fe_drivetrain.commands.life_bearings import Choices, OneBearing, rollers_in_words
 from fe_drivetrain.commands.life_charts import row_names
 from fe_drivetrain.commands.life_digest import (
@@ -15,6 +17,7 @@ from fe_drivetrain.commands.life_digest import (
     Reading,
     kept_digest,
 )
+from fe_drivetrain.commands.life_limits import limits, overloaded
 from fe_drivetrain.commands.life_sections import BearingLife, laminae, places, winds
 from fe_drivetrain.commands.loads_tables import write_tables
 from fe_drivetrain.commands.loads_together import require_winds, rounded_wind
@@ -22,8 +25,8 @@ from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.histories.sites import Site
 from fe_drivetrain.hub_loads.turbines import different_turbines
 from fe_drivetrain.life.at_site import site_lives
-from fe_drivetrain.life.reference_life import reference_load
-from fe_drivetrain.life.roller_damage import KINDS, RINGS, LifeRules
+from fe_drivetrain.life.reference_life import RINGS, reference_load
+from fe_drivetrain.life.roller_damage import KINDS, LifeRules
 from fe_drivetrain.procedure.failure_modes import TORQUE_AND_BENDING
 from fe_drivetrain.report.answer import value_with_band
 from fe_drivetrain.response.stated import HUB_LOADS
@@ -105,7 +108,8 @@ def lived(
         page.note(unlike)
     page.note(UNVERIFIED)
     _lives(page, found)
-    _limits(page, found, rules)
+    limits(page, found, rules)
+    _assumed(page, found, rules, choices, files, site)
     tables: dict[str, list[Record]] = {
         "lives": _life_rows(found),
         "files": _file_rows(found, files),
@@ -181,7 +185,7 @@ def _answer(page: Page, found: Sequence[BearingLife], rules: LifeRules, site: Si
             if whole:
                 always = _years(years["L10mr"] * life.site.covered)
                 words += f"; if these winds blew all the time it would live {always}"
-        page.answer(words + ".")
+        page.answer(words + overloaded(life) + ".")
 
 
 def _scatter(life: BearingLife) -> float | None:
@@ -203,6 +207,54 @@ def _scatter(life: BearingLife) -> float | None:
     mean = float(site.shares @ [np.mean(one) for one in each])
     errors = site.shares * [np.std(one, ddof=1) / np.sqrt(len(one)) for one in each]
     return 2.0 * float(np.linalg.norm(errors)) / mean * site.years["L10mr"] if mean else None
+
+
+def _assumed(
+    page: Page,
+    found: Sequence[BearingLife],
+    rules: LifeRules,
+    choices: Choices,
+    files: Sequence[Path],
+    site: Site | None,
+) -> None:
+    """A caution for each bearing, and a table, of what was not stated and what it does."""
+    rows: list[Record] = []
+    for life in found:
+        years, changed = life.years["L10mr"], []
+        for i, one in enumerate(what_ifs(life.one, rules, choices)):
+            digests = [_with_ratio(d, float(d.ratios[i])) for d in life.digests]
+            other = _of_bearing(life.one, digests, files, site).years["L10mr"]
+            if np.isfinite(years):
+                changed.append((one, _years(float(f"{other:.2g}")), other / years))
+            rows.append(
+                {
+                    "bearing": life.one.name,
+                    "not stated, and taken": one.assumed,
+                    "instead": one.instead,
+                    "L10mr then [years]": other,
+                    "over that here [-]": other / years if np.isfinite(years) else None,
+                }
+            )
+        if sentence := in_words(life.one.name, _years(years), changed):
+            page.note(sentence)
+    if not rows:
+        return
+    page.section("What was not stated, and what it does to L10mr")
+    page.table("Other values of what is assumed, one at a time", rows)
+    page.data("assumed", rows)
+    page.text(
+        "By a sample of a hundredth of the load steps of each file, drawn by the damage that they "
+        "do. The clearance is 1/4000 of the pitch diameter, rounded, along the contact normal, "
+        "and the preload a tenth of it: a size to compare with, of no table. Give the clearance of "
+        "the mounted bearing in its catalogue entry, and the others by their options. How rings, housing and the shaft's "
+        "support give way is not varied here: see --rings and --support."
+    )
+
+
+def _with_ratio(found: LifeDigest, ratio: float) -> LifeDigest:
+    """A digest whose damage by L10mr is so many times its own."""
+    damage = found.damage
+    return replace(found, damage=replace(damage, of_bearing=damage.of_bearing * [1.0, ratio]))
 
 
 def _life_rows(found: Sequence[BearingLife]) -> list[Record]:
@@ -229,7 +281,7 @@ def _file_rows(found: Sequence[BearingLife], files: Sequence[Path]) -> list[Reco
     rows: list[Record] = []
     for life in found:
         for file, one in zip(files, life.digests, strict=True):
-            limits = one.damage.limits
+            of = one.damage.limits
             row: Record = {
                 "bearing": life.one.name,
                 "file": file.name,
@@ -240,10 +292,12 @@ def _file_rows(found: Sequence[BearingLife], files: Sequence[Path]) -> list[Reco
             }
             row |= {f"{kind} [years]": v for kind, v in one.damage.lives("years").items()}
             row |= {
-                "largest P [kN]": 1e-3 * limits.largest_load,
-                "largest P0 [kN]": 1e-3 * limits.largest_static,
-                "largest roller load [kN]": 1e-3 * limits.largest_roller,
-                "standing [s]": limits.standing,
+                "largest P [kN]": 1e-3 * of.largest_load,
+                "largest P0 [kN]": 1e-3 * of.largest_static,
+                "largest roller load [kN]": 1e-3 * of.largest_roller,
+                "largest pressure [MPa]": 1e-6 * of.largest_pressure,
+                "least S0": of.static_safety,
+                "standing [s]": of.standing,
             }
             rows.append(row)
     return rows
@@ -287,56 +341,6 @@ def _lives(page: Page, found: Sequence[BearingLife]) -> None:
     page.table("Where ratings come from", sources)
 
 
-def _limits(page: Page, found: Sequence[BearingLife], rules: LifeRules) -> None:
-    page.section("Static safety, and limits of the methods")
-    rows: list[Record] = []
-    for life in found:
-        limits, rated = life.limits, life.one.rated
-        seconds = sum(one.damage.seconds for one in life.digests)
-        safety = rated.static / limits.largest_static if limits.largest_static else np.inf
-        rows.append(
-            {
-                "bearing": life.one.name,
-                "least S0 = C0 / P0": safety,
-                "largest roller load [kN]": 1e-3 * limits.largest_roller,
-                "P above C/2 [% of time]": 100.0 * limits.heavy / seconds,
-                "S0 below 1 [% of time]": 100.0 * limits.weak / seconds,
-                "kappa below 0.1 [% of time]": 100.0 * limits.thin / seconds,
-                "kappa above 4 [% of time]": 100.0 * limits.thick / seconds,
-                "standing [% of time]": 100.0 * limits.standing / seconds,
-                "reversals": limits.reversals,
-            }
-        )
-        _notes(page, rows[-1])
-    page.table("Time beyond the limits of the methods, in the files as they are", rows)
-    page.data("limits", rows)
-    page.text(
-        "Above P = C/2 the load is beyond the range of ISO 281. Below kappa = 0.1 a_ISO is "
-        "its smallest value, 0.1; above 4 it stays that of 4. Below "
-        f"{rules.standing_rpm:g} 1/min a bearing stands: marks of standstill and of oscillation "
-        "are no fatigue of rolling contact, and no life is computed for them. P0 is of forces "
-        "alone, too."
-    )
-
-
-def _notes(page: Page, row: Record) -> None:
-    """What a reader has to know before the lives."""
-    for key, words in (
-        ("P above C/2 [% of time]", "the load is above C/2, beyond the range of ISO 281"),
-        ("S0 below 1 [% of time]", "static safety is below 1"),
-        ("kappa below 0.1 [% of time]", "the film is below kappa = 0.1: a_ISO is taken as 0.1"),
-        ("standing [% of time]", "the bearing stands: no life is computed for that time"),
-    ):
-        share = row[key]
-        if isinstance(share, float) and share > 0.0:
-            page.note(f"Bearing {row['bearing']}: in {share:.3g} % of the time {words}.")
-    if row["reversals"]:
-        page.note(
-            f"Bearing {row['bearing']} turns back {row['reversals']:g} times: lives are of turning "
-            "one way, oscillation is not computed."
-        )
-
-
 def _assumptions(
     page: Page,
     found: Sequence[BearingLife],
@@ -355,6 +359,8 @@ def _assumptions(
             page.assume(
                 f"{one.name}: {field.replace('_', ' ')}", value, unit, one.entry.sources[field]
             )
+        if "clearance" not in one.entry.model_fields_set:
+            page.assume(f"{one.name}: clearance", 0.0, "m", "not stated in its catalogue entry")
         words = rollers_in_words(one, rules.riser)
         page.assume(f"{one.name}: rolling elements", words, "", "--profile and --riser")
     oil = rules.lubricant

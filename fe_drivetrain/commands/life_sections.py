@@ -14,7 +14,8 @@ from fe_drivetrain.commands.life_charts import along_rollers, damage_map, load_z
 from fe_drivetrain.commands.life_digest import LifeDigest, worse
 from fe_drivetrain.life.at_site import SiteLife
 from fe_drivetrain.life.limits import Limits
-from fe_drivetrain.life.roller_damage import KINDS, RINGS, Damage
+from fe_drivetrain.life.reference_life import RINGS
+from fe_drivetrain.life.roller_damage import KINDS, Damage
 from fe_drivetrain.report.charts import bars
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record

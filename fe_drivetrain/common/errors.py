@@ -1,4 +1,6 @@
-"""The exception for mistakes that a user can fix."""
+"""The exception for mistakes that a user can fix, and the gate of words."""
+
+from collections.abc import Iterable
 
 
 class InputError(Exception):
@@ -20,6 +22,30 @@ class InputError(Exception):
 
 class MissingToolError(InputError):
     """Something optional that a case needs is not installed; the message says how to get it."""
+
+
+def require_known(what: str, value: object, known: Iterable[object]) -> None:
+    """Refuse a word that is none of the known ones.
+
+    Parameters
+    ----------
+    what : str
+        What the word is of, as "kind of contact".
+    value : object
+        What is given.
+    known : iterable
+        All that may be given.
+
+    Raises
+    ------
+    InputError
+        Names them.
+    """
+    words = list(known)
+    if value not in words:
+        *first, last = map(repr, words)
+        choice = f"{', '.join(first)} or {last}" if first else last
+        raise InputError(f"{what} is {value!r}: choose {choice}")
 
 
 SINGULAR = "the stiffness matrix is singular: the scene is not held everywhere"

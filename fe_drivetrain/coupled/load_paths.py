@@ -17,8 +17,9 @@ from fe_drivetrain.coupled.newton import coupled_equilibrium
 from fe_drivetrain.coupled.springs import on_springs, tilt_springs
 from fe_drivetrain.hub_loads.point_loads import PointLoads
 from fe_drivetrain.life.rated import RatedBearing
-from fe_drivetrain.life.roller_damage import Damage, LifeRules, Steps, damage_of_history
+from fe_drivetrain.life.roller_damage import Damage, LifeRules, damage_of_history
 from fe_drivetrain.life.roller_models import CHUNK, RollerModel, balanced, rigid_rings
+from fe_drivetrain.life.steps import Steps
 from fe_drivetrain.response.entering import Loads, entering
 
 PINNED = 0.0

@@ -1,6 +1,8 @@
 from .at_site import SiteLife as SiteLife
 from .at_site import site_lives as site_lives
 from .limits import Limits as Limits
+from .limits import check_speed as check_speed
+from .limits import static_use as static_use
 from .load_series import equivalent_life as equivalent_life
 from .load_series import miner_load as miner_load
 from .load_series import years as years
@@ -21,6 +23,7 @@ from .rated import RatedBearing as RatedBearing
 from .rated import of_geometry as of_geometry
 from .rated import rated_bearing as rated_bearing
 from .rated import rated_from_catalogue as rated_from_catalogue
+from .reference_life import RINGS as RINGS
 from .reference_life import RowLoads as RowLoads
 from .reference_life import ball_capacities as ball_capacities
 from .reference_life import ball_life as ball_life
@@ -34,10 +37,8 @@ from .reference_life import rows_of as rows_of
 from .reference_life import stress_riser as stress_riser
 from .roller_damage import KINDS as KINDS
 from .roller_damage import RELIABILITY as RELIABILITY
-from .roller_damage import RINGS as RINGS
 from .roller_damage import Damage as Damage
 from .roller_damage import LifeRules as LifeRules
-from .roller_damage import Steps as Steps
 from .roller_damage import damage_of_history as damage_of_history
 from .roller_damage import damage_of_steps as damage_of_steps
 from .roller_damage import step_lives as step_lives
@@ -48,3 +49,4 @@ from .roller_models import rigid_rings as rigid_rings
 from .roller_models import steps_of as steps_of
 from .roller_models import three_degree_rings as three_degree_rings
 from .roller_models import with_laminae as with_laminae
+from .steps import Steps as Steps

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.errors import InputError, require_known
 from fe_drivetrain.histories.sites import HOURS_A_YEAR, Site, midpoint_edges
-from fe_drivetrain.life.roller_damage import Damage
+from fe_drivetrain.life.roller_damage import KINDS, Damage
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,8 @@ class SiteLife:
         return {kind: 1.0 / d if d else np.inf for kind, d in self.a_year.totals.items()}
 
     def of_winds(self, kind: str = "L10r") -> Floats:
-        """(n,) share of each wind in the damage of a kind of life."""
+        """(n,) share of each wind in the damage of a kind of life, one of `KINDS`."""
+        require_known("kind of life", kind, KINDS)
         damage = np.array(
             [
                 one.totals[kind] * share * HOURS_A_YEAR * 3600.0 / one.seconds

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.errors import InputError, require_known
 from fe_drivetrain.life.modified_life import LAST_KAPPA, needed_viscosity, viscosity
 
 Supply = Literal["grease", "filtered oil", "oil bath"]
@@ -67,6 +67,18 @@ read, where those at 100 degC, and both of the other oils, are usual values of a
 95, not of a data sheet."""
 
 
+THICKEST = 150e3
+"""Viscosity [mm2/s] beyond which an oil is no longer drawn into a contact: the 150,000 mPa s at
+which SAE J306 ends the use of gear oils in the cold (from memory, not verified). The formula knows
+no pour point: it goes on."""
+
+THINNEST = 2.0
+"""Viscosity [mm2/s] down to which the two constants of ASTM D341 are all of it."""
+
+KNOWN_RANGE = (40.0, 100.0)
+"""Temperatures [degC] at which the viscosity of a lubricant is given."""
+
+
 @dataclass(frozen=True)
 class Lubricant:
     """A lubricant in a bearing.
@@ -85,7 +97,8 @@ class Lubricant:
     Raises
     ------
     InputError
-        There is no such supply or cleanliness, or viscosities do not fall.
+        There is no such supply or cleanliness, viscosities do not fall, or the lubricant is too
+        thick or too thin at the temperature for the formula to hold.
     """
 
     viscosity_40: float
@@ -95,13 +108,7 @@ class Lubricant:
     cleanliness: str = "normal"
 
     def __post_init__(self) -> None:
-        if self.supply not in SUPPLIES:
-            raise InputError(f"lubrication {self.supply!r}: choose {', '.join(SUPPLIES)}")
-        if self.cleanliness not in SUPPLIES[self.supply]:
-            raise InputError(
-                f"cleanliness {self.cleanliness!r} of {self.supply}: choose "
-                f"{', '.join(SUPPLIES[self.supply])}"
-            )
+        _check_cleanliness(self.supply, self.cleanliness)
         if not 2.0 < self.viscosity_100 < self.viscosity_40 < np.inf:
             raise InputError(
                 f"viscosity of a lubricant is {self.viscosity_40:g} mm2/s at 40 degC and "
@@ -111,12 +118,46 @@ class Lubricant:
             raise InputError(
                 f"temperature of a bearing is {self.temperature:g} degC: give -60 to 200"
             )
+        if not THINNEST <= self.viscosity <= THICKEST:
+            coldest, hottest = self.range
+            raise InputError(
+                f"temperature of a bearing is {self.temperature:g} degC, where its lubricant has "
+                f"{self.viscosity:.3g} mm2/s by ASTM D341: give {coldest:.0f} to {hottest:.0f} "
+                f"degC, or another lubricant (it holds from {THINNEST:g} mm2/s to {THICKEST:,.0f}, "
+                "above which no oil flows)"
+            )
 
     @property
     def viscosity(self) -> float:
         """At the bearing's temperature [mm2/s] (ASTM D341)."""
         known = ((40.0, self.viscosity_40), (100.0, self.viscosity_100))
         return float(viscosity(self.temperature, known))
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """Least and largest temperature [degC] in which ASTM D341 holds, rounded to its inside."""
+        known = ((40.0, self.viscosity_40), (100.0, self.viscosity_100))
+        steps = np.arange(-60.0, 201.0)
+        nu = viscosity(steps, known)
+        holds = steps[(nu >= THINNEST) & (nu <= THICKEST)]
+        return float(holds[0]), float(holds[-1])
+
+    @property
+    def caution(self) -> str | None:
+        """What to know of the viscosity, as a sentence; None between the given temperatures.
+
+        Also None up to half of their distance beyond them, from 10 to 130 degC.
+        """
+        low, high = KNOWN_RANGE
+        beyond = 0.5 * (high - low)
+        if low - beyond <= self.temperature <= high + beyond:
+            return None
+        return (
+            f"The viscosity at {self.temperature:g} degC, {self.viscosity:.3g} mm2/s, is "
+            f"extrapolated by ASTM D341 from {low:g} and {high:g} degC: give what a data sheet has "
+            "near that temperature; in the cold an oil may not reach the contacts, which no life "
+            "factor knows."
+        )
 
     def kappa(self, speed_rpm: ArrayLike, pitch_diameter: float) -> Floats:
         """Viscosity ratio at speeds [1/min], whose sign does not matter; 0 at standstill."""
@@ -156,11 +197,15 @@ def contamination_factor(
     InputError
         There is no such cleanliness.
     """
-    if cleanliness not in SUPPLIES.get(supply, {}):
-        Lubricant(460.0, 30.5, supply=supply, cleanliness=cleanliness)  # raises
+    _check_cleanliness(supply, cleanliness)
     c1, c2 = SUPPLIES[supply][cleanliness]
     if (supply, cleanliness) == ("grease", "slight to typical") and 1e3 * pitch_diameter < 500.0:
         c2 = SMALL_SLIGHT
     mm = 1e3 * pitch_diameter
     film = np.minimum(np.asarray(kappa, dtype=float), LAST_KAPPA) ** 0.68
     return np.asarray(np.minimum(c1 * film * mm**0.55, 1.0) * max(1.0 - c2 / mm ** (1 / 3), 0.0))
+
+
+def _check_cleanliness(supply: Supply, cleanliness: str) -> None:
+    require_known("lubrication", supply, SUPPLIES)
+    require_known(f"cleanliness of {supply}", cleanliness, SUPPLIES[supply])

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.bearing.rating import LAMBDA
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.errors import InputError, require_known
 from fe_drivetrain.life.reference_life import LINE, SLOPE, RowLoads
 
 MOST = 50.0
@@ -134,7 +134,13 @@ def life_factor(ratio: ArrayLike, kappa: ArrayLike, contact: Contact = "line") -
         Rollers: 0.1 (1 - (1.5859 - a / kappa^b) ratio^0.4)^-9.185; balls:
         0.1 (1 - (2.5671 - a / kappa^b)^0.83 ratio^(1/3))^-9.3; both from 0.1 to 50, of both
         arguments' common shape.
+
+    Raises
+    ------
+    InputError
+        There is no such contact.
     """
+    require_known("kind of contact (line of rollers, point of balls)", contact, FACTORS)
     whole, of_slope, of_ratio, power, branches = FACTORS[contact]
     x = np.asarray(ratio, dtype=float)
     k = np.minimum(np.asarray(kappa, dtype=float), LAST_KAPPA)

@@ -44,6 +44,10 @@ STATIC_Y = (0.42, 0.38, 0.33, 0.29, 0.26, 0.22)
 F_0 = 14.0
 """Factor f_0 of deep grooves where none is given; catalogues have 11 to 17."""
 
+STATIC_PRESSURE = {"rollers": 4.0e9, "balls": 4.2e9}
+"""Pressure of the most loaded contact [Pa] that C_0 stands for (ISO 76, not read there; the 44 of
+C_0 of rollers gives 3,981 MPa). Self-aligning balls, of which there are none here, have 4.6e9."""
+
 FATIGUE_OF_BALLS = 22.0
 """C_0 / C_u of ball bearings up to a pitch diameter of 100 mm (ISO 281, annex B, from memory)."""
 
@@ -84,6 +88,8 @@ class RatedBearing:
         Of a catalogue; those of the geometry where None.
     f_0 : float
         Of deep grooves.
+    limiting_speed : float or None
+        Of a catalogue [1/min].
     """
 
     bearing: Bearing
@@ -93,6 +99,7 @@ class RatedBearing:
     sources: tuple[str, str, str]
     factors: Factors | None = None
     f_0: float = F_0
+    limiting_speed: float | None = None
 
     def __post_init__(self) -> None:
         if len({isinstance(row, BallRow) for row in self.bearing.rows}) > 1:
@@ -115,6 +122,16 @@ class RatedBearing:
     def exponent(self) -> float:
         """Of load to life: 3 for balls, 10/3 for rollers."""
         return 3.0 if self.balls else 10.0 / 3.0
+
+    @property
+    def static_pressure(self) -> float:
+        """Pressure of the most loaded contact that C_0 stands for [Pa] (ISO 76)."""
+        return STATIC_PRESSURE["balls" if self.balls else "rollers"]
+
+    @property
+    def pressure_exponent(self) -> float:
+        """Of the pressure of a contact to its load: 2 in line contact, 3 in point contact."""
+        return 3.0 if self.balls else 2.0
 
     @property
     def pitch_diameter(self) -> float:
@@ -299,4 +316,6 @@ def rated_from_catalogue(name: str, *more: str | Path, **changes: Any) -> RatedB
     )
     source = entry.sources.get("ratings", "given")
     words = [source if text == "given" else text for text in rated.sources]
-    return replace(rated, sources=(words[0], words[1], words[2]))
+    return replace(
+        rated, sources=(words[0], words[1], words[2]), limiting_speed=entry.limiting_speed
+    )

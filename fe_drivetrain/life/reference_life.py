@@ -17,7 +17,7 @@ from fe_drivetrain.bearing.answers import lamina_loads
 from fe_drivetrain.bearing.geometry import BallRow, Bearing, RollerRow, pitch_ratio
 from fe_drivetrain.bearing.rating import LAMBDA
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.errors import InputError, require_known
 
 LINE = 4.5
 """Exponent of load to damage in line contact; 1 / LINE of a mean over a ring that stands."""
@@ -35,6 +35,8 @@ RATIO = 143.0 / 108.0
 """Exponent of (1 - gamma) / (1 + gamma) in the capacities of line contact."""
 
 Turning = Literal["inner", "outer"]
+
+RINGS: tuple[Turning, ...] = ("inner", "outer")
 
 
 @dataclass(frozen=True)
@@ -183,8 +185,7 @@ def row_loads(
     InputError
         The ring that turns is neither, or shapes do not fit each other.
     """
-    if turning not in ("inner", "outer"):
-        raise InputError(f"the ring that turns is {turning!r}: choose 'inner' or 'outer'")
+    require_known("the ring that turns", turning, RINGS)
     q = np.asarray(loads, dtype=float)
     if q.ndim != 3 or q.shape[1] != row.rollers:
         raise InputError(
@@ -300,7 +301,13 @@ def ball_life(
     -------
     life : Floats
         (n,) [million revolutions]; rows combine by `combined_life` with `POINT_SLOPE`.
+
+    Raises
+    ------
+    InputError
+        The ring that turns is neither.
     """
+    require_known("the ring that turns", turning, RINGS)
     Q = np.asarray(loads, dtype=float)
     capacities = ball_capacities(row, capacity, rows)
     exponents = (3.0, 10.0 / 3.0) if turning == "inner" else (10.0 / 3.0, 3.0)

@@ -20,15 +20,16 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.bearing.geometry import BallRow
 from fe_drivetrain.bearing.rating import LAMBDA
-from fe_drivetrain.common.arrays import Bools, Floats
-from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.life.limits import Limits
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError, require_known
+from fe_drivetrain.life.limits import Limits, check_speed, limits_of
 from fe_drivetrain.life.lubricants import Lubricant
-from fe_drivetrain.life.modified_life import BRANCHES, LAST_KAPPA, MIX, life_factor
+from fe_drivetrain.life.modified_life import MIX, life_factor
 from fe_drivetrain.life.rated import RatedBearing
 from fe_drivetrain.life.reference_life import (
     LINE,
     POINT_SLOPE,
+    RINGS,
     SLOPE,
     TURNING,
     Turning,
@@ -36,11 +37,10 @@ from fe_drivetrain.life.reference_life import (
     race_capacities,
     stress_riser,
 )
+from fe_drivetrain.life.steps import Steps
 
 KINDS = ("L10", "L10m", "L10r", "L10mr")
 """Basic and modified life of ISO 281; basic and modified reference life of ISO/TS 16281."""
-
-RINGS = ("inner", "outer")
 
 RELIABILITY = {
     90.0: 1.0,
@@ -92,10 +92,8 @@ class LifeRules:
     standing_rpm: float = STANDING
 
     def __post_init__(self) -> None:
-        if self.riser not in ("standard", "none"):
-            raise InputError(f"stress riser {self.riser!r}: choose 'standard' or 'none'")
-        if self.turning not in RINGS:
-            raise InputError(f"the ring that turns is {self.turning!r}: choose 'inner' or 'outer'")
+        require_known("stress riser", self.riser, ("standard", "none"))
+        require_known("the ring that turns", self.turning, RINGS)
         if not 0.0 < self.reliability <= 1.0:
             raise InputError(f"a_1 is {self.reliability:g}: give more than 0, and 1 at most")
 
@@ -105,31 +103,6 @@ class LifeRules:
         if self.edge is not None:
             return self.edge
         return LAMBDA if self.riser == "standard" else 1.0
-
-
-@dataclass(frozen=True, eq=False)
-class Steps:
-    """Load steps of a bearing.
-
-    Attributes
-    ----------
-    loads : Floats
-        (n, 5) on the inner ring [N, N m].
-    laminae : tuple of Floats
-        For each row (n, elements, laminae) loads [N]; of balls one lamina.
-    speed_rpm : Floats
-        (n,) of the turning ring against the other [1/min].
-    seconds : Floats
-        (n,) how long each lasts.
-    converged : Bools
-        (n,) whether the loads of laminae balance those of the ring.
-    """
-
-    loads: Floats
-    laminae: tuple[Floats, ...]
-    speed_rpm: Floats
-    seconds: Floats
-    converged: Bools
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,12 +194,19 @@ class Damage:
         -------
         lives : dict
             In that unit.
+
+        Raises
+        ------
+        InputError
+            There is no such unit.
         """
-        amount = {
+        amounts = {
             "Mrev": 1e-6 * self.turns,
             "hours": self.seconds / 3600.0,
             "years": self.seconds / 3600.0 / 8760.0,
-        }[unit]
+        }
+        require_known("unit of a life", unit, amounts)
+        amount = amounts[unit]
         return {kind: amount / d if d else np.inf for kind, d in self.totals.items()}
 
     def of_rows(self, modified: bool = False) -> Floats:
@@ -291,7 +271,13 @@ def damage_of_steps(steps: Steps, rated: RatedBearing, rules: LifeRules) -> Dama
     damage : Damage
         Of these steps; damages of several chunks add up. Steps without equilibrium do no damage and
         are counted in `Limits.lost`.
+
+    Raises
+    ------
+    InputError
+        No such bearing turns as fast, see `check_speed`.
     """
+    check_speed(rated, steps.speed_rpm)
     slope = _slope(rated)
     speed = np.abs(steps.speed_rpm)
     runs = (speed >= rules.standing_rpm) & steps.converged
@@ -318,26 +304,14 @@ def damage_of_steps(steps: Steps, rated: RatedBearing, rules: LifeRules) -> Dama
         alone.append(
             [[million @ risk[i].sum(axis=1) ** (1 / slope) for i in (0, 1)] for risk in risks]
         )
-    P, P0 = rated.equivalent_load(steps.loads), rated.static_load(steps.loads)
+    P = rated.equivalent_load(steps.loads)
     used = 1e-6 * turns * (P / rated.dynamic) ** rated.exponent
     a_whole = factor(P[:, None] * (1 if not rules.limit_per_row else 1.0 / len(rated.bearing.rows)))
     standard = np.array([used.sum(), (used / a_whole[:, 0]).sum() / rules.reliability])
-    time = steps.seconds
-    signs = np.sign(steps.speed_rpm[speed >= rules.standing_rpm])
-    limits = Limits(
-        standing=float(time[speed < rules.standing_rpm].sum()),
-        thin=float(time[runs & (kappa < BRANCHES[0][0])].sum()) if rules.lubricant else 0.0,
-        thick=float(time[runs & (kappa > LAST_KAPPA)].sum()) if rules.lubricant else 0.0,
-        heavy=float(time[runs & (0.5 * rated.dynamic < P)].sum()),
-        weak=float(time[rated.static < P0].sum()),
-        lost=float(time[~steps.converged].sum()),
-        reversals=float(np.count_nonzero(np.diff(signs))),
-        largest_load=float(P.max(initial=0.0)),
-        largest_static=float(P0.max(initial=0.0)),
-        largest_roller=max(float(q.sum(axis=2).max(initial=0.0)) for q in steps.laminae),
-    )
+    risk = np.sum([risk.sum(axis=(0, 2)) for risk in basic_risks], axis=0)
+    limits = limits_of(steps, rated, rules.standing_rpm, kappa, P, risk)
     return Damage(
-        float(time.sum()),
+        float(steps.seconds.sum()),
         float(turns.sum()),
         parts[0],
         parts[1],

@@ -13,7 +13,7 @@ from fe_drivetrain.bearing.races import Races, equilibrium_on_races, roller_moti
 from fe_drivetrain.bearing.rolling import Equilibrium, equilibrium, free_motions, three_degrees
 from fe_drivetrain.common.arrays import Bools, Floats, chunks
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.life.roller_damage import Steps
+from fe_drivetrain.life.steps import Steps
 
 LaminaLoads = tuple[tuple[Floats, ...], Bools]
 """For each row (n, elements, laminae) [N], and which of n steps are in equilibrium."""
