@@ -23,7 +23,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from fe_drivetrain.commands import main as command
-from fe_drivetrain.common import CACHE_VARIABLE, FORCES, read_manifest
+from fe_drivetrain.common import CACHE_VARIABLE, FORCES, MANIFEST, read_manifest
 from fe_drivetrain.report import read_results
 
 Entries = dict[str, tuple[int, str]]
@@ -149,7 +149,7 @@ def is_lost(folder: Path, others: Entries) -> bool:
 def is_whole(home: Path) -> bool:
     """Whether all that the command writes is of one run: what manifests list, and files."""
     try:
-        for manifest in (home / "out").glob("**/fe-drivetrain-files.json"):
+        for manifest in (home / "out").glob(f"**/{MANIFEST}"):
             folder = manifest.parent
             if any(part.startswith(".") for part in folder.relative_to(home).parts):
                 continue

@@ -22,6 +22,7 @@ from .interpreter import run_python as run_python
 from .jobs import mapped as mapped
 from .jobs import pool as pool
 from .jobs import scheduled_by as scheduled_by
+from .manifest import MANIFEST as MANIFEST
 from .manifest import read_manifest as read_manifest
 from .memory import peak_memory as peak_memory
 from .processes import Processes as Processes
