@@ -116,7 +116,8 @@ def _show(page: Page, root: Path, tried: Sequence[Tried], others: dict[str, str]
     page.answer(
         f"Of {count} single faults the tests catch {caught}: {rate:.1f} %; of all faults of such "
         f"kinds between {low:.1f} and {high:.1f} %, at a confidence of {100 * CONFIDENCE:g} % "
-        "(Clopper and Pearson 1934, of an independent sample, which rows chosen by hand are not).",
+        "(Clopper and Pearson 1934, of an independent sample: rows that are chosen by hand, and "
+        "that tests are written for, are none, so that of other faults fewer may be caught).",
         f"The goal, {GOAL:g} %, is {'reached' if rate >= GOAL else 'not reached'}.",
     )
     survivors = [_survivor(one) for one in tried if not one.caught]
