@@ -179,6 +179,7 @@ def test_results_that_were_edited_or_have_no_digest_do_not_count(
             "failed",
         ),
         ({"skipped": ["share: NGSolve is not there"]}, "NGSolve is not there", "skipped checks"),
+        ({"unsettled": ["the peak moves by 3 %"]}, "the peak moves by 3 %", "not converged"),
         ({"verdicts": []}, "has no checks", "missing"),
         ({"answers": []}, "have no quantity 'margin'", "no answer"),
         ({"answers": [value_of("margin", np.nan, RESONANCE)]}, "margin is nan", "beyond its limit"),

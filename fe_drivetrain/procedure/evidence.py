@@ -32,6 +32,7 @@ State = Literal[
     "edited",
     "of another drivetrain",
     "skipped checks",
+    "not converged",
     "vacuous",
     "no limit",
     "no answer",
@@ -234,6 +235,8 @@ def _judged(claim: Claim, results: Results, subject: Subject | None) -> Found:
         return no("failed", f"{failed[0]!r} does not pass")
     if results.skipped:
         return no("skipped checks", f"not all of its checks were made: {results.skipped[0]}")
+    if results.unsettled:
+        return no("not converged", f"an answer has not converged: {results.unsettled[0]}")
     if not (claim.link.quantity or claim.loads) and all(map(_says_nothing, verdicts)):
         what = repr(verdicts[0].quantity)
         return no("vacuous", f"the tolerance of {what} is so wide that it says nothing")
