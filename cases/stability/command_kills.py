@@ -64,7 +64,7 @@ OTHERS: dict[str, Words] = {
         *("--out", str(out)),
     ],
     "uncertainty": lambda out: [
-        *("uncertainty", "main_bearing_spherical", "--level", "1", "--samples", "40"),
+        *("uncertainty", "main_bearing_bonded_uncertain", "--level", "1", "--samples", "40"),
         *("--out", str(out)),
     ],
 }
