@@ -43,9 +43,11 @@ def thinnest_walls(
         if bearing.name in housings:
             housing = housings[bearing.name]
             floor = housing.centre_height - bearing.raceway_diameter / 2
-            wall = Wall(f"{bearing.name}.housing", min(housing.wall, floor))
-            foot = Wall(f"{bearing.name}.housing", housing.foot_thickness, "foot")
-            yield min(wall, foot, key=lambda one: one.thickness)
+            part, thickness = f"{bearing.name}.housing", min(housing.wall, floor)
+            if housing.foot_thickness < thickness:
+                yield Wall(part, housing.foot_thickness, "foot")
+            else:
+                yield Wall(part, thickness)
 
 
 def check_sizes(

@@ -1,5 +1,7 @@
 """Rollers between races that give way: limits, balance, and other ways to the same answer."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -42,6 +44,30 @@ def annulus(bearing: Bearing, order: int = 4, harmonics: int | None = None) -> R
 def soft() -> Races:
     """Races much softer than their contacts."""
     return annulus(BEARING).stiffened(0.02)
+
+
+def test_tapered_rollers_pull_their_ring_to_the_side_that_they_lean_to() -> None:
+    """A tube on its upwind end, pulled away from that, contracts (Poisson): it gives less to
+    rollers that press outward and downwind than to those that press outward and upwind."""
+    section = Section(length=0.8, outer_diameter=1.0, inner_diameter=0.94)
+    mesh = meridian(Shaft(front=-0.5, sections=(section,)), 0.03, order=3, layers=0)
+    end = np.flatnonzero(np.abs(mesh.nodes[:, 0] + 0.5) < 1e-9)
+    held = np.concatenate([dofs(end, 0), dofs(end, 2), dofs(end[:1], 1)])
+    row = BEARING.rows[0]
+    assert isinstance(row, RollerRow)
+    given = {}
+    for angle in (-0.3, 0.3):
+        lone = Bearing("row", (replace(row, place=0.0, radius=0.47, angle=angle),))
+        races = races_of_revolution(lone, mesh, MATERIALS["steel"], 0.47, held=held, harmonics=6)
+        count = row.rollers
+        given[angle] = float(races.compliance[:count, :count].sum())
+    # a thin tube of area A and radius R under unit loads: where its tension F begins, half of
+    # nu F R / (E A) is lost, which the radial loads feel
+    R, A = 0.485, np.pi * 0.97 * 0.03
+    E, nu = MATERIALS["steel"].youngs_modulus, MATERIALS["steel"].poisson_ratio
+    cross = row.rollers**2 * np.sin(0.3) * np.cos(0.3) * nu * R / (2.0 * E * A)
+    thickness = 0.03 / R
+    assert given[-0.3] - given[0.3] == pytest.approx(4.0 * cross, rel=2.0 * thickness)
 
 
 def test_rigid_races_are_the_bearing_by_itself() -> None:

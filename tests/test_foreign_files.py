@@ -1,290 +1,446 @@
-"""Hostile, damaged and unusual STEP and mesh files: one sentence, in bounded time and memory."""
+"""Files that a run did not write: none is lost, in whatever folder and at whatever moment."""
 
-import base64
-import struct
-import zlib
+import hashlib
+import json
+import os
+import signal
+import stat
+from pathlib import Path
+from typing import Any
 
-import gmsh
-import meshio
-import numpy as np
 import pytest
+from faulty_cases import NEW, fill
+from test_faults import at_operation, hidden, in_child, kill, state
+from test_faults import marked as marked_case
 
+from fe_drivetrain.commands import app
+from fe_drivetrain.common import carrying, folders
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.foreign.housing import placed_housing
-from fe_drivetrain.foreign.mesh_file import _EDGES, read
-from fe_drivetrain.foreign.reading import Limits, read_in_process
-from fe_drivetrain.foreign.step_mesh import mesh as mesh_solid
-from fe_drivetrain.foreign.step_solid import opened, seat_cylinders
-from fe_drivetrain.geometry import Bearing, ForeignHousing, MeshSizes, gmsh_session, write_sample
-from fe_drivetrain.geometry.step_files import write_step
-from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES
+from fe_drivetrain.common.manifest import MANIFEST, Manifest, manifest_of, read_manifest
+from fe_drivetrain.report.history import FILE
+from fe_drivetrain.suite.case import Case
+from fe_drivetrain.suite.ownership import check_result_folder
+from fe_drivetrain.suite.result_folders import new_folder, run_case
+from fe_drivetrain.suite.suite import run_cases
 
-pytestmark = pytest.mark.usefixtures("kept_between_runs")
+OLD = "old"
 
-SMALL = Limits(file=5_000_000, memory=1_500_000_000, seconds=5, result=20_000_000)
-TETRAHEDRON = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
-
-
-@pytest.fixture(scope="module")
-def samples(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("samples")
-    volumes = {
-        name: write_sample(name, folder / f"{name}.step")
-        for name in ("ribbed_pillow_block", "split_housing", "torque_arm")
-    }
-    return folder, volumes
-
-
-@pytest.mark.parametrize("name", ["ribbed_pillow_block", "split_housing", "torque_arm"])
-def test_sample_parts_are_one_solid_of_the_volume_that_was_written(samples, name):
-    folder, volumes = samples
-    with gmsh_session():
-        found = opened(str(folder / f"{name}.step"))
-        seats = seat_cylinders(found)
-    assert found["before"]["solids"] == found["after"]["solids"] == 1
-    assert found["after"]["volume"] == pytest.approx(1e9 * volumes[name], rel=1e-9)
-    widest = 360 if name == "torque_arm" else 300
-    assert seats[0]["radius"] == pytest.approx(widest)
-    assert len(seats) == {"ribbed_pillow_block": 9, "split_housing": 13, "torque_arm": 2}[name]
-
-
-def test_a_torque_arm_stands_by_its_eye(samples):
-    folder, _ = samples
-    housing = ForeignHousing(
-        step=str(folder / "torque_arm.step"),
-        seat={"radius": 360},
-        held=[{"radius": 130}],
-    )
-    bearing = Bearing(kind="ring", raceway_diameter=0.72)
-    sizes = MeshSizes(housing=0.2, elements_per_turn=8)
-    mesh = placed_housing(housing, bearing, sizes).mesh
-    eye = mesh.points[mesh.face_nodes("main_bearing.housing.base")]
-    assert np.allclose(np.hypot(eye[:, 1] - 1.25, eye[:, 2]), 0.13, atol=1e-6)
-
-
-def damaged(folder, name, text):
-    path = folder / name
-    path.write_bytes(text if isinstance(text, bytes) else text.encode())
-    return path
-
-
-def refused(path, action="read mesh", limits=SMALL, **request):
-    with pytest.raises(InputError) as error:
-        read_in_process(action, path, {"smallest_detail": 0.0, **request}, limits)
-    sentence = str(error.value)
-    assert path.name in sentence
-    assert "Traceback" not in sentence
-    return sentence
-
-
-def test_damaged_step_files_are_refused_in_one_sentence(samples, tmp_path):
-    folder, _ = samples
-    whole = (folder / "torque_arm.step").read_text()
-    assert "cannot be read" in refused(
-        damaged(tmp_path, "a.step", whole[: len(whole) // 2]), "look"
-    )
-    assert "1 to 5000000" in refused(damaged(tmp_path, "b.step", ""), "look")
-    assert "1 to 5000000" in refused(damaged(tmp_path, "c.step", whole * 200), "look")
-
-
-def test_a_solid_that_healing_changes_is_refused_with_both_volumes(tmp_path, monkeypatch):
-    from fe_drivetrain.foreign import step_heal
-
-    with gmsh_session():
-        write_step(tmp_path / "box.step", [gmsh.model.occ.addBox(0, 0, 0, 1, 1, 1)])
-    counted = step_heal.counted
-
-    def shrunk():  # what is counted before comes from `step_solid`, unpatched
-        found = counted()
-        return found | {"volume": found["volume"] * 0.99}
-
-    monkeypatch.setattr(step_heal, "counted", shrunk)
-    with gmsh_session(), pytest.raises(InputError) as error:
-        opened(str(tmp_path / "box.step"), 0.1)
-    assert "1e+09 mm^3 before and 1 of 990000000 mm^3 after healing" in str(error.value)
-
-
-def test_what_gmsh_cannot_mesh_is_said_with_its_place(tmp_path, monkeypatch):
-    with gmsh_session():
-        write_step(tmp_path / "box.step", [gmsh.model.occ.addBox(0, 0, 0, 1, 1, 1)])
-    with gmsh_session():
-        found = opened(str(tmp_path / "box.step"))
-
-        def failing(dim):
-            raise Exception("Impossible to mesh periodic surface 2")
-
-        monkeypatch.setattr(gmsh.model.mesh, "generate", failing)
-        with pytest.raises(InputError) as error:
-            mesh_solid(found, 300.0, 8, False)
-    at = next(face["middle"] for face in found["faces"] if face["tag"] == 2)
-    assert "face 2, a plane, round ({:.4g}, {:.4g}, {:.4g}) mm".format(*at) in str(error.value)
-
-
-def test_a_mesh_of_too_many_elements_is_refused_before_it_is_made(tmp_path):
-    with gmsh_session():
-        write_step(tmp_path / "box.step", [gmsh.model.occ.addBox(0, 0, 0, 1, 1, 1)])
-    with gmsh_session():
-        found = opened(str(tmp_path / "box.step"))
-        with pytest.raises(
-            InputError, match=r"elements of 1 mm make about .* choose 28 mm or more"
-        ):
-            mesh_solid(found, 1.0, 8, False)
-
-
-def test_an_unreasonably_large_count_in_a_binary_msh_costs_no_memory(tmp_path):
-    content = b"$MeshFormat\n2.2 1 8\n" + struct.pack("i", 1) + b"\n$EndMeshFormat\n"
-    content += b"$Nodes\n2000000000\n" + b"\0" * 64
-    refused(damaged(tmp_path, "huge.msh", content))
-
-
-def packed_vtu(blocks, size):
-    """One tetrahedron, whose points are given as so many packed blocks of zeros."""
-    packed = zlib.compress(b"\0" * size, 9)
-    head = struct.pack("<3I", blocks, size, 0) + struct.pack("<I", len(packed)) * blocks
-    data = base64.b64encode(head).decode() + base64.b64encode(packed * blocks).decode()
-    return f"""<?xml version="1.0"?>
-<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian"
- header_type="UInt32" compressor="vtkZLibDataCompressor">
-<UnstructuredGrid><Piece NumberOfPoints="4" NumberOfCells="1">
-<Points><DataArray type="Float64" NumberOfComponents="3" format="binary">{data}</DataArray></Points>
-<Cells><DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 3</DataArray>
-<DataArray type="Int64" Name="offsets" format="ascii">4</DataArray>
-<DataArray type="UInt8" Name="types" format="ascii">10</DataArray></Cells>
-</Piece></UnstructuredGrid></VTKFile>"""
-
-
-def test_a_vtu_that_unpacks_to_gigabytes_is_stopped(tmp_path):
-    limits = Limits(file=50_000_000, memory=700_000_000, seconds=20, result=20_000_000)
-    sentence = refused(damaged(tmp_path, "bomb.vtu", packed_vtu(400, 32_000_000)), limits=limits)
-    assert "memory" in sentence
-    # one tetrahedron is read within the same memory
-    sound = damaged(tmp_path, "four.vtu", packed_vtu(1, 96))
-    assert len(read_in_process("read mesh", sound, {}, limits)["cells"]) == 1
-
-
-def test_a_file_that_takes_too_long_is_stopped(samples):
-    folder, _ = samples
-    limits = Limits(seconds=1)
-    request = {
-        "smallest_detail": 0.0,
-        "seat": {"radius": 300},
-        "held": [{"point": [0, 0, -420], "normal": [0, 0, 1]}],
-        "bolts": None,
-        "part": None,
-        "kind": "Cylinder",
-        "radius": 300.0,
-        "tolerance": 1e-4,
-        "along": [1.0, 0.0, 0.0],
-        "low": -100.0,
-        "high": 100.0,
-        "centre": None,
-        "size": 20.0,
-        "per_turn": 200,
-        "optimise": True,
-    }
-    with pytest.raises(InputError, match="more than 1 s of processor time"):
-        read_in_process("mesh step", folder / "split_housing.step", request, limits)
-
-
-@pytest.mark.parametrize(
-    ("points", "cells", "words"),
-    [
-        (TETRAHEDRON * np.nan, [("tetra", [[0, 1, 2, 3]])], "no finite position"),
-        (TETRAHEDRON, [("triangle", [[0, 1, 2]])], "must have tetrahedra of 4 or 10 nodes"),
-        (
-            np.vstack([TETRAHEDRON, TETRAHEDRON + 2]),
-            [("hexahedron", [[0, 1, 2, 3, 4, 5, 6, 7]])],
-            "elements of kind hexahedron",
-        ),
-    ],
+needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="children are forked")
+no_fork_warning = pytest.mark.filterwarnings(
+    "ignore:.*multi-threaded, use of fork:DeprecationWarning"
 )
-def test_meshes_of_no_use_are_refused(tmp_path, points, cells, words):
-    meshio.write(tmp_path / "a.vtu", meshio.Mesh(points, cells))
-    with pytest.raises(InputError, match=words):
-        read(str(tmp_path / "a.vtu"))
 
 
-def test_a_node_that_there_is_not_is_refused(tmp_path):
-    path = tmp_path / "a.inp"
-    path.write_text("*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n*ELEMENT,TYPE=C3D4\n1,1,2,3,9\n")
-    with pytest.raises(InputError, match=r"a.inp"):
-        read(str(path))
+def add_foreign(folder: Path) -> None:
+    """Everything that somebody may keep in a folder."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "notes.txt").write_text("years of work")
+    (folder / "notes.txt").chmod(0o640)
+    below = folder / "data" / "deep"
+    below.mkdir(parents=True)
+    (below / "a.csv").write_text("1,2\n")
+    (below / "empty").mkdir()
+    below.chmod(0o750)
+    (folder / "link").symlink_to("../elsewhere.txt")
+    (below / "up").symlink_to("../..", target_is_directory=True)
+    os.mkfifo(folder / "pipe")
 
 
-def test_an_input_deck_that_reads_other_files_is_refused(tmp_path):
-    path = tmp_path / "a.inp"
-    path.write_text("*INCLUDE, INPUT=/etc/passwd\n")
-    with pytest.raises(InputError, match="includes other files"):
-        read(str(path))
-
-
-def test_straight_tetrahedra_get_nodes_in_the_middle_of_their_edges(tmp_path):
-    points = np.vstack([TETRAHEDRON, [[1, 1, 1.0]]])
-    cells = [("tetra", [[0, 1, 2, 3], [1, 2, 3, 4]])]
-    meshio.write(tmp_path / "a.vtu", meshio.Mesh(points, cells))
-    found = read(str(tmp_path / "a.vtu"))
-    assert bool(found["linear"])
-    assert len(found["points"]) == 5 + 9  # edges, the three of the common facet once
-    ends = found["points"][found["cells"][:, [0, 1]]].mean(axis=1)
-    assert np.allclose(found["points"][found["cells"][:, 4]], ends)
-
-
-def test_a_mesh_inside_out_is_refused(tmp_path):
-    meshio.write(tmp_path / "a.vtu", meshio.Mesh(TETRAHEDRON, [("tetra", [[0, 2, 1, 3]])]))
-    housing = ForeignHousing(
-        mesh=str(tmp_path / "a.vtu"),
-        unit="m",
-        seat={"radius": 0.3, "axis": [1, 0, 0], "point": [0, 0, 0]},
-        held=[{"point": [0, 0, 0]}],
-    )
-    with pytest.raises(InputError, match="1 of its 1 elements are inside out"):
-        placed_housing(housing, Bearing(kind="ring"), MeshSizes())
-
-
-def test_a_damaged_housing_ends_a_command_with_status_2_and_one_sentence(samples, tmp_path, invoke):
-    folder, _ = samples
-    whole = (folder / "ribbed_pillow_block.step").read_text()
-    (tmp_path / "half.step").write_text(whole[: len(whole) // 2])
-    (tmp_path / "mine.yaml").write_text(
-        "title: t\nshaft: {front: -1.0, sections: [{length: 2.2, outer_diameter: 0.4}]}\n"
-        "bearing_units:\n  - bearing: {name: main_bearing, kind: ring}\n    interface: bonded\n"
-        "    housing: {step: half.step, seat: {radius: 300}, held: [{point: [0, 0, -420]}]}\n"
-        "gearbox: {stiffness: [4.0e6, 8.0e7, 8.0e7, rigid, 0, 0]}\n"
-    )
-    for words in (("check", "mine.yaml"), ("part", "half.step")):
-        status, _, error = invoke(*words)
-        assert status == 2
-        assert "half.step cannot be read as STEP" in error
-
-
-def test_small_details_are_removed_where_asked_for_and_with_a_message(tmp_path):
-    with gmsh_session():
-        occ = gmsh.model.occ
-        bored, _ = occ.cut(
-            [(3, occ.addBox(-0.5, -0.5, -0.5, 1, 1, 1))],
-            [(3, occ.addCylinder(-1, 0, 0, 2, 0, 0, 0.3))],
+def everything(folder: Path) -> dict[str, tuple[Any, ...]]:
+    """What is in a folder: kind and mode of each entry, and content, or where it leads."""
+    found: dict[str, tuple[Any, ...]] = {}
+    for path in sorted(folder.rglob("*")):
+        status = path.lstat()
+        content = (
+            os.readlink(path)
+            if path.is_symlink()
+            else hashlib.sha256(path.read_bytes()).hexdigest()
+            if stat.S_ISREG(status.st_mode)
+            else ""
         )
-        occ.synchronize()
-        edge = next(
-            tag
-            for _, tag in gmsh.model.getEntities(1)
-            if gmsh.model.getType(1, tag) == "Line" and occ.getMass(1, tag) == pytest.approx(1)
-        )
-        face = int(gmsh.model.getAdjacencies(1, edge)[0][0])
-        ((_, solid),) = occ.chamfer([bored[0][1]], [edge], [face], [5e-5])
-        write_step(tmp_path / "box.step", [solid])
-    housing = {
-        "step": str(tmp_path / "box.step"),
-        "seat": {"radius": 300},
-        "held": [{"point": [0, 0, -500], "normal": [0, 0, 1]}],
+        found[str(path.relative_to(folder))] = (status.st_mode, content)
+    return found
+
+
+def foreign_of(folder: Path) -> dict[str, tuple[Any, ...]]:
+    """As `everything`, of what no manifest lists and no run of these tests writes."""
+    own = read_manifest(folder)
+    listed = {MANIFEST, FILE} | ({*own.files, *own.folders} if own else set())
+    return {name: of for name, of in everything(folder).items() if name not in listed}
+
+
+@pytest.fixture
+def mine(tmp_path: Path) -> tuple[Path, dict[str, tuple[Any, ...]]]:
+    """A result folder with files of somebody else in it, and these."""
+    out = tmp_path / "b"
+    run_case(marked_case(OLD), out)
+    before = set(everything(out))
+    add_foreign(out)
+    return out, {name: of for name, of in everything(out).items() if name not in before}
+
+
+# --- a folder that is not ours --------------------------------------------------------------------
+
+
+def test_a_folder_of_somebody_else_is_refused_before_any_work(tmp_path: Path) -> None:
+    worked: list[int] = []
+    case = Case("g/c", "t", "s", lambda run, page: worked.append(1))
+    add_foreign(tmp_path / "home")
+    others = {
+        "named": {"results.json": '{"loss": 0.1}'},
+        "manifest": {"results.json": "{}", MANIFEST: "{}"},
+        "readme": {"README": "x", "index.html": "<p>my site"},
     }
-    sizes, bearing = MeshSizes(housing=0.3, elements_per_turn=8), Bearing(kind="ring")
-    with gmsh_session():
-        assert opened(housing["step"])["after"]["faces"] == 8
-    with pytest.warns(UserWarning, match="box.step: healing has removed 1 faces and 3 edges"):
-        found = placed_housing(ForeignHousing(**housing, smallest_detail=0.2), bearing, sizes)
-    assert found.facts["faces removed"] == 1
+    for name, files in others.items():
+        (tmp_path / name).mkdir()
+        for file, text in files.items():
+            (tmp_path / name / file).write_text(text)
+    before = everything(tmp_path)
+    for name in ("home", *others):
+        with pytest.raises(InputError, match="give a") as refused:
+            run_case(case, tmp_path / name)
+        assert str(tmp_path / name) in str(refused.value)
+        with pytest.raises(InputError, match="give a"):
+            run_cases([case], tmp_path / name)
+    assert worked == []
+    assert everything(tmp_path) == before
 
 
-def test_edges_are_those_of_all_tetrahedra() -> None:
-    np.testing.assert_array_equal(np.sort(_EDGES, axis=1), TETRAHEDRON_EDGES)
+def test_a_check_into_the_folder_of_the_scene_loses_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    add_foreign(tmp_path)
+    with pytest.raises(SystemExit) as ended:
+        app.main(["new", "my.yaml"])
+    assert ended.value.code in (0, None)
+    before = everything(tmp_path)
+    (tmp_path / "loads.csv").write_text("time [s],Fx [N]\n")
+    for command in (
+        ["check", "my.yaml"],
+        ["study", "my.yaml"],
+        ["advise", "my.yaml"],
+        ["uncertainty", "my.yaml"],
+        ["compare", "my.yaml", "two_bearings"],
+        ["loads", "loads.csv"],
+        ["life", "my.yaml", "--loads", "loads.csv"],
+        ["run", "nafems_le10", "--quick"],
+        ["run", "nafems_le10", "vm18_curved_bar", "--quick"],
+    ):
+        with pytest.raises(SystemExit) as ended:
+            app.main([*command, "--out", "."])
+        assert ended.value.code == 2, command
+        assert "loads.csv" in capsys.readouterr().err, command
+    (tmp_path / "loads.csv").unlink()
+    assert everything(tmp_path) == before
+
+
+def test_a_folder_of_somebody_else_above_results_gets_no_pages(tmp_path: Path) -> None:
+    add_foreign(tmp_path)
+    (tmp_path / "index.html").write_text("<p>my site")
+    before = everything(tmp_path)
+    run_case(marked_case(NEW), tmp_path / "a" / "b")
+    assert state(tmp_path / "a" / "b") == NEW
+    now = everything(tmp_path)
+    assert {name: of for name, of in now.items() if not name.startswith("a/") and name != "a"} == (
+        before
+    )
+
+
+# --- a folder that is ours, with files of others in it --------------------------------------------
+
+
+@pytest.mark.parametrize("exchange", [True, False])
+@pytest.mark.parametrize("links", [True, False])
+def test_a_run_replaces_its_own_files_alone(
+    mine: tuple[Path, dict[str, tuple[Any, ...]]],
+    monkeypatch: pytest.MonkeyPatch,
+    exchange: bool,
+    links: bool,
+) -> None:
+    if not exchange:
+        monkeypatch.setattr(folders, "_exchange", lambda first, second: False)
+    out, foreign = mine
+    if not links:
+        (out / "pipe").unlink()  # which only a link can carry
+        foreign.pop("pipe")
+
+        def refuse(*arguments: Any, **named: Any) -> None:
+            raise PermissionError(1, "no links here")
+
+        monkeypatch.setattr(os, "link", refuse)
+    inode = (out / "notes.txt").stat().st_ino
+    times = (out / "data" / "deep" / "a.csv").stat().st_mtime_ns
+    for _ in range(2):
+        run_case(Case("a/b", "t", "s", lambda run, page: fill(run, page, NEW)), out)
+        assert foreign_of(out) == foreign
+        assert read_mark(out) == NEW
+    assert (out / "data" / "deep" / "a.csv").stat().st_mtime_ns == times
+    assert not links or (out / "notes.txt").stat().st_ino == inode
+    assert hidden(out.parent) == []
+
+
+def test_what_an_earlier_run_wrote_and_this_one_does_not_goes(tmp_path: Path) -> None:
+    out = tmp_path / "b"
+    run_case(marked_case(OLD), out)
+    (out / "two" / "mine.txt").write_text("mine")
+    run_case(Case("a/b", "t", "s", lambda run, page: page.answer("none")), out)
+    names = {str(p.relative_to(out)) for p in out.rglob("*")}
+    assert names == {MANIFEST, FILE, "report.html", "results.json", "two", "two/mine.txt"}
+
+
+def test_a_file_that_was_changed_since_the_run_is_kept_and_said_so(tmp_path: Path) -> None:
+    out = tmp_path / "b"
+    run_case(marked_case(OLD), out)
+    (out / "one.txt").write_text("edited")  # which this run writes, too
+    (out / "two" / "three.txt").unlink()
+    (out / "two" / "three.txt").symlink_to("/etc/hostname")
+    with pytest.warns(UserWarning, match=r"kept as one\.txt\.kept, two/three\.txt\.kept"):
+        run_case(marked_case(NEW), out)
+    assert (out / "one.txt").read_text() == NEW
+    assert (out / "one.txt.kept").read_text() == "edited"
+    assert os.readlink(out / "two" / "three.txt.kept") == "/etc/hostname"
+    (out / "one.txt").write_text("edited again")
+    with pytest.warns(UserWarning, match=r"kept as one\.txt\.kept-2"):
+        run_case(marked_case("third"), out)
+    kept = ("one.txt", "one.txt.kept", "one.txt.kept-2")
+    assert [(out / name).read_text() for name in kept] == ["third", "edited", "edited again"]
+
+
+def test_a_folder_in_the_way_of_a_file_and_a_file_in_that_of_a_folder_are_kept(
+    tmp_path: Path,
+) -> None:
+    out = tmp_path / "b"
+    run_case(Case("a/b", "t", "s", lambda run, page: page.answer("none")), out)
+    (out / "one.txt").mkdir()
+    (out / "one.txt" / "inner").write_text("inner")
+    (out / "two").write_text("two")
+    with pytest.warns(UserWarning, match="kept as"):
+        run_case(marked_case(NEW), out)
+    assert state(out, "one.txt.kept", "two.kept") == NEW
+    assert (out / "one.txt.kept" / "inner").read_text() == "inner"
+    assert (out / "two.kept").read_text() == "two"
+
+
+# --- kills, and others at the same time -----------------------------------------------------------
+
+
+@needs_fork
+@no_fork_warning
+@pytest.mark.parametrize("exchange", [True, False])
+def test_a_kill_at_any_moment_loses_no_file_of_others(
+    mine: tuple[Path, dict[str, tuple[Any, ...]]],
+    monkeypatch: pytest.MonkeyPatch,
+    exchange: bool,
+) -> None:
+    if not exchange:
+        monkeypatch.setattr(folders, "_exchange", lambda first, second: False)
+    out, foreign = mine
+    (out / "one.txt").write_text("edited")
+    edited = hashlib.sha256(b"edited").hexdigest()
+    results = (out / "results.json").read_text().replace(OLD, NEW)
+
+    def replace() -> int:
+        """What a run does when its results are there: of hundreds of runs one is enough."""
+        folder = new_folder(out)
+        (folder.path / "two").mkdir()
+        (folder.path / "two" / "three.txt").write_text(NEW * 1000)
+        (folder.path / "one.txt").write_text(NEW)
+        (folder.path / "results.json").write_text(results)
+        folder.put_in_place()
+        folder.discard()
+        return 0
+
+    found = []
+    for number in range(int(exchange), 2000, 2):
+
+        def work(number: int = number) -> int:
+            at_operation(number, out.parent, kill)
+            return replace()
+
+        ended = in_child(work)
+        if not out.exists():
+            assert not exchange
+            new_folder(out).discard()
+        now = everything(out)
+        assert {name: of for name, of in now.items() if name in foreign} == foreign
+        assert edited in {of[1] for of in now.values()}
+        found.append(read_mark(out))
+        if ended == 0:
+            break
+        assert ended == -signal.SIGKILL
+    assert len(found) > 30
+    assert {OLD, NEW} == set(found)
+    new_folder(out).discard()
+    assert hidden(out.parent) == []
+    kept = {name for name in everything(out) if ".kept" in name}
+    assert kept == {"one.txt.kept"}
+
+
+def read_mark(out: Path) -> str:
+    """Whose results there are; those of the old run with one file changed."""
+    mark = (out / "two" / "three.txt").read_text()[:3]
+    assert json.loads((out / "results.json").read_text())["summary"] == [mark]
+    return mark
+
+
+def test_what_somebody_saves_while_folders_are_exchanged_goes_into_the_new_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out = tmp_path / "b"
+    run_case(marked_case(OLD), out)
+    (out / "notes.txt").write_text("first")
+
+    def late(old: Path, *arguments: Any) -> list[str]:
+        renamed = carrying.carry_over(old, *arguments)
+        (old / "new.txt").write_text("second")  # as an editor saves: another file of that name
+        (old / "new.txt").replace(old / "notes.txt")
+        (old / "late").mkdir()
+        (old / "late" / "x").write_text("third")
+        return renamed
+
+    monkeypatch.setattr(folders, "carry_over", late)
+    run_case(marked_case(NEW), out)
+    texts = {p.name: p.read_text() for p in out.glob("notes*")}
+    assert texts == {"notes.txt": "first", "notes.txt.kept": "second"}
+    assert (out / "late" / "x").read_text() == "third"
+    assert hidden(tmp_path) == []
+
+
+def test_a_run_that_comes_between_is_replaced_with_what_it_carried(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Both find the old folder; one is in place when the other has carried all over."""
+    out = tmp_path / "b"
+    run_case(marked_case(OLD), out)
+    add_foreign(out)
+    foreign = foreign_of(out)
+    came: list[int] = []
+
+    def late(*arguments: Any) -> list[str]:
+        if not came:
+            came.append(1)
+            run_case(marked_case("between"), out)
+        return carrying.carry_over(*arguments)
+
+    monkeypatch.setattr(folders, "carry_over", late)
+    run_case(marked_case(NEW), out)
+    assert foreign_of(out) == foreign
+    assert read_mark(out) == NEW
+    assert hidden(tmp_path) == []
+
+
+def test_no_moment_of_another_run_is_taken_for_a_folder_of_somebody_else(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where folders are renamed twice, a run that began between the two was refused."""
+    monkeypatch.setattr(folders, "_exchange", lambda first, second: False)
+    out = tmp_path / "b"
+    run_case(marked_case(OLD), out)
+    rename = os.rename
+    begun: list[str] = []
+
+    def between(source: Any, target: Any) -> None:
+        rename(source, target)
+        if Path(source) == out and not begun:
+            begun.append("begun")
+            check_result_folder(out)
+            other = new_folder(out)  # puts back what it takes for left by a kill
+            (other.path / "x").write_text("x")
+            other.discard()
+
+    monkeypatch.setattr(os, "rename", between)
+    run_case(marked_case(NEW), out)
+    assert begun == ["begun"]
+    assert state(out) == NEW
+    assert hidden(tmp_path) == []
+
+
+def test_a_check_of_a_folder_that_is_replaced_meanwhile_looks_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It listed the old folder, and asked for results.json when that had been taken away."""
+    out = tmp_path / "b"
+    run_case(marked_case(OLD), out)
+    listed, away = os.listdir, tmp_path / "away"
+    seen: list[int] = []
+
+    def list_and_take_away(path: Any = ".") -> list[str]:
+        names = listed(path)
+        if Path(path) == out and not seen:
+            seen.append(1)
+            out.rename(away)
+        return names
+
+    monkeypatch.setattr(os, "listdir", list_and_take_away)
+    check_result_folder(out)
+    assert seen == [1]
+
+
+# --- folders that go, or cannot be replaced -------------------------------------------------------
+
+
+def test_a_folder_that_is_removed_while_a_run_writes_is_one_sentence(tmp_path: Path) -> None:
+    import shutil
+
+    def remove(run: Any, page: Any) -> None:
+        shutil.rmtree(tmp_path / "gone")
+        fill(run, page)
+
+    with pytest.raises(InputError, match="was removed"):
+        run_case(Case("a/b", "t", "s", remove), tmp_path / "gone" / "b")
+    with pytest.raises(InputError, match="No such file"):
+        run_cases([Case("a/b", "t", "s", remove)], tmp_path / "gone" / "many")
+
+
+def test_a_disk_that_is_mounted_in_the_folder_stays(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out = tmp_path / "b"
+    run_case(marked_case(OLD), out)
+    (out / "disk").mkdir()
+    (out / "disk" / "x").write_text("x")
+    lstat = os.lstat
+
+    def mounted(path: Any, **named: Any) -> Any:
+        status = lstat(path, **named)
+        if Path(path) != out / "disk":
+            return status
+        return os.stat_result((*status[:2], status.st_dev + 1, *status[3:]))
+
+    monkeypatch.setattr(os, "lstat", mounted)
+    with pytest.raises(InputError, match="on another disk"):
+        run_case(marked_case(NEW), out)
+    assert state(out, "disk") == OLD
+    assert (out / "disk" / "x").exists()
+    assert hidden(tmp_path) == []
+
+
+def test_a_folder_that_a_run_replaces_is_still_the_one_where_the_program_works(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out = tmp_path / "b"
+    run_case(marked_case(OLD), out)
+    monkeypatch.chdir(out)
+    with pytest.warns(UserWarning, match=r"type cd \. to see"):
+        run_case(marked_case(NEW), out)
+    assert Path("one.txt").read_text() == NEW
+
+
+def test_a_hidden_folder_of_a_kill_gives_back_what_is_in_it_alone(tmp_path: Path) -> None:
+    """After the exchange and before the old files went: what was saved in between is there only."""
+    out = tmp_path / "b"
+    run_case(marked_case(NEW), out)
+    left = tmp_path / ".b-unfinished-abcd_123"
+    left.mkdir()
+    (left / "one.txt").write_text("1")
+    (left / MANIFEST).write_text(manifest_of(left, "results").text())
+    (left / "saved.txt").write_text("saved")
+    (left / "results.json").write_text("edited")
+    half = tmp_path / ".b-unfinished-efgh_456"
+    half.mkdir()
+    (half / "half.txt").write_text("half")
+    new_folder(out).discard()
+    assert state(out, "saved.txt", "results.json.kept") == NEW
+    assert hidden(tmp_path) == []
+    assert Manifest("results").has("saved.txt", out / "saved.txt") is False

@@ -122,7 +122,9 @@ def checked(found: ConvergenceInTime, **given: object) -> Page:
 def test_what_has_converged_is_checked() -> None:
     page = checked(series(1.16, 1.04, 1.01))
     assert [v.passed for v in page.verdicts] == [True, True]
-    assert page.verdicts[1].quantity == "step: largest force: left uncertain by the step, over it"
+    assert (
+        page.verdicts[1].quantity == "step: left uncertain by the step, of largest force, over it"
+    )
     assert page.verdicts[1].computed == pytest.approx(0.03 / 1.01, rel=1e-6)
     assert not page.unsettled
 
@@ -141,6 +143,15 @@ def test_what_has_not_converged_fails_or_is_open_but_never_passes() -> None:
     ]
     lost = checked(series(1.16, 1.04, 1.01, converged=False))
     assert lost.unsettled == ["Not converged: step, iterations of some steps."]
+    # of several the worst is checked, by what each is allowed
+    runs = tuple(
+        InTime({FORCE: a, END: b}, 0.0) for a, b in ((1.16, 1.0), (1.04, 1.0), (1.01, 1.0))
+    )
+    two = Page()
+    both = ConvergenceInTime((4.0, 2.0, 1.0), runs)
+    check_in_time(two, "step", both, {END: 1e-6, FORCE: 0.01}, energy=1.0, why="small")
+    assert [v.passed for v in two.verdicts] == [True, False]
+    assert two.verdicts[1].source.endswith(FORCE)
     # a value of zero has no share: it is measured by a size that is given
     zero = series(0.08, 0.02, 0.0)
     assert [v.passed for v in checked(zero).verdicts] == [True, False]

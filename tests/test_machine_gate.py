@@ -20,9 +20,11 @@ from fe_drivetrain.dynamics.springs import Spring
 from fe_drivetrain.dynamics.tables import MACHINES, Machine, library_machine, parse_machine
 from fe_drivetrain.gear.involute import Gear, Pair
 from fe_drivetrain.gear.load_factors import LoadFactors
-from fe_drivetrain.gear.rating import contact_stress, root_stress
+from fe_drivetrain.gear.rating import Running, contact_stress, root_stress
 from fe_drivetrain.gear.strength import GearMaterial
 from fe_drivetrain.torsion.gear_table import Drivetrain, PlanetaryStage, parse_drivetrain
+from fe_drivetrain.torsion.orders import Toothed
+from fe_drivetrain.torsion.system import Inertia, Torsional
 from fe_drivetrain.validation import published_drivetrains as published
 from fe_drivetrain.validation.machine_facts import machine_facts, own_energy, own_motion
 from fe_drivetrain.validation.published_planetary import LIN_PARKER_STAGE, plane_stage
@@ -228,6 +230,35 @@ def test_springs_are_finite(value: float) -> None:
         spring = Spring("s", {"a": np.eye(6)[0]}, stiffness, damping)
         with pytest.raises(InputError, match=r"'s': .* must be a finite number of at least 0"):
             assemble([Body("a", mass=1.0)], [spring])
+
+
+def test_what_changes_a_rating_must_be_given() -> None:
+    with pytest.raises(InputError, match="yield strength of a through-hardened gear material is 0"):
+        GearMaterial("through-hardened", 700e6, 290e6)
+    with pytest.raises(InputError, match="brinell of a through-hardened"):
+        GearMaterial("through-hardened", 700e6, 290e6, yield_strength=1e9)
+    with pytest.raises(InputError, match=r"flank_roughness .* above 0 and below 1e-3 m"):
+        Running(1e3, 10.0, 220e-6, (4.8, 4.8), (20e-6, 20e-6))
+    with pytest.raises(InputError, match="teeth"):
+        Gear(24.5, 0.01, 0.1)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="K_A is inf"):
+        LoadFactors(K_A=float("inf"))
+
+
+@pytest.mark.parametrize("value", [True, float("nan"), -1.0])
+def test_truth_values_are_no_inertias(value: float) -> None:
+    with pytest.raises(InputError, match="finite number"):
+        Torsional((Inertia("a", value),), ())
+    with pytest.raises(InputError, match="finite number"):
+        assemble([Body("a", mass=value)], [])
+
+
+@pytest.mark.parametrize(
+    ("kind", "teeth"), [("worm", (99, 21)), ("planetary", (99, 0)), ("parallel", (True, 21))]
+)
+def test_stages_of_orders_have_a_kind_and_teeth(kind: str, teeth: tuple[int, int]) -> None:
+    with pytest.raises(InputError, match="of a stage"):
+        Toothed(kind, teeth)
 
 
 ROW = {

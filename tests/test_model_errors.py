@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain.commands.study_measures import failure, sentence
+from fe_drivetrain.commands.study_measures import _larger, failure, sentence
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.histories.model_errors import (
     damage_ratio,
@@ -92,3 +92,10 @@ def test_the_answer_names_a_level_for_each_use() -> None:
     assert f"for means 1 beam; for extremes 2 meridian; for fatigue none ({worst})" in found
     none = sentence(dict.fromkeys(uses), dict.fromkeys(uses, worst), 0.05)
     assert "no level below the assembly has the mean, extreme, or" in none
+
+
+def test_a_level_is_as_wrong_as_the_worse_of_its_bounds() -> None:
+    soft, stiff = {"mean": 0.02, "extreme": -0.08, "DEL": np.nan}, {"mean": -0.03, "extreme": 0.01}
+    worst = _larger([soft, stiff])
+    assert (worst["mean"], worst["extreme"]) == (-0.03, -0.08)
+    assert np.isnan(worst["DEL"])

@@ -167,3 +167,9 @@ def test_an_installed_wheel_has_no_tests(tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.setattr(mutation_rows, "__file__", str(elsewhere))
     with pytest.raises(MissingToolError, match="installed wheel"):
         clone()
+
+
+def test_a_clone_without_what_its_tests_need_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(mutation_rows, "NEEDED", ("pytest", "no_such_package"))
+    with pytest.raises(MissingToolError, match=r"need no_such_package: .*\[test\]"):
+        clone()

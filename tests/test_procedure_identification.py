@@ -205,6 +205,19 @@ def test_decrement_of_a_stop_is_the_modal_damping(system: Torsional) -> None:
         logarithmic_decrement(np.ones(10), step)
 
 
+def test_peaks_between_samples_have_the_heights_of_their_parabolas() -> None:
+    """Some ten samples a period, of which none is at a peak; four peaks, two of them enough."""
+    damping, period, step = 0.02, 1.0, 1.0 / 10.37
+    rate = 2.0 * np.pi / period
+    time = (np.arange(60) + 0.31) * step
+    signal = np.exp(-damping * rate * time) * np.cos(rate * time)
+    for peaks in (2, 4):
+        decay = logarithmic_decrement(signal, step, peaks)
+        # the fourth power of the phase between samples that a parabola leaves out, over 24
+        left_out = (rate * step) ** 4 / 24.0
+        assert decay.decrement == pytest.approx(2.0 * np.pi * damping, abs=left_out)
+
+
 def test_a_sensor_without_errors_records_the_truth() -> None:
     signal = np.sin(np.arange(100.0))
     assert (measured(Sensor(), signal, 0) == signal).all()

@@ -25,7 +25,13 @@ from fe_drivetrain.plots.style import PALETTE
 from fe_drivetrain.report.bundle import plotly_file
 from fe_drivetrain.report.charts import density_chart, heat_map
 from fe_drivetrain.report.index import write_index
-from fe_drivetrain.report.number_text import error_text, formatted, safe_range, tolerance_text
+from fe_drivetrain.report.number_text import (
+    band_text,
+    error_text,
+    formatted,
+    safe_range,
+    tolerance_text,
+)
 from fe_drivetrain.report.page import write_page
 from fe_drivetrain.report.rendering import templates
 from fe_drivetrain.report.results import (
@@ -181,6 +187,8 @@ def test_errors_and_tolerances_are_relative_or_in_the_unit() -> None:
     assert tolerance_text(verdict(0.98, relative=False)) == "±0.01\u00a0N"
     zero = judge("z", 0.5, 0.0, tolerance=0.1, reason="", source="", unit="m")
     assert error_text(zero) == "+0.5\u00a0m"
+    assert band_text(verdict(2.0, band=0.03)) == "±1.5\u00a0%"
+    assert band_text(verdict(2.0, band=0.03, relative=False)) == "±0.03\u00a0N"
 
 
 def test_the_page_says_what_the_results_say(tmp_path: Path) -> None:

@@ -94,6 +94,26 @@ def test_what_became_of_a_check(
     assert found.equal == 3
 
 
+def test_a_check_that_allows_the_same_in_other_words_has_not_changed(tmp_path: Path) -> None:
+    """200 to 5 % is from 190 to 210; to 5 is from 195 to 205, which is less."""
+
+    def relative(run: Run, page: Page) -> None:
+        page.equals("load", 200.0, 200.0, within=0.05, why="r", source="s")
+
+    def between(run: Run, page: Page) -> None:
+        page.between("load", 200.0, 190.0, 210.0, why="r", source="s")
+
+    def in_the_unit(run: Run, page: Page) -> None:
+        page.equals("load", 200.0, 200.0, within=5.0, relative=False, why="r", source="s")
+
+    for work in (relative, between, in_the_unit):
+        run_cases([Case("group/tiny", "A tiny case", "nobody", work)], tmp_path / work.__name__)
+    same = compare_runs(tmp_path / "relative", tmp_path / "between")
+    assert [change.kind for change in same.changes] == []
+    less = compare_runs(tmp_path / "relative", tmp_path / "in_the_unit")
+    assert [change.kind for change in less.changes] == ["tighter"]
+
+
 def test_a_check_that_moved_to_another_case_is_found_there(tmp_path: Path) -> None:
     def alone(run: Run, page: Page) -> None:
         page.vanishes("residual", 0.0, within=1e-9, why="r", source="s")

@@ -92,7 +92,7 @@ def test_cases_that_read_settings_declare_them():
 
 #: A default, or a word in capitals; the one of a quick run; a range.
 WORDS = re.compile(
-    r"(?:(?P<none>FILES?|CORES)|(?P<full>\S+|\[[^]]*\]))"
+    r"(?:(?P<none>FILES?|CORES|NUMBER)|(?P<full>\S+|\[[^]]*\]))"
     r"(?: \((?:quick (?P<quick>\[[^]]*\]|[^;)]+))?"
     r"(?:(?:; )?from (?P<low>[\d.]+)(?: to (?P<high>[\d.]+))?)?(?P<more>[^;)]*)\))?"
 )
@@ -120,7 +120,7 @@ def read_in(file, tree):
         if not isinstance(call, ast.Call) or len(call.args) < 2:
             continue
         function = ast.unparse(call.func)
-        if function not in ("run.count", "run.settings.get"):
+        if function not in ("run.count", "run.positive", "run.settings.get"):
             continue
 
         def value(node, quick):
@@ -144,7 +144,7 @@ def test_defaults_that_are_shown_are_those_that_are_used():
     compared = set()
     for file in sorted(folder.glob("*/*.py")):
         text = file.read_text("utf-8")
-        if "run.count(" not in text and "run.settings.get(" not in text:
+        if not re.search(r"run\.(count|positive|settings\.get)\(", text):
             continue
         own = f"{file.parent.name}/{file.stem}"
         for key, full, quick, low in read_in(file, ast.parse(text)):
@@ -155,7 +155,7 @@ def test_defaults_that_are_shown_are_those_that_are_used():
                 compared.add((name, key))
                 if words.startswith("CORES"):
                     full = quick = None
-                if words.startswith("FILE"):
+                if words.startswith(("FILE", "NUMBER")):
                     continue
                 shown = said(words)
                 assert shown[:2] == (full, quick), (name, key)
@@ -172,7 +172,7 @@ def test_defaults_that_are_shown_are_those_that_are_used():
                     *peer_settings.RANGES.get(key, (None, None))[:2],
                 ), key
             else:
-                assert words.startswith("FILE") or (name, key) in compared, (name, key)
+                assert words.startswith(("FILE", "NUMBER")) or (name, key) in compared, (name, key)
             if key == "solver":
                 assert re.findall(r"[a-z-]+", words.replace("(or", "")) == list(METHODS)
     coverage = importlib.import_module("fe_drivetrain.cases.verification.band_coverage")
@@ -183,6 +183,15 @@ def test_defaults_that_are_shown_are_those_that_are_used():
 def test_a_number_of_things_is_a_whole_one(value):
     with pytest.raises(InputError, match=r"^k = .* must be a whole number from 1 on, as in k=5$"):
         Run({"k": value}, False, Path()).count("k", 5)
+
+
+@pytest.mark.parametrize("value", ["abc", True, 0, -1, float("inf"), float("nan"), [3]])
+def test_a_positive_number_is_one(value):
+    with pytest.raises(InputError, match=r"^k = .* must be a number above 0, as in k=5$"):
+        Run({"k": value}, False, Path()).positive("k", 5.0)
+    with pytest.raises(InputError, match=r"^k has to be given for this machine, as in --set k=10$"):
+        Run({}, False, Path()).positive("k")
+    assert Run({"k": 2}, False, Path()).positive("k", 5.0) == 2.0
 
 
 def test_a_number_of_things_may_be_written_with_an_exponent():

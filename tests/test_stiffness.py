@@ -54,9 +54,9 @@ def test_estimators_agree_in_size_and_order(free):
     for estimator, vertical in by_plane["vertical"].items():
         assert 0 < vertical < by_plane["horizontal"][estimator]
         assert vertical == pytest.approx(by_plane["vertical"]["averaged seat"], rel=0.6)
-    # The housing's own points leave out the give of the ring.
+    # The housing's own points leave out the give of the ring, in either plane alike.
     for values in by_plane.values():
-        assert values["four nodes"] > values["averaged seat"]
+        assert 1.0 < values["four nodes"] / values["averaged seat"] < 3.0
 
 
 def test_energy_estimator_scales_with_the_housing_modulus(bonded_model):

@@ -1,5 +1,6 @@
 """Several cases in one go: each whole or not at all, measuring ones alone, and a page of all."""
 
+import logging
 import os
 import re
 import signal
@@ -27,7 +28,7 @@ from suite_cases import (
 
 from fe_drivetrain.commands.run import results_text
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.manifest import MANIFEST
+from fe_drivetrain.common.manifest import MANIFEST, manifest_of
 from fe_drivetrain.common.progress import OVERALL
 from fe_drivetrain.common.threads import CORES_VARIABLE
 from fe_drivetrain.report.history import FILE
@@ -243,7 +244,29 @@ def test_a_run_that_was_stopped_goes_on_where_it_was(tmp_path: Path) -> None:
     # results of another program, or that cannot be read, are made again
     (tmp_path / "a/one/results.json").write_bytes(first.replace(b'"code": "', b'"code": "0'))
     (tmp_path / "a/two/results.json").write_bytes(first[:200])
+    for name in ("a/one", "a/two"):  # as such a program would have listed them
+        listed = manifest_of(tmp_path / name, "results").text()
+        (tmp_path / name / MANIFEST).write_text(listed)
     assert finished_cases(cases, tmp_path, {"k": 1}) == ["a/three"]
+
+
+@pytest.mark.parametrize("name", ["results.json", "report.html", MANIFEST])
+def test_results_that_have_changed_since_are_made_again_and_said(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture, name: str
+) -> None:
+    cases = [a_case("a/one", off), a_case("a/two", off)]
+    run_cases(cases, tmp_path)
+    assert finished_cases(cases, tmp_path) == ["a/one", "a/two"]
+    file = tmp_path / "a/one" / name
+    content = file.read_bytes()
+    file.write_bytes(content.replace(b"1", b"2", 1))  # some digit that still can be read
+    assert file.read_bytes() != content
+    with caplog.at_level(logging.INFO, logger="fe_drivetrain"):
+        assert finished_cases(cases, tmp_path) == ["a/two"]
+    (said,) = caplog.messages
+    assert said.startswith("results of a/one are made again: ")
+    file.unlink()
+    assert finished_cases(cases, tmp_path) == ["a/two"]
 
 
 def test_how_many_cases_are_done_is_counted(tmp_path: Path, number_of_cores: str) -> None:

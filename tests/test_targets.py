@@ -1,159 +1,276 @@
-"""Checks and targets carry the unit of their quantity, and it says what kind of quantity it is."""
+"""What may be written where: files alone, in folders that are there; and cells of tables."""
+
+import csv
+import io
+import os
+import socket
+import stat
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
 
 import pytest
+from click.testing import Result
 
-from fe_drivetrain.compare.convergence import band_of
-from fe_drivetrain.report.charts import bars, trace
-from fe_drivetrain.suite.page import Page
-from fe_drivetrain.suite.records import MeshSeries, goal
-from fe_drivetrain.suite.targets import Target, order_of, split_unit, targets_of
-
-
-@pytest.mark.parametrize(
-    ("key", "parts"),
-    [
-        ("deflection of the end [mm]", ("deflection of the end", "mm")),
-        ("K[0] of the joint [N m/rad]", ("K[0] of the joint", "N m/rad")),
-        ("ratio", ("ratio", "")),
-        ("entry K[0]", ("entry K[0]", "")),
-    ],
+from fe_drivetrain.common import files
+from fe_drivetrain.common.cache import Cache
+from fe_drivetrain.common.csv_cells import (
+    SafeWriter,
+    cell_as_given,
+    comment_as_given,
+    comment_line,
+    safe_cell,
+    table_row,
 )
-def test_the_unit_is_what_stands_in_brackets_at_the_end(key: str, parts: tuple[str, str]) -> None:
-    assert split_unit(key) == parts
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.files import atomic_path, check_writable, scratch_folder
+from fe_drivetrain.hub_loads.csv_table import read_csv, write_csv
+from fe_drivetrain.hub_loads.histories import LoadHistory
+
+Invoke = Callable[..., Result]
+KINDS = ("folder", "pipe", "socket", "device", "null", "link", "loop")
 
 
-def test_a_quantity_with_its_unit_is_judged_as_one_whose_unit_is_given() -> None:
-    page = Page()
-    why, source = "round-off", "theory"
-    page.equals("sag [mm]", 1.0, 1.1, within=0.2, why=why, source=source)
-    page.equals(
-        "sag", 1.0, 1.1, within=0.2, why=why, source=source, unit="mm", measure="deflection"
-    )
-    page.meets(1.0, Target("sag [mm]", 1.1, 0.2, why, source))
-    first, *others = page.verdicts
-    assert first.unit == "mm"
-    assert first.measure == "deflection"
-    assert others == [first, first]
+@pytest.fixture
+def odd(tmp_path: Path) -> dict[str, Path]:
+    """What is no regular file, by its kind."""
+    found = {kind: tmp_path / f"{kind}.vtu" for kind in KINDS}
+    found["folder"].mkdir()
+    os.mkfifo(found["pipe"])
+    with socket.socket(socket.AF_UNIX) as one:
+        one.bind(str(found["socket"])[-100:] if len(str(found["socket"])) < 100 else "s")
+    # a device of this test alone, where it may make one: nobody's /dev/null is at risk
+    for kind, of in (("device", stat.S_IFBLK), ("null", stat.S_IFCHR)):
+        try:
+            os.mknod(found[kind], of | 0o600, os.makedev(1, 3) if kind == "null" else 0)
+        except PermissionError:
+            found.pop(kind)
+    found["link"].symlink_to(found["pipe"])
+    found["loop"].symlink_to(found["loop"])
+    return found
 
 
-def test_an_identity_stays_one_whatever_its_unit() -> None:
-    page = Page()
-    page.vanishes("moment about the centre [N m]", 0.0, within=1e-9, why="a sphere", source="it")
-    assert page.verdicts[0].measure == "identity"
+def kinds(odd: dict[str, Path]) -> dict[str, tuple[int, int]]:
+    return {kind: (path.lstat().st_mode, path.lstat().st_ino) for kind, path in odd.items()}
 
 
-def test_a_sweep_shows_several_quantities_of_each_group() -> None:
-    rows = [
-        {"part": part, "x": x, "a": x, "b": None if x == 2 else 2 * x}
-        for part in ("one", "two")
-        for x in (1, 2)
+def test_what_is_no_file_is_never_replaced(odd: dict[str, Path]) -> None:
+    before = kinds(odd)
+    for path in odd.values():
+        for write in (atomic_path, _checked):
+            with pytest.raises(InputError, match=r"is (a|no) |cannot write"), write(path) as one:
+                one.write_text("x")
+    assert kinds(odd) == before
+    assert len(list(odd["pipe"].parent.iterdir())) == len(odd)
+
+
+def _checked(path: Path) -> object:
+    check_writable(path)
+    return atomic_path(path)
+
+
+def test_no_command_replaces_what_is_no_file(odd: dict[str, Path], invoke: Invoke) -> None:
+    before = kinds(odd)
+    for kind, path in odd.items():
+        scene = path.with_suffix(".yaml")
+        scene.symlink_to(path)
+        for arguments in (
+            ["export", "main_bearing_bonded", "--out", str(path), "--overwrite"],
+            [
+                "export",
+                "main_bearing_bonded",
+                "--format",
+                "json",
+                "--out",
+                str(path),
+                "--overwrite",
+            ],
+            ["run", "nafems_le10", "--quick", "--junit", str(path)],
+            ["new", str(scene), "--overwrite"],
+            ["validate", str(scene), "--new", "--overwrite"],
+        ):
+            code, _, error = invoke(*arguments)
+            assert code == 2, (kind, arguments)
+            assert "Traceback" not in error
+            assert len(error.splitlines()) == 1, error
+    assert kinds(odd) == before
+
+
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="there is no /proc")
+def test_a_folder_that_takes_no_file_is_one_sentence(tmp_path: Path, invoke: Invoke) -> None:
+    for out in ("/proc/x.json", str(tmp_path / "none" / "x.json"), "/proc/self/x.json"):
+        code, _, error = invoke("export", "main_bearing_bonded", "--format", "json", "--out", out)
+        assert code == 2
+        assert len(error.splitlines()) == 1
+        assert out in error
+    code, _, error = invoke("check", "main_bearing_bonded", "--out", "/proc/x")
+    assert code == 2
+    assert "cannot write to /proc" in error
+    code, _, error = invoke("run", "nafems_le10", "--quick", "--junit", "/proc/x.xml")
+    assert (code, len(error.splitlines())) == (2, 1)
+
+
+def test_a_folder_that_goes_between_check_and_write_is_one_sentence(tmp_path: Path) -> None:
+    folder = tmp_path / "gone"
+    for moment in ("before", "while", "after"):
+        folder.mkdir()
+        check_writable(folder / "x.json")
+        if moment == "before":
+            folder.rmdir()
+        with pytest.raises(InputError, match=r"cannot write .*x\.json.*No such file"):
+            _written(folder / "x.json", moment)
+    assert list(tmp_path.iterdir()) == []
+
+
+def _written(path: Path, moment: str) -> None:
+    with atomic_path(path) as unfinished:
+        if moment == "after":
+            unfinished.write_text("x")
+        unfinished.unlink()
+        path.parent.rmdir()
+        if moment == "while":
+            unfinished.write_text("x")
+
+
+def test_a_link_to_a_file_stays_and_the_file_keeps_its_mode(tmp_path: Path) -> None:
+    file, link = tmp_path / "file", tmp_path / "link"
+    file.write_text("old")
+    file.chmod(0o600)
+    link.symlink_to(file)
+    with atomic_path(link) as unfinished:
+        unfinished.write_text("new")
+    assert link.is_symlink()
+    assert file.read_text() == "new"
+    assert stat.S_IMODE(file.stat().st_mode) == 0o600
+    assert sorted(os.listdir(tmp_path)) == ["file", "link"]
+
+
+def test_a_cache_goes_on_where_something_else_is_in_the_way(tmp_path: Path) -> None:
+    cache = Cache(tmp_path)
+    cache.keep("meshes", {"a": 1}, {})
+    (file,) = tmp_path.rglob("*.npz")
+    file.unlink()
+    file.mkdir()
+    cache.keep("meshes", {"a": 1}, {})
+    assert cache.load("meshes", {"a": 1}) is None
+    assert file.is_dir()
+
+
+def test_junit_replaces_a_file_of_its_own_alone(tmp_path: Path, invoke: Invoke) -> None:
+    thesis, own, empty = tmp_path / "thesis.txt", tmp_path / "own.xml", tmp_path / "empty.xml"
+    thesis.write_text("years of work")
+    own.write_text("<?xml version='1.0' encoding='utf-8'?>\n<testsuites name=\"fe-drivetrain\" />")
+    empty.touch()
+    code, _, error = invoke("run", "nowhere", "--junit", str(thesis))
+    assert code == 2
+    assert "no JUnit file of fe-drivetrain" in error
+    assert thesis.read_text() == "years of work"
+    for path in (own, empty):
+        code, _, error = invoke("run", "nowhere", "--junit", str(path))
+        assert "is unknown" in error
+
+
+# --- scratch folders ------------------------------------------------------------------------------
+
+KILLED = """
+import os, sys
+from pathlib import Path
+from fe_drivetrain.common.files import scratch_folder
+with scratch_folder(Path(sys.argv[1])) as folder:
+    (folder / "x").write_text("x")
+    os.kill(os.getpid(), 9)
+"""
+
+
+@pytest.mark.skipif(files.fcntl is None, reason="nothing can be locked here")
+def test_scratch_folders_of_killed_runs_go_and_nothing_else_does(tmp_path: Path) -> None:
+    names = ["fe-drivetrain-scratch-mine", "fe-drivetrain-scratch-abcd_12", "tmpabcd1234"]
+    for name in names:
+        (tmp_path / name).mkdir()
+    (tmp_path / "fe-drivetrain-scratch-abcd1234").symlink_to(names[2], target_is_directory=True)
+    for _ in range(2):
+        done = subprocess.run([sys.executable, "-c", KILLED, str(tmp_path)], check=False)
+        assert done.returncode == -9
+        # each removes what the one before has left
+        assert len(os.listdir(tmp_path)) == 5
+    with scratch_folder(tmp_path) as live:
+        assert len(os.listdir(tmp_path)) == 5
+        with scratch_folder(tmp_path) as other:
+            assert live.is_dir()
+            assert other != live
+    assert sorted(os.listdir(tmp_path)) == sorted([*names, "fe-drivetrain-scratch-abcd1234"])
+
+
+# --- cells of tables ------------------------------------------------------------------------------
+
+FORMULAS = ["=1+1", "+cmd", "-cmd", "@SUM(A1)", "\t=1", "\r=1", " =1+1", "-", "--1", '="a"']
+PLAIN = [
+    "Fx [kN]",
+    "a\r\n=b",
+    "a=b",
+    "it's",
+    "'",
+    "",
+    "-1.5",
+    "+2e-3",
+    "-inf",
+    "nan",
+    "a,b",
+    'say "x"',
+]
+
+
+def test_a_cell_that_begins_as_a_formula_is_text_and_numbers_stay_numbers() -> None:
+    file = io.StringIO()
+    SafeWriter(file).writerows([FORMULAS, PLAIN, [-1.5, None, True, 3]])
+    formulas, plain, others = csv.reader(io.StringIO(file.getvalue(), newline=""))
+    for given, written in zip(FORMULAS, formulas, strict=True):
+        assert written == f"'{given}"
+        assert cell_as_given(written) == given
+    assert plain == PLAIN
+    assert others == ["-1.5", "", "True", "3"]
+    assert [cell_as_given(cell) for cell in plain] == PLAIN
+    assert table_row(["-a", "b,c"]) == '\'-a,"b,c"'
+
+
+def test_statements_above_a_table_begin_no_formula() -> None:
+    line = comment_line("file = a,=1+1\n=2,-3.5,@x")
+    assert line == "# file = a,'=1+1 =2,-3.5,'@x"
+    assert comment_as_given(line[1:]).strip() == "file = a,=1+1 =2,-3.5,@x"
+    assert all(not cell.lstrip().startswith(("=", "@")) for cell in line.split(","))
+
+
+def test_loads_of_evil_names_are_read_back(tmp_path: Path) -> None:
+    import numpy as np
+
+    time = np.arange(4) * 0.5
+    history = LoadHistory("x", time, np.full((4, 6), -2.5), {"file": "=cmd,+b", "n": "-1.5"})
+    path = tmp_path / "x.csv"
+    write_csv(history, path, {"=HYPERLINK(1) [m]": time})
+    text = path.read_text()
+    for line in text.splitlines():
+        for cell in next(csv.reader([line])):
+            assert not cell.startswith(("=", "@", "+"))
+            assert not cell.startswith("-") or float(cell) < 0
+    again = read_csv(path)
+    assert again.attributes["file"] == "=cmd,+b"
+    np.testing.assert_array_equal(again.loads, history.loads)
+    assert "=HYPERLINK(1) [m]" in again.unread
+
+
+def test_every_writer_of_tables_is_this_one() -> None:
+    """Where a module writes CSV otherwise, its cells are not looked at."""
+    root = Path(files.__file__).parents[1]
+    found = [
+        path.name
+        for folder in (root, root.parent / "cases", root.parent / "geometry")
+        for path in folder.rglob("*.py")
+        if "csv.writer(" in path.read_text("utf-8") or "csv.DictWriter(" in path.read_text("utf-8")
     ]
-    page = Page()
-    page.sweep("sweep", rows, "x", {"a": "first", "b": "second"}, by="part", axis="y [-]")
-    figure = page.sections[0].items[0].figure  # type: ignore[union-attr]
-    curves = {curve["name"]: (curve["x"], curve["y"]) for curve in figure["data"]}
-    # a record without a value has no point
-    assert curves == {
-        f"{part}, {name}": points
-        for part in ("one", "two")
-        for name, points in (("first", ([1, 2], [1, 2])), ("second", ([1], [2])))
-    }
-    assert figure["layout"]["yaxis"]["title"]["text"] == "y [-]"
-    assert page.figures["sweep"] == rows
+    assert found == []
 
 
-def test_bars_on_a_logarithmic_axis_end_at_the_least_that_is_shown() -> None:
-    found = bars("errors", {"small": {"a": 0.0, "b": 1e-3}}, "error", least=1e-6).figure
-    (of,) = found["data"]
-    assert dict(zip(of["y"], of["x"], strict=True)) == {"a": 1e-6, "b": 1e-3}
-    assert found["layout"]["xaxis"]["type"] == "log"
-
-
-def a_series() -> MeshSeries:
-    return MeshSeries([{"n": n, "sag [mm]": 1.0 - n**-2.0, "gap": n**-2.0} for n in (1, 2, 4)], "n")
-
-
-def test_a_target_of_zero_is_a_check_that_something_vanishes() -> None:
-    page = Page()
-    page.meets(1e-9, Target("gap", 0.0, 1e-8, "round-off", "theory"), of="ring")
-    verdict = page.verdicts[0]
-    assert (verdict.check, verdict.quantity, verdict.measure) == (
-        "vanishes",
-        "ring: gap",
-        "identity",
-    )
-    assert verdict.passed
-    assert not verdict.relative
-
-
-def test_what_is_allowed_goes_by_the_first_words_that_stand_in_a_key() -> None:
-    values = {"hoop stress [MPa]": 3.0, "pressure [MPa]": 2.0}
-    hoop, pressure = targets_of(
-        values, {"stress": (0.1, "recovered"), "": (0.01, "fourth order")}, "Lame"
-    )
-    assert hoop == Target("hoop stress [MPa]", 3.0, 0.1, "recovered", "Lame")
-    assert pressure == Target("pressure [MPa]", 2.0, 0.01, "fourth order", "Lame")
-    with pytest.raises(ValueError, match=r"'pressure \[MPa\]' has none of the words 'stress'"):
-        targets_of(values, {"stress": (0.1, "recovered")}, "Lame")
-
-
-def test_what_is_allowed_of_an_order_is_of_the_order_itself() -> None:
-    page = Page()
-    for found in (3.6, 4.4, 3.4):
-        page.meets(found, order_of("order", 4.0, 0.5, "coarse meshes", "theory"))
-    assert [verdict.passed for verdict in page.verdicts] == [True, True, False]
-    assert {verdict.measure for verdict in page.verdicts} == {"order"}
-
-
-def test_a_target_keeps_what_its_value_rests_on() -> None:
-    page = Page()
-    page.meets(1.0, Target("gap", 1.0, 0.1, "digits", "a program", basis="second-hand"))
-    assert page.verdicts[0].basis == "second-hand"
-
-
-def test_the_band_is_of_all_meshes_or_the_change_from_the_one_before() -> None:
-    page, series = Page(), a_series()
-    sag = Target("sag [mm]", 1.0, 0.1, "mesh", "theory", order=2.0)
-    page.finest(series, sag, of="shaft")
-    page.settled(series, sag, of="shaft")
-    by_order, by_change = page.verdicts
-    assert by_order.quantity == by_change.quantity == "shaft: sag"
-    # a quarter of the last change is left, and 1.25 of that is the band (Roache 1994)
-    assert by_change.band == pytest.approx(3 / 16)
-    assert by_order.band == pytest.approx(1.25 * (3 / 16) / 3)
-
-
-def test_a_series_of_meshes_shows_its_order() -> None:
-    assert a_series().order("sag [mm]") == pytest.approx(2.0)
-
-
-def test_of_two_meshes_the_band_is_three_times_what_is_missing() -> None:
-    assert band_of([1.0, 0.5], [0.0, 0.75], order=2.0) == pytest.approx(3 * 0.25)
-
-
-def test_a_chart_without_points_is_a_sentence() -> None:
-    page = Page()
-    page.chart("Mass of all", [trace("none", [], [])], "x", "y")
-    assert page.sections[0].items[0].kind == "text"
-
-
-@pytest.mark.parametrize(
-    ("measured", "bound", "reached"),
-    [
-        (1.0, {"most": 1.0}, "yes"),
-        (1.1, {"most": 1.0}, "no"),
-        (1.1, {"least": 1.0}, "yes"),
-        (0.9, {"least": 1.0}, "no"),
-        (float("nan"), {"most": 1.0}, "no"),
-        (None, {"least": 1.0}, "no"),
-    ],
-)
-def test_a_goal_is_reached_at_its_bound_and_never_unmeasured(
-    measured: float | None, bound: dict[str, float], reached: str
-) -> None:
-    assert goal("time [s]", measured, **bound)["reached"] == reached
-
-
-def test_a_goal_has_one_bound() -> None:
-    with pytest.raises(TypeError, match="either most or least"):
-        goal("time [s]", 1.0, most=1.0, least=0.5)
+def test_a_safe_cell_is_safe_again() -> None:
+    for cell in FORMULAS + PLAIN:
+        assert safe_cell(safe_cell(cell)) == safe_cell(cell)

@@ -1,5 +1,7 @@
 """Time integration: printed tables, exact transients, energy, contact, and SciPy's integrators."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -29,7 +31,7 @@ from fe_drivetrain.dynamics.integration import (
 )
 from fe_drivetrain.dynamics.steady_state import free_motions, restoring, waves_at, wind_up
 from fe_drivetrain.dynamics.step_control import integrate_adaptively
-from fe_drivetrain.dynamics.superposition import exact_steps, modal_superposition
+from fe_drivetrain.dynamics.superposition import energy_error, exact_steps, modal_superposition
 
 
 def started(q: list[float], velocity: list[float], time: float = 0.0) -> State:
@@ -155,6 +157,23 @@ def test_modal_superposition_of_what_turns_freely() -> None:
     assert_allclose(found.q @ [2.0, 1.0] / 3.0, 0.5 * t**2, atol=1e-12)
     twist = found.q[:, 0] - found.q[:, 1]
     assert_allclose(twist, (1.0 / 6.0) * (1.0 - np.cos(omega * t)), atol=1e-12)
+
+
+def test_the_energy_of_a_history_closes_with_the_fourth_power_of_its_records() -> None:
+    """With dampers, gyroscopic terms, a dense stiffness, and springs with offsets."""
+    whole, loads = frame()
+    lost = []
+    for dt in (0.01, 0.005):
+        t, q, v = exact_steps(whole, loads, 2.0, dt)
+        lost.append(energy_error(whole, loads, t, q, v))
+    assert lost[0] / lost[1] == pytest.approx(16.0, rel=0.1)
+    assert lost[1] < 1e-4
+    # a history that is not of these loads, or not of this damping, does not close
+    twice = Loads(2.0 * loads.patterns, loads.times, loads.histories)
+    assert energy_error(whole, twice, t, q, v) > 0.1
+    stiffer = replace(whole, springs=replace(whole.springs, damping=2.0 * whole.springs.damping))
+    assert energy_error(stiffer, loads, t, q, v) > 0.01
+    assert energy_error(replace(whole, extra=2.0 * whole.extra), loads, t, q, v) > 0.01
 
 
 def test_superposition_refuses_laws() -> None:

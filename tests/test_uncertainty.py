@@ -173,6 +173,7 @@ def test_a_sample_that_is_no_scene_names_what_is_wrong() -> None:
         coarse_scene("spherical"),
         {
             "shaft.sections.0.inner_diameter": 0.3,
+            "mesh.shaft": 0.14,
             "uncertainty": {"shaft.sections.0.inner_diameter": {"uniform": 0.9}},
         },
     )
@@ -180,6 +181,20 @@ def test_a_sample_that_is_no_scene_names_what_is_wrong() -> None:
         InputError, match=r"within its uncertainty gives no valid scene: .*inner_di"
     ):
         sample(scene, torsion)
+
+
+def test_a_sample_whose_wall_is_thinner_than_the_mesh_allows_has_a_finer_mesh() -> None:
+    scene = change_scene(
+        coarse_scene("spherical"),
+        {"shaft.sections.0.inner_diameter": 0.3, "mesh.shaft": 0.15},
+    )
+    sizes = [
+        with_values(scene, {"shaft.sections.0.inner_diameter": bore}).mesh.shaft
+        for bore in (0.29, 0.32)
+    ]
+    assert sizes == [0.15, 0.075]
+    with pytest.raises(InputError, match=r"mesh size 'shaft' is 0\.15 m"):
+        with_values(scene, {"shaft.sections.0.inner_diameter": 0.399})
 
 
 def test_shares_of_any_function_are_those_of_ishigami() -> None:

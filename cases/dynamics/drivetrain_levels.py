@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import InputError
 from fe_drivetrain.dynamics import (
     QUESTIONS,
     RUNGS,
@@ -51,10 +50,10 @@ FIRST = "first torsional frequency [Hz]"
     "Levels of one drivetrain: torsional, rigid bodies, flexible shafts",
     source="Al-Hamadani 2018, chapters 4 and 5; Nejad et al. 2016 for the 5 MW gearbox",
     settings={
-        "machine": "nrel_5mw, nrel_750kw and synthetic_2mw, or FILE",
-        "torque": "rated (of the rotor of a machine of one's own, kN m)",
-        "moment": "0 (about y at its hub, kN m)",
-        "speed": "rated (of its rotor, rpm)",
+        "machine": "FILE, or a name of the library (otherwise three of these)",
+        "torque": "NUMBER (kN m, of the rotor of a machine of one's own)",
+        "moment": "NUMBER (kN m, about y at its hub)",
+        "speed": "NUMBER (rpm, of its rotor)",
     },
 )
 def run(run: Run, page: Page) -> None:
@@ -92,7 +91,7 @@ def run(run: Run, page: Page) -> None:
             "difference [%]",
             ("x", "y"),
         )
-        for question in QUESTIONS:
+        for question in (q for q in QUESTIONS if answers[-1].values[q] is not None):
             level = needed_level(answers, question, TOLERANCE)
             needed.append({"drivetrain": name, "question": question, "level": level})
         first = [float(a.values[FIRST] or 0.0) for a in answers]
@@ -103,7 +102,7 @@ def run(run: Run, page: Page) -> None:
             source="Rayleigh's principle of constraints",
         )
         show_modes(page, machine)
-        show_turning(page, name, machine, RPM.get(name) or number(run, "speed"))
+        show_turning(page, name, machine, RPM.get(name) or run.positive("speed"))
         if name == "nrel_5mw":
             stiffness_of_5mw(page)
         if name == "synthetic_2mw":
@@ -128,7 +127,8 @@ def run(run: Run, page: Page) -> None:
         f"{needed[0]['drivetrain']}, within 5 % of the finest level: "
         + "; ".join(
             f"{str(row['question']).partition(' [')[0]}: {row['level']}"
-            for row in needed[: len(QUESTIONS)]
+            for row in needed
+            if row["drivetrain"] == needed[0]["drivetrain"]
         )
         + ".",
     )
@@ -141,16 +141,7 @@ def operations(run: Run) -> dict[str, Operation]:
     name = str(run.settings["machine"])
     if name in OPERATIONS:
         return {name: OPERATIONS[name]}
-    moment = number(run, "moment") if "moment" in run.settings else 0.0
-    return {name: Operation(1e3 * number(run, "torque"), 1e3 * moment)}
-
-
-def number(run: Run, key: str) -> float:
-    """A value of operation of a machine of one's own."""
-    value = run.settings.get(key)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
-        raise InputError(f"a machine of one's own needs {key}, a number, as in --set {key}=20")
-    return float(value)
+    return {name: Operation(1e3 * run.positive("torque"), 1e3 * run.positive("moment"))}
 
 
 def error_curves(answers: Sequence[Answer]) -> list[dict[str, Any]]:

@@ -1,15 +1,42 @@
 """Parametric resonance: one mesh whose stiffness varies, against Mathieu's equation."""
 
+from functools import partial
+
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.compare import InTime, converge_in_time
+from fe_drivetrain.dynamics import (
+    State,
+    equations_of_motion,
+    fourier_wave,
+    integrate,
+    spring_laws,
+    steady,
+)
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.suite import Page, Run, check_in_time
 from fe_drivetrain.validation.mathieu import exact_growth, stepped_growth
 
 DEPTHS = (0.02, 0.05, 0.1, 0.2)
 STEPS = 128
 """Steps in a period of the mesh."""
+
+
+GROWTH = "growth [1/s]"
+
+
+def growth_in_time(depth: float, step: float, _: int) -> InTime:
+    """Rate of growth of Mathieu's equation, and the error of the energy over ten periods."""
+    period = 2.0 * np.pi / 2.0
+    wave = fourier_wave([depth], [0.0])
+    one = equations_of_motion(
+        [1.0], spring_laws([[1.0]], 1.0, wave=0, frequency=1.0 / period, waves=[wave])
+    )
+    start = State(np.ones(1), np.zeros(1), np.zeros(1))
+    motion = integrate(one, steady([0.0]), 10.0 * period, step, start=start)
+    growth = stepped_growth(depth, 2.0, round(period / step))
+    return InTime({GROWTH: growth}, motion.relative_imbalance, motion.converged)
 
 
 @case(
@@ -49,6 +76,16 @@ def run(run: Run, page: Page) -> None:
         source="averaging, first order in the depth",
     )
     depth = 0.1
+    page.section("Over the step")
+    series = converge_in_time(partial(growth_in_time, depth), 2.0 * np.pi / 2.0 / STEPS)
+    check_in_time(
+        page,
+        f"depth {depth}, twice the natural frequency",
+        series,
+        {GROWTH: 1e-2},
+        energy=1e-2,
+        why="what the clock of the stiffness puts in, by trapezia over the step",
+    )
     at = np.linspace(1.9, 2.1, 10 if run.quick else 40)
     with run.step("tongue"):
         ours = np.array([stepped_growth(depth, float(W), STEPS) for W in at])

@@ -97,7 +97,7 @@ def run(run: Run, page: Page) -> None:
         seconds, dt = (1.0, 1.25e-4) if run.quick else (8.0, 6.25e-5)
         lines = spectra(page, flat, space, dt, seconds)
     with run.step("eccentricity and nacelle"):
-        seconds, dt = (0.75, 1.25e-4) if run.quick else (8.0, 6.25e-5)
+        seconds, dt = (0.75, 1.25e-4) if run.quick else (8.0, 1.25e-4)
         changes = eccentric(page, space, dt, seconds, run.quick)
     nacelle = changes[PUSHED]
     largest = max((name for name in changes if name != PUSHED), key=lambda name: changes[name])

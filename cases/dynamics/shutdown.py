@@ -1,5 +1,7 @@
 """Four drivetrains that are stopped: blades pitched, generator off, disc brake, standstill."""
 
+from typing import Any
+
 import numpy as np
 
 from fe_drivetrain.cases import case
@@ -195,7 +197,7 @@ def check_stops(page: Page, stopped: list[Stopped], dt: float) -> None:
 def check_losses(page: Page, dt: float) -> list[Record]:
     """Least torque of two masses against the closed form, and of all gears."""
     when = StopSequence(off=0.2, pitched=1e3, left=1.0, end=1.2)
-    kinds = {
+    kinds: dict[str, dict[str, Any]] = {
         "two masses, undamped": {"lumped": True, "ratios": (0.0, 0.0)},
         "two masses, damped": {"lumped": True},
         "all gears, HSS": {},
@@ -205,7 +207,7 @@ def check_losses(page: Page, dt: float) -> list[Record]:
         values, lost = {}, 0.0
         for one in drivetrains():
             for kind, given in kinds.items():
-                found = stopped_by(one, 0.0, when, step, **given)  # type: ignore[arg-type]
+                found = stopped_by(one, 0.0, when, step, **given)
                 torque = found.ratio("shafts" if "lumped" in given else "HSS")
                 values[f"{one.letter}, {kind}: least over rated"] = -peak_between(-torque)
                 lost = max(lost, found.transient.motion.relative_imbalance)

@@ -4,7 +4,9 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import ConvergenceInTime, InTime, converge_in_time, peak_between
 from fe_drivetrain.dynamics import (
+    Motion,
     State,
     equations_of_motion,
     error_of_slices,
@@ -25,12 +27,14 @@ from fe_drivetrain.gear import (
     transmission_error,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.suite import Page, Run, check_in_time
 
 MASS, ZETA, TORQUE = 3.0, 0.08, 2000.0  # kg on the line of action, of critical, N m
 RELIEFS = (0.0, 30e-6)  # at the tips, over all of the double contact
-STEPS = 256
+STEPS = 1024
 """Steps in a period of the mesh."""
+PHASES = 1024
+"""At which balanced harmonics are added up."""
 
 
 @case(
@@ -46,14 +50,23 @@ def run(run: Run, page: Page) -> None:
         name = f"tip relief {1e6 * relief:g} µm"
         found = error_of_teeth(relief)
         with run.step(name):
-            ripple = np.array([dynamic_ripple(found, float(r)) for r in at])
+            series = converged_ripples(found, at)
+            ripple = np.array(list(series.finest.values.values()))
+        check_in_time(
+            page,
+            f"{name}, in time",
+            series,
+            dict.fromkeys(series.finest.values, 0.05),
+            energy=1e-2,
+            why="generalised alpha takes energy out of what the jumps of stiffness excite",
+        )
         linear = linear_ripple(found, at)
         exact = np.array([balanced_ripple(found, float(r)) for r in at])
         page.vanishes(
             f"{name}: largest difference of the ripple in time from that of balanced harmonics",
             float(np.abs(ripple / exact - 1).max()),
             within=0.02,
-            why="256 steps in a period damp and delay the harmonics of the jumps of stiffness",
+            why=f"{STEPS} steps in a period damp and delay the harmonics of the jumps of stiffness",
             source="harmonic balance of the same equation, 60 harmonics",
             measure="deflection",
         )
@@ -123,8 +136,28 @@ def error_of_teeth(relief: float) -> TransmissionError:
     return transmission_error(mesh, TORQUE, phases=128)
 
 
-def dynamic_ripple(found: TransmissionError, ratio: float) -> float:
-    """Of the mesh at a mesh frequency over the natural one, after the start has died away [m]."""
+def converged_ripples(found: TransmissionError, at: Floats) -> ConvergenceInTime:
+    """Ripples over the mesh frequency, with ever more steps in a period."""
+
+    def run(share: float, _: int) -> InTime:
+        motions = {float(r): steady_mesh(found, float(r), round(STEPS / share)) for r in at}
+        values = {
+            f"{ratio:.3g} of the natural frequency: ripple [m]": peak_to_peak(motion, STEPS / share)
+            for ratio, motion in motions.items()
+        }
+        return InTime(values, max(motion.relative_imbalance for motion in motions.values()))
+
+    return converge_in_time(run, 1.0)
+
+
+def peak_to_peak(motion: Motion, steps: float) -> float:
+    """Of the last period [m]."""
+    last = motion.q[-round(steps) :, 0]
+    return peak_between(last) + peak_between(-last)
+
+
+def steady_mesh(found: TransmissionError, ratio: float, steps: int) -> Motion:
+    """The mesh at a mesh frequency over the natural one, until the start has died away."""
     k = found.stiffness.mean
     own = np.sqrt(k / MASS) / (2 * np.pi)
     f = ratio * own
@@ -140,15 +173,14 @@ def dynamic_ripple(found: TransmissionError, ratio: float) -> float:
     )
     still = State(np.array([found.force / k]), np.zeros(1), np.zeros(1))
     periods = max(3, int(np.ceil(ratio * 12.0 / (2 * np.pi * ZETA))))
-    motion = integrate(
+    return integrate(
         equations_of_motion([MASS], springs),
         steady([found.force]),
         periods / f,
-        1 / f / STEPS,
+        1 / f / steps,
         generalised_alpha(0.9),
         still,
     )
-    return float(np.ptp(motion.q[-STEPS:, 0]))
 
 
 def linear_ripple(found: TransmissionError, at: Floats) -> Floats:
@@ -178,5 +210,6 @@ def balanced_ripple(found: TransmissionError, ratio: float, orders: int = 60) ->
     right = right + damper * (np.fft.fft(error) / len(k))[np.arange(-orders, orders + 1)]
     right[orders] += found.force
     x = np.linalg.solve(K, right)
-    turned = np.exp(2j * np.pi * np.outer(np.arange(STEPS) / STEPS, np.arange(-orders, orders + 1)))
+    phases = np.arange(PHASES) / PHASES
+    turned = np.exp(2j * np.pi * np.outer(phases, np.arange(-orders, orders + 1)))
     return float(np.ptp((turned @ x).real))

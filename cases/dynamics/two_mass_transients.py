@@ -5,12 +5,14 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.dynamics.drivetrains import drivetrains
 from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import InTime, converge_in_time, peak_between
 from fe_drivetrain.dynamics import (
     AVERAGE,
     Brake,
     Phase,
     Scheme,
     State,
+    Transient,
     equations_of_motion,
     generalised_alpha,
     integrate,
@@ -20,11 +22,13 @@ from fe_drivetrain.dynamics import (
     wind_up,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.suite import Page, Record, Run, check_in_time
 from fe_drivetrain.torsion import two_masses
 
 PER_PERIOD = (20, 40, 80, 160)
 QUICK = (20, 40)
+BRAKE = 1.2
+"""Friction of the brake over rated torque."""
 
 
 @case(
@@ -73,7 +77,7 @@ def transients(
     )
     mean = J[1] / J.sum()
     exact = torque * (mean + (1.0 - mean) * np.cos(omega * loss.times))
-    braked = integrate(shaft, steady([0.0, -torque]), period, dt, scheme)
+    wound = integrate(shaft, steady([0.0, -torque]), period, dt, scheme)
     share = J[0] / J.sum()
     row: Record = {
         "drivetrain": letter,
@@ -84,7 +88,10 @@ def transients(
         "closed form": float((J[1] - J[0]) / J.sum()),
         "error of the torque, loss [%]": 100.0
         * float(np.abs(loss.forces[:, 0] - exact).max() / torque),
-        "peak by the brake over its mean": float(braked.forces.max() / (share * torque)),
+        "peak by the brake over its mean": float(wound.forces.max() / (share * torque)),
+        "energy from nowhere over the largest": max(
+            loss.relative_imbalance, wound.relative_imbalance
+        ),
         "momentum, relative error": float(
             np.abs(loss.velocity @ J - torque * loss.times).max() / (torque * loss.times[-1])
         ),
@@ -99,6 +106,13 @@ def transients(
             source="T (J2 + J1 cos w t) / (J1 + J2)",
         )
         page.vanishes(
+            f"drivetrain {letter}, {steps} steps a period: energy from nowhere over the largest",
+            row["energy from nowhere over the largest"],
+            within=1e-9,
+            why="average acceleration conserves the energy of a linear system, to round-off",
+            source="work of the torques is kinetic and strain energy",
+        )
+        page.vanishes(
             f"drivetrain {letter}, {steps} steps a period: momentum about the free axis",
             row["momentum, relative error"],
             within=1e-9,
@@ -108,23 +122,54 @@ def transients(
     return row
 
 
-def show(page: Page) -> None:
+def braked(dt: float) -> Transient:
     """Drivetrain D with a brake that slips, sticks and lets go."""
     one = drivetrains()[3]
     system = two_masses(one.table, "free")
     J, k = system.J, float(system.k[0])
     shaft = equations_of_motion(J, spring_laws([[1.0, -1.0]], k))
     disc = np.array([0.0, 1.0])
-    brake = Brake(disc, 1.2 * one.torque, 0.5)
+    brake = Brake(disc, BRAKE * one.torque, 0.5)
     speed = np.full(2, one.speed)
     zero = np.zeros(2)
-    found = transient([Phase(16.0, shaft, steady(zero), brake)], 2e-3, State(zero, speed, zero))
+    return transient([Phase(16.0, shaft, steady(zero), brake)], dt, State(zero, speed, zero))
+
+
+def of_brake(dt: float, _: int) -> InTime:
+    """Torques over rated, and when the disc stops."""
+    found, rated = braked(dt), drivetrains()[3].torque
+    shaft = found.motion.forces[:, 0] / rated
+    stops = found.events[0][0]
+    values = {
+        "largest torque of the shaft over rated": peak_between(shaft[found.motion.times < stops]),
+        "least torque of the shaft over rated": -peak_between(-shaft),
+        "disc stops after [s]": stops,
+    }
+    return InTime(values, found.motion.relative_imbalance)
+
+
+def show(page: Page) -> None:
+    """Checks and charts of the brake."""
+    one = drivetrains()[3]
+    system = two_masses(one.table, "free")
+    J, k = system.J, float(system.k[0])
+    series = converge_in_time(of_brake, 2e-3)
+    page.section("A brake that slips, sticks and lets go")
+    check_in_time(
+        page,
+        "drivetrain D, brake of 1.2 rated",
+        series,
+        dict.fromkeys(series.finest.values, 1e-2),
+        energy=1e-9,
+        why="average acceleration conserves the energy of a linear system, and events end steps",
+    )
+    found = braked(2e-3)
     motion = found.motion
     slipping = (motion.times > 0.5) & (motion.times < found.events[0][0])
     page.equals(
         "drivetrain D, brake of 1.2 rated: largest torque of the shaft over rated",
         float(motion.forces[slipping].max() / one.torque),
-        2.0 * 1.2 * J[0] / J.sum(),
+        2.0 * BRAKE * J[0] / J.sum(),
         within=1e-3,
         why="a highest point between two steps",
         source="twice the mean T_b J1 / (J1 + J2)",
@@ -138,7 +183,7 @@ def show(page: Page) -> None:
     )
     page.at_most(
         "drivetrain D: largest torque of the brake over its friction",
-        float(np.abs(found.brake).max() / brake.torque),
+        float(np.abs(found.brake).max() / (BRAKE * one.torque)),
         1.0 + 1e-7,
         why="the instant of slipping is found to a billionth of a step",
         source="dry friction",
@@ -155,7 +200,6 @@ def show(page: Page) -> None:
         why="crossings are found to a step",
         source="sqrt(k / J1) / 2 pi",
     )
-    page.section("A brake that slips, sticks and lets go")
     page.chart(
         "Drivetrain D as two masses: "
         + ", ".join(f"{what} at {when:.3f} s" for when, what in found.events),

@@ -28,13 +28,13 @@ def run(run: Run, page: Page) -> None:
         ) from error
     rows: list[Record] = []
     elements = samples(run)
-    with run.step("write and read"), scratch_folder() as name:
+    with run.step("write and read"), scratch_folder() as folder:
         for label, element in elements.items():
             written = matrices(element)
             for format, library, kinds, read in READERS:
                 if not written.keys() & set(kinds):
                     continue
-                path = name / f"{element.name}_{format}{export.FORMATS[format].suffix}"
+                path = folder / f"{element.name}_{format}{export.FORMATS[format].suffix}"
                 export.write(path, element, format)
                 rows += [
                     {

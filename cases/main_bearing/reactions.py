@@ -14,7 +14,7 @@ from fe_drivetrain.common import (
     InputError,
     SafeWriter,
     comment_line,
-    table_head,
+    table_row,
 )
 from fe_drivetrain.hub_loads import PointLoads
 from fe_drivetrain.response import Stated
@@ -115,7 +115,7 @@ def write_files(
                 delimiter=",",
                 fmt="%.9g",
                 header="\n".join(
-                    [*(comment_line(f"{f} = {v}") for f, v in facts.items()), table_head(columns)]
+                    [*(comment_line(f"{f} = {v}") for f, v in facts.items()), table_row(columns)]
                 ),
                 comments="",
                 encoding="utf-8",

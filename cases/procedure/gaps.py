@@ -6,7 +6,13 @@ from fe_drivetrain.beam import Beam, BeamSection, condensed_beam
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.procedure.assumed import PLACES
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import round_off
+from fe_drivetrain.compare import (
+    ConvergenceInTime,
+    InTime,
+    converge_in_time,
+    peak_between,
+    round_off,
+)
 from fe_drivetrain.dynamics import damped_by_ratio
 from fe_drivetrain.hub_loads import Condition, hub_loads
 from fe_drivetrain.procedure import (
@@ -19,6 +25,7 @@ from fe_drivetrain.procedure import (
     element_torques,
     imbalance,
     influence_of_offsets,
+    motions_energy_error,
     protest_catalogue,
     resonances,
     three_point_loads,
@@ -26,9 +33,10 @@ from fe_drivetrain.procedure import (
     write_load_json,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.suite import Page, Record, Run, check_in_time
 from fe_drivetrain.torsion import (
     GENERATOR,
+    Torsional,
     damped,
     gear_masses,
     gear_speeds,
@@ -46,6 +54,14 @@ SECOND = 1.2  # m, of a second main bearing
 TOLERANCE = 0.5e-3  # m
 BEARING, ARM, RATIO = 3e9, 1e8, 0.01  # N/m, N/m, of critical damping
 DIPS = [(depth, seconds) for depth in (0.2, 0.5, 0.8, 1.0) for seconds in (0.1, 0.15, 0.25, 0.5)]
+SHAPES = {
+    "one dip": Dip(0.2, 0.8, 0.15).table,
+    "slow recovery": TorqueTable((0.2, 0.21, 0.35, 1.7), (1.0, 0.2, 0.2, 1.0)),
+    "two dips": TorqueTable(
+        (0.2, 0.21, 0.35, 0.36, 0.6, 0.61, 0.75, 0.76), (1.0, 0.2, 0.2, 1.0, 1.0, 0.2, 0.2, 1.0)
+    ),
+}
+LARGEST, LEAST = "largest torque over that before", "least torque over that before"
 
 
 @case(
@@ -210,25 +226,20 @@ def dips(page: Page) -> None:
     inertia = float(front * rear / (front + rear))
     system = damped(free, {"shafts": shaft_damping(RATIO, inertia, float(free.k[0]))})
     frequency = float(natural_modes(system).frequencies[1])
-    step = 1.0 / (200.0 * frequency)
-    time = np.arange(0.0, 4.0, step)
-    rows: list[Record] = []
-    shown: dict[str, Floats] = {}
-    for depth, seconds in DIPS:
-        brake = Dip(0.2, depth, seconds).shares(time)
-        motions = driven_motions(system, np.stack([np.ones_like(time), -brake]), step)
-        torque = element_torques(system, motions)[0]
-        rows.append(
-            {
-                "depth": depth,
-                "duration [s]": seconds,
-                "largest torque / before": float(torque.max()),
-                "least torque / before": float(torque.min()),
-                "reversals": int(np.count_nonzero(np.diff(np.sign(torque)))),
-            }
-        )
-        if seconds == 0.15:
-            shown[f"depth {depth:g}"] = torque
+    page.section("Voltage dips")
+    found = converge_in_time(lambda h, _: dips_of(system, h)[0], 1.0 / (200.0 * frequency))
+    check_dips(page, "dip", found)
+    time, shown, reversals = dips_of(system, found.steps[-1])[1:]
+    rows: list[Record] = [
+        {
+            "depth": depth,
+            "duration [s]": seconds,
+            "largest torque / before": found.value(f"{depth:g} for {seconds:g} s: {LARGEST}"),
+            "least torque / before": found.value(f"{depth:g} for {seconds:g} s: {LEAST}"),
+            "reversals": reversals[depth, seconds],
+        }
+        for depth, seconds in DIPS
+    ]
     page.at_most(
         "largest torque of all dips, over that before",
         max(float(row["largest torque / before"]) for row in rows),
@@ -237,7 +248,6 @@ def dips(page: Page) -> None:
         source="an oscillator: 1 + 2 depth J_r / (J_r + J_g)",
         measure="reaction",
     )
-    page.section("Voltage dips")
     page.chart(
         "Torque of the low-speed shaft over that before, dips of 0.15 s",
         [trace(name, time[::4], torque[::4]) for name, torque in shown.items()],
@@ -259,56 +269,78 @@ def dips(page: Page) -> None:
     )
 
 
+def dips_of(
+    system: Torsional, step: float
+) -> tuple[InTime, Floats, dict[str, Floats], dict[tuple[float, float], int]]:
+    """Largest and least torque of each dip, and what is shown of them."""
+    time = np.asarray(np.arange(0.0, 4.0, step), dtype=np.float64)
+    values, lost, shown, reversals = {}, 0.0, {}, {}
+    for depth, seconds in DIPS:
+        brake = Dip(0.2, depth, seconds).shares(time)
+        torques = np.stack([np.ones_like(time), -brake])
+        motions = driven_motions(system, torques, step)
+        torque = element_torques(system, motions)[0]
+        values[f"{depth:g} for {seconds:g} s: {LARGEST}"] = peak_between(torque)
+        values[f"{depth:g} for {seconds:g} s: {LEAST}"] = -peak_between(-torque)
+        lost = max(lost, motions_energy_error(system, torques, motions))
+        reversals[depth, seconds] = int(np.count_nonzero(np.diff(np.sign(torque))))
+        if seconds == 0.15:
+            shown[f"depth {depth:g}"] = torque
+    return InTime(values, lost), time, shown, reversals
+
+
+def check_dips(page: Page, of: str, found: ConvergenceInTime) -> None:
+    """Energy and convergence of dips."""
+    check_in_time(
+        page,
+        of,
+        found,
+        dict.fromkeys(found.finest.values, 0.02),
+        energy=1e-4,
+        why="integrals of the fourth order of the step, over what the shaft takes up",
+        scale=dict.fromkeys(found.finest.values, 1.0),
+    )
+
+
 def tables(page: Page) -> None:
     """Dips of other shapes, by table, on all gears: largest and least torque of each element."""
     system = damped_by_ratio(
         gear_masses(TABLE, "free"), {e.name: RATIO for e in gear_masses(TABLE, "free").elements}
     )
-    step = 5e-4
-    time = np.arange(0.0, 3.0, step)
-    generator = system.place(GENERATOR)
-    shapes = {
-        "one dip": Dip(0.2, 0.8, 0.15).table,
-        "slow recovery": TorqueTable((0.2, 0.21, 0.35, 1.7), (1.0, 0.2, 0.2, 1.0)),
-        "two dips": TorqueTable(
-            (0.2, 0.21, 0.35, 0.36, 0.6, 0.61, 0.75, 0.76), (1.0, 0.2, 0.2, 1.0, 1.0, 0.2, 0.2, 1.0)
-        ),
-    }
-    rows: list[Record] = []
-    for name, table in shapes.items():
-        torques = np.zeros((len(system.names), len(time)))
-        torques[0] = 1.0
-        torques[generator] = -table.shares(time) / gear_speeds(TABLE)[GENERATOR]
-        motions = driven_motions(system, torques, step)
-        found = element_torques(system, motions)
-        shares = found / found[:, :1]
-        net = np.einsum("it,it->t", torques, motions.speed)
-        wound = system.B @ motions.angle
-        rates = system.B @ motions.speed
-        lost = np.array([e.damping for e in system.elements]) @ rates**2
-        energy = 0.5 * (system.J @ motions.speed**2 + system.k @ wound**2)
-        given = step * float((net - lost)[1:].sum() + (net - lost)[:-1].sum()) / 2.0
-        page.equals(
-            f"dip on all gears, {name}: energy in less losses, over the change of energy",
-            given / float(energy[-1] - energy[0]),
-            1.0,
-            within=1e-3,
-            why="trapezia over half a millisecond",
-            source="conservation of energy",
-            measure="energy",
-        )
-        rows += [
-            {
-                "table": name,
-                "element": element.name,
-                "largest torque / before": float(share.max()),
-                "least torque / before": float(share.min()),
-            }
-            for element, share in zip(system.elements, shares, strict=True)
-            if element.name.rpartition(" ")[2] not in ("2", "3")
-        ]
+    elements = [e.name for e in system.elements if e.name.rpartition(" ")[2] not in ("2", "3")]
+    found = converge_in_time(lambda h, _: shapes_of(system, elements, h), 2.5e-4)
+    check_dips(page, "dip on all gears", found)
+    rows: list[Record] = [
+        {
+            "table": name,
+            "element": element,
+            "largest torque / before": found.value(f"{name}, {element}: {LARGEST}"),
+            "least torque / before": found.value(f"{name}, {element}: {LEAST}"),
+        }
+        for name in SHAPES
+        for element in elements
+    ]
     page.table("Dips by table on all gears (one planet of each stage)", rows)
     page.data("dips by table", rows)
+
+
+def shapes_of(system: Torsional, elements: list[str], step: float) -> InTime:
+    """Ends of the torque of elements over that before, for dips of each shape."""
+    time = np.asarray(np.arange(0.0, 3.0, step), dtype=np.float64)
+    names = [e.name for e in system.elements]
+    values, lost = {}, 0.0
+    for name, table in SHAPES.items():
+        torques = np.zeros((len(system.names), len(time)))
+        torques[0] = 1.0
+        torques[system.place(GENERATOR)] = -table.shares(time) / gear_speeds(TABLE)[GENERATOR]
+        motions = driven_motions(system, torques, step)
+        found = element_torques(system, motions)
+        for element in elements:
+            share = found[names.index(element)] / found[names.index(element), 0]
+            values[f"{name}, {element}: {LARGEST}"] = peak_between(share)
+            values[f"{name}, {element}: {LEAST}"] = -peak_between(-share)
+        lost = max(lost, motions_energy_error(system, torques, motions))
+    return InTime(values, lost)
 
 
 def interfaces(run: Run, page: Page) -> None:

@@ -4,6 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import InTime, converge_in_time, peak_between
 from fe_drivetrain.histories import spectrum
 from fe_drivetrain.procedure import (
     Sensor,
@@ -19,6 +20,7 @@ from fe_drivetrain.procedure import (
     method_a,
     method_b,
     method_c,
+    motions_energy_error,
     periodic_motions,
     ratio_by_ranges,
     reduced_torque,
@@ -28,7 +30,7 @@ from fe_drivetrain.procedure import (
     timed_angle,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.suite import Page, Record, Run, check_in_time
 from fe_drivetrain.torsion import Inertia, chain, damped_modes
 
 FRONT, REAR, STIFFNESS, RATIO = 150.34, 24.0, 5296.0, 0.03  # kg m^2, N m/rad, of critical damping
@@ -425,13 +427,37 @@ def campaign(page: Page, seconds: float) -> list[Record]:
     return rows
 
 
+def stopped_twist(step: float) -> tuple[Floats, float]:
+    """Twist after torque is lost within 8 ms, and the error of the energy."""
+    time = np.arange(round(12.0 / step)) * step
+    torque: Floats = np.interp(time, [0.0, 1.0, 1.008], [MEAN, MEAN, 0.0])
+    torques = np.stack([torque, -torque])
+    motions = driven_motions(SYSTEM, torques, step)
+    lost = motions_energy_error(SYSTEM, torques, motions)
+    return np.asarray(motions.angle[0] - motions.angle[1]), lost
+
+
 def stop(page: Page) -> None:
     """Damping from the decay after a stop, frequency from the spectrum."""
     step = 0.002
-    time = np.arange(round(12.0 / step)) * step
-    torque: Floats = np.interp(time, [0.0, 1.0, 1.0 + step], [MEAN, MEAN, 0.0])
-    motions = driven_motions(SYSTEM, np.stack([torque, -torque]), step)
-    twist = motions.angle[0] - motions.angle[1]
+    twist, _ = stopped_twist(step)
+    time = np.arange(len(twist)) * step
+
+    def in_time(dt: float, _: int) -> InTime:
+        swing, lost = stopped_twist(dt)
+        late = swing[round(1.1 / dt) :] / swing[0]
+        return InTime({"swing of the twist over that before": peak_between(late)}, lost)
+
+    series = converge_in_time(in_time, step)
+    page.section("Stop in time")
+    check_in_time(
+        page,
+        "stop",
+        series,
+        dict.fromkeys(series.finest.values, 0.05),
+        energy=1e-3,
+        why="integrals of the fourth order of the step",
+    )
     decay = logarithmic_decrement(twist[round(1.05 / step) :], step, 12)
     mode = damped_modes(SYSTEM)
     page.equals(

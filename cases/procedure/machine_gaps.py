@@ -33,8 +33,8 @@ from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.torsion import GENERATOR, ROTOR, Torsional, natural_modes
 
 DEFAULT = "nrel_750kw"
-OPERATION = {"low": 21.9, "high": 22.3, "torque": 325.0}  # rpm, rpm, kN m of the default machine
-OFFSET, RATIO = 0.5, 0.01  # mm of a bearing, of critical damping
+RATIO = 0.01  # of critical damping
+RPM = 2.0 * np.pi / 60.0  # rad/s
 DEPTHS, SECONDS = (0.2, 0.5, 0.8, 1.0), (0.1, 0.15, 0.25, 0.5)  # of the torque, s
 MARGIN = "least margin of an excited frequency"
 FORCE = "largest force of misalignment on a bearing [kN]"
@@ -45,11 +45,11 @@ MOST, LEAST = "largest torque of the main shaft in a dip", "least torque of the 
     "What load cases leave out, of one machine: resonance, misalignment, voltage dips",
     source="PROTEST 2010, ECN-E--10-100, section 4.2 and appendix A",
     settings={
-        "machine": "nrel_750kw, or FILE",
-        "low": "21.9 (lowest speed of the rotor, rpm)",
-        "high": "22.3 (highest, rpm)",
-        "torque": "325 (of the rotor before a dip, kN m)",
-        "offset": "0.5 (of each bearing that holds a shaft, mm)",
+        "machine": "FILE, or a name of the library (otherwise nrel_750kw)",
+        "low": "21.9 (rpm, lowest speed of the rotor, to be given for another machine)",
+        "high": "22.3 (rpm, highest speed of the rotor, likewise)",
+        "torque": "325 (kN m, of the rotor before a dip, likewise)",
+        "offset": "0.5 (mm, of each bearing of rotor, generator or a shaft)",
     },
 )
 def run(run: Run, page: Page) -> None:
@@ -58,54 +58,45 @@ def run(run: Run, page: Page) -> None:
     machine = named_machine(name)
     page.about(machine, name)
     page.subject = machine.title
-    low, high, torque = (operation(run, name, key) for key in OPERATION)
+    if name != DEFAULT:
+        require_operation(run, name)
+    low, high = run.positive("low", 21.9), run.positive("high", 22.3)
+    torque, offset = run.positive("torque", 325.0), run.positive("offset", 0.5)
     with run.step("resonance"):
         resonance(page, machine, (low, high))
     with run.step("misalignment"):
-        misalignment(page, machine, 1e-3 * positive(run, "offset", OFFSET))
+        misalignment(page, machine, 1e-3 * offset)
     with run.step("voltage dips"):
         dips(page, machine, 1e3 * torque)
 
 
-def operation(run: Run, name: str, key: str) -> float:
-    """A value of operation; of another machine than the default one it has to be given."""
-    if name != DEFAULT and key not in run.settings:
-        raise InputError(
-            f"machine {name!r} has no {key} of operation: give it, as in --set "
-            f"{key}={OPERATION[key]:g}"
-        )
-    return positive(run, key, OPERATION[key])
-
-
-def positive(run: Run, key: str, default: float) -> float:
-    """A setting that is a number above 0."""
-    value = run.settings.get(key, default)
-    number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not number or not 0.0 < value < np.inf:
-        raise InputError(f"{key} = {value!r} must be a number above 0, as in {key}={default:g}")
-    return float(value)
+def require_operation(run: Run, name: str) -> None:
+    """Refuse a machine without its operation: that of the default one is not its own."""
+    missing = [key for key in ("low", "high", "torque") if key not in run.settings]
+    if missing:
+        words = " ".join(f"--set {key}=NUMBER" for key in missing)
+        raise InputError(f"machine {name!r} has no {missing[0]} of operation: give {words}")
 
 
 def resonance(page: Page, machine: Machine, speeds: tuple[float, float]) -> None:
     """Least margin of all excitations at all frequencies that they excite."""
     register = drivetrain_excitations(machine.stages)
-    found = resonances(register, system_modes(machine_system(machine, Level.RIGID)), speeds)
+    within = speeds[0] * RPM, speeds[1] * RPM
+    found = resonances(register, system_modes(machine_system(machine, Level.RIGID)), within)
     met = sorted((m for m in found if m.verdict != "not excited"), key=lambda m: m.margin)
     by_name = {e.name: e for e in register}
     page.vanishes(
         "frequencies of excitations at their crossings, largest relative error",
         max(abs(by_name[m.excitation].frequency(m.crossing) / m.frequency - 1.0) for m in met),
         **round_off(10, "a frequency divided by its order, and multiplied again"),
-        source="n = 60 f / order",
+        source="speed = 2 pi f / order",
         basis="self-consistency",
     )
-    at = np.linspace(*speeds, 4001)
-    nearest = min(
-        float(np.abs(by_name[m.excitation].per_turn * at / 60.0 / m.frequency - 1.0).min())
-        for m in met
-    )
+    at = np.linspace(*within, 4001)
+    orders = [by_name[m.excitation].per_turn / (2.0 * np.pi * m.frequency) for m in met]
+    nearest = min(float(np.abs(order * at - 1.0).min()) for order in orders)
     # both ends are among the speeds, so that a crossing within them alone may be missed
-    steps = [0.5 * by_name[m.excitation].per_turn / 60.0 / m.frequency for m in met if not m.margin]
+    steps = [0.5 * order for order, m in zip(orders, met, strict=True) if not m.margin]
     page.equals(
         f"{MARGIN}, by speeds one after another",
         met[0].margin,
@@ -124,7 +115,7 @@ def resonance(page: Page, machine: Machine, speeds: tuple[float, float]) -> None
             {
                 "excitation": m.excitation,
                 "frequency [Hz]": m.frequency,
-                "crossing [rpm]": m.crossing,
+                "crossing [rpm]": m.crossing / RPM,
                 "margin": m.margin,
                 "energy share": m.share,
                 "verdict": m.verdict,
@@ -141,8 +132,11 @@ def resonance(page: Page, machine: Machine, speeds: tuple[float, float]) -> None
 def misalignment(page: Page, machine: Machine, offset: float) -> None:
     """Largest force on any bearing while those of shafts are anywhere within an offset."""
     found = machine_misalignment(machine)
-    shafts = {shaft.name for shaft in machine.shafts}
-    moved = {bearing.name for bearing in machine.bearings if bearing.holds in shafts}
+    apart = {ROTOR, GENERATOR, *(shaft.name for shaft in machine.shafts)}
+    moved = {bearing.name for bearing in machine.bearings if bearing.holds in apart}
+    if not moved:
+        page.skip(FORCE, "no bearing of this machine holds rotor, generator or a shaft")
+        return
     places = [name.rpartition(" ")[0] for name in found.names]
     shifts = [name[-2] == "u" for name in found.names]
     wide = [offset * (p in moved and u) for p, u in zip(places, shifts, strict=True)]
@@ -165,7 +159,7 @@ def misalignment(page: Page, machine: Machine, offset: float) -> None:
         for name, force, shift in zip(found.names, forces, shifts, strict=True)
         if shift
     ]
-    words = ", ".join(sorted(moved)) or "none"
+    words = ", ".join(sorted(moved))
     page.table(f"Worst force while {words} is within {1e3 * offset:g} mm of its place", rows)
     page.answer(
         f"Offsets of {1e3 * offset:g} mm ({words}) load {found.names[most]} by up to "
@@ -176,7 +170,7 @@ def misalignment(page: Page, machine: Machine, offset: float) -> None:
 
 def by_stiffness(machine: Machine) -> Floats:
     """Influence of offsets by the stiffness equations of the machine on its bearings."""
-    made = assembly(machine, Level.FLEXIBLE)
+    made = assembly(machine, Level.FLEXIBLE, held_generator=True)
     system = assemble(made.bodies, made.springs, made.superelements)
     bearings = {bearing.name for bearing in machine.bearings}
     held = np.array([name.rpartition(" ")[0] in bearings for name in system.spring_names])

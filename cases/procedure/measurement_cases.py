@@ -1,10 +1,14 @@
 """A campaign by hand: every measurement case as a script, run, measured, and what each tells."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.procedure.identification import FRONT, GAUGE, MEAN, REAR, SYSTEM
 from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import InTime, converge_in_time, peak_between
+from fe_drivetrain.dynamics import energy_error, torsional_equations, varying
 from fe_drivetrain.procedure import (
     MeasurementCase,
     Sensor,
@@ -15,7 +19,7 @@ from fe_drivetrain.procedure import (
     sampling_rates,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.suite import Page, Record, Run, check_in_time
 from fe_drivetrain.torsion import damped_modes
 
 STEP = 0.005  # s
@@ -33,6 +37,18 @@ def run(run: Run, page: Page) -> None:
     mode = damped_modes(SYSTEM)
     with run.step("cases"):
         found = {of.code: case_channels(of, SYSTEM, MEAN, STEP) for of in cases.cases}
+    with run.step("over the step"):
+        page.section("In time")
+        series = converge_in_time(lambda dt, _: of_cases(cases.cases, dt), STEP)
+        check_in_time(
+            page,
+            "scripts",
+            series,
+            dict.fromkeys(series.finest.values, 0.05),
+            energy=1e-2,
+            why="integrals over the corners of the scripts, which samples round off",
+            scale=dict.fromkeys(series.finest.values, MEAN),
+        )
     rows: list[Record] = []
     for of in cases.cases:
         channels = found[of.code]
@@ -83,6 +99,23 @@ def run(run: Run, page: Page) -> None:
         "the damping back."
     )
     page.assume("rated torque, high-speed side", MEAN, "N m", "the report prints none")
+
+
+def of_cases(cases: Sequence[MeasurementCase], step: float) -> InTime:
+    """Ends of the shaft's torque in each case, and the worst error of the energy."""
+    values, lost = {}, 0.0
+    equations = torsional_equations(SYSTEM)
+    for of in cases:
+        found = case_channels(of, SYSTEM, MEAN, step)
+        torque, time = found["shaft torque"], found["time"]
+        values[f"{of.code}: largest torque of the shaft [N m]"] = peak_between(torque)
+        values[f"{of.code}: least torque of the shaft [N m]"] = -peak_between(-torque)
+        acting = np.stack([found["rotor torque"], -found["generator torque"]], axis=1)
+        angle = np.stack([found["twist"], np.zeros(len(time))], axis=1)
+        speed = np.stack([found["rotor speed"], found["generator speed"]], axis=1)
+        loads = varying(np.eye(2), time, acting)
+        lost = max(lost, energy_error(equations, loads, time, angle, speed))
+    return InTime(values, lost)
 
 
 def momentum(page: Page, of: MeasurementCase, channels: dict[str, Floats]) -> None:

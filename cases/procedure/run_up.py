@@ -4,13 +4,14 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import round_off
+from fe_drivetrain.compare import InTime, converge_in_time, peak_between, round_off
 from fe_drivetrain.dynamics import (
     Loads,
     System,
     SystemModes,
     crossings,
     direction_kinds,
+    energy_error,
     equations_of,
     exact_steps,
     library_machine,
@@ -28,7 +29,7 @@ from fe_drivetrain.procedure import (
     swept_response,
 )
 from fe_drivetrain.report import heat_map, trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.suite import Page, Record, Run, check_in_time
 from fe_drivetrain.torsion import mesh_orders
 
 MACHINE = library_machine("synthetic_2mw")
@@ -40,6 +41,7 @@ RATIO, AT = 0.01, 60.0  # of critical damping, at that frequency [Hz], in propor
 ERROR = 10e-6  # m, of transmission, once in each mesh
 MESH = "stage 1 sun-planet 1"
 SEGMENT, CLASS = 0.5, 1.0  # s, rpm, of the short-time spectra
+PEAK = "largest motion of the planet [µm]"
 HIGHEST = 90.0  # Hz, of what is drawn
 
 
@@ -55,6 +57,19 @@ def run(run: Run, page: Page) -> None:
         found = register(page, system, modes)
     with run.step("run-up"):
         signal, exact, step, orders = simulated_run_up(system, modes, 0.5 if run.quick else 1.0)
+    with run.step("convergence of the run-up"):
+        series = converge_in_time(
+            lambda h, _: of_run_up(system, 0.25 if run.quick else 1.0, h), STEP
+        )
+    page.section("Steps of the run-up")
+    check_in_time(
+        page,
+        "run-up",
+        series,
+        {PEAK: 0.05},
+        energy=2e-2,
+        why="integrals over records, which do not resolve modes above a kilohertz",
+    )
     error = float(np.abs(signal - exact).max() / np.abs(exact).max())
     fastest = 2.0 * np.pi * orders * END / 60.0 * step
     page.vanishes(
@@ -145,13 +160,9 @@ def simulated_run_up(
 ) -> tuple[Floats, Floats, float, float]:
     """Radial motion of a planet while the speed rises evenly, by matrices and by exact modes."""
     order = mesh_orders(MACHINE.stages)["stage 1"]
-    seconds = SECONDS * share
-    sweep = Sweep(order * BEGIN / 60.0, order * (END - BEGIN) / 60.0 / seconds)
-    springs = [k for k, n in enumerate(system.spring_names) if n.startswith(f"{MESH} slice")]
-    push = system.rows[springs].T @ system.stiffness[springs] * ERROR
-    time = np.asarray(np.arange(round(seconds / STEP) + 1) * STEP, dtype=np.float64)
-    loads = Loads(push[:, None], time, np.cos(sweep.phase(time))[:, None])
-    _, q, _ = exact_steps(equations_of(system), loads, seconds, STEP)
+    sweep, loads = swept_load(system, share, STEP)
+    time, push = loads.times, loads.patterns[:, 0]
+    _, q, _ = exact_steps(equations_of(system), loads, SECONDS * share, STEP)
     place = system.place("stage 1 planet 1 uy")
     exact = np.zeros(len(time))
     for frequency, shape in zip(modes.frequencies, modes.shapes.T, strict=True):
@@ -164,6 +175,27 @@ def simulated_run_up(
                 # far above the sweep, and overdamped: it follows
                 exact += each * np.cos(sweep.phase(time)) / (2.0 * np.pi * frequency) ** 2
     return q[:, place], exact, STEP, order
+
+
+def swept_load(system: System, share: float, step: float) -> tuple[Sweep, Loads]:
+    """The sweep of the mesh, and its push at samples."""
+    order = mesh_orders(MACHINE.stages)["stage 1"]
+    seconds = SECONDS * share
+    sweep = Sweep(order * BEGIN / 60.0, order * (END - BEGIN) / 60.0 / seconds)
+    springs = [k for k, n in enumerate(system.spring_names) if n.startswith(f"{MESH} slice")]
+    push = system.rows[springs].T @ system.stiffness[springs] * ERROR
+    time = np.asarray(np.arange(round(seconds / step) + 1) * step, dtype=np.float64)
+    return sweep, Loads(push[:, None], time, np.cos(sweep.phase(time))[:, None])
+
+
+def of_run_up(system: System, share: float, step: float) -> InTime:
+    """Largest motion of a planet in a run-up."""
+    loads = swept_load(system, share, step)[1]
+    equations = equations_of(system)
+    time, q, velocity = exact_steps(equations, loads, SECONDS * share, step)
+    motion = q[:, system.place("stage 1 planet 1 uy")]
+    values = {PEAK: 1e6 * max(peak_between(motion), peak_between(-motion))}
+    return InTime(values, energy_error(equations, loads, time, q, velocity))
 
 
 def shown(page: Page, modes: SystemModes, signal: Floats, step: float) -> None:

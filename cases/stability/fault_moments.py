@@ -24,7 +24,7 @@ import numpy as np
 import rich.progress  # noqa: F401 - once here, not in each of the forked children
 
 from fe_drivetrain.commands import run_and_print, show_steps
-from fe_drivetrain.common import CACHE_VARIABLE, Cache, rigid_motions, until_stopped
+from fe_drivetrain.common import CACHE_VARIABLE, MANIFEST, Cache, rigid_motions, until_stopped
 from fe_drivetrain.geometry import NO_BANDS, MeshSizes, Shaft
 from fe_drivetrain.geometry import Section as ShaftSection
 from fe_drivetrain.interfaces import dofs
@@ -136,7 +136,7 @@ def state(out: Path) -> str:
     try:
         (mark,) = read_results(out / "results.json").summary
         names = sorted(p.name for p in out.iterdir() if not p.name.startswith(HISTORY))
-        whole = names == list(FILES)
+        whole = names == sorted([*FILES, MANIFEST])
         whole = whole and mark in (out / "report.html").read_text("utf-8")
         whole = whole and meshio.read(out / "shaft.vtu").point_data.keys() == {mark}
     except (OSError, ValueError, ParseError, meshio.ReadError):

@@ -37,7 +37,7 @@ FLIPS, QUICK_FLIPS = 2048, 64
 
 SHAFT = Shaft(front=0.0, sections=(Section(length=0.6, outer_diameter=0.3, inner_diameter=0.1),))
 WIND = Condition(12.0, "low", 0.2, 1)
-SHORT = {"duration": 20.0, "rate": 10.0}
+DURATION, RATE = 20.0, 10.0  # s, Hz
 SCENE, ENTRY = "main_bearing_bonded", "bearing_s_o20"
 
 COUNTED = "counted: a damage is noticed, or what is read is compared with what was written, bit by "
@@ -62,7 +62,7 @@ class Maker:
         self.wind = replace(WIND, seed=2) if other else WIND
         self.shaft = SHAFT.model_copy(update={"front": 0.1}) if other else SHAFT
         self.loads = folder / f"loads_{int(other)}.csv"
-        write_csv(hub_load_set([self.wind], **SHORT, cache=False)[0], self.loads)
+        write_csv(hub_load_set([self.wind], DURATION, RATE, cache=False)[0], self.loads)
 
     def mesh(self) -> Any:
         """Points and cells of a small shaft."""
@@ -72,7 +72,7 @@ class Maker:
 
     def hub_loads(self) -> Any:
         """A short history."""
-        return hub_load_set([self.wind], **SHORT).loads.tobytes()
+        return hub_load_set([self.wind], DURATION, RATE).loads.tobytes()
 
     def samples(self) -> Any:
         """Results of an uncertain value."""

@@ -21,7 +21,7 @@ from fe_drivetrain.validation.machine_facts import (
 )
 from fe_drivetrain.validation.mutated_tables import mutated
 
-COUNTS = {"machines": (300, 40), "gear tables": (200, 40)}
+MACHINES_TRIED, TABLES_TRIED, QUICK, FEWEST = 300, 200, 40, 20
 TABLES = ("drivetrain_a", "drivetrain_b", "drivetrain_c", "nrel_750kw")
 SEED = 20163
 #: Of those that are tried: so many are taken, and so many refused, or the case would test little.
@@ -36,20 +36,27 @@ FACTS = (
 @case(
     "Machines with slips of the pen: refused with one sentence, or right by physics",
     source="mechanics: what every drivetrain must do, of its table alone",
-    settings={"count": "300 machines and 200 gear tables (quick 40 each; from 20)"},
+    settings={
+        "machines": "300 (quick 40; from 20)",
+        "tables": "200 (quick 40; from 20)",
+    },
 )
 def run(run: Run, page: Page) -> None:
     """Change tables at random, read them, and hold what is taken to facts."""
-    machines = [
-        library_machine(name).model_dump(mode="json", exclude_none=True) for name in MACHINES
-    ]
-    tables = [published.table(name).model_dump(mode="json", exclude_none=True) for name in TABLES]
-    groups: dict[str, tuple[list[dict[str, Any]], Callable[[dict[str, Any], bool], Outcome]]] = {
-        "machines": (machines, try_machine),
-        "gear tables": (tables, try_table),
-    }
-    for name, (given, attempt) in groups.items():
-        count = run.count("count", COUNTS[name][run.quick], 20)
+    for name, given, count, attempt in (
+        (
+            "machines",
+            [plain(library_machine(name)) for name in MACHINES],
+            run.count("machines", QUICK if run.quick else MACHINES_TRIED, least=FEWEST),
+            try_machine,
+        ),
+        (
+            "gear tables",
+            [plain(published.table(name)) for name in TABLES],
+            run.count("tables", QUICK if run.quick else TABLES_TRIED, least=FEWEST),
+            try_table,
+        ),
+    ):
         with run.step(name):
             rows = slips(given, count, attempt)
         check(page, name, rows)

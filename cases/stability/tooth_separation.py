@@ -5,6 +5,7 @@ from scipy.integrate import solve_ivp
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import InTime, converge_in_time, peak_between
 from fe_drivetrain.dynamics import (
     Equations,
     Motion,
@@ -17,7 +18,7 @@ from fe_drivetrain.dynamics import (
 )
 from fe_drivetrain.dynamics.steady_state import restoring
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.suite import Page, Run, check_in_time
 
 #: Variation of the stiffness, damping ratio, half backlash over the static deflection.
 VARIATION, RATIO, HALF = 0.2, 0.03, 2.0
@@ -64,6 +65,7 @@ def run(run: Run, page: Page) -> None:
     )
     with run.step("peer"):
         check_peer(page)
+    check_steps(page)
     jump = float(np.abs(up[:, 1] - down[:, 1]).max())
     low, high = float(at[pulls].min()), float(at[pulls].max())
     parted = at[(least < 1e-6) | pulls]
@@ -151,6 +153,39 @@ def sweep(at: Floats, half: float) -> tuple[Floats, int]:
         force = last.forces[:, 0]
         found.append((float(force.min()), float(force.max())))
     return np.array(found), lost
+
+
+def check_steps(page: Page) -> None:
+    """Energy, and forces of a mesh that parts and of one that does not, over the step."""
+
+    def run(share: float, _: int) -> InTime:
+        values, lost, met = {}, 0.0, True
+        for name, half, frequency in (("parts", HALF, 0.95), ("in contact", HALF, 0.6)):
+            period = 2.0 * np.pi / frequency
+            start = State(np.array([half + 1.0]), np.zeros(1), np.zeros(1))
+            motion = integrate(
+                mesh(frequency, half),
+                steady([1.0]),
+                40 * period,
+                share * period / STEPS,
+                start=start,
+            )
+            late = motion.forces[motion.times > 30 * period, 0]
+            values[f"{name}: largest force over the mean"] = peak_between(late)
+            lost, met = max(lost, motion.relative_imbalance), met and motion.converged
+        return InTime(values, lost, met)
+
+    found = converge_in_time(run, 1.0)
+    page.section("Over the step")
+    check_in_time(
+        page,
+        "mesh",
+        found,
+        dict.fromkeys(found.finest.values, 0.05),
+        energy=1e-2,
+        why="clock and instants at which teeth part, by trapezia over the step",
+        open_for=["parts: largest force over the mean"],
+    )
 
 
 def check_peer(page: Page) -> None:

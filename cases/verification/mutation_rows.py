@@ -6,6 +6,7 @@ import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 
 import yaml
@@ -14,6 +15,7 @@ from fe_drivetrain.common import InputError, MissingToolError
 
 PACKAGE = "fe_drivetrain"
 TOP_LEVEL = ("geometry", "cases")  # beside the package in a clone, inside it where installed
+NEEDED = ("pytest", "filelock", "hypothesis", "xdist")  # by all tests
 
 
 @dataclass(frozen=True)
@@ -63,13 +65,18 @@ def clone() -> Path:
     Raises
     ------
     MissingToolError
-        It runs from an installed wheel, which has no tests.
+        It runs from an installed wheel, which has no tests, or what these need is not installed.
     """
     root = Path(__file__).parents[2]
     if not (root / "tests" / "mutations").is_dir():
         raise MissingToolError(
             "faults are caught by tests, and an installed wheel has none: run this case from a "
             "clone of the repository"
+        )
+    missing = [name for name in NEEDED if find_spec(name) is None]
+    if missing:
+        raise MissingToolError(
+            f"the tests need {', '.join(missing)}: python -m pip install -e '.[test]' in the clone"
         )
     return root
 

@@ -39,11 +39,10 @@ from fe_drivetrain.commands.studies import (
     study_command,
     uncertainty_command,
 )
-from fe_drivetrain.commands.terminal import prepare_streams, write
+from fe_drivetrain.commands.terminal import ended, prepare_streams, write
 from fe_drivetrain.commands.validate import validate_command
 from fe_drivetrain.common.memory import collect_lasting_seldom
 from fe_drivetrain.common.remarks import show_remarks, show_remarks_if_asked
-from fe_drivetrain.common.stopped import stop_status
 
 if TYPE_CHECKING:
     from fe_drivetrain.suite.case import Case
@@ -102,22 +101,15 @@ def main(arguments: list[str] | None = None) -> None:
     arguments : list of str, optional
         The words after the name of the program; those of the shell where left out.
     """
-    _ended(lambda: _command()(arguments, prog_name="fe-drivetrain"))
+    _typed(lambda: _command()(arguments, prog_name="fe-drivetrain"))
 
 
-def _ended(command: Callable[[], object]) -> None:
-    """Do what was typed, and end: by Ctrl-C as `guarded` does, though it comes outside of it."""
+def _typed(command: Callable[[], object]) -> None:
+    """Do what was typed, and end."""
     prepare_streams()
     collect_lasting_seldom()
     show_remarks_if_asked()
-    try:
-        command()
-    except BaseException as error:
-        stop = stop_status(error)
-        if stop is None:
-            raise
-        # what reads the words typed may have made another status of it
-        raise SystemExit(stop) from error
+    ended(command)
 
 
 def _ask_for_remarks(verbose: bool) -> None:
@@ -184,4 +176,4 @@ def main_of_case(case: Case) -> None:
         typed = replace(case, command=shlex.join(["python", *sys.argv]))
         raise typer.Exit(run_and_print(lambda: [typed], out, set_ or (), quick))
 
-    _ended(_with_verbose(get_command(script)))
+    _typed(_with_verbose(get_command(script)))

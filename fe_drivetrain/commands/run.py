@@ -30,7 +30,8 @@ OutFolder = Annotated[
     typer.Option(
         "--out",
         metavar="DIR",
-        help="Result folder: new, empty, or with results of an earlier run, which are replaced. "
+        help="Result folder: new, empty, or of an earlier run, whose own files are replaced; files "
+        "of yours in it stay. "
         "Default: reports/GROUP/NAME in the current folder. For several cases, the folder above "
         "their result folders: DIR/GROUP/NAME.",
     ),

@@ -11,7 +11,7 @@ import numpy as np
 from fe_drivetrain.commands.study_loads import StudyLoads
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
-from fe_drivetrain.common.csv_cells import SafeWriter, comment_line, table_head
+from fe_drivetrain.common.csv_cells import SafeWriter, comment_line, table_row
 from fe_drivetrain.compare.time_weighted import weighted_statistics
 from fe_drivetrain.fidelity.ladder import LevelModel
 from fe_drivetrain.fidelity.over_loads import Levels, reaction_history
@@ -292,7 +292,7 @@ def write_reactions(folder: Path, model: Model, loads: StudyLoads, levels: Level
             delimiter=",",
             fmt="%.9g",
             header="\n".join(
-                [*(comment_line(f"{f} = {v}") for f, v in facts.items()), table_head(columns)]
+                [*(comment_line(f"{f} = {v}") for f, v in facts.items()), table_row(columns)]
             ),
             comments="",
             encoding="utf-8",

@@ -25,6 +25,8 @@ KEPT = "results of an earlier run are unchanged"
 
 _AGAIN = 0.2  # s, until a stop that nothing has taken up is raised again
 
+_unwinding = False  # whether handlers are in place: for a program, from its first moments on
+
 
 def as_typed() -> str:
     """The words of this command, to be typed again."""
@@ -65,6 +67,24 @@ def guarded(work: Callable[[], int], kept: str = KEPT) -> int:
     return stop or MISTAKE
 
 
+def ended(command: Callable[[], object]) -> None:
+    """Do what was typed; a stop that comes outside of `guarded` ends the program as one inside.
+
+    Raises
+    ------
+    SystemExit
+        What reads the words typed may have made another status of a stop.
+    """
+    try:
+        with _unwound_by_signals():
+            command()
+    except BaseException as error:
+        stop = stop_status(error)
+        if stop is None:
+            raise
+        raise SystemExit(stop) from error
+
+
 def _sentence(error: BaseException) -> str | None:
     """What the user can do about an error; None where it is the program's own."""
     if isinstance(error, InputError):
@@ -84,6 +104,13 @@ def _unwound_by_signals() -> Iterator[None]:
     What is raised in a callback of a library is dropped there, as in compiled code that is loaded,
     and where any error of a library is caught: so it is raised again, until all is unwound.
     """
+    global _unwinding
+    if _unwinding:
+        try:
+            yield
+        finally:
+            _forget_stop()
+        return
     raised: dict[int, Callable[[], BaseException]] = {
         signal.SIGTERM: lambda: SystemExit(TERMINATED),
         signal.SIGINT: KeyboardInterrupt,
@@ -106,16 +133,21 @@ def _unwound_by_signals() -> Iterator[None]:
     except ValueError:  # only the main thread may handle signals
         yield
         return
-    dropped = sys.unraisablehook
+    _unwinding, dropped = True, sys.unraisablehook
     sys.unraisablehook = lambda error: None if stop_status(error.exc_value) else dropped(error)
     try:
         yield
     finally:
-        sys.unraisablehook = dropped
-        if hasattr(signal, "setitimer"):
-            signal.setitimer(signal.ITIMER_REAL, 0.0)
+        _forget_stop()
+        _unwinding, sys.unraisablehook = False, dropped
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+def _forget_stop() -> None:
+    """Raise no stop again, for all has been unwound."""
+    if hasattr(signal, "setitimer"):
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
 
 
 def write(stream: TextIO, text: str) -> None:

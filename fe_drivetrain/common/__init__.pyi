@@ -11,7 +11,7 @@ from .components import MOTIONS as MOTIONS
 from .components import STRESSES as STRESSES
 from .csv_cells import SafeWriter as SafeWriter
 from .csv_cells import comment_line as comment_line
-from .csv_cells import table_head as table_head
+from .csv_cells import table_row as table_row
 from .errors import InputError as InputError
 from .errors import MissingToolError as MissingToolError
 from .exact_sums import ExactSum as ExactSum
@@ -22,6 +22,8 @@ from .interpreter import run_python as run_python
 from .jobs import mapped as mapped
 from .jobs import pool as pool
 from .jobs import scheduled_by as scheduled_by
+from .manifest import MANIFEST as MANIFEST
+from .manifest import read_manifest as read_manifest
 from .memory import peak_memory as peak_memory
 from .processes import Processes as Processes
 from .progress import Progress as Progress

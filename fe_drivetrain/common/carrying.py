@@ -24,6 +24,7 @@ from fe_drivetrain.common.manifest import MANIFEST, Manifest
 KEPT = ".kept"
 """What is added to the name of a file that another took the place of."""
 
+_ENDING = re.compile(rf"(?<=.){re.escape(KEPT)}(-\d+)?$")
 _UNFINISHED = re.compile(r"\.fe-drivetrain-[0-9a-f]{32}\.tmp")  # a copy, of this module alone
 
 
@@ -133,6 +134,8 @@ def remove_replaced(old: Path, new: Path, own: Manifest) -> bool:
     """
     with suppress(OSError):
         _remove_below(old, new, own, "")
+        if os.listdir(old) == [MANIFEST]:  # last, for who goes on after a kill
+            (old / MANIFEST).unlink()
         old.rmdir()
     return not old.exists()
 
@@ -148,6 +151,8 @@ def _remove_below(old: Path, new: Path, own: Manifest, below: str) -> None:
                 if name not in own.folders:
                     target.mkdir(parents=True, exist_ok=True)
                 path.rmdir()
+            elif name == MANIFEST:
+                continue
             elif _UNFINISHED.fullmatch(entry.name) or _goes(path, name, new, own):
                 path.unlink()
             else:
@@ -174,8 +179,10 @@ def _is_folder(path: Path) -> bool:
 
 
 def _is_there(path: Path, place: Path) -> bool:
-    """Whether the same is at a place, or beside it with `KEPT` in its name."""
-    return any(_is_same(path, there) for there in takewhile(os.path.lexists, _candidates(place)))
+    """Whether the same is at a place, or beside it with `KEPT` in its name, or without it."""
+    first = place.with_name(_ENDING.sub("", place.name))
+    there = takewhile(os.path.lexists, _candidates(first))
+    return any(_is_same(path, one) for one in (*there, place) if os.path.lexists(one))
 
 
 def _folder_like(place: Path) -> Path:

@@ -9,8 +9,7 @@ Source: OWASP, CSV Injection.
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any, TextIO
 
 _STARTS = ("=", "+", "-", "@", "\t", "\r", "\n", "\uff1d", "\uff0b", "\uff0d", "\uff20")
@@ -28,11 +27,10 @@ class SafeWriter:
 
     def __init__(self, file: TextIO) -> None:
         self._file = file
-        self._rows = csv.writer(file, lineterminator="\n")
 
     def writerow(self, row: Iterable[Any]) -> None:
         """Write one row."""
-        self._rows.writerow([safe_cell(cell) for cell in row])
+        self._file.write(f"{table_row(row)}\n")
 
     def writerows(self, rows: Iterable[Iterable[Any]]) -> None:
         """Write several rows."""
@@ -64,9 +62,9 @@ def cell_as_given(cell: str) -> str:
     return cell[1:] if is_marked else cell
 
 
-def table_head(columns: Sequence[str]) -> str:
-    """Titles of columns as the first line of a table, without its end."""
-    return ",".join(_quoted(safe_cell(title)) for title in columns)
+def table_row(cells: Iterable[Any]) -> str:
+    """One line of a table, as of the titles of its columns, without its end."""
+    return ",".join("" if cell is None else _quoted(str(safe_cell(cell))) for cell in cells)
 
 
 def comment_line(fact: str) -> str:

@@ -13,6 +13,7 @@ import math
 import os
 import re
 from collections.abc import Callable, Mapping
+from io import BufferedReader
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -108,7 +109,7 @@ def read_kept(file: Path, kind: str, key: str) -> dict[str, NDArray[Any]]:
     return arrays
 
 
-def _head(stream: BinaryIO, kind: str, key: str) -> dict[str, Any]:
+def _head(stream: BufferedReader, kind: str, key: str) -> dict[str, Any]:
     """The layout of a file, whose head is sound and has this key."""
     start = _START.fullmatch(stream.read(_START_LENGTH))
     if start is None or int(start[1]) != FORM:
@@ -126,7 +127,7 @@ def _head(stream: BinaryIO, kind: str, key: str) -> dict[str, Any]:
     return layout
 
 
-def _fill(place: NDArray[np.uint8], stream: BinaryIO, update: Callable[[Any], None]) -> None:
+def _fill(place: memoryview, stream: BufferedReader, update: Callable[[Any], None]) -> None:
     """Read bytes into their place, and hash them on the way."""
     for begin in range(0, len(place), _BLOCK):
         block = place[begin : begin + _BLOCK]
@@ -146,6 +147,6 @@ def _layout(array: NDArray[Any]) -> tuple[str, tuple[int, ...], str]:
     return array.dtype.str, array.shape, "C" if array.flags.c_contiguous else "F"
 
 
-def _bytes(array: NDArray[Any]) -> NDArray[np.uint8]:
+def _bytes(array: NDArray[Any]) -> memoryview:
     """The memory of an array in one piece, as bytes in their order."""
-    return array.ravel("A").view(np.uint8)
+    return array.ravel("A").view(np.uint8).data

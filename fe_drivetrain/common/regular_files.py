@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import os
 import stat
+from io import BufferedReader
 from pathlib import Path
-from typing import BinaryIO
 
 MOST_BYTES = 300_000_000
 """Of a file that is read whole, where nothing else is said."""
@@ -33,7 +33,7 @@ class TooLargeError(OSError):
         super().__init__(f"it has more than {most} bytes, the most that is read of such a file")
 
 
-def opened(path: str | os.PathLike[str]) -> BinaryIO:
+def opened(path: str | os.PathLike[str]) -> BufferedReader:
     """Open a regular file for reading bytes; it never waits.
 
     Parameters

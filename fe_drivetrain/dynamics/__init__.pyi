@@ -127,6 +127,7 @@ from .stopping import damped_by_ratio as damped_by_ratio
 from .stopping import shutdown as shutdown
 from .stopping import torsional_equations as torsional_equations
 from .superposition import Superposed as Superposed
+from .superposition import energy_error as energy_error
 from .superposition import exact_steps as exact_steps
 from .superposition import modal_superposition as modal_superposition
 from .system import System as System

@@ -188,7 +188,7 @@ def _check(bodies: Sequence[Body], names: Sequence[str], springs: Sequence[Sprin
             ("polar inertia [kg m^2]", body.polar),
             ("transverse inertia [kg m^2]", body.transverse),
         ):
-            if not (np.isfinite(value) and value >= 0):
+            if isinstance(value, bool) or not (np.isfinite(value) and value >= 0):
                 raise InputError(
                     f"body {body.name!r}: {what} is {value:g} but must be a finite number of at "
                     "least 0: change it"
@@ -199,7 +199,7 @@ def _check(bodies: Sequence[Body], names: Sequence[str], springs: Sequence[Sprin
         if missing:
             raise InputError(f"spring {spring.name!r} is on {min(missing)!r}, which is no body")
         for what, value in (("stiffness", spring.stiffness), ("damping", spring.damping)):
-            if not (np.isfinite(value) and value >= 0):
+            if isinstance(value, bool) or not (np.isfinite(value) and value >= 0):
                 raise InputError(
                     f"spring {spring.name!r}: {what} is {value:g} but must be a finite number of "
                     "at least 0: change it"

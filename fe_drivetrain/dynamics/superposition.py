@@ -170,6 +170,69 @@ def exact_steps(
     return t, y[:, :n], y[:, n:]
 
 
+def energy_error(
+    equations: Equations, loads: Loads, times: Floats, q: Floats, velocity: Floats
+) -> float:
+    """Energy that appears from nowhere in a history of a linear system, over the largest.
+
+    Apart from how the history was made: work of the loads and losses are integrals of the recorded
+    motion, by trapezia corrected with their slopes at the ends (Euler and Maclaurin), whose error
+    falls with the fourth power of the step. It states how well records resolve the motion, too.
+
+    Parameters
+    ----------
+    equations : Equations
+        Without laws.
+    loads : Loads
+        On them, kinks at records.
+    times : ndarray, (k,)
+        Of the records [s].
+    q, velocity : ndarray, (k, n)
+        Displacements and their rates.
+
+    Returns
+    -------
+    error : float
+        As of `Motion.relative_imbalance`.
+
+    Raises
+    ------
+    InputError
+        A spring has a law.
+    """
+    _without_laws(equations)
+    s, C = equations.springs, equations.C
+    stretch, force = q @ s.rows.T - s.offset, loads.at(times)
+    bent, damped = q @ equations.extra, velocity @ C.T
+    inside = (stretch * s.stiffness) @ s.rows + bent + damped
+    a: Floats = np.asarray(np.linalg.solve(equations.mass, (force - inside).T).T, np.float64)
+    dt = np.diff(times)
+    rise = np.diff(force, axis=0) / dt[:, None]
+
+    def integral(power: Floats, begins: Floats, ends: Floats) -> Floats:
+        each = dt / 2.0 * (power[:-1] + power[1:]) + dt**2 / 12.0 * (begins - ends)
+        return np.asarray(np.concatenate([[0.0], np.cumsum(each)]))
+
+    pushed = _along(a, force)
+    work = integral(
+        _along(velocity, force),
+        pushed[:-1] + _along(velocity[:-1], rise),
+        pushed[1:] + _along(velocity[1:], rise),
+    )
+    resisted = _along(a, damped + velocity @ C)
+    lost = integral(_along(velocity, damped), resisted[:-1], resisted[1:])
+    kinetic = 0.5 * _along(velocity, velocity @ equations.mass)
+    strain = 0.5 * (stretch**2 @ s.stiffness + _along(q, bent))
+    energy = kinetic + strain
+    largest = max(float(np.abs(one).max()) for one in (kinetic, strain, work, lost))
+    return float(np.abs(energy - energy[0] + lost - work).max() / max(largest, 1e-300))
+
+
+def _along(one: Floats, other: Floats) -> Floats:
+    """Products of rows."""
+    return np.asarray(np.einsum("ti,ti->t", one, other))
+
+
 def _without_laws(equations: Equations) -> None:
     law = equations.springs.special
     if law.any():

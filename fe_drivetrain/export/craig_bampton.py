@@ -15,13 +15,13 @@ them, nor do these feel them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from importlib.metadata import version
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import LinearOperator, eigsh, splu
+from scipy.sparse.linalg import splu
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
@@ -39,6 +39,7 @@ from fe_drivetrain.revolution.meridian_mesh import Meridian
 from fe_drivetrain.scene.materials import Material
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.solve.condensation import Condensed, keep_points
+from fe_drivetrain.solve.vibration import lowest_modes
 
 
 @dataclass(frozen=True)
@@ -258,7 +259,7 @@ class _Harmonic:
             return np.asarray(factor.solve(np.concatenate([forces, scale * motions]))[:size])
 
         rest = np.zeros(held)
-        values, modes = self._lowest(count, 0.0, lambda b: solved(b, rest))
+        values, modes = lowest_modes(lambda b: solved(b, rest), self.M, count)
         shapes = solved(np.zeros((size, held)), np.eye(held))
         return np.sqrt(values), shapes.T @ (self.M @ modes)
 
@@ -266,16 +267,5 @@ class _Harmonic:
         """Circular frequencies (count,), the two rigid motions left out."""
         shift = -1e-2 * float(self.K.diagonal().min() / self.M.diagonal().max())
         factor = splu(sparse.csc_array(self.K - shift * self.M))
-        values, _ = self._lowest(count + 2, shift, factor.solve)
+        values, _ = lowest_modes(factor.solve, self.M, count + 2, shift)
         return np.sqrt(values[2:])
-
-    def _lowest(
-        self, count: int, shift: float, solve: Callable[[Floats], Floats]
-    ) -> tuple[Floats, Floats]:
-        size = len(self.P)
-        # a start of no structure, from where the solutions lie
-        start = solve(self.M @ np.random.default_rng(0).standard_normal(size))
-        inverse = LinearOperator((size, size), matvec=solve, dtype=float)
-        values, modes = eigsh(self.K, count, self.M, sigma=shift, OPinv=inverse, v0=start)
-        order = np.argsort(values)
-        return np.asarray(values[order]), np.asarray(modes[:, order])

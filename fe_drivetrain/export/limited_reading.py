@@ -38,8 +38,14 @@ def read_limited(path: str | Path, format: str, limits: Limits = LIMITS) -> Supe
     found = read_in_process(action, path, {"format": format, "named": str(path)}, limits)
     stated: dict[str, Any] = json.loads(str(found["stated"]))
     return Superelement(
-        **{key: found[key] for key in _MATRICES if key in found},
-        **{**stated, "points": tuple(stated["points"]), "origin": Origin(**stated["origin"])},
+        stated["name"],
+        tuple(stated["points"]),
+        found["positions"],
+        found["stiffness"],
+        found.get("mass"),
+        stated["supported"],
+        stated["band"],
+        Origin(**stated["origin"]),
     )
 
 

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from scipy import linalg
-from scipy.sparse.linalg import LinearOperator, eigsh
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
@@ -16,6 +15,7 @@ from fe_drivetrain.response.model import build_model, mesh_scene
 from fe_drivetrain.response.prepared import prepared
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.solve.condensation import on_supports
+from fe_drivetrain.solve.vibration import held_modes
 
 
 def natural_frequencies(
@@ -99,7 +99,6 @@ def assembly_frequencies(scene: Scene, count: int) -> Floats:
     model = build_model(scene, mesh_scene(scene))
     mesh = model.mesh
     found = prepared(model, "auto", 4 * count)
-    T, free = found.elimination.T, np.flatnonzero(found.elimination.free)
     M = sum(
         mass_matrix(
             mesh.points,
@@ -109,16 +108,5 @@ def assembly_frequencies(scene: Scene, count: int) -> Floats:
         )
         for part in mesh.part_names
     )
-    M = (T.T @ M @ T).tocsr()[free][:, free]
-
-    def solved(forces: Floats) -> Floats:
-        F = np.zeros((model.n_dofs, 1))
-        F[free, 0] = forces
-        return np.asarray(found.solver.solve(F).x[free, 0])
-
-    size = (len(free), len(free))
-    inverse = LinearOperator(size, matvec=solved, dtype=float)
-    start = solved(M @ np.random.default_rng(0).standard_normal(len(free)))
-    # about zero only the inverse is asked for
-    values = eigsh(M, count, M, sigma=0.0, OPinv=inverse, v0=start, return_eigenvectors=False)
-    return np.asarray(np.sqrt(np.sort(values)) / (2.0 * np.pi))
+    values, _ = held_modes(found.solver, found.elimination, M, count)
+    return np.asarray(np.sqrt(values) / (2.0 * np.pi))

@@ -201,7 +201,7 @@ class Gear:
 
 
 def _check_numbers(gear: Gear) -> None:
-    if abs(gear.teeth) < 5:
+    if abs(gear.teeth) < 5 or gear.teeth % 1:
         raise InputError(f"a gear of {gear.teeth} teeth: give 5 or more, negative if internal")
     for name, length in (
         ("normal module", gear.normal_module),

@@ -8,7 +8,7 @@ set printed results beside them.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi, sin, sqrt
+from math import inf, pi, sin, sqrt
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.gear.involute import Gear, Pair
@@ -43,7 +43,7 @@ class LoadFactors:
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
-            if not value > 0.0:
+            if isinstance(value, bool) or not 0.0 < value < inf:
                 raise InputError(f"load factor {name} is {value:g}: give a positive one")
 
     @property

@@ -7,7 +7,7 @@ The equations are those of the edition of 2006, in which S-N curves fall to 0.85
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, degrees, log, pi, sqrt, tan
+from math import cos, degrees, inf, log, pi, sqrt, tan
 
 import numpy as np
 
@@ -58,10 +58,16 @@ class Running:
 
     def __post_init__(self) -> None:
         for name in ("torque", "speed", "viscosity"):
-            if not getattr(self, name) > 0.0:
+            if not 0.0 < getattr(self, name) < inf:
                 raise InputError(
                     f"{name} of a pair of gears to be rated is {getattr(self, name):g}: give a "
                     "positive one, of the flank in question"
+                )
+        for name in ("flank_roughness", "root_roughness"):
+            if not all(0.0 < roughness < 1e-3 for roughness in getattr(self, name)):
+                raise InputError(
+                    f"{name} of a pair of gears to be rated is {getattr(self, name)} m: give R_z "
+                    "of both gears, above 0 and below 1e-3 m"
                 )
 
 

@@ -8,7 +8,7 @@ case-hardened and through-hardened gears; life curves of nitrided ones have no s
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import log, sqrt
+from math import inf, log, sqrt
 from typing import Literal
 
 import numpy as np
@@ -36,9 +36,10 @@ class GearMaterial:
     root_limit : float
         Nominal root stress endured at the knee, sigma_Flim [Pa]; twice that is sigma_FE.
     yield_strength : float
-        [Pa]; the notch sensitivity of through-hardened steel follows it.
+        [Pa]; the notch sensitivity of through-hardened steel follows it, which must have it.
     brinell : float
-        Hardness of the flank [HB]; counts where a through-hardened gear meets a hard one.
+        Hardness of the flank [HB]; counts where a through-hardened gear meets a hard one, which
+        must have it.
     youngs_modulus : float
         [Pa].
     poisson_ratio : float
@@ -50,8 +51,8 @@ class GearMaterial:
     kind: Kind
     contact_limit: float
     root_limit: float
-    yield_strength: float = 850e6
-    brinell: float = 600.0
+    yield_strength: float = 0.0
+    brinell: float = 0.0
     youngs_modulus: float = 206e9
     poisson_ratio: float = 0.3
     density: float = 7830.0
@@ -61,11 +62,14 @@ class GearMaterial:
             raise InputError(
                 f"gear material of kind {self.kind!r}: give one of {', '.join(CONTACT_LIFE)}"
             )
-        for name in ("contact_limit", "root_limit", "yield_strength", "brinell", "youngs_modulus"):
-            if not getattr(self, name) > 0.0:
+        needed = ["contact_limit", "root_limit", "youngs_modulus", "density"]
+        if self.kind == "through-hardened":
+            needed += ["yield_strength", "brinell"]
+        for name in needed:
+            if not 0.0 < getattr(self, name) < inf:
                 raise InputError(
-                    f"{name.replace('_', ' ')} of a gear material is {getattr(self, name):g}: it "
-                    "must be positive"
+                    f"{name.replace('_', ' ')} of a {self.kind} gear material is "
+                    f"{getattr(self, name):g}: it must be positive and finite"
                 )
 
 

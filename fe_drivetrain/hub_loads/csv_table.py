@@ -14,7 +14,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
-from fe_drivetrain.common.csv_cells import cell_as_given, comment_as_given, comment_line, table_head
+from fe_drivetrain.common.csv_cells import cell_as_given, comment_as_given, comment_line, table_row
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.common.strict_yaml import shown
@@ -200,7 +200,7 @@ def write_csv(
     facts = dict(history.attributes)
     facts |= {} if history.about is None else {_ABOUT: str(history.about)}
     lines = [comment_line(f"{key} = {value}") for key, value in facts.items()]
-    lines.append(table_head([*_CSV_EXAMPLE.split(","), *others, *more]))
+    lines.append(table_row([*_CSV_EXAMPLE.split(","), *others, *more]))
     lines += [",".join(map(repr, row)) for row in table.tolist()]
     try:
         with atomic_path(file) as temporary:

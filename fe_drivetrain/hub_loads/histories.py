@@ -42,7 +42,7 @@ Attribute = float | int | str
 
 About = float | Literal["front face"] | None
 """What moments at the hub are about: x on the shaft's axis [m], the front face of any shaft, or,
-of None, the point that a scene states for hub loads (`hub.loads_at`)."""
+of None, the point that a scene states for hub loads (hub.loads_at)."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -142,7 +142,7 @@ def _begins_a_run(block: bytes, size: int) -> bool:
     (identifier,) = np.frombuffer(block[:2], "<i2").tolist()
     at = 4 if identifier == _LONG_NAMES else 2
     channels, samples = np.frombuffer(block[at : at + 8], "<i4").tolist()
-    return 1 <= identifier <= _LONG_NAMES and 0 < channels * samples < size and channels > 0
+    return bool(1 <= identifier <= _LONG_NAMES and 0 < channels * samples < size and channels > 0)
 
 
 def _numbers(stream: BinaryIO, kind: str, count: int) -> NDArray[np.generic]:

@@ -89,6 +89,7 @@ from .motions import Motions as Motions
 from .motions import band_torque as band_torque
 from .motions import driven_motions as driven_motions
 from .motions import element_torques as element_torques
+from .motions import motions_energy_error as motions_energy_error
 from .motions import periodic_motions as periodic_motions
 from .moving import Mounts as Mounts
 from .moving import moving_three_points as moving_three_points

@@ -138,7 +138,7 @@ def machine_misalignment(machine: Machine, level: Level = Level.FLEXIBLE) -> Mis
     Parameters
     ----------
     machine : Machine
-        With bearings in the housing; gears mesh where they stand, and the grid holds the generator.
+        With bearings in the housing; gears mesh where they stand, and the generator does not turn.
     level : Level
         What may move: shafts bend at the flexible one.
 
@@ -152,7 +152,7 @@ def machine_misalignment(machine: Machine, level: Level = Level.FLEXIBLE) -> Mis
     InputError
         Its bearings do not hold it.
     """
-    made = assembly(machine, level)
+    made = assembly(machine, level, held_generator=True)
     # with all of its motions: the condensed system has bearings within its stiffness
     system = assemble(made.bodies, made.springs, made.superelements)
     bearings = {bearing.name for bearing in machine.bearings}

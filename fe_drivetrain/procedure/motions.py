@@ -14,6 +14,9 @@ from scipy.linalg import expm
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.dynamics.equations import varying
+from fe_drivetrain.dynamics.stopping import torsional_equations
+from fe_drivetrain.dynamics.superposition import energy_error
 from fe_drivetrain.torsion.system import Torsional
 
 
@@ -139,6 +142,28 @@ def driven_motions(system: Torsional, torques: Floats, step: float) -> Motions:
     angle, speed = states[:n], states[n:]
     acceleration = (given - system.K @ angle - system.C @ speed) / J
     return Motions(step, angle, speed, acceleration)
+
+
+def motions_energy_error(system: Torsional, torques: Floats, motions: Motions) -> float:
+    """Energy that appears from nowhere in motions under torques, over the largest.
+
+    Parameters
+    ----------
+    system : Torsional
+        Inertias, springs, dampers.
+    torques : ndarray, (n, samples)
+        On each inertia, straight between samples [N m].
+    motions : Motions
+        As of `driven_motions`.
+
+    Returns
+    -------
+    float
+        As of `fe_drivetrain.dynamics.energy_error`.
+    """
+    loads = varying(np.eye(len(torques)), motions.time, torques.T)
+    equations = torsional_equations(system)
+    return energy_error(equations, loads, motions.time, motions.angle.T, motions.speed.T)
 
 
 def element_torques(system: Torsional, motions: Motions) -> Floats:

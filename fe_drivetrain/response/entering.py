@@ -1,6 +1,6 @@
 """Where hub loads and the scene that they act on meet: all loads go through `entering`.
 
-A history of a file is about the point that the scene states (`hub.loads_at`), others name the point
+A history of a file is about the point that the scene states (hub.loads_at), others name the point
 themselves. An array of six columns does not, and is refused where the scene states another point
 than the front face.
 """

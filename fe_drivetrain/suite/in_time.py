@@ -29,7 +29,10 @@ def check_in_time(
     open_for: Collection[str] = (),
     scale: Mapping[str, float] | None = None,
 ) -> None:
-    """Check the energy of runs in time and that their values have converged; show both as a table.
+    """Check the energy of runs in time, and that their values have converged; show all of them.
+
+    A value that has not converged fails a check, or is said to be open: it never stands under
+    checks that pass alone.
 
     Parameters
     ----------
@@ -61,49 +64,60 @@ def check_in_time(
     )
     if not found.converged:
         page.unsettled.append(f"Not converged: {of}, iterations of some steps.")
+    settled: dict[str, list[tuple[float, float, str]]] = {}
     rows: list[Record] = []
     for key, allowed in within.items():
         size = abs((scale or {}).get(key, found.value(key)))
         bands = {_STEP: found.step_band(key)}
         if found.harmonics:
             bands[_WAVE] = found.harmonics_band(key)
-        _check_bands(page, f"{of}: {key}", bands, size, allowed, key in open_for)
-        rows.append(
-            {
-                "quantity": key,
-                "value": found.value(key),
-                **{f"band by {name}": band for name, band in bands.items()},
-                **{
-                    f"{count} harmonics": one.values[key]
-                    for count, one in zip(found.harmonics, found.by_harmonics, strict=True)
-                },
-                **{
-                    f"step {1e3 * dt:.3g} ms": one.values[key]
-                    for dt, one in zip(found.steps, found.by_step, strict=True)
-                },
-            }
-        )
+        shares = {by: band / size if size else float("inf") for by, band in bands.items()}
+        beyond = [by for by, share in shares.items() if key in open_for and not share <= allowed]
+        if beyond:
+            page.unsettled.append(_still_open(f"{of}: {key}", {by: bands[by] for by in beyond}))
+        for by, share in shares.items():
+            if by not in beyond:
+                settled.setdefault(by, []).append((share, allowed, key))
+        rows.append(_row(key, found, bands))
+    for by, each in settled.items():
+        _check_worst(page, of, by, each)
     page.table(f"{of}: convergence", rows)
     page.data(f"{of}: convergence", rows)
 
 
-def _check_bands(
-    page: Page, name: str, bands: Mapping[str, float], size: float, allowed: float, is_open: bool
-) -> None:
-    """A check for each band within what is allowed, and a sentence for what is open beyond it."""
+def _still_open(name: str, bands: Mapping[str, float]) -> str:
+    """What has not converged, in a sentence."""
     quantity, unit = split_unit(name)
-    shares = {by: band / size if size else float("inf") for by, band in bands.items()}
-    beyond = [by for by, share in shares.items() if is_open and not share <= allowed]
-    for by, share in shares.items():
-        if by not in beyond:
-            page.at_most(
-                f"{quantity}: left uncertain by the {by}, over it",
-                share,
-                allowed,
-                why=f"the answer would be one of the {by}, not of the drivetrain",
-                source=_SERIES[by],
-                measure="identity",
-            )
-    if beyond:
-        parts = [f"± {with_unit(f'{bands[by]:.2g}', unit)} by the {by}" for by in beyond]
-        page.unsettled.append(f"Not converged: {quantity}, uncertain by {' and '.join(parts)}.")
+    parts = [f"± {with_unit(f'{band:.2g}', unit)} by the {by}" for by, band in bands.items()]
+    return f"Not converged: {quantity}, uncertain by {' and '.join(parts)}."
+
+
+def _check_worst(page: Page, of: str, by: str, each: list[tuple[float, float, str]]) -> None:
+    """The quantity that uses most of what it is allowed, in place of them all."""
+    share, allowed, key = max(each, key=lambda one: one[0] / one[1])
+    what = split_unit(key)[0] if len(each) == 1 else f"{len(each)} quantities, the worst"
+    page.at_most(
+        f"{of}: left uncertain by the {by}, of {what}, over it",
+        share,
+        allowed,
+        why=f"the answer would be one of the {by}, not of the drivetrain",
+        source=f"{_SERIES[by]}: {key}",
+        measure="identity",
+    )
+
+
+def _row(key: str, found: ConvergenceInTime, bands: Mapping[str, float]) -> Record:
+    """A quantity, its bands, and what each run gave."""
+    return {
+        "quantity": key,
+        "value": found.value(key),
+        **{f"band by {name}": band for name, band in bands.items()},
+        **{
+            f"{count} harmonics": one.values[key]
+            for count, one in zip(found.harmonics, found.by_harmonics, strict=True)
+        },
+        **{
+            f"step {1e3 * dt:.3g} ms": one.values[key]
+            for dt, one in zip(found.steps, found.by_step, strict=True)
+        },
+    }

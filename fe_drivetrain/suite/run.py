@@ -142,6 +142,34 @@ class Run:
             )
         return int(value)
 
+    def positive(self, key: str, default: float | None = None) -> float:
+        """A setting that is a number above 0.
+
+        Parameters
+        ----------
+        key : str
+            Its name.
+        default : float, optional
+            What it is where the user does not say; without one he has to.
+
+        Returns
+        -------
+        float
+
+        Raises
+        ------
+        InputError
+            It is no number above 0, or is not given.
+        """
+        value = self.settings.get(key, default)
+        example = 10 if default is None else default
+        if value is None:
+            raise InputError(f"{key} has to be given for this machine, as in --set {key}={example}")
+        number = not isinstance(value, bool) and isinstance(value, int | float)
+        if not number or not 0.0 < value < np.inf:
+            raise InputError(f"{key} = {value!r} must be a number above 0, as in {key}={example:g}")
+        return float(value)
+
     def sketch(self, *bodies: Body | Shaft | list[Faces], file: str = "model.png") -> str:
         """Write a small picture of bodies, as meshed, shafts or surfaces; its name for a page."""
         # with its meshes come scikit-fem and SciPy, for which every process of cases would wait

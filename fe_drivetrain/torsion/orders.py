@@ -5,6 +5,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Protocol
 
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.strict_yaml import shown
+
 
 class Geared(Protocol):
     """A gear stage: its teeth, the ring's or the gear's first, and speed out over speed in."""
@@ -36,6 +39,18 @@ class Toothed:
 
     kind: str
     teeth: tuple[int, int]
+
+    def __post_init__(self) -> None:
+        if self.kind not in ("planetary", "parallel"):
+            raise InputError(
+                f"kind of a stage is {shown(self.kind)} but must be planetary or parallel: change "
+                "it"
+            )
+        if not all(isinstance(z, int) and not isinstance(z, bool) and z > 0 for z in self.teeth):
+            raise InputError(
+                f"teeth of a stage are {shown(self.teeth)} but must be whole numbers above 0: "
+                "correct them"
+            )
 
     @property
     def speed_ratio(self) -> float:

@@ -155,7 +155,9 @@ class Torsional:
 
 
 def _check(what: str, value: float, unit: str, zero: bool) -> None:
-    if not (math.isfinite(value) and (value > 0 or (zero and value == 0))):
+    if isinstance(value, bool) or not (
+        math.isfinite(value) and (value > 0 or (zero and value == 0))
+    ):
         raise InputError(
             f"{what} is {value:g} {unit} but must be a finite number "
             f"{'of at least' if zero else 'above'} 0: change it"

@@ -8,6 +8,7 @@ evaluation of a scene answers every quantity.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -155,8 +156,18 @@ def nominal_value(scene: Scene, key: str) -> float:
 
 
 def with_values(scene: Scene, values: Mapping[str, float]) -> Scene:
-    """The scene with other values by dotted key, materials that come with the program included."""
-    return change_scene(with_materials(scene), values)
+    """The scene with other values by dotted key, materials that come with the program included.
+
+    Where a thinner wall does not allow the scene's mesh sizes, half of these.
+    """
+    scene = with_materials(scene)
+    try:
+        return change_scene(scene, values)
+    except InputError:
+        finer = scene.model_copy(update={"mesh": scene.mesh.scaled(0.5)})
+        with suppress(InputError):
+            return change_scene(finer, values)
+        raise
 
 
 def check_spreads(scene: Scene) -> None:

@@ -1,0 +1,100 @@
+"""Commands among files of others: kills at random moments, and folders that are not theirs."""
+
+import json
+import os
+from typing import Any
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.common import CORES_VARIABLE, MissingToolError, run_python, scratch_folder
+from fe_drivetrain.suite import Page, Run, column
+
+KILLS, QUICK_KILLS = 100, 3
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+COUNTED = "counted: kind, mode and SHA-256 of every file, link and folder, before and after"
+
+
+def experiment(kills: int, quick: bool) -> list[dict[str, Any]]:
+    """What `command_kills.Found` holds of each kind of command, found in a process of its own."""
+    if not hasattr(os, "fork"):
+        raise MissingToolError("this system cannot fork processes: run the case on Linux")
+    with scratch_folder() as folder:
+        done = run_python(
+            *("-m", "fe_drivetrain.cases.stability.command_kills"),
+            *(str(folder), str(kills), "quick" if quick else "full"),
+            environment={**dict.fromkeys(THREADS, "1"), CORES_VARIABLE: "1"},
+            timeout=600 if quick else 12 * 3600,
+        )
+    if done.returncode != 0:
+        raise RuntimeError(f"the experiment ended with status {done.returncode}: {done.stderr}")
+    found: list[dict[str, Any]] = json.loads(done.stdout)
+    return found
+
+
+@case(
+    "Files of others: kills of every kind of command, and folders that are not theirs",
+    source="renameat2(2), link(2) and flock(2), Linux man-pages 6",
+    settings={"kills": "100 (quick 3; from 1)"},
+)
+def run(run: Run, page: Page) -> None:
+    """Kill each kind of command while its folders hold files of others, and look at every file."""
+    kills = run.count("kills", QUICK_KILLS if run.quick else KILLS)
+    with run.step("kills, and folders of others"):
+        found = experiment(kills, run.quick)
+    names = ", ".join(column(found, "command"))
+    for key, what, why in (
+        ("lost", "files of others lost or changed", "one lost file is one too many"),
+        ("broken", "results that are neither old nor new", "half a result could be taken for one"),
+        ("left", "hidden files and folders after the next run", "they would fill the disk in time"),
+    ):
+        page.vanishes(
+            f"{kills} kills of each of {len(found)} commands: {what}",
+            sum(column(found, key)),
+            within=0.0,
+            why=why,
+            source=COUNTED,
+        )
+    page.holds(
+        "every command into a folder of others: is refused, or writes its own file alone",
+        all(column(found, "refused")) and all(column(found, "untouched")),
+        why="a folder that is not of an earlier run belongs to somebody",
+        source=COUNTED,
+    )
+    page.holds(
+        "kills ended runs of every command, and a file that is changed on purpose is found",
+        all(column(found, "ended")) and all(column(found, "seen")),
+        why="otherwise nothing would have been tested",
+        source=COUNTED,
+    )
+    total = sum(column(found, "ended"))
+    page.answer(
+        f"Of {kills * len(found)} runs of {len(found)} kinds of command {total} were ended by a "
+        f"kill at a random moment; {sum(column(found, 'lost'))} lost or changed a file of others, "
+        f"and {sum(column(found, 'broken'))} left half a result.",
+        f"Into a folder of others all of them ({names}) write nothing, or their own file alone.",
+    )
+    page.section("Each kind of command")
+    page.table(
+        "Kills at random moments of a run, and what was there afterwards",
+        [
+            {
+                "command": one["command"],
+                "one run [s]": round(one["seconds"], 2),
+                "kills": one["kills"],
+                "of them before the end": one["ended"],
+                "files of others lost": one["lost"],
+                "results broken": one["broken"],
+                "hidden after the next run": one["left"],
+                "folder of others": "untouched" if one["untouched"] else "changed",
+            }
+            for one in found
+        ],
+    )
+    page.section("How files of others are kept")
+    page.text(
+        "A run lists in `fe-drivetrain-files.json` what it wrote, each file with the SHA-256 of "
+        "its content. A later run replaces these alone. All else is linked into the new folder "
+        "before that is exchanged for the old one in one operation, so that it is never missing; "
+        "a file that was changed since the run is kept, with `.kept` added to its name. A folder "
+        "without such a list, which is not empty, is refused before any work."
+    )
+    page.data("commands", found)
