@@ -1,5 +1,6 @@
 """What ``life`` says before its figures: what was not stated, and where its methods end."""
 
+import pickle
 from collections.abc import Callable
 from pathlib import Path
 
@@ -102,7 +103,8 @@ def test_options_that_are_given_are_no_assumptions(run) -> None:
 
 
 def test_assumptions_come_the_most_severe_first_and_small_ones_not_at_all() -> None:
-    (one,) = bearings_of(library_scene(SCENE), Choices({}, (), True, "rollers", "rigid", True))
+    made = bearings_of(library_scene(SCENE), Choices({}, (), True, "rollers", "rigid", True))
+    (one,) = pickle.loads(pickle.dumps(made))  # as for many files
     first, second = what_ifs(one, LifeRules(), Choices({}, (), True, "rollers", "rigid", True))
     changed = [(first, "9 years", 0.9), (second, "4 years", 0.4), (first, "9.6 years", 0.96)]
     words = in_words("b", "10 years", changed)
@@ -167,8 +169,8 @@ def test_speeds_of_no_bearing_are_refused_and_nothing_is_written(
     _, printed = run(
         *own_entry(
             tmp_path,
-            limiting_speed=10.0,
-            sources=catalogue_entry(SCENE).sources | {"limiting_speed": "of its maker"},
+            limiting_speed_rpm=10.0,
+            sources=catalogue_entry(SCENE).sources | {"limiting_speed_rpm": "of its maker"},
         )
     )
     assert "in 100 % of the time it turns faster than its limiting speed, 10.0 1/min" in printed

@@ -1,5 +1,6 @@
 """Life over load histories: sums that close, Miner's rule step by step, limits, levels."""
 
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -219,7 +220,7 @@ def test_speeds_that_no_bearing_has_are_refused() -> None:
     with pytest.raises(InputError, match="nan 1/min"):
         check_speed(RATED, [18.0, np.nan])
     check_speed(RATED, [-3800.0, 3800.0])
-    slow = replace(RATED, limiting_speed=17.0)
+    slow = replace(RATED, limiting_speed_rpm=17.0)
     seconds = np.array([1.0, 2.0, 4.0])
     steps = next(
         steps_of(rigid_rings(BEARING), np.tile([0, 0, -4e5, 0, 0], (3, 1)), [16, -18, 18], seconds)
@@ -277,6 +278,23 @@ def test_levels_of_the_bearing_agree_where_they_have_to(history) -> None:
     five, three = (model(BEARING)(plane)[0] for model in (rigid_rings, three_degree_rings))
     for mine, its in zip(five, three, strict=True):
         assert_allclose(mine, its, atol=1e-5 * mine.max())
+
+
+@pytest.mark.parametrize(
+    "model",
+    [
+        rigid_rings(BEARING),
+        three_degree_rings(BEARING),
+        flexible_rings(rigid_races(BEARING.with_rows(laminae=0))),
+    ],
+    ids=["rigid", "three-degree", "flexible"],
+)
+def test_models_of_rollers_go_to_other_processes(model) -> None:
+    """Many files are shared out to processes, and with them each bearing's model."""
+    load = np.array([[2e5, 0, -4e5, 8e5, 0]])
+    sent = pickle.loads(pickle.dumps(model))
+    for mine, its in zip(model(load)[0], sent(load)[0], strict=True):
+        assert_allclose(its, mine, rtol=1e-12)
 
 
 def test_hub_loads_reach_the_rollers_by_the_path_that_is_named() -> None:

@@ -287,7 +287,7 @@ def loads(page: Page, quick: bool) -> None:
         beyond=f"material flows: at P/C = {at['P / C']:.2f} the largest pressure is "
         f"{at['largest pressure [MPa]']:.0f} MPa, and C_0 is at some 4000; life still goes with "
         "the fourth power and looks like a number",
-        program="rates it, and counts the time with P above C/2, and with P_0 above C_0",
+        program="rates it, and counts the time with P above C/2, and with a static safety below 1",
         remedy="a larger bearing; the counted time is with the result",
     )
     page.section("Load")

@@ -274,11 +274,10 @@ def race_pressures(
         inner, outer = ball_contacts(row, youngs_modulus)
         return inner.pressure(Q), outer.pressure(Q)
     gamma, q = pitch_ratio(row), Q * laminae / row.length
-    on_inner, on_outer = (
-        line_pressure(q, 2.0 / row.diameter / (1.0 + side * gamma), youngs_modulus)
-        for side in (-1.0, 1.0)
+    return (
+        line_pressure(q, 2.0 / row.diameter / (1.0 - gamma), youngs_modulus),
+        line_pressure(q, 2.0 / row.diameter / (1.0 + gamma), youngs_modulus),
     )
-    return on_inner, on_outer
 
 
 def truncations(

@@ -47,7 +47,7 @@ _SOURCED = (
     "spread",
     "bore",
     "ratings",
-    "limiting_speed",
+    "limiting_speed_rpm",
 )
 
 #: What each kind needs beside number, diameter and pitch diameter, and nothing else of these.
@@ -91,7 +91,7 @@ class Entry(BaseModel):
     laminae: int = Field(default=LAMINAE, description="of a roller; 0 is the closed form")
     crown: float = Field(default=0.0, description="profile factor over the diameter [-]")
     ratings: Printed | None = Field(default=None, description="as printed in a catalogue")
-    limiting_speed: float | None = Field(
+    limiting_speed_rpm: float | None = Field(
         default=None, gt=0, description="that the catalogue allows [1/min]"
     )
     scenes: list[str] = Field(default=[], description="library scenes that it stands in")

@@ -16,11 +16,11 @@ import numpy as np
 from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.commands.life_bearings import PROFILE, Choices, OneBearing
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.hub_loads.point_loads import PointLoads
 from fe_drivetrain.life.lubricants import GRADES, SUPPLIES
 from fe_drivetrain.life.rated import RatedBearing
 from fe_drivetrain.life.roller_damage import LifeRules, damage_of_steps
 from fe_drivetrain.life.steps import Steps
-from fe_drivetrain.response.entering import Loads
 
 PLAYED = 1.0 / 4000.0
 """Clearance to compare with over the pitch diameter: 0.2 mm at 0.8 m. A size of what bearings have
@@ -90,7 +90,7 @@ def ratios(
     one: OneBearing,
     rules: LifeRules,
     ifs: Sequence[WhatIf],
-    loads: Loads,
+    loads: PointLoads,
     speed_rpm: Floats,
     weights: Floats,
 ) -> Floats:
@@ -104,8 +104,8 @@ def ratios(
         Choices.
     ifs : sequence of WhatIf
         Of `what_ifs`.
-    loads : Loads
-        Load steps at the hub, (n, 6) [N, N m].
+    loads : PointLoads
+        Load steps as they enter the body, (n, 6) or more [N, N m].
     speed_rpm : Floats
         (n,) [1/min].
     weights : Floats

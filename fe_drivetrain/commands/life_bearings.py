@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from fe_drivetrain.bearing.catalogue import Entry, read_catalogue
 from fe_drivetrain.bearing.geometry import Bearing, RollerRow
+from fe_drivetrain.bearing.races import Races
 from fe_drivetrain.commands.named_bearings import named_bearings
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
@@ -179,7 +181,11 @@ def _rollers(
     from fe_drivetrain.rings.housing import housing_races
 
     races = housing_races(scene, name, bearing)
-    return lambda changed: flexible_rings(replace(races, bearing=changed))
+    return partial(_on_races, races)
+
+
+def _on_races(races: Races, bearing: Bearing) -> RollerModel:
+    return flexible_rings(replace(races, bearing=bearing))
 
 
 def rollers_in_words(one: OneBearing, riser: str) -> str:

@@ -110,7 +110,7 @@ def _notes(page: Page, life: BearingLife, row: Record) -> None:
         ("load above C/2 [% of time]", "the load is above C/2, beyond the range of ISO 281"),
         (
             "above the limiting speed [% of time]",
-            f"it turns faster than its limiting speed, {life.one.rated.limiting_speed} 1/min",
+            f"it turns faster than its limiting speed, {life.one.rated.limiting_speed_rpm} 1/min",
         ),
         ("kappa below 0.1 [% of time]", "the film is below kappa = 0.1: a_ISO is taken as 0.1"),
         (
@@ -123,10 +123,10 @@ def _notes(page: Page, life: BearingLife, row: Record) -> None:
         share = row[key]
         if isinstance(share, float) and share > 0.0:
             page.note(f"Bearing {name}: in {share:.3g} % of the time {words}.")
-    pressed = centrifugal_load(life.one.rated.bearing, of.largest_speed)
+    pressed = centrifugal_load(life.one.rated.bearing, of.largest_speed_rpm)
     if pressed > PRESSED_OUT * of.largest_roller:
         page.note(
-            f"Bearing {name}: at {of.largest_speed:,.0f} 1/min a rolling element is pressed on "
+            f"Bearing {name}: at {of.largest_speed_rpm:,.0f} 1/min a rolling element is pressed on "
             f"the outer race by {1e-3 * pressed:.3g} kN of its own, beside a largest load of "
             f"{1e-3 * of.largest_roller:.3g} kN: centrifugal loads are in no life here."
         )

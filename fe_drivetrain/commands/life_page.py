@@ -246,8 +246,8 @@ def _assumed(
         "By a sample of a hundredth of the load steps of each file, drawn by the damage that they "
         "do. The clearance is 1/4000 of the pitch diameter, rounded, along the contact normal, "
         "and the preload a tenth of it: a size to compare with, of no table. Give the clearance of "
-        "the mounted bearing in its catalogue entry, and the others by their options. How rings, housing and the shaft's "
-        "support give way is not varied here: see --rings and --support."
+        "the mounted bearing in its catalogue entry, and the others by their options. How rings, "
+        "housing and the shaft's support give way is not varied here: see --rings and --support."
     )
 
 

@@ -44,7 +44,7 @@ class Limits:
         How often the direction of rotation changed, within each chunk of steps.
     largest_load, largest_static, largest_roller : float
         Of P, P_0 and one rolling element [N].
-    largest_reference, largest_pressure, largest_use, largest_speed : float
+    largest_reference, largest_pressure, largest_use, largest_speed_rpm : float
         Radial load that has the life of the rollers by their own exponent [N], C / L10r^(1/4), of
         balls C / L10r^(1/3); Hertz pressure of a lamina or a ball [Pa];
         one over the static safety [-]; speed [1/min].
@@ -64,7 +64,7 @@ class Limits:
     largest_reference: float = 0.0
     largest_pressure: float = 0.0
     largest_use: float = 0.0
-    largest_speed: float = 0.0
+    largest_speed_rpm: float = 0.0
 
     def __add__(self, other: Limits) -> Limits:
         """Times add up, extremes stay."""
@@ -112,7 +112,7 @@ def limits_of(
     use = static_use(rated, steps.loads, pressures)
     of_rollers = rated.dynamic * risk ** (1.0 / (BALL if rated.balls else LINE))
     heavy = (0.5 * rated.dynamic < P) | (0.5 * rated.dynamic < of_rollers)
-    limiting = np.inf if rated.limiting_speed is None else rated.limiting_speed
+    limiting = np.inf if rated.limiting_speed_rpm is None else rated.limiting_speed_rpm
     return Limits(
         standing=float(time[~turns].sum()),
         thin=float(time[runs & (kappa < BRANCHES[0][0])].sum()),
@@ -128,7 +128,7 @@ def limits_of(
         largest_reference=float(of_rollers.max(initial=0.0)),
         largest_pressure=float(pressures.max(initial=0.0)),
         largest_use=float(use.max(initial=0.0)),
-        largest_speed=float(speed.max(initial=0.0)),
+        largest_speed_rpm=float(speed.max(initial=0.0)),
     )
 
 

@@ -88,7 +88,7 @@ class RatedBearing:
         Of a catalogue; those of the geometry where None.
     f_0 : float
         Of deep grooves.
-    limiting_speed : float or None
+    limiting_speed_rpm : float or None
         Of a catalogue [1/min].
     """
 
@@ -99,7 +99,7 @@ class RatedBearing:
     sources: tuple[str, str, str]
     factors: Factors | None = None
     f_0: float = F_0
-    limiting_speed: float | None = None
+    limiting_speed_rpm: float | None = None
 
     def __post_init__(self) -> None:
         if len({isinstance(row, BallRow) for row in self.bearing.rows}) > 1:
@@ -317,5 +317,5 @@ def rated_from_catalogue(name: str, *more: str | Path, **changes: Any) -> RatedB
     source = entry.sources.get("ratings", "given")
     words = [source if text == "given" else text for text in rated.sources]
     return replace(
-        rated, sources=(words[0], words[1], words[2]), limiting_speed=entry.limiting_speed
+        rated, sources=(words[0], words[1], words[2]), limiting_speed_rpm=entry.limiting_speed_rpm
     )

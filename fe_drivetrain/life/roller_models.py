@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -36,10 +37,10 @@ def rigid_rings(bearing: Bearing) -> RollerModel:
     Returns
     -------
     model : callable
-        See `RollerModel`.
+        See `RollerModel`. As all of these it can be sent to another process.
     """
     sliced = with_laminae(bearing)
-    return lambda loads: _of(equilibrium(sliced, loads))
+    return partial(_in_equilibrium, equilibrium, sliced)
 
 
 def three_degree_rings(bearing: Bearing) -> RollerModel:
@@ -66,7 +67,7 @@ def three_degree_rings(bearing: Bearing) -> RollerModel:
             f"three degrees of freedom of {bearing.name}: it does not resist all of axial and "
             "radial displacement and tilt; take rigid rings"
         )
-    return lambda loads: _of(three_degrees(sliced, loads))
+    return partial(_in_equilibrium, three_degrees, sliced)
 
 
 def flexible_rings(races: Races, shapes: int | None = None) -> RollerModel:
@@ -84,22 +85,7 @@ def flexible_rings(races: Races, shapes: int | None = None) -> RollerModel:
     model : callable
         See `RollerModel`. Rollers in closed form are cut into 30 laminae afterwards.
     """
-    approach, lean = roller_motions(races.bearing)
-    sliced = with_laminae(races.bearing)
-    total = len(approach)
-
-    def model(loads: Floats) -> LaminaLoads:
-        found = equilibrium_on_races(races, loads, shapes=shapes)
-        u, gone = found.displacements, found.recession
-        middles = by_row(sliced, u @ approach.T - gone[:, :total])
-        leans = by_row(sliced, u @ lean.T - gone[:, total:])
-        laminae = []
-        for row, middle, t in zip(sliced.rows, middles, leans, strict=True):
-            assert isinstance(row, RollerRow)
-            laminae.append(laminae_of_contacts(row, middle, t))
-        return tuple(laminae), found.converged
-
-    return model
+    return partial(_on_races, races, shapes)
 
 
 def with_laminae(bearing: Bearing) -> Bearing:
@@ -185,8 +171,27 @@ def balanced(laminae: tuple[Floats, ...], converged: Bools) -> tuple[Floats, ...
     return tuple(np.where(converged[:, None, None], q, 0.0) for q in laminae)
 
 
-def _of(found: Equilibrium) -> LaminaLoads:
-    """Laminae at displacements; a ball is one."""
+def _on_races(races: Races, shapes: int | None, loads: Floats) -> LaminaLoads:
+    """Laminae of rollers on races that give way."""
+    approach, lean = roller_motions(races.bearing)
+    sliced = with_laminae(races.bearing)
+    total = len(approach)
+    found = equilibrium_on_races(races, loads, shapes=shapes)
+    u, gone = found.displacements, found.recession
+    middles = by_row(sliced, u @ approach.T - gone[:, :total])
+    leans = by_row(sliced, u @ lean.T - gone[:, total:])
+    laminae = []
+    for row, middle, t in zip(sliced.rows, middles, leans, strict=True):
+        assert isinstance(row, RollerRow)
+        laminae.append(laminae_of_contacts(row, middle, t))
+    return tuple(laminae), found.converged
+
+
+def _in_equilibrium(
+    solve: Callable[[Bearing, Floats], Equilibrium], bearing: Bearing, loads: Floats
+) -> LaminaLoads:
+    """Laminae between rigid rings; a ball is one."""
+    found = solve(bearing, loads)
     laminae: list[Floats] = []
     for row, Q in zip(found.bearing.rows, by_row(found.bearing, found.rollers), strict=True):
         laminae.append(
