@@ -6,9 +6,12 @@ import numpy as np
 
 from fe_drivetrain.bearing import (
     Bearing,
+    RollerRow,
     ball_row,
     catalogue_bearing,
     equilibrium,
+    iso_line,
+    lamina_loads,
     ratings,
 )
 from fe_drivetrain.cases import case
@@ -28,6 +31,7 @@ from fe_drivetrain.life import (
     needed_viscosity,
     rated_bearing,
     rigid_rings,
+    row_loads,
     rows_of,
     steps_of,
     stress_riser,
@@ -87,6 +91,8 @@ def run(run: Run, page: Page) -> None:
     with run.step("closed forms"):
         closed_forms(page)
         bearing_s(page)
+    with run.step("edge stress"):
+        edge_stress(page)
     not_confirmed(page)
     page.answer(
         f"Reference lives of a ball bearing are MASTA's to {100.0 * ball:.2g} %, C and C_u of a "
@@ -296,6 +302,28 @@ def bearing_s(page: Page) -> None:
             within=1e-2,
             why="three digits are stated, of laminae whose number is not",
             source="an independent computation of bearing S, 38 deg, face to face",
+            basis="second-hand",
+        )
+
+
+def edge_stress(page: Page) -> None:
+    """A cylindrical bearing whose edge stress counts: one roller carries all."""
+    row = RollerRow(6, 0.0, 0.02175, 0.0, 0.009, 0.0136, iso_line(0.0136), 5e-6, 40)
+    found = equilibrium(Bearing("N305", (row,)), [0.0, 1e3, 0.0, 0.0, 0.0], tolerance=1e-12)
+    loads = lamina_loads(row, found.displacements)
+    capacity = 31500.0
+    life = float(lamina_life([row_loads(row, loads, capacity)])[0])
+    for name, value, printed in (
+        ("L10r [Mrev]", life, "160603"),
+        ("P_ref [N]", capacity / life**0.3, "864.14"),
+        ("largest load of a lamina [N]", float(loads.max()), "25.000"),
+    ):
+        page.equals(
+            f"cylindrical bearing N305, with edge stress: {name}",
+            value,
+            **as_printed(printed),
+            source="minzhun/ISO16281, its stress riser of the outer race put right: it takes that "
+            "of the inner one in place of the lamina's number, and has 96547 Mrev",
             basis="second-hand",
         )
 

@@ -132,13 +132,15 @@ def press(radii: Sequence[float], misfit: float, materials: Sequence[Material], 
     size = points.size + 3
     outer, inner = parts[0].face_nodes("x1"), parts[1].face_nodes("x0") + n_shaft
     inner = inner[_pairs(points[outer], points[inner])]
+    outward = points[outer] * [0.0, 1.0, 1.0]
+    outward /= np.linalg.norm(outward, axis=1)[:, None]
     lames = [material.lame for material in materials]
     static = solve_solid(
         points,
         list(zip(cells, lames, strict=True)),
         None,
         [
-            _fit(points, outer, inner, size),
+            pressed_pairs("fit", outer, inner, outward, points.size, size),
             *sector_symmetry(both, QUARTER, size),
             held_nodes("side", both.face_nodes("z0"), [0], size),
         ],
@@ -190,12 +192,28 @@ def _pairs(outer: Floats, inner: Floats) -> Ints:
     return np.asarray(pairs)
 
 
-def _fit(points: Floats, outer: Ints, inner: Ints, n: int) -> Constraint:
-    """Each pair on the seat differs along the radius by one prescribed degree of freedom."""
-    normal = points[outer, 1:] / np.linalg.norm(points[outer, 1:], axis=1)[:, None]
-    misfit = np.full(len(outer), points.size)
-    columns = np.column_stack([3 * inner + 1, 3 * inner + 2, 3 * outer + 1, 3 * outer + 2, misfit])
-    values = np.column_stack([normal, -normal, -np.ones(len(outer))])
-    starts = np.arange(0, values.size + 1, 5)
-    rows = sparse.csr_array((values.ravel(), columns.ravel(), starts), shape=(len(outer), n))
-    return Constraint("fit", rows, 3 * inner + 1 + np.abs(normal).argmax(axis=1))
+def pressed_pairs(
+    name: str, first: Ints, second: Ints, normals: Floats, misfit: int, n_dofs: int
+) -> Constraint:
+    """Let each pair of nodes differ along its normal by one degree of freedom that all share.
+
+    Parameters
+    ----------
+    name : str
+        Of the constraint.
+    first, second : Ints
+        (n,) nodes of either body; where the misfit is positive, the second is ahead of the first.
+    normals : Floats
+        (n, 3) unit vectors.
+    misfit : int
+        The degree of freedom: prescribed it is a misfit [m], loaded a force that presses [N].
+    n_dofs : int
+        Of all.
+    """
+    shared = np.full((len(first), 1), misfit)
+    columns = np.hstack([3 * nodes[:, None] + np.arange(3) for nodes in (second, first)] + [shared])
+    values = np.hstack([normals, -normals, -np.ones((len(first), 1))])
+    starts = np.arange(0, values.size + 1, 7)
+    rows = sparse.csr_array((values.ravel(), columns.ravel(), starts), shape=(len(first), n_dofs))
+    rows.eliminate_zeros()
+    return Constraint(name, rows, 3 * second + np.abs(normals).argmax(axis=1))

@@ -1,0 +1,61 @@
+"""Hertz contacts of a sphere on a flat and of two cylinders: problems VM63 and VM191 of Ansys."""
+
+import numpy as np
+
+from fe_drivetrain.bearing import point_contact
+from fe_drivetrain.cases import case
+from fe_drivetrain.compare import as_printed, round_off
+from fe_drivetrain.gear import LineContact, reduced_modulus
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Run
+
+# mm, N and MPa, as the manual has them
+SPHERE, SOFT, POISSON, FORCE = 8.0, 1000.0, 0.3, 60.0 * np.pi
+CYLINDERS, MODULI, RATIOS, PER_LENGTH = (10.0, 13.0), (30000.0, 29120.0), (0.25, 0.30), 3200.0
+MANUAL = "Ansys Mechanical APDL verification manual, {}, as quoted"
+HALF_WIDTH, RADIUS = "cylinders: half width [mm]", "sphere: radius of the contact [mm]"
+PRESSURE = "cylinders: largest pressure [MPa]"
+
+
+@case(
+    "Hertz contacts of a sphere on a rigid flat and of two cylinders (VM63, VM191)",
+    source="Ansys Mechanical APDL verification manual, VM63 and VM191; Johnson, Contact mechanics, "
+    "1985",
+)
+def run(run: Run, page: Page) -> None:
+    """Press a ball on a flat, as bearings have it, and two cylinders, as teeth have them."""
+    # against a rigid flat the sphere alone gives way: as two bodies of twice its modulus
+    ball = point_contact((1.0 / SPHERE, 1.0 / SPHERE), 2.0 * SOFT, POISSON)
+    axes = np.cbrt(FORCE) * np.array(ball.half_axes)
+    # each of two unlike bodies gives way by half of what two like it would
+    gives = [1.0 / reduced_modulus(E, nu) for E, nu in zip(MODULI, RATIOS, strict=True)]
+    radius = 1.0 / sum(1.0 / r for r in CYLINDERS)
+    line = LineContact(PER_LENGTH, radius, 1.0 / (0.5 * sum(gives)))
+    for number, quantity, value, prints in (
+        ("VM63", RADIUS, axes[0], ("1.010",)),
+        ("VM191", HALF_WIDTH, line.half_width, ("1.20", "1.19971")),
+        ("VM191", PRESSURE, line.pressure, ("1698.06",)),
+    ):
+        for printed in prints:
+            source = MANUAL.format(number) if printed != "1.19971" else "Hertz, in another program"
+            of = as_printed(printed)
+            page.equals(quantity, float(value), **of, source=source, basis="second-hand")
+    closed = float(np.cbrt(0.75 * FORCE * SPHERE * (1.0 - POISSON**2) / SOFT))
+    rounded = round_off(1e3, "a cube root and elliptic integrals of a circle")
+    source = "a^3 = 3 F R / (4 E*): Johnson 1985, Eq 4.22"
+    page.equals(f"closed form, {RADIUS}", float(axes[1]), closed, **rounded, source=source)
+    x = np.linspace(-line.half_width, line.half_width, 401)
+    carried = float(np.trapezoid(line.pressure_at(x), x))
+    steep = "trapezoids of a root that begins steeply miss some (2 / 400)^1.5"
+    title = "cylinders: integral of the pressure [N/mm]"
+    page.equals(title, carried, PER_LENGTH, within=(2 / 400) ** 1.5, why=steep, source="balance")
+    page.answer(
+        f"The sphere touches over a radius of {axes[0]:.4f} mm, the cylinders over a half width of "
+        f"{line.half_width:.4f} mm with {line.pressure:.2f} MPa: what the manual has to its digits."
+    )
+    page.chart(
+        "Pressure between the cylinders",
+        [trace("Hertz", x, line.pressure_at(x))],
+        "from the middle of the strip [mm]",
+        "pressure [MPa]",
+    )
