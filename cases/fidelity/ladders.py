@@ -7,7 +7,7 @@ from fe_drivetrain.cases.fidelity.published_torsion import Published, beside_pub
 from fe_drivetrain.cases.fidelity.stiffness_files import stiffness_files
 from fe_drivetrain.commands import advised
 from fe_drivetrain.fidelity import Quantity
-from fe_drivetrain.scene import change_scene, library_scene
+from fe_drivetrain.scene import change_scene, coarser_scene, library_scene
 from fe_drivetrain.suite import Page, Record, Run
 
 #: The mesh of a quick run: sizes times this, where the table says no other, and elements a turn.
@@ -21,8 +21,7 @@ def run(run: Run, page: Page, row: Record) -> None:
     finer = {} if run.quick else {f"mesh.{key}": size for key, size in row.get("mesh", {}).items()}
     scene = change_scene(original, finer | dict(run.settings))
     if run.quick:
-        mesh = scene.mesh.scaled(row.get("coarser", COARSER), TURN)
-        scene = scene.model_copy(update={"mesh": mesh})
+        scene = coarser_scene(scene, row.get("coarser", COARSER), TURN)
     page.about(scene)
     quantity = Quantity(row["quantity"])
     advised(run, page, scene, quantity, row["tolerance"], to_the_top=True)
