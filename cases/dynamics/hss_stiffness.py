@@ -147,7 +147,7 @@ def torque_rows(page: Page, quick: bool) -> list[Record]:
 
 
 def least_torque(one: Rated, factor: float, dt: float) -> tuple[float, float]:
-    """Of the high-speed shaft over rated, and the error of the energy."""
+    """Torque of the high-speed shaft over rated, and the error of the energy."""
     when = StopSequence(off=0.1, pitched=1e3, left=1.0, end=1.5)
     last = len(one.table.shafts) - 1
     k = factor * one.table.shafts[last].stiffness

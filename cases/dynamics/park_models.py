@@ -88,7 +88,7 @@ def varying_model(system: System, harmonics: int, phase: float = 0.0) -> Equatio
 
 
 def static_forces(system: System, load: Floats) -> Floats:
-    """Of the meshes, with constant stiffness [N]."""
+    """Static forces of the meshes, with constant stiffness [N]."""
     rows = [system.spring_names.index(name) for name in MESHES]
     q = wind_up(equations_of(system), load).q
     return np.asarray((system.stiffness * (system.rows @ q))[rows])

@@ -220,7 +220,7 @@ def check_losses(page: Page, dt: float) -> list[Record]:
 
 
 def check_loss(page: Page, one: Rated, found: ConvergenceInTime) -> Record:
-    """Of one drivetrain."""
+    """Check the loss of the generator of one drivetrain."""
     undamped, damped, gears = (
         f"{one.letter}, {kind}: least over rated"
         for kind in ("two masses, undamped", "two masses, damped", "all gears, HSS")

@@ -151,7 +151,7 @@ def converged_ripples(found: TransmissionError, at: Floats) -> ConvergenceInTime
 
 
 def peak_to_peak(motion: Motion, steps: float) -> float:
-    """Of the last period [m]."""
+    """Transmission error of the last period [m]."""
     last = motion.q[-round(steps) :, 0]
     return peak_between(last) + peak_between(-last)
 

@@ -80,7 +80,7 @@ class Found:
     command : str
         Its kind.
     seconds : float
-        Of a run that nothing ends [s].
+        Duration of a run that nothing ends [s].
     kills, ended : int
         How many runs were to be killed, and how many of them the kill ended.
     lost : int

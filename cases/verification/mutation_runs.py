@@ -85,7 +85,7 @@ class Bench:
         Parameters
         ----------
         tests : sequence of str
-            Of one file.
+            Rows of one file.
 
         Returns
         -------

@@ -168,7 +168,7 @@ def in_words(name: str, life: str, changed: Sequence[tuple[WhatIf, str, float]])
     Parameters
     ----------
     name, life : str
-        Of the bearing, and its L10mr in words.
+        Name of the bearing, and its L10mr in words.
     changed : sequence of tuple
         Assumption, the life that it is compared with in words, and its ratio to the life.
 

@@ -1,8 +1,8 @@
 """Folders that appear whole: filled under a hidden name, then put in the place of an older one.
 
-Of the older one all goes over into the new one that is not listed in its manifest as written by the
-run that made it. At no moment, a kill at any included, is there neither folder, half of one, or a
-file of others missing.
+Everything in the older folder goes over into the new one, except what its manifest lists as written
+by the run that made it. At every moment, even after a kill, one whole folder is there, and no file
+of others is missing.
 """
 
 import ctypes

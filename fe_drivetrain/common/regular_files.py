@@ -12,7 +12,7 @@ from io import BufferedReader
 from pathlib import Path
 
 MOST_BYTES = 300_000_000
-"""Of a file that is read whole, where nothing else is said."""
+"""Largest size of a file that is read whole, where nothing else is said [bytes]."""
 
 _KINDS = {
     stat.S_IFIFO: "a pipe",

@@ -6,8 +6,8 @@ square wave does, a Fourier series of it has a number of harmonics, and the valu
 as they grow. Both bands are grid convergence indices: of three steps, with the second order of the
 methods expected and the first counted on; and of three numbers of harmonics, with the first order
 of jumps expected and a quarter counted on, since each harmonic that comes in may meet a resonance.
-Of a suddenly loaded mass on a mesh of random contact ratio, frequency, phase and damping the bands
-hold all of 120 peaks over the step, and 194 of 200 over the harmonics. That takes peaks as of
+The bands of a suddenly loaded mass on a mesh of random contact ratio, frequency, phase and damping
+hold all of 120 peaks over the step, and 194 of 200 over the harmonics. Peaks must be those of
 `peak_between`: nested steps sample a peak at the same instants, and agree on what they all miss.
 """
 
@@ -47,7 +47,7 @@ class InTime(NamedTuple):
     Attributes
     ----------
     values : mapping of str to float
-        Of each quantity, its unit in the key.
+        Value of each quantity, its unit in the key.
     energy_error : float
         Energy that appears from nowhere, over the largest, as of `Motion.relative_imbalance`.
     converged : bool
@@ -82,12 +82,12 @@ class ConvergenceInTime:
 
     @property
     def finest(self) -> InTime:
-        """Of the shortest step and all harmonics."""
+        """Values of the shortest step and all harmonics."""
         return self.by_step[-1]
 
     @property
     def energy_error(self) -> float:
-        """Of the shortest step, over the largest energy."""
+        """Energy error of the shortest step, over the largest energy."""
         return self.finest.energy_error
 
     @property

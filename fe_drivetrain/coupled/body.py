@@ -60,7 +60,7 @@ class LinearBody:
     load_points : tuple of str
         Points where other loads enter.
     entrance : Entrance
-        Of the scene: where loads enter.
+        Where loads enter the scene.
     """
 
     bearings: tuple[str, ...]

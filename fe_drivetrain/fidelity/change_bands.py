@@ -1,7 +1,7 @@
 """Bands of the change of a quantity from one design to another.
 
-What two designs have in common errs alike in both: a mesh that makes one 2 % too stiff makes one
-that is nearly equal 2 % too stiff, too, and their change is not 4 % uncertain. So the rule that
+Two designs share the errors of what they have in common: a mesh that makes one 2 % too stiff makes
+a nearly equal one 2 % too stiff, too, and their change is not 4 % uncertain. So the rule that
 gives a value its band is applied to the change itself: on both bounds of the housings, from beam to
 meridian, over the same series of meshes, from the difference of the recovered errors.
 

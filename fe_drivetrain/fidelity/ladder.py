@@ -91,7 +91,7 @@ class LevelModel:
         Names of n points, and (6 n, 6 n) motions of each for unit forces and moments at each, on
         the scene's supports; no points at level 0.
     entrance : Entrance
-        Of the scene: where loads enter.
+        Where loads enter the scene.
     """
 
     level: int

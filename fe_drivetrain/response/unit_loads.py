@@ -53,7 +53,7 @@ class Response:
     kept : bool
         Whether it was taken from the cache instead of solved.
     entrance : Entrance
-        Of the scene: where loads enter.
+        Where loads enter the scene.
     """
 
     reactions: Mapping[str, Floats]

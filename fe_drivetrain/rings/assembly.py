@@ -67,7 +67,7 @@ class RollerAssembly:
     springs : Floats
         (2 total,) that the solids were solved with [N/m]; zero of leans.
     entrance : Entrance
-        Of the scene: where loads enter.
+        Where loads enter the scene.
     """
 
     bearings: Mapping[str, Bearing]
