@@ -465,7 +465,7 @@ def test_files_are_read_and_misread_with_a_message(tmp_path):
     with pytest.raises(InputError, match="cannot read drivetrain file"):
         read_drivetrain(tmp_path / "none.yaml")
     path.write_text("#" * 1_000_001, "utf-8")
-    with pytest.raises(InputError, match="larger than"):
+    with pytest.raises(InputError, match="it has more than 1000000 bytes"):
         read_drivetrain(path)
     with pytest.raises(InputError, match="generator cannot be fixed"):
         stage_masses(parse_drivetrain(GOOD), "fixed")

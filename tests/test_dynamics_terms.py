@@ -25,6 +25,7 @@ from fe_drivetrain.dynamics.equations import (
 )
 from fe_drivetrain.dynamics.integration import State, integrate, settled
 from fe_drivetrain.dynamics.levels import Level, assembly, machine_system
+from fe_drivetrain.dynamics.machine_parts import BearingData
 from fe_drivetrain.dynamics.mesh_errors import harmonic_error
 from fe_drivetrain.dynamics.meshing import Meshing, varying_equations
 from fe_drivetrain.dynamics.modes import system_modes
@@ -37,7 +38,7 @@ from fe_drivetrain.dynamics.steady_state import wind_up
 from fe_drivetrain.dynamics.step_control import integrate_adaptively
 from fe_drivetrain.dynamics.superposition import exact_steps, modal_superposition
 from fe_drivetrain.dynamics.system import System
-from fe_drivetrain.dynamics.tables import BearingData, library_machine
+from fe_drivetrain.dynamics.tables import library_machine
 from fe_drivetrain.dynamics.travelling import integrate_travelling, travelling_of
 from fe_drivetrain.scene.materials import Material
 

@@ -1,6 +1,7 @@
 """Several solids of a STEP file, glued; further parts, tied to housings: placed, and as stiff."""
 
 import json
+import shutil
 
 import gmsh
 import meshio
@@ -473,6 +474,9 @@ def test_a_part_that_does_not_fit_is_refused_before_any_level(plate, old, new, w
 def test_parts_are_looked_for_beside_the_scene_and_changed_by_their_names(plate, tmp_path):
     text = PLATE.replace("PATH", "plate.step").replace("MATERIAL", "steel")
     (tmp_path / "mine.yaml").write_text(SCENE.format(parts=text, housing="{}", E=2.1e11))
+    with pytest.raises(InputError, match=r"plate\.step: there is no such file"):
+        read_scene(tmp_path / "mine.yaml")
+    shutil.copy(plate, tmp_path / "plate.step")
     one = read_scene(tmp_path / "mine.yaml")
     assert one.bearing_units[0].parts[0].file == str(tmp_path / "plate.step")
     changes = {"bearing_units.main_bearing.parts.plate.material": "ductile_iron"}

@@ -12,6 +12,7 @@ from fe_drivetrain.cases.main_bearing import general, rmse, study
 from fe_drivetrain.cases.main_bearing.secants import Cases, hub_loads
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.report.results import Chart, Table
+from fe_drivetrain.response.entering import entering
 from fe_drivetrain.scene.reading import change_scene
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
@@ -148,7 +149,8 @@ def test_secants_of_two_bearings(tmp_path: Path, rng: np.random.Generator) -> No
     scene = change_scene(two_bearings(), {"load_points": [BRAKE | {"x": 1.0}]})
     at_brake = np.zeros((80, 6))
     at_brake[:, 2] = -2e4
-    cases = Cases(np.hstack([hub, at_brake]), np.full(80, 1 / 80), "made loads")
+    loads = entering(scene, np.hstack([hub, at_brake]))
+    cases = Cases(loads, np.full(80, 1 / 80), "made loads")
     general.secant_page(run_in(tmp_path), page, scene, cases)
     assert all(verdict.passed for verdict in page.verdicts)
     rows = rows_of(page, "K_R of each bearing")
@@ -185,7 +187,7 @@ def test_load_cases_of_histories_of_unlike_length_and_step_count_by_their_time(
         rows = [f"{step * k:g},{1e5 + k},2,3,4,{5e4 - k},6" for k in range(count)]
         (tmp_path / f"{name}.csv").write_text("\n".join([head, *rows]))
     found = hub_loads(run_in(tmp_path, loads=str(tmp_path)), 1, stepped())
-    assert found.hub.shape == (60, 6)
+    assert found.hub.values.shape == (60, 6)
     assert found.weights is not None
     # coarse comes first; a step of it stands for five times the time of a fine one
     assert found.weights[0] == pytest.approx(5 * found.weights[-1])

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_drivetrain.cases.stability import mutated_machines as mutations
+from fe_drivetrain.cases.verification import mutated_machines as mutations
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.bodies import Body, assemble
 from fe_drivetrain.dynamics.gear_pairs import mesh_stresses

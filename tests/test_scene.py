@@ -173,7 +173,7 @@ def test_file_limits_and_absence(tmp_path):
         read_scene(tmp_path / "none.yaml")
     big = tmp_path / "big.yaml"
     big.write_text("# " + "x" * 1_000_001)
-    with pytest.raises(InputError, match="larger than 1000000 bytes"):
+    with pytest.raises(InputError, match="it has more than 1000000 bytes"):
         read_scene(big)
     binary = tmp_path / "binary.yaml"
     binary.write_bytes(b"\xff\xfe\x00")

@@ -149,7 +149,7 @@ def test_a_link_to_a_file_stays_and_the_file_keeps_its_mode(tmp_path: Path) -> N
 def test_a_cache_goes_on_where_something_else_is_in_the_way(tmp_path: Path) -> None:
     cache = Cache(tmp_path)
     cache.keep("meshes", {"a": 1}, {})
-    (file,) = tmp_path.rglob("*.npz")
+    (file,) = tmp_path.rglob("*.arrays")
     file.unlink()
     file.mkdir()
     cache.keep("meshes", {"a": 1}, {})

@@ -19,7 +19,7 @@ def experiment(kills: int, quick: bool) -> list[dict[str, Any]]:
         raise MissingToolError("this system cannot fork processes: run the case on Linux")
     with scratch_folder() as folder:
         done = run_python(
-            *("-m", "fe_drivetrain.cases.stability.command_kills"),
+            *("-m", "fe_drivetrain.cases.verification.command_kills"),
             *(str(folder), str(kills), "quick" if quick else "full"),
             environment={**dict.fromkeys(THREADS, "1"), CORES_VARIABLE: "1"},
             timeout=600 if quick else 12 * 3600,
