@@ -207,7 +207,7 @@ def run(run: Run, page: Page) -> None:
     with run.side_by_side(1 if run.quick else count) as jobs:
         # the first are at work while others are meshed
         started = [
-            (scene, jobs.start(kept, seed, number % CHANGED == 0))
+            (scene, jobs.start(kept, seed, number % CHANGED == 0 and not run.quick))
             for number, (seed, scene) in enumerate(drawn(run, count))
         ]
         for number, (_, job) in enumerate(started, 1):

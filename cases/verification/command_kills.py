@@ -37,6 +37,13 @@ CASES = ("drivetrain/two_masses", "drivetrain/five_masses")
 #: that it writes stands in the folder "out" or is named out.
 QUICK: dict[str, Words] = {
     "run": lambda out: ["run", CASES[0], "--quick", "--out", str(out)],
+    "new": lambda out: ["new", str(out.with_name("out.yaml")), "--overwrite"],
+    "export": lambda out: [
+        *("export", "two_bearings", "--format", "json", "--level", "1", "--overwrite"),
+        *("--out", str(out.with_name("out.json"))),
+    ],
+}
+OTHERS: dict[str, Words] = {
     "run of several": lambda out: [
         *("run", *CASES, "--quick", "--out", str(out)),
         *("--junit", str(out.with_name("out.xml"))),
@@ -45,13 +52,6 @@ QUICK: dict[str, Words] = {
         *("advise", "main_bearing_spherical", "--quantity", "main_bearing.Fz", "--out", str(out))
     ],
     "validate": lambda out: ["validate", str(out.with_name(PROJECT)), "--out", str(out)],
-    "new": lambda out: ["new", str(out.with_name("out.yaml")), "--overwrite"],
-    "export": lambda out: [
-        *("export", "two_bearings", "--format", "json", "--level", "1", "--overwrite"),
-        *("--out", str(out.with_name("out.json"))),
-    ],
-}
-OTHERS: dict[str, Words] = {
     "check": lambda out: ["check", str(out.with_name(SCENE)), "--out", str(out)],
     "compare": lambda out: [
         *("compare", "main_bearing_spherical", "main_bearing_bonded", "--out", str(out)),
