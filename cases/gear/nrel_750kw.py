@@ -2,7 +2,7 @@
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.gear.rows import mesh_row, stiffness_row
-from fe_drivetrain.gear import iso_stiffness, parabolic_mean
+from fe_drivetrain.gear import iso_stiffness, parabolic_mean, rack_factor
 from fe_drivetrain.report import gear_pair
 from fe_drivetrain.suite import Page, Record, Run, Target
 from fe_drivetrain.validation import published_gears as published
@@ -70,8 +70,9 @@ def run(run: Run, page: Page) -> None:
         )
     page.table("Values of Al-Hamadani 2018, Tables 4.2 and 6.3, beside ISO 6336-1", table)
     page.text(
-        "The deep teeth of this gearbox (dedendum 1.47 modules) take a rack factor C_B of 0.87, so "
-        "that c' is below the 14 N/(mm µm) that the thesis takes for all. Its Eq 5.4 states "
+        "The deep teeth of this gearbox (dedendum 1.47 modules) take a rack factor C_B of "
+        f"{rack_factor(pairs['sun'].first):.2g} between sun and planet, so that c' is below the "
+        "14 N/(mm µm) that the thesis takes for all. Its Eq 5.4 states "
         "neither the shape factor nor the stiffness ratio: here 1 and 0.8. Dedendum and shifts "
         "are those with which all published root circles and centre distances fit."
     )
