@@ -29,6 +29,14 @@ from fe_drivetrain.hub_loads.csv_table import read_csv, write_csv
 from fe_drivetrain.hub_loads.histories import LoadHistory
 
 Invoke = Callable[..., Result]
+TETRAHEDRON = """*NODE
+1, 0, 0, 0
+2, 1, 0, 0
+3, 0, 1, 0
+4, 0, 0, 1
+*ELEMENT, TYPE=C3D4, ELSET=BLOCK
+1, 1, 2, 3, 4
+"""
 KINDS = ("folder", "pipe", "socket", "device", "null", "link", "loop")
 
 
@@ -95,6 +103,44 @@ def test_no_command_replaces_what_is_no_file(odd: dict[str, Path], invoke: Invok
             assert "Traceback" not in error
             assert len(error.splitlines()) == 1, error
     assert kinds(odd) == before
+
+
+def test_an_export_never_replaces_the_scene_that_it_is_of(tmp_path: Path, invoke: Invoke) -> None:
+    scene, link = tmp_path / "mine.yaml", tmp_path / "link.json"
+    assert invoke("new", str(scene))[0] == 0
+    link.symlink_to(scene)
+    before = scene.read_bytes()
+    for out in (scene, link):
+        words = ["export", str(scene), "--format", "json", "--out", str(out), "--overwrite"]
+        code, _, error = invoke(*words)
+        assert (code, len(error.splitlines())) == (2, 1)
+        assert "is the scene itself" in error
+    assert scene.read_bytes() == before
+
+
+def test_a_picture_of_a_part_replaces_no_file_unasked(
+    tmp_path: Path, invoke: Invoke, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    part, picture = tmp_path / "tetrahedron.inp", tmp_path / "photo.png"
+    part.write_text(TETRAHEDRON)
+    picture.write_bytes(b"a photo")
+    os.mkfifo(tmp_path / "pipe.png")
+    monkeypatch.setattr(
+        "fe_drivetrain.report.pictures.part.picture_of_part",
+        lambda points, triangles, marks, path: path.write_bytes(b"a drawing"),
+    )
+    code, _, error = invoke("part", str(part), "--picture", str(picture))
+    assert (code, len(error.splitlines())) == (2, 1)
+    assert "add --overwrite" in error
+    code, _, error = invoke(
+        "part", str(part), "--picture", str(tmp_path / "pipe.png"), "--overwrite"
+    )
+    assert (code, len(error.splitlines())) == (2, 1)
+    assert "is a named pipe" in error
+    assert picture.read_bytes() == b"a photo"
+    code, text, _ = invoke("part", str(part), "--picture", str(picture), "--overwrite")
+    assert (code, picture.read_bytes()) == (0, b"a drawing")
+    assert f"picture: {picture}" in text
 
 
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="there is no /proc")

@@ -116,6 +116,8 @@ def export_command(
         found = named_scene_or_component(scene, changes)
         if out.exists() and not overwrite:
             raise InputError(f"--out {out} exists: give another file, or add --overwrite")
+        if out.exists() and Path(scene).exists() and out.samefile(scene):
+            raise InputError(f"--out {out} is the scene itself: give another file")
         write(sys.stdout, f"{out}: {_written(found, wanted)}\n")
         return PASSED
 

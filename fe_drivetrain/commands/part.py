@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from fe_drivetrain.commands.terminal import PASSED, guarded, write
 from fe_drivetrain.common.errors import InputError
+
+if TYPE_CHECKING:
+    from fe_drivetrain.foreign.survey import Survey
 
 _SUPERELEMENTS = {".json": "json", ".csv": "csv", ".bdf": "dmig", ".op4": "op4", ".h5": "hdf5"}
 
@@ -34,6 +37,9 @@ def part_command(
         Path | None,
         typer.Option("--picture", metavar="PNG", help="Write a picture with the names of faces."),
     ] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="With --picture: replace an existing file.")
+    ] = False,
 ) -> None:
     """Show what is in a STEP or mesh file: volume, bores that may be seats, planes, labels.
 
@@ -47,24 +53,44 @@ def part_command(
             return PASSED
         from fe_drivetrain.foreign.survey import surveyed
 
-        if picture is not None and (
-            picture.suffix != ".png" or not picture.absolute().parent.is_dir()
-        ):
-            raise InputError(f"{picture} must end in .png, in a folder that there is")
+        if picture is not None:
+            _check_picture(picture, overwrite)
         found = surveyed(file)
         write(sys.stdout, found.text)
         if picture is not None and len(found.triangles):
-            from fe_drivetrain.report.pictures import NoPictureError
-            from fe_drivetrain.report.pictures.part import picture_of_part
-
-            try:
-                picture_of_part(found.points, found.triangles, found.marks, picture)
-                write(sys.stdout, f"\npicture: {picture}\n")
-            except NoPictureError as error:
-                write(sys.stderr, f"fe-drivetrain: no picture: {error}\n")
+            _draw(found, picture)
         return PASSED
 
     raise typer.Exit(guarded(work, "nothing is changed"))
+
+
+def _check_picture(picture: Path, overwrite: bool) -> None:
+    """Refuse a file that cannot be written, or that is there already, before any work."""
+    from fe_drivetrain.common.files import check_writable
+
+    if picture.suffix != ".png" or not picture.absolute().parent.is_dir():
+        raise InputError(f"{picture} must end in .png, in a folder that there is")
+    check_writable(picture)
+    if picture.exists() and not overwrite:
+        raise InputError(f"--picture {picture} exists: give another file, or add --overwrite")
+
+
+def _draw(found: Survey, picture: Path) -> None:
+    """Draw what was found; the file appears whole or not at all."""
+    from fe_drivetrain.common.files import atomic_path, scratch_folder
+    from fe_drivetrain.report.pictures import NoPictureError
+    from fe_drivetrain.report.pictures.part import picture_of_part
+
+    with scratch_folder() as scratch:
+        drawn = scratch / "picture.png"
+        try:
+            picture_of_part(found.points, found.triangles, found.marks, drawn)
+        except NoPictureError as error:
+            write(sys.stderr, f"fe-drivetrain: no picture: {error}\n")
+            return
+        with atomic_path(picture) as unfinished:
+            unfinished.write_bytes(drawn.read_bytes())
+    write(sys.stdout, f"\npicture: {picture}\n")
 
 
 def _superelement(file: Path, bore: str, held: list[str]) -> str:
