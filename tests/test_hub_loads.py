@@ -25,6 +25,7 @@ from fe_drivetrain.hub_loads.files import (
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.openfast import read_openfast, turn_to_fixed
 from fe_drivetrain.hub_loads.openfast_output import openfast_channels
+from fe_drivetrain.hub_loads.recorded import recorded_files
 
 #: A folder with output files of OpenFAST, which are not distributed with the project.
 REAL_FOLDER = Path(os.environ.get("FE_DRIVETRAIN_OPENFAST", "no folder is given"))
@@ -242,8 +243,19 @@ def test_two_files_of_one_run_are_refused_and_one_kind_is_taken(tmp_path: Path) 
     for pattern in (str(tmp_path), f"{tmp_path}/*", f"{tmp_path}/run.*", f"{tmp_path.parent}/**"):
         with pytest.raises(InputError, match=r"two files of one OpenFAST run.*choose one kind"):
             read_hub_load_files(pattern)
+    with pytest.raises(InputError, match="two files of one OpenFAST run"):
+        recorded_files([f"{tmp_path}/run.out", f"{tmp_path}/run.outb"])
     (history,) = read_hub_load_files(f"{tmp_path}/*.outb")
     assert history.name == "run"
+
+
+def test_a_file_that_several_patterns_find_counts_once(tmp_path: Path) -> None:
+    for name in ("a.out", "b.out"):
+        write_out(tmp_path / name, rotating_columns())
+    (tmp_path / "link.out").symlink_to(tmp_path / "a.out")
+    patterns = [f"{tmp_path}/a.out", f"{tmp_path}/link.out", f"{tmp_path}/[ab].out"]
+    assert [history.name for history in read_hub_load_files(patterns)] == ["a", "b"]
+    assert recorded_files(patterns) == [tmp_path / "a.out", tmp_path / "b.out"]
 
 
 def test_wildcards_find_files_in_any_part_of_the_path(tmp_path: Path) -> None:

@@ -387,7 +387,9 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Flo
         "calm": write_loads(folder / "loads" / "calm.csv", 1),
         "storm": write_loads(folder / "loads" / "storm.csv", 2, start=60.0, count=101, step=0.05),
     }
-    words = ["study", "two_bearings", "--loads", str(folder / "loads"), *TWO_BEARINGS]
+    words = ["study", "two_bearings", *TWO_BEARINGS]
+    for name in loads:
+        words += ["--loads", str(folder / "loads" / f"{name}.csv")]
     words += ["--slope", "4", "--slope", "8"]
     with pytest.raises(SystemExit) as end:
         main([*words, "--out", str(folder / "out")])

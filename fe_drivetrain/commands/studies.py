@@ -74,12 +74,13 @@ def check_command(
 def study_command(
     scene: SceneName,
     loads: Annotated[
-        str | None,
+        list[str] | None,
         typer.Option(
             "--loads",
             metavar="FILES",
             help="Hub loads: a file (.out, .outb of OpenFAST, or .csv), a folder, or a pattern in "
-            "quotes, as in 'outputs/*.outb'. Default: a surrogate of a generic 2 MW rotor.",
+            "quotes, as in 'outputs/*.outb'. May be repeated. Default: a surrogate of a generic "
+            "2 MW rotor.",
         ),
     ] = None,
     skip: Skip = 0.0,

@@ -70,14 +70,14 @@ class StudyLoads:
 
 
 def own_loads(
-    pattern: str, skip: float, scene: Scene, mapping: ChannelMap | None = None
+    patterns: str | Sequence[str], skip: float, scene: Scene, mapping: ChannelMap | None = None
 ) -> StudyLoads:
     """Read the user's files.
 
     Parameters
     ----------
-    pattern : str
-        A file, a folder, or a pattern.
+    patterns : str or sequence of str
+        Files, folders, or patterns; a file that several find counts once.
     skip : float
         What is left out at the beginning of each file [s].
     scene : Scene
@@ -92,11 +92,11 @@ def own_loads(
     """
     front, at = scene.shaft.front, scene.loads_at
     read = read_hub_loads if mapping is None else partial(read_mapped, mapping)
-    found = read_hub_load_files(pattern, skip, read)
+    found = read_hub_load_files(patterns, skip, read)
     histories = [at_front(scene, history) for history in found]
     moved = f" Their moments, about x = {at:g} m, are moved to the front face." * (at != front)
     if not any(history.loads.any() for history in histories):
-        raise InputError(f"--loads {pattern!r}: all hub loads are zero: give histories with loads")
+        raise InputError(f"--loads {patterns!r}: all hub loads are zero: give histories with loads")
     unlike = different_turbines(vertical_forces(histories))
     count, samples = len(histories), sum(map(len, histories))
     seconds = sum(history.seconds for history in histories)

@@ -60,30 +60,51 @@ def read_hub_loads(path: str | os.PathLike[str], skip: float = 0.0) -> LoadHisto
 
 
 def read_hub_load_files(
-    pattern: str, skip: float = 0.0, read: Callable[[Path, float], LoadHistory] = read_hub_loads
+    patterns: str | Sequence[str],
+    skip: float = 0.0,
+    read: Callable[[Path, float], LoadHistory] = read_hub_loads,
 ) -> list[LoadHistory]:
-    """Read all histories that a pattern finds, each with a name of its own.
+    """Read all histories that patterns find, each with a name of its own.
 
     A history is named after its file; where files of several folders have one name, after its
     folders, too.
 
     Parameters
     ----------
-    pattern : str
-        See `hub_load_files`.
+    patterns : str or sequence of str
+        See `hub_load_files`; a file that several find is read once.
     skip : float
-        As of `read_hub_loads`.
+        What is left out at the beginning of each file [s].
     read : callable
         Reads a file, given `skip`.
 
     Raises
     ------
     InputError
-        No file is found, two are of one run, or one cannot be read.
+        As `files_of_patterns` does, or a file cannot be read.
     """
-    files = hub_load_files(pattern)
+    files = files_of_patterns([patterns] if isinstance(patterns, str) else patterns)
     histories = [read(file, skip) for file in files]
     return [replace(h, name=n) for h, n in zip(histories, _names(files), strict=True)]
+
+
+def files_of_patterns(patterns: Sequence[str]) -> list[Path]:
+    """Files that several patterns find, each once, by whichever path or link.
+
+    Parameters
+    ----------
+    patterns : sequence of str
+        See `hub_load_files`.
+
+    Raises
+    ------
+    InputError
+        None is found, or two are the .out and the .outb of one run.
+    """
+    found = [file for pattern in patterns for file in hub_load_files(pattern)]
+    files = list({file.resolve(): file for file in reversed(found)}.values())[::-1]
+    _check_runs(files)
+    return files
 
 
 def hub_load_files(pattern: str) -> list[Path]:
@@ -116,17 +137,22 @@ def hub_load_files(pattern: str) -> list[Path]:
     files = list(dict.fromkeys(files))
     if not files:
         raise InputError(f"loads = {pattern!r}: no {', '.join(SUFFIXES)} file is there")
+    _check_runs(files)
+    return files
+
+
+def _check_runs(files: Sequence[Path]) -> None:
+    """Refuse both output files of one run: its loads would count twice."""
     runs: dict[Path, Path] = {}
     for file in files:
         if file.suffix.lower() in _OPENFAST:
-            other = runs.setdefault(file.with_suffix(""), file)
+            other = runs.setdefault(file.with_suffix("").resolve(), file)
             if other is not file:
                 raise InputError(
-                    f"loads = {pattern!r}: {other} and {file.name} are two files of one OpenFAST "
+                    f"loads: {other} and {file.name} are two files of one OpenFAST "
                     "run, which would count twice: choose one kind, as in "
                     f"loads='{file.parent / ('*' + file.suffix)}'"
                 )
-    return files
 
 
 def require_points(histories: Sequence[LoadHistory], points: Sequence[str]) -> None:

@@ -27,7 +27,7 @@ from fe_drivetrain.hub_loads.channels import (
     without_unit,
 )
 from fe_drivetrain.hub_loads.csv_table import is_of_point, point_loads, read_csv
-from fe_drivetrain.hub_loads.files import SUFFIXES, hub_load_files
+from fe_drivetrain.hub_loads.files import SUFFIXES, files_of_patterns
 from fe_drivetrain.hub_loads.histories import (
     MIN_SAMPLES,
     LoadHistory,
@@ -86,15 +86,14 @@ def recorded_files(patterns: list[str]) -> list[Path]:
     Parameters
     ----------
     patterns : list of str
-        See `hub_load_files`.
+        See `files_of_patterns`.
 
     Raises
     ------
     InputError
         None is found, or a file that is named does not exist.
     """
-    found = [file for pattern in patterns for file in hub_load_files(pattern)]
-    return [existing_file(file) for file in dict.fromkeys(found)]
+    return [existing_file(file) for file in files_of_patterns(patterns)]
 
 
 def read_recorded(
