@@ -11,7 +11,7 @@ from fe_drivetrain.geometry.part import SMALLEST, Assumption, Part, dimension
 from fe_drivetrain.scene.materials import Material
 
 STEEL = Material(youngs_modulus=2.06e11, poisson_ratio=0.3, density=7850.0)
-"""Of shafts, where nothing else is given."""
+"""Steel of shafts, where nothing else is given."""
 
 #: What no machine's inertia [kg m^2], mass [kg], stiffness [N/m, N m/rad] or damping is beyond.
 MOST_INERTIA, MOST_MASS, MOST_STIFFNESS, MOST_DAMPING = 1e10, 1e7, 1e20, 1e12
@@ -154,7 +154,7 @@ class ShaftData(Part):
         return self
 
     def assumptions(self) -> list[Assumption]:
-        """As of every part; only a shaft that is given by its torsion bends as is assumed."""
+        """Say what is assumed; the bending of a shaft only where torsion alone is given."""
         return super().assumptions() if self.torsion and self.kind == "shaft" else []
 
     @property

@@ -136,7 +136,7 @@ class GearData(Part):
         return self
 
     def assumptions(self) -> list[Assumption]:
-        """As of every part; what is of teeth alone only where there are profile shifts."""
+        """Say what is assumed; facts about teeth only where profile shifts are given."""
         silent = () if self.shifts is not None else OF_TEETH
         return [row for row in super().assumptions() if row.name not in silent]
 
@@ -245,7 +245,7 @@ class PlanetaryData(GearData):
 
     @property
     def meshes(self) -> tuple[Mesh, Mesh]:
-        """Of sun and planet, and of planet and ring."""
+        """Meshes of sun and planet, and of planet and ring."""
         ring, planet, sun = self.teeth if self.teeth is not None else (0, 0, 0)
         return self.mesh(sun + planet), self.mesh(ring - planet)
 
@@ -259,7 +259,7 @@ class PlanetaryData(GearData):
 
     @property
     def speed_ratio(self) -> float:
-        """Of the sun to the carrier."""
+        """Speed of the sun over that of the carrier."""
         if self.teeth is not None:
             return 1 + self.teeth[0] / self.teeth[2]
         # of the centre distance, as the modes, so that both are of one geometry
@@ -319,7 +319,7 @@ class ParallelData(GearData):
 
     @property
     def speed_ratio(self) -> float:
-        """Of the pinion to the gear."""
+        """Speed of the pinion over that of the gear, both counted positive."""
         if self.teeth is not None:
             return self.teeth[0] / self.teeth[1]
         return self.gear_radius / (self.centre_distance - self.gear_radius)
@@ -329,7 +329,7 @@ StageData = Annotated[
     Annotated[PlanetaryData, Tag("planetary")] | Annotated[ParallelData, Tag("parallel")],
     Discriminator(kind_of),
 ]
-"""Of either kind; by the time it is one, rows of a file have become stages."""
+"""A stage of either kind: rows of a file have become stages before this type is used."""
 _KINDS: dict[str, type[Part]] = {"planetary": PlanetaryData, "parallel": ParallelData}
 
 
@@ -364,7 +364,7 @@ class MachineTable(Part):
 
     @property
     def speeds(self) -> tuple[float, ...]:
-        """Of each shaft over the rotor's; a parallel stage changes the sense."""
+        """Speed of each shaft over the rotor's; a parallel stage changes the sense."""
         found = [1.0]
         for stage in self.stages:
             sense = 1.0 if isinstance(stage, PlanetaryData) else -1.0

@@ -25,7 +25,7 @@ BALL = 10.0 / 3.0
 """Exponent of load to damage in point contact."""
 
 STEEL_DENSITY = 7850.0
-"""Of rolling elements [kg/m^3]."""
+"""Density of rolling elements [kg/m^3]."""
 
 
 @dataclass(frozen=True, eq=False)

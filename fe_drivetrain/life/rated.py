@@ -130,7 +130,7 @@ class RatedBearing:
 
     @property
     def pressure_exponent(self) -> float:
-        """Of the pressure of a contact to its load: 2 in line contact, 3 in point contact."""
+        """Power of a contact's pressure that its load goes with: 2 in line, 3 in point contact."""
         return 3.0 if self.balls else 2.0
 
     @property

@@ -281,7 +281,7 @@ def _record_in(results: Results, subject: Subject | None) -> DrivetrainRecord | 
 
 
 def _why_other(results: Results, subject: Subject | None) -> str:
-    """Of which drivetrain results are, and of which the project is."""
+    """Name the drivetrain of the results, and that of the project."""
     if subject is None:
         return "the project does not say of which drivetrain it is: name it under model"
     ours = f"the project is of {subject.record.title!r} ({subject.record.hash})"

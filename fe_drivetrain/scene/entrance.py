@@ -33,4 +33,4 @@ class Entrance:
 
 
 AT_HUB = Entrance(0.0, 0.0)
-"""Of a body without a scene: loads are about the point "hub", where they enter."""
+"""Entrance of a body without a scene: loads are about the point "hub", where they enter."""

@@ -162,7 +162,7 @@ class PlanetaryStage(_Stage):
             )
 
     def assumptions(self) -> list[Assumption]:
-        """As of every part, and whether planets stand at unequal angles, which turning ignores."""
+        """Say what is assumed, and that torsion ignores unequal angles of planets."""
         rows = super().assumptions()
         if self.teeth is not None and sum(self.teeth) % self.planets:
             why = (
@@ -174,7 +174,7 @@ class PlanetaryStage(_Stage):
 
     @property
     def speed_ratio(self) -> float:
-        """Of the sun to the carrier: 1 + ring / sun."""
+        """Speed of the sun over that of the carrier: 1 + ring / sun."""
         return 1 + self.teeth[0] / self.teeth[1] if self.teeth else float(self.ratio or 0.0)
 
     @property
@@ -216,7 +216,7 @@ class ParallelStage(_Stage):
 
     @property
     def speed_ratio(self) -> float:
-        """Of the pinion to the gear."""
+        """Speed of the pinion over that of the gear, both counted positive."""
         return self.teeth[0] / self.teeth[1] if self.teeth else float(self.ratio or 0.0)
 
 
@@ -224,7 +224,7 @@ Stage = Annotated[
     Annotated[PlanetaryStage, Tag("planetary")] | Annotated[ParallelStage, Tag("parallel")],
     Discriminator(kind_of),
 ]
-"""Of either kind; by the time it is one, rows of a file have become stages."""
+"""A stage of either kind: rows of a file have become stages before this type is used."""
 _KINDS: dict[str, type[Part]] = {"planetary": PlanetaryStage, "parallel": ParallelStage}
 
 

@@ -54,7 +54,7 @@ class Toothed:
 
     @property
     def speed_ratio(self) -> float:
-        """Of the sun to the carrier, or of the pinion to the gear."""
+        """Speed of the sun over the carrier's, or of the pinion over the gear's."""
         large, small = self.teeth
         return (1.0 if self.kind == "planetary" else 0.0) + large / small
 

@@ -70,7 +70,7 @@ def own_ratios(machine: MachineTable) -> list[float]:
 
 
 def _sizes(stage: PlanetaryData) -> tuple[float, float, float]:
-    """Of ring, planet and sun: teeth, or radii of a stage whose radii sum to its distance."""
+    """Sizes of ring, planet and sun: teeth, or radii where they sum to the centre distance."""
     if stage.teeth is not None:
         ring, planet, sun = stage.teeth
         return ring, planet, sun
@@ -203,7 +203,7 @@ def _of_turning(machine: MachineTable, system: System, level: Level) -> list[Fac
 
 
 def _rounded(machine: MachineTable) -> float:
-    """Of a ratio: round-off, or what radii of three digits may be from the centre distance."""
+    """Error of a ratio by round-off, or by radii of three digits beside the centre distance."""
     off = [
         min(abs(sum(stage.radii) / stage.centre_distance - 1), 1e-3)
         * stage.centre_distance
