@@ -99,6 +99,9 @@ def test_contact_ratio_factor_joins_spur_and_helical_gears() -> None:
     assert contact_ratio_factor(1.0, 0.0) == 1.0
     assert contact_ratio_factor(1.5, 1.0) == contact_ratio_factor(1.5, 3.0) == sqrt(1.0 / 1.5)
     assert contact_ratio_factor(1.5, 0.5) ** 2 == pytest.approx(0.5 * (2.5 / 3.0 + 1.0 / 1.5))
+    for ratios in ((0.587, 0.0), (0.587, 2.0), (4.5, 0.0), (1.5, -0.1), (float("nan"), 1.0)):
+        with pytest.raises(InputError, match=r"contact ratios are .* must be 1 to 4"):
+            contact_ratio_factor(*ratios)
 
 
 def test_face_factor_joins_at_two_and_the_load_is_kept() -> None:

@@ -327,7 +327,17 @@ def contact_ratio_factor(transverse_ratio: float, overlap_ratio: float) -> float
     float
         sqrt((4 - epsilon_alpha) / 3) of spur gears, sqrt(1 / epsilon_alpha) from a whole overlap,
         squares in proportion between.
+
+    Raises
+    ------
+    InputError
+        epsilon_alpha is not 1 to 4, or epsilon_beta is negative.
     """
+    if not (1.0 <= transverse_ratio < 4.0 and overlap_ratio >= 0.0):
+        raise InputError(
+            f"contact ratios are {transverse_ratio:.4g} (transverse) and {overlap_ratio:.4g} "
+            "(overlap) but must be 1 to 4 and at least 0: correct teeth, tips or helix"
+        )
     overlap = min(overlap_ratio, 1.0)
     spur, helical = (4.0 - transverse_ratio) / 3.0, 1.0 / transverse_ratio
     return sqrt(spur * (1.0 - overlap) + helical * overlap)
