@@ -111,6 +111,19 @@ def test_designs_that_differ_much_have_the_bands_of_both() -> None:
     assert change_band(one, OnSprings(*np.ones((3, 1))), (1.0, 1.0)) is None
 
 
+def test_meshes_too_near_for_a_series_show_their_scatter() -> None:
+    """Sizes of walls decide: what is recovered cancels, what the meshes do by chance does not."""
+    near = (1.02, 1.01, 1.0)
+    one, other = series([1.020, 1.016, 1.018], 0.02, near), series([0.98, 0.98, 0.98], 0.019, near)
+    assert one.band.series != one.band.series  # there is none
+    band = change_band(one, other, (1.018, 0.98))
+    assert band is not None
+    # the difference of what is recovered, and 1.25 times 0.002 of scatter, and 4 % of both bands
+    assert 0.0025 < band < 0.3 * (one.half_width + other.half_width)
+    still = series([1.018] * 3, 0.02, near)  # the same mesh thrice says nothing of scatter
+    assert change_band(still, other, (1.018, 0.98)) is None
+
+
 def test_only_meshes_that_both_designs_have_make_a_series() -> None:
     """A mesh that the thinner wall cannot have is left out of both."""
     three = series([1.13, 1.07, 1.04], 0.04, (1.8, 1.35, 1.0))

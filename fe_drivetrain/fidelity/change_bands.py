@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.compare.convergence import SAFETY
 from fe_drivetrain.fidelity.assembly_bands import AssemblyBand, assembly_band
 
 
@@ -98,9 +99,16 @@ class OnMeshes:
         )
 
     @property
-    def is_series(self) -> bool:
-        """Whether its meshes say something of each other: see `assembly_band`."""
-        return len(self.band.sizes) > 1
+    def scatter(self) -> float:
+        """What meshes add by chance, in the unit of the quantity; NaN where there is but one.
+
+        A series has it in its band. Meshes whose sizes are too near each other for a series still
+        differ by their topology: `SAFETY` times the largest difference from the finest.
+        """
+        if len(self.band.sizes) > 1:
+            return 0.0
+        apart = [float(np.linalg.norm(v - self.values[-1])) for v in self.values[:-1]]
+        return SAFETY * max(apart) if any(apart) else float("nan")
 
 
 def change_band(
@@ -120,8 +128,8 @@ def change_band(
     Returns
     -------
     float or None
-        None where nothing is known of what the two have in common: levels differ, or there is no
-        series of meshes, so that the scatter of one mesh is not known.
+        None where nothing is known of what the two have in common: levels differ, or there is but
+        one mesh, whose scatter is not known.
     """
     change: OnSprings | OnMeshes
     if isinstance(first, OnSprings) and isinstance(other, OnSprings):
@@ -132,8 +140,9 @@ def change_band(
         return None
     if not difference.any():
         return 0.0
-    if isinstance(change, OnMeshes) and not change.is_series:
+    scatter = change.scatter if isinstance(change, OnMeshes) else 0.0
+    if np.isnan(scatter):
         return None
     whole = first.half_width + other.half_width
     apart = float(np.linalg.norm(difference)) / max(map(abs, sizes))
-    return min(whole, change.half_width + apart * whole)
+    return min(whole, change.half_width + scatter + apart * whole)
