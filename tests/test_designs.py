@@ -1,5 +1,6 @@
 """Designs side by side: what changes, by how much, and which level says so."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -122,6 +123,23 @@ def test_meshes_too_near_for_a_series_show_their_scatter() -> None:
     assert 0.0025 < band < 0.3 * (one.half_width + other.half_width)
     still = series([1.018] * 3, 0.02, near)  # the same mesh thrice says nothing of scatter
     assert change_band(still, other, (1.018, 0.98)) is None
+
+
+def test_meshes_of_unlike_sizes_have_little_in_common() -> None:
+    factors = (1.8, 1.35, 1.0)
+    one, other = (
+        series([v * (1 + 0.04 * f**2) for f in factors], 0.04, factors) for v in (1, 0.99)
+    )
+    bands = []
+    for shrunk in (1.0, 0.97, 0.5):
+        sizes = tuple(shrunk * h for h in other.sizes)
+        bands.append(change_band(one, replace(other, sizes=sizes), (1.04, 1.03)))
+    like, nearly, unlike = bands
+    assert like is not None
+    assert nearly is not None
+    whole = one.half_width + other.half_width
+    assert nearly - like == pytest.approx((1.0 / 0.97**2 - 1.0) * whole, rel=0.05)
+    assert unlike == pytest.approx(whole, rel=0.01)
 
 
 def test_only_meshes_that_both_designs_have_make_a_series() -> None:
