@@ -37,6 +37,10 @@ RAW = {
 OF_BODIES = ("verification", "stability", "bearing", "gear", "foreign", "export")
 WITHOUT_BODY = {
     "verification/grid_convergence_index",
+    "verification/vm63_vm191_hertz",
+    # files, slips and faults
+    *(f"verification/{name}" for name in ("files_of_others", "kept_files", "mutations")),
+    *(f"verification/{name}" for name in ("mutated_machines", "mutated_scenes")),
     "bearing/ratings",
     "gear/gear_damage",
     "gear/mesh_wave",

@@ -248,8 +248,8 @@ def run(run: Run, page: Page) -> None:
     )
     if changed := [row[BAND] / row[BOTH] for row in rows if row["kind"] == CHANGE]:
         page.answer(
-            f"Bands of {len(changed)} changes are {min(changed):.2g} to {max(changed):.2g} of those "
-            f"of both values together, {np.median(changed):.2g} in the median."
+            f"Bands of {len(changed)} changes are {min(changed):.2g} to {max(changed):.2g} of the "
+            f"sum of the bands of both values, {np.median(changed):.2g} in the median."
         )
     page.section("Bands over errors")
     page.chart(
