@@ -272,9 +272,9 @@ def load(modules: Iterator[str]) -> None:
 
 def main() -> None:
     """The experiment, in the folder and with the kills of the command line, as JSON."""
-    folder, kills, full = Path(sys.argv[1]), int(sys.argv[2]), sys.argv[3] == "full"
+    folder, kills, names = Path(sys.argv[1]), int(sys.argv[2]), sys.argv[3:]
     os.environ[CACHE_VARIABLE] = str(folder / "cache")
-    kinds = QUICK | (OTHERS if full else {})
+    kinds = {name: words for name, words in (QUICK | OTHERS).items() if name in names}
     load(
         f"fe_drivetrain.commands.{name}"
         for name in ("advice_page", "validate_page", "run", "studies", "export", "loads_page")

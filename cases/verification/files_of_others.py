@@ -5,24 +5,41 @@ import os
 from typing import Any
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import CORES_VARIABLE, MissingToolError, run_python, scratch_folder
+from fe_drivetrain.cases.verification import command_kills
+from fe_drivetrain.common import (
+    CORES_VARIABLE,
+    InputError,
+    MissingToolError,
+    run_python,
+    scratch_folder,
+)
 from fe_drivetrain.suite import Page, Run, column
 
 KILLS, QUICK_KILLS = 100, 3
+KINDS, QUICK_KINDS = [*command_kills.QUICK, *command_kills.OTHERS], [*command_kills.QUICK]
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 COUNTED = "counted: kind, mode and SHA-256 of every file, link and folder, before and after"
 
 
-def experiment(kills: int, quick: bool) -> list[dict[str, Any]]:
+def chosen(run: Run) -> list[str]:
+    """The kinds of command that are asked for."""
+    asked = run.settings.get("kinds", QUICK_KINDS if run.quick else KINDS)
+    names = [asked] if isinstance(asked, str) else list(asked)
+    if unknown := [name for name in names if name not in KINDS]:
+        raise InputError(f"kinds: {unknown[0]!r} is unknown: choose of {', '.join(KINDS)}")
+    return names
+
+
+def experiment(kills: int, kinds: list[str]) -> list[dict[str, Any]]:
     """What `command_kills.Found` holds of each kind of command, found in a process of its own."""
     if not hasattr(os, "fork"):
         raise MissingToolError("this system cannot fork processes: run the case on Linux")
     with scratch_folder() as folder:
         done = run_python(
             *("-m", "fe_drivetrain.cases.verification.command_kills"),
-            *(str(folder), str(kills), "quick" if quick else "full"),
+            *(str(folder), str(kills), *kinds),
             environment={**dict.fromkeys(THREADS, "1"), CORES_VARIABLE: "1"},
-            timeout=600 if quick else 12 * 3600,
+            timeout=60 * kills * len(kinds),
         )
     if done.returncode != 0:
         raise RuntimeError(f"the experiment ended with status {done.returncode}: {done.stderr}")
@@ -33,13 +50,17 @@ def experiment(kills: int, quick: bool) -> list[dict[str, Any]]:
 @case(
     "Files of others: kills of every kind of command, and folders that are not theirs",
     source="renameat2(2), link(2) and flock(2), Linux man-pages 6",
-    settings={"kills": "100 (quick 3; from 1)"},
+    settings={
+        "kills": "100 (quick 3; from 1)",
+        "kinds": "[run, new, export, run of several, advise, validate, check, compare, study, "
+        "loads, life, uncertainty] (quick [run, new, export])",
+    },
 )
 def run(run: Run, page: Page) -> None:
     """Kill each kind of command while its folders hold files of others, and look at every file."""
     kills = run.count("kills", QUICK_KILLS if run.quick else KILLS)
     with run.step("kills, and folders of others"):
-        found = experiment(kills, run.quick)
+        found = experiment(kills, chosen(run))
     names = ", ".join(column(found, "command"))
     for key, what, why in (
         ("lost", "files of others lost or changed", "one lost file is one too many"),
