@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from numpydoc.docscrape import NumpyDocString
 from pydantic import BaseModel
 
 ROOT = Path(__file__).parents[1] / "fe_drivetrain"
@@ -54,6 +53,8 @@ def stated_units(thing: object) -> Iterator[tuple[str, str]]:
     """Names of arguments and attributes, and every unit in brackets that their lines state."""
     if not callable(thing) or (inspect.isclass(thing) and issubclass(thing, BaseModel)):
         return  # keys of files, whose schema states them
+    from numpydoc.docscrape import NumpyDocString  # not among what tests install
+
     said = NumpyDocString(inspect.getdoc(thing) or "")
     for section in ("Parameters", "Attributes"):
         for entry in said[section]:
@@ -77,6 +78,12 @@ def offences(room: str) -> list[str]:
             if ending and not f"_{name}".lower().endswith(ending):
                 found.append(f"{room}.{owner}: {name} [{unit}] should end with {ending}")
     return found
+
+
+@pytest.fixture(autouse=True)
+def reader_of_docstrings() -> None:
+    """Skip where numpydoc, which the checks of the text install, is not there."""
+    pytest.importorskip("numpydoc")
 
 
 def test_a_unit_of_another_kind_is_found() -> None:

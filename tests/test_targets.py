@@ -11,7 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from click.testing import Result
+from tiny_case import Result
 
 from fe_drivetrain.common import files
 from fe_drivetrain.common.cache import Cache
