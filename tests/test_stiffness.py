@@ -54,7 +54,7 @@ def test_estimators_agree_in_size_and_order(free):
     for estimator, vertical in by_plane["vertical"].items():
         assert 0 < vertical < by_plane["horizontal"][estimator]
         assert vertical == pytest.approx(by_plane["vertical"]["averaged seat"], rel=0.6)
-    # The housing's own points leave out the give of the ring, in either plane alike.
+    # The housing's own points leave out the give of the ring, in either plane.
     for values in by_plane.values():
         assert 1.0 < values["four nodes"] / values["averaged seat"] < 3.0
 

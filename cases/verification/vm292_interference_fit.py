@@ -8,8 +8,8 @@ from fe_drivetrain.validation.interference_fits import exact_fit, press, quarter
 
 RADII = 1.25, 1.516, 1.75  # m
 MISFIT = 0.02  # m, on the radius
-ALIKE = Material(youngs_modulus=206e9, poisson_ratio=0.0, density=0.0)
-FIT = RADII, MISFIT, (ALIKE, ALIKE)
+EQUAL = Material(youngs_modulus=206e9, poisson_ratio=0.0, density=0.0)
+FIT = RADII, MISFIT, (EQUAL, EQUAL)
 
 THROUGH, PRESSURE = "elements through the outer cylinder", "contact pressure [MPa]"
 MANUAL = "Ansys Mechanical APDL verification manual, VM292, as quoted"

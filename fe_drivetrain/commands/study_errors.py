@@ -210,7 +210,7 @@ def enough(judgement: Judgement, bounds: Mapping[str, Sequence[str]]) -> str:
     Parameters
     ----------
     judgement : Judgement
-        Of the levels below the assembly.
+        Judgement of the levels below the assembly.
     bounds : Mapping[str, Sequence[str]]
         Names of the models of each level.
     """

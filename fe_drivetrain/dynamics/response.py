@@ -178,7 +178,7 @@ class Crossing:
     frequency : float
         [Hz].
     speed : float
-        Of the rotor [rad/s].
+        Speed of the rotor [rad/s].
     mode : int
         Number of the frequency, from 0.
     """

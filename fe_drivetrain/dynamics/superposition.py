@@ -186,7 +186,7 @@ def energy_error(
     loads : Loads
         On them, kinks at records.
     times : ndarray, (k,)
-        Of the records [s].
+        Times of the records [s].
     q, velocity : ndarray, (k, n)
         Displacements and their rates.
 

@@ -469,10 +469,10 @@ def _share(quantity: Quantity, model: LevelModel, length: float) -> float:
     if owner == "hub":
         return 1.0
     kind = FORCES[:3] if component in FORCES[:3] else FORCES[3:]
-    alike = [
+    of_kind = [
         replace(quantity, name=f"{name}.{c}") for name in model.reaction_matrices for c in kind
     ]
-    sizes = [float(np.linalg.norm(other.of(model, length))) for other in alike]
+    sizes = [float(np.linalg.norm(other.of(model, length))) for other in of_kind]
     own = float(np.linalg.norm(quantity.of(model, length)))
     return own / max(own, *(size for size in sizes if np.isfinite(size)))
 

@@ -71,7 +71,7 @@ class OnMeshes:
     recovered : Floats
         (k,) errors of the values of the finest mesh, estimated from recovered stresses.
     factors : tuple[float, ...]
-        Of each mesh, its sizes as asked for over those of the finest.
+        Sizes of each mesh as asked for, over those of the finest.
     """
 
     sizes: tuple[float, ...]

@@ -106,11 +106,11 @@ def is_slight(kind: str, size: float, largest: Mapping[str, float], length: floa
     kind : str
         "force" or "moment".
     size : float
-        Of the quantity [N or N m].
+        Size of the quantity [N or N m].
     largest : Mapping[str, float]
         Largest size of each kind [N, N m].
     length : float
-        Of the shaft [m], which makes moments comparable to forces.
+        Length of the shaft [m], which makes moments comparable to forces.
     """
     if size < SLIGHT * largest[kind]:
         return True
@@ -127,7 +127,7 @@ def judge_levels(quantities: Sequence[Judged], tolerance: float, length: float) 
     tolerance : float
         Allowed error, relative.
     length : float
-        Of the shaft [m].
+        Length of the shaft [m].
 
     Returns
     -------

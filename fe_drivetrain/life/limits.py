@@ -185,7 +185,7 @@ def check_speed(rated: RatedBearing, speed_rpm: ArrayLike) -> None:
     rated : RatedBearing
         The bearing.
     speed_rpm : array_like
-        Of the turning ring [1/min], of any sign.
+        Speed of the turning ring [1/min], of any sign.
 
     Raises
     ------
@@ -210,7 +210,7 @@ def centrifugal_load(bearing: Bearing, speed_rpm: float) -> float:
     bearing : Bearing
         Of steel, its rollers taken as cylinders.
     speed_rpm : float
-        Of the inner ring [1/min].
+        Speed of the inner ring [1/min].
 
     Returns
     -------

@@ -89,7 +89,7 @@ class RatedBearing:
     f_0 : float
         Of deep grooves.
     limiting_speed_rpm : float or None
-        Of a catalogue [1/min].
+        Limiting speed of a catalogue [1/min].
     """
 
     bearing: Bearing

@@ -36,7 +36,7 @@ def is_vacuous(share: float) -> bool:
     Parameters
     ----------
     share : float
-        Of the value, 0.05 of 5 %.
+        Share of the value, 0.05 of 5 %.
     """
     # written so that a third, and what is no number, are vacuous
     return not (1.0 + share) < APART * (1.0 - share)

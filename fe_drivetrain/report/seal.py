@@ -2,7 +2,7 @@
 
 A drivetrain is known by the hash of all values that describe it, so that a page that is of another
 one can be told from its numbers alone. The digest of the results tells a file that was edited; it
-guards against mistakes, and against nobody who computes it anew.
+guards against mistakes, and against nobody who computes it again.
 """
 
 from __future__ import annotations
