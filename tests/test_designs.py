@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 from coarse_scenes import coarse_scene
 
-from fe_drivetrain.commands import design_page
 from fe_drivetrain.commands.app import main
-from fe_drivetrain.commands.design_page import compared, what_level_two_lacks, why_solid
+from fe_drivetrain.commands.design_page import what_level_two_lacks, why_solid
 from fe_drivetrain.commands.designs import parse_values
 from fe_drivetrain.commands.studies import run_on_scene
 from fe_drivetrain.common.errors import InputError
@@ -22,8 +21,7 @@ from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.report.results import Chart, read_results
 from fe_drivetrain.scene.reading import change_scene
 from fe_drivetrain.scene.units import unit_of_key
-from fe_drivetrain.suite.page import Page
-from fe_drivetrain.suite.run import Run
+from fe_drivetrain.studies import compare
 
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
 
@@ -288,7 +286,7 @@ def test_a_value_of_a_scene_has_the_unit_that_it_is_read_in(key: str, unit: str)
     assert unit_of_key(change_scene(coarse_scene("bonded"), steel), key) == unit
 
 
-def test_what_may_be_no_change_is_named(tmp_path: Path) -> None:
+def test_what_may_be_no_change_is_named() -> None:
     def two(name: str, after: float, band: float) -> Difference:
         values = tuple(Value(np.array([size]), band, 2) for size in (1.0, after))
         return Difference(Quantity(f"hub.stiffness.{name}"), values)
@@ -296,12 +294,12 @@ def test_what_may_be_no_change_is_named(tmp_path: Path) -> None:
     known, open_ = two("rx", 0.9, 1e-3), two("ry", 0.97, 0.02)
     assert known.is_known
     assert not open_.is_known
-    page = Page()
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(design_page, "compare_designs", lambda *_: [known, open_])
-        scenes = dict.fromkeys(("a", "b"), coarse_scene("bonded"))
-        compared(Run({}, True, tmp_path), page, scenes, None, 0.05, None, None)
-    said = " ".join(page.summary)
+        patch.setattr(
+            "fe_drivetrain.studies.design_comparison.compare_designs", lambda *_: [known, open_]
+        )
+        result = compare(dict.fromkeys(("a", "b"), coarse_scene("bonded")))
+    said = " ".join(result.answer)
     assert "hub.stiffness.rx of b against a: -10 % ± 0.19 %" in said
     assert "The change of hub.stiffness.ry is smaller than its band: it may be none." in said
 

@@ -25,6 +25,7 @@ FLOORS = (
     {"beam", "response"},
     {"dynamics", "fidelity", "peers", "report", "rings"},
     {"coupled", "export", "procedure", "suite", "uncertainty"},
+    {"studies"},
     {"commands", "validation"},
     {"cases"},
 )

@@ -17,8 +17,6 @@ from tiny_case import Result
 
 from fe_drivetrain.commands import study_loads
 from fe_drivetrain.commands.app import main
-from fe_drivetrain.commands.named_bearings import named_bearings
-from fe_drivetrain.commands.scene_page import describe
 from fe_drivetrain.commands.study_loads import own_loads
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
@@ -46,7 +44,8 @@ from fe_drivetrain.scene.arrangements import (
 )
 from fe_drivetrain.scene.reading import change_scene, is_component, library_scene, parse_scene
 from fe_drivetrain.scene.scene import Scene
-from fe_drivetrain.suite.page import Page
+from fe_drivetrain.studies.named_bearings import named_bearings
+from fe_drivetrain.studies.scene_description import description
 
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
 
@@ -260,11 +259,9 @@ def test_check_says_that_a_bonded_bearing_takes_torque(invoke: Callable[..., Res
 def test_check_shows_the_point_that_hub_loads_are_about(bonded_model: Model) -> None:
     scene = bonded_model.scene
     for x, shown in ((None, []), (scene.shaft.front - 0.5, [scene.shaft.front - 0.5])):
-        page = Page()
-        describe(page, replace(bonded_model, scene=change_scene(scene, {"hub.loads_at": x})))
-        found = [i for section in page.sections for i in section.items if isinstance(i, Table)]
-        rows = [row for table in found for row in table.rows]
-        assert [row[1] for row in rows if "hub.loads_at" in str(row[0])] == shown
+        changed = replace(bonded_model, scene=change_scene(scene, {"hub.loads_at": x}))
+        points = description(changed)["Where loads enter the shaft"]
+        assert [row["x [m]"] for row in points if "hub.loads_at" in row["point"]] == shown
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
+from fe_drivetrain.common.typeset import with_prefix
 from fe_drivetrain.mesh.measures import area
 from fe_drivetrain.mesh.mesh import Mesh, boundary
 from fe_drivetrain.report.pictures.deformation import (
@@ -17,7 +18,7 @@ from fe_drivetrain.report.pictures.deformation import (
     picture_of_deformation,
     picture_of_displacements,
 )
-from fe_drivetrain.report.pictures.model import PARTS, picture_of_model, with_prefix
+from fe_drivetrain.report.pictures.model import PARTS, picture_of_model
 from fe_drivetrain.report.pictures.off_screen import NoPictureError, can_draw
 from fe_drivetrain.report.pictures.sheet import drawing, round_step
 from fe_drivetrain.report.pictures.surfaces import curved_surface, cut_open, part_solid

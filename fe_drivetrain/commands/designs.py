@@ -18,14 +18,15 @@ from fe_drivetrain.commands.settings import (
     parse_settings,
     parse_tolerance,
 )
+from fe_drivetrain.commands.showing import shown
 from fe_drivetrain.commands.studies import OutFolder, run_on_scene
 from fe_drivetrain.commands.terminal import guarded
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import hold_threads
 
 if TYPE_CHECKING:
-    from fe_drivetrain.commands.design_page import Varied
     from fe_drivetrain.scene.scene import Scene
+    from fe_drivetrain.studies.design_comparison import Varied
 
 #: Most designs of one comparison.
 _MOST = 50
@@ -77,9 +78,10 @@ def compare_command(
         changes = parse_settings(set_ or ())
         varied = None if vary is None else parse_values(vary)
         designs = _designs(scenes, changes, varied)
-        from fe_drivetrain.commands.design_page import compared
+        from fe_drivetrain.commands.design_page import show_compare
         from fe_drivetrain.fidelity.quantity import Quantity
         from fe_drivetrain.response.model import scene_loads
+        from fe_drivetrain.studies.design_comparison import compare
 
         names = scene_loads(next(iter(designs.values())))
         factors = parse_loads(load or (), names)
@@ -97,7 +99,10 @@ def compare_command(
             scenes,
             title,
             out,
-            lambda run, page: compared(run, page, designs, asked, share, given, varied),
+            shown(
+                lambda run: compare(designs, asked, share, given, varied, report=run.report),
+                show_compare,
+            ),
             scheduler=scheduler,
         )
 
@@ -119,7 +124,7 @@ def parse_values(text: str) -> Varied:
     """
     import numpy as np
 
-    from fe_drivetrain.commands.design_page import Varied
+    from fe_drivetrain.studies.design_comparison import Varied
 
     key, _, given = (part.strip() for part in text.partition("="))
     shape = "write it as in --vary shaft.front=-1.2,-1.0 or --vary shaft.front=-1.2:-0.8:5"

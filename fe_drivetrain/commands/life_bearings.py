@@ -11,7 +11,6 @@ from typing import Any
 from fe_drivetrain.bearing.catalogue import Entry, read_catalogue
 from fe_drivetrain.bearing.geometry import Bearing, RollerRow
 from fe_drivetrain.bearing.races import Races
-from fe_drivetrain.commands.named_bearings import named_bearings
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.coupled.load_paths import PINNED, LoadPath
@@ -24,6 +23,7 @@ from fe_drivetrain.life.roller_models import (
     three_degree_rings,
 )
 from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.studies.named_bearings import named_bearings
 
 SUPPORTS = ("rollers", "pinned")
 """How the shaft stands on its bearings; a number is K_R [N m/rad] of springs."""

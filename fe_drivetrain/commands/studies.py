@@ -21,6 +21,7 @@ from fe_drivetrain.commands.settings import (
     parse_settings,
     parse_tolerance,
 )
+from fe_drivetrain.commands.showing import shown
 from fe_drivetrain.commands.terminal import FAILED, PASSED, as_typed, guarded, write
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import scheduled_by
@@ -55,7 +56,8 @@ def check_command(
     def work() -> int:
         hold_threads()
         found = named_scene(scene, parse_settings(set_ or ()))
-        from fe_drivetrain.commands.scene_page import checked
+        from fe_drivetrain.commands.scene_page import show_check
+        from fe_drivetrain.studies.scene_check import check
 
         title = f"{found.title}: what the scene is, and what it costs"
         results, page = _results_of_scene(
@@ -63,7 +65,7 @@ def check_command(
             [scene],
             title,
             out,
-            lambda run, page: checked(run, page, found, tuple(catalogue or ())),
+            shown(lambda run: check(found, tuple(catalogue or ()), report=run.report), show_check),
         )
         write(sys.stdout, tables_text(results, page))
         return PASSED

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fe_drivetrain.commands.scene_page import checked_model, describe, quick_scene
+from fe_drivetrain.commands.scene_page import describe
 from fe_drivetrain.commands.study_errors import errors
 from fe_drivetrain.commands.study_loads import StudyLoads, surrogate_loads, weightless
 from fe_drivetrain.commands.study_reactions import STATISTICS, reactions, write_reactions
@@ -34,7 +34,9 @@ from fe_drivetrain.response.cached import cached_response
 from fe_drivetrain.response.entering import Factors, entering, joined
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.unit_loads import Response
+from fe_drivetrain.scene.left_out import left_out
 from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.studies.scene_description import checked_model, description, quick_scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
 from fe_drivetrain.suite.run import Run
@@ -101,7 +103,8 @@ def studied(
     page.answer(loads.statement, *model.warnings, *opening)
     page.section("Scene")
     _pictures(run, page, model, response, factors)
-    describe(page, model)
+    page.assume_all(left_out(scene))
+    describe(page, description(model))
     if scene.bearing_units:
         page.section("Stiffness of the bearing units")
         _stiffness(run, page, model, response, levels)

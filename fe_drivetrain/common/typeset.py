@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from functools import lru_cache
 
@@ -46,3 +47,9 @@ def _power_of_ten(found: re.Match[str]) -> str:
         return f"{float(found[0]):,.0f}"
     power = f"10{superscript(int(found[2]))}"
     return power if float(found[1]) == 1.0 else f"{found[1]}\u00a0×\u00a0{power}"
+
+
+def with_prefix(value: float, unit: str) -> str:
+    """A positive number in its unit with an SI prefix: 80e6 N/m is "80 MN/m"."""
+    power = min(max(math.floor(math.log10(value) / 3), 0), 4)
+    return f"{value / 1e3**power:.4g} {('', 'k', 'M', 'G', 'T')[power]}{unit}"

@@ -3,42 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from fe_drivetrain.report.charts import chart, instead_of_chart, rounded, trace
 from fe_drivetrain.report.results import (
-    AssumptionRow,
     Cell,
     Chart,
-    DrivetrainRecord,
-    Figure,
     Image,
-    Limit,
     Section,
     Solid,
     Table,
     Text,
 )
-from fe_drivetrain.suite.checks import Checks
+from fe_drivetrain.suite.findings import Findings, Found
 from fe_drivetrain.suite.records import (
     MeshSeries,
     Record,
-    as_json,
     column,
     counted,
     curves,
     plain_cells,
 )
-from fe_drivetrain.suite.targets import Target, split_unit
-
-if TYPE_CHECKING:
-    from fe_drivetrain.report.seal import Described
+from fe_drivetrain.suite.targets import Target
 
 
-class Page(Checks):
-    """Collects what a case finds.
+class Page(Findings):
+    """Collects what a case finds, and how it is shown.
 
     Checks stand in a table of their own, whatever section is open; what else is added goes below
     the heading of the last `section`.
@@ -47,126 +39,38 @@ class Page(Checks):
     ----------
     subject, source : str
         What a page is about, and from where, if the user gave it; empty where it is the case's own.
-    notes : list of str
-        What must be known before any figure, in sentences.
-    unsettled : list of str
-        Answers that have not converged, in sentences.
-    verdicts : list of Verdict
-        Of all checks so far.
-    summary : list of str
-        The answer, in sentences.
-    answers : list of Figure
-        Values that answer what was asked.
     sections : list of Section
         Headings, and what stands under them.
-    limits : list of Limit
-        Where methods fail.
-    assumptions : list of AssumptionRow
-        Values that the sources do not give.
-    figures : dict
-        Named numbers for other programs.
-    scene, headline : str
-        The scene as a file; quantity of the check that answers, or empty for the first value.
-    drivetrains : list of DrivetrainRecord
-        What the page is of, by `about`.
-    skipped : list of str
-        Checks that were not made, by `skip`.
-    seed : int or None
-        Of random numbers; None where there are none.
+    headline : str
+        Quantity of the check that answers, or empty for the first value.
     """
 
     def __init__(self) -> None:
         super().__init__()
-        self.subject = self.source = self.scene = self.headline = ""
-        self.notes: list[str] = []
-        self.unsettled: list[str] = []
-        self.summary: list[str] = []
-        self.answers: list[Figure] = []
+        self.subject = self.source = self.headline = ""
         self.sections: list[Section] = []
-        self.limits: list[Limit] = []
-        self.assumptions: list[AssumptionRow] = []
-        self.figures: dict[str, Any] = {}
-        self.drivetrains: list[DrivetrainRecord] = []
-        self.skipped: list[str] = []
-        self.seed: int | None = 0
 
-    def about(self, drivetrain: Described, name: str = "") -> None:
-        """State what drivetrain the checks and answers from here on are of, by its hash.
+    def take(self, found: Found) -> None:
+        """Show what a study has found, beside what the page has already.
 
         Parameters
         ----------
-        drivetrain : Described
-            A scene, machine or gear table, with all changes made; a scene is kept as a file, too.
-        name : str
-            As the results call it, where they are of several.
+        found : Found
+            Its answer, numbers, checks, cautions, and what it is of.
         """
-        from fe_drivetrain.scene.reading import scene_text
-        from fe_drivetrain.scene.scene import Scene
-
-        self._of = self.concerns(drivetrain, name)
-        if isinstance(drivetrain, Scene):
-            self.scene = scene_text(drivetrain)
-
-    def concerns(self, drivetrain: Described, name: str = "") -> str:
-        """State one of several drivetrains that the results compare; its hash.
-
-        Parameters
-        ----------
-        drivetrain : Described
-            A scene, machine or gear table, with all changes made.
-        name : str
-            As the results call it.
-        """
-        from fe_drivetrain.report.seal import drivetrain_record
-
-        record = drivetrain_record(drivetrain, name)
-        if record not in self.drivetrains:
-            self.drivetrains.append(record)
-        return record.hash
-
-    def answer(self, *sentences: str) -> None:
-        """The answer first: added to the summary on top of the page."""
-        self.summary.extend(sentences)
-
-    def found(
-        self,
-        quantity: str,
-        value: float,
-        band: float | None = None,
-        loads: tuple[str, ...] = (),
-    ) -> None:
-        """A value that answers what was asked, and is not judged; `band` as for `equals`.
-
-        Parameters
-        ----------
-        quantity : str
-            With its unit.
-        value, band : float
-            In that unit.
-        loads : tuple of str
-            Design loads of the catalogue that it is a value of: `validate` holds it against a limit
-            where a project names it for one of these.
-        """
-        quantity, unit = split_unit(quantity)
-        figure = Figure(quantity=quantity, unit=unit, computed=value, band=band)
-        self.answers.append(figure.model_copy(update={"of": self._of, "loads": loads}))
-
-    def skip(self, check: str, why: str) -> None:
-        """State that a check was not made; results with such a gap are no evidence of a project.
-
-        Parameters
-        ----------
-        check : str
-            Which, as its quantity.
-        why : str
-            As "NGSolve is not installed".
-        """
-        self.skipped.append(f"{check}: {why}")
-
-    def note(self, sentence: str) -> None:
-        """State, above all else, what must be known before any figure; the same sentence once."""
-        if sentence not in self.notes:
-            self.notes.append(sentence)
+        self.summary += found.answer
+        self.answers += found.figures
+        self.verdicts += found.checks
+        self.unsettled += found.unsettled
+        self.skipped += found.skipped
+        self.limits += found.limits
+        self.assumptions += found.assumptions
+        for sentence in found.notes:
+            self.note(sentence)
+        self.drivetrains += [one for one in found.drivetrains if one not in self.drivetrains]
+        self.figures |= found.tables
+        self.scene = found.scene or self.scene
+        self.seed = found.seed
 
     def section(self, title: str) -> None:
         """Begin a section; what is added from now on stands under its heading."""
@@ -323,20 +227,3 @@ class Page(Checks):
         if table is not False:
             self.table("The same in numbers", rows, plain if table is True else table)
         self.data(caption, [{key: row[key] for key in plain} for row in rows])
-
-    def data(self, name: str, value: Any) -> None:
-        """Keep numbers for other programs in results.json, under a name with its unit."""
-        self.figures[name] = as_json(value)
-
-    def limit(self, method: str, parameter: str, **more: Any) -> None:
-        """State how far a method can be trusted; `more` is the rest of `report.Limit`."""
-        self.limits.append(Limit(method=method, parameter=parameter, **more))
-
-    def assume(self, name: str, value: Cell, unit: str, source: str) -> None:
-        """State a value that the sources do not give, and where it comes from."""
-        self.assumptions.append(AssumptionRow(name=name, value=value, unit=unit, source=source))
-
-    def assume_all(self, rows: Iterable[tuple[str, Cell, str, str]]) -> None:
-        """State several such values, each as `assume` takes it."""
-        for row in rows:
-            self.assume(*row)

@@ -18,6 +18,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import Pool, pool
 from fe_drivetrain.common.made_by import arithmetic, program_hash
 from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.common.steps import Clock
 
 if TYPE_CHECKING:
     from fe_drivetrain.common.arrays import Floats
@@ -25,20 +26,14 @@ if TYPE_CHECKING:
     from fe_drivetrain.mesh.blocks import Block
     from fe_drivetrain.report.pictures.sketch import Body, Faces
     from fe_drivetrain.report.results import Image, Solid
+    from fe_drivetrain.suite.findings import Found
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
 
 
 @dataclass
-class Step:
-    """A step as it runs; its time is kept under the name that it has at its end."""
-
-    name: str
-
-
-@dataclass
-class Run:
+class Run(Clock):
     """One run of a case: what the user asked for, where files go, and a clock for each step.
 
     Attributes
@@ -61,31 +56,6 @@ class Run:
     folder: Path
     report: Progress = silent
     times: dict[str, float] = field(default_factory=dict)
-
-    @contextmanager
-    def step(self, name: str) -> Iterator[Step]:
-        """Show a step while it runs, and add its wall time to `times`."""
-        self.report(name)
-        step = Step(name)
-        start = time.perf_counter()
-        yield step
-        self.add_time(step.name, time.perf_counter() - start)
-
-    def timed(
-        self, name: str, function: Callable[_P, _T], *args: _P.args, **kwargs: _P.kwargs
-    ) -> _T:
-        """What the function returns, called as a step of that name."""
-        with self.step(name):
-            return function(*args, **kwargs)
-
-    def clocked(
-        self, name: str, function: Callable[_P, _T], *args: _P.args, **kwargs: _P.kwargs
-    ) -> _T:
-        """As `timed`, but not shown: part of a step that counts, as "shafts (3 of 200)"."""
-        start = time.perf_counter()
-        found = function(*args, **kwargs)
-        self.add_time(name, time.perf_counter() - start)
-        return found
 
     def kept(self, content: Mapping[str, Any], work: Callable[[], _T]) -> _T:
         """What the work returns, or what it returned before: a stopped run goes on where it was.
@@ -204,9 +174,9 @@ class Run:
         body = Parts(block.points, {name: block.cells})
         return solid_or_picture(caption, body, fields, {name: lame}, self.folder, still)
 
-    def add_time(self, name: str, seconds: float) -> None:
-        """Add to the wall time of a step."""
-        self.times[name] = self.times.get(name, 0.0) + seconds
+    def take(self, found: Found) -> None:
+        """Count the steps of a study among those of the run."""
+        self.add_times(found.times)
 
     @contextmanager
     def side_by_side(self, jobs: int) -> Iterator[Jobs]:
@@ -267,8 +237,7 @@ class RunJob(Generic[_T]):
         if self._elsewhere:
             self._run.report("")  # this process only waits
         result, times = self._job.result()
-        for name, seconds in times.items():
-            self._run.add_time(name, seconds)
+        self._run.add_times(times)
         return result
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.typeset import with_prefix
 from fe_drivetrain.mesh.mesh import Mesh, boundary
 from fe_drivetrain.report.pictures.sheet import FAINT, INK, Sheet, drawing
 from fe_drivetrain.report.pictures.surfaces import curved_surface, cut_open, part_solid, sharp_edges
@@ -233,9 +233,3 @@ def _legend(model: Model) -> list[list[tuple[str, str | None]]]:
         [("Loads" if scene.load_points else "Loads at the hub", "head"), *hub],
         [("Gearbox", "head"), *gearbox],
     ]
-
-
-def with_prefix(value: float, unit: str) -> str:
-    """A positive number in its unit with an SI prefix: 80e6 N/m is "80 MN/m"."""
-    power = min(max(math.floor(math.log10(value) / 3), 0), 4)
-    return f"{value / 1e3**power:.4g} {('', 'k', 'M', 'G', 'T')[power]}{unit}"

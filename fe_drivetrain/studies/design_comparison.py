@@ -1,0 +1,279 @@
+"""Designs side by side: what differs in them, and what comes of it, ranked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.common.steps import Steps
+from fe_drivetrain.fidelity.designs import Difference, compare_designs, scene_changes
+from fe_drivetrain.fidelity.ladder import TITLES
+from fe_drivetrain.fidelity.quantity import Quantity
+from fe_drivetrain.report.charts import bars, chart
+from fe_drivetrain.report.results import Chart
+from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.scene.units import unit_of_key
+from fe_drivetrain.studies.result import Result
+from fe_drivetrain.suite.findings import Findings
+from fe_drivetrain.suite.records import Record, curves
+
+#: Changes that the answer names, and that have a curve of their own.
+_NAMED, _CURVES = 3, 6
+#: Changes that are this share of the larger value: a percentage of the smaller one says nothing.
+_FROM_ZERO = 0.9
+#: Share of the largest value that is round-off.
+_NOTHING = 1e-6
+
+
+@dataclass(frozen=True)
+class Varied:
+    """The value that tells designs apart.
+
+    Attributes
+    ----------
+    key : str
+        Dotted key of the scene.
+    values : tuple[float, ...]
+        Of each design.
+    """
+
+    key: str
+    values: tuple[float, ...]
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class CompareResult(Result):
+    """Changes of designs against the first one.
+
+    Attributes
+    ----------
+    designs : Mapping[str, Scene]
+        By name, the first one first.
+    differences : Sequence[Difference]
+        Each quantity of all designs; changes larger than their bands first, the largest first.
+    tolerance : float
+        Allowed error of a change, relative.
+    varied : Varied or None
+        Where designs differ in one value, which.
+    """
+
+    STUDY: ClassVar[str] = "compare"
+
+    designs: Mapping[str, Scene]
+    differences: Sequence[Difference]
+    tolerance: float
+    varied: Varied | None
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the designs, the first one first."""
+        return list(self.designs)
+
+    @property
+    def inputs(self) -> dict[str, list[tuple[str, object, object]]]:
+        """Values in which each further design differs from the first: key, first, its own."""
+        first, *others = self.designs.items()
+        return {name: scene_changes(first[1], scene) for name, scene in others}
+
+    def rows(self) -> list[Record]:
+        """Values, changes and bands of each quantity, with units in the keys."""
+        return _rows(self.differences, self.names)
+
+    def chart(self) -> Chart:
+        """Changes with their bands; over the value where one was varied."""
+        if self.varied is not None:
+            caption, rows, x, keys = self.sweep()
+            return chart(caption, curves(rows, x, keys, None, "lines+markers"), x, "change [%]")
+        return _bars(self.differences, self.names)
+
+    def sweep(self) -> tuple[str, list[Record], str, dict[str, str]]:
+        """Caption, records, key of the varied value, and name of each curve's key."""
+        assert self.varied is not None
+        unit = unit_of_key(self.designs[self.names[0]], self.varied.key)
+        return _sweep(self.differences, self.varied, unit)
+
+
+def compare(
+    designs: Mapping[str, Scene],
+    quantities: Sequence[Quantity] | None = None,
+    tolerance: float = 0.05,
+    load: Mapping[str, float] | None = None,
+    varied: Varied | None = None,
+    *,
+    report: Progress = silent,
+) -> CompareResult:
+    """Compare designs: changes of their stiffnesses and reactions against the first one.
+
+    Parameters
+    ----------
+    designs : mapping of str to Scene
+        By name; the others are compared with the first.
+    quantities : sequence of Quantity or None
+        What is compared; see `fe_drivetrain.fidelity.compare_designs`.
+    tolerance : float
+        Allowed error of a change, relative.
+    load : mapping of str to float or None
+        Load that causes the reactions, by component [N, N m].
+    varied : Varied or None
+        Where designs differ in one value, which.
+    report : Progress
+        Called with the name of each step as it begins.
+
+    Raises
+    ------
+    InputError
+        A design cannot be built, or has not all quantities.
+    """
+    found, steps = Findings(), Steps(report)
+    with steps.step("designs at their levels"):
+        differences = compare_designs(designs, quantities, tolerance, load, report)
+    for name, scene in designs.items():
+        found.concerns(scene, name)
+    names = list(designs)
+    known = [one for one in differences if one.is_known]
+    for one in known[:_NAMED]:
+        found.answer(_sentence(one, names))
+    if not known:
+        found.answer(f"No change from {names[0]} is larger than its band.")
+    elif unknown := [one.quantity.name for one in differences if not one.is_known]:
+        found.answer(_within_bands(unknown))
+    _found(found, known, names)
+    largest = float(max(one.rank_bands.max() for one in differences))
+    found.at_most(
+        "largest band of a change, relative to the larger value [%]",
+        100 * largest,
+        100 * tolerance,
+        why="the tolerance that was requested, relative to the larger of the two values",
+        source="the adviser's rule, applied to the change: half of what two bounds of the housings "
+        "differ by and the change from beam to meridian; of the assembly, its discretization error",
+    )
+    found.data(
+        "changes",
+        [
+            {
+                "quantity": one.quantity.name,
+                "values": [value.values for value in one.values],
+                "levels": [value.level for value in one.values],
+                "changes": _sensible(one),
+                "bands": one.rank_bands,
+            }
+            for one in differences
+        ],
+    )
+    options = {
+        "quantities": None if quantities is None else [one.name for one in quantities],
+        "tolerance": tolerance,
+        "load": load,
+        "varied": None if varied is None else {"key": varied.key, "values": varied.values},
+    }
+    return CompareResult(
+        designs=dict(designs),
+        differences=tuple(differences),
+        tolerance=tolerance,
+        varied=varied,
+        **found.frozen(steps.times, **options),
+    )
+
+
+def _sentence(one: Difference, names: Sequence[str]) -> str:
+    k = int(np.argmax(one.ranks))
+    change, band = 100 * one.changes[k], 100 * one.bands[k]
+    signed = "+" if len(one.values[0].values) == 1 else ""
+    text = f"{change:{signed}.3g} % ± {band:.2g} %"
+    if one.ranks[k] > _FROM_ZERO:
+        both = sizes(one)
+        text = f"from {_number(both[0])} to {_number(both[k + 1])} {_unit(one)}"
+    level = one.values[0].level
+    return (
+        f"{one.quantity.name} of {names[k + 1]} against {names[0]}: {text} (level {level}, "
+        f"{TITLES[level]})."
+    )
+
+
+def _within_bands(names: Sequence[str]) -> str:
+    """What is said of changes that may be none."""
+    if len(names) == 1:
+        return f"The change of {names[0]} is smaller than its band: it may be none."
+    listed = f" ({', '.join(names)})" if len(names) <= _NAMED else ""
+    return f"{len(names)} further changes{listed} are smaller than their bands: they may be none."
+
+
+def _found(found: Findings, known: Sequence[Difference], names: Sequence[str]) -> None:
+    """State the largest known change, where it is not next to all of its value."""
+    for one in known[:1]:
+        k = int(np.argmax(one.ranks))
+        if one.ranks[k] <= _FROM_ZERO:
+            what = f"change of {one.quantity.name}, {names[k + 1]} against {names[0]} [%]"
+            found.found(what, 100 * float(one.changes[k]), 100 * float(one.bands[k]))
+
+
+def sizes(one: Difference) -> list[float]:
+    """The value of each design, zero where it is the round-off of the largest."""
+    found = [value.size for value in one.values]
+    least = _NOTHING * max(map(abs, found))
+    return [0.0 if abs(size) < least else size for size in found]
+
+
+def _number(value: float) -> str:
+    return f"{value:.3g}" if value else "nothing"
+
+
+def _unit(one: Difference) -> str:
+    return one.quantity.unit if len(one.values[0].values) == 1 else "for the six hub loads"
+
+
+def _rows(found: Sequence[Difference], names: Sequence[str]) -> list[Record]:
+    rows: list[Record] = []
+    for one in found:
+        vector = len(one.values[0].values) > 1
+        row: Record = {"quantity": f"{one.quantity.name} [{'-' if vector else one.quantity.unit}]"}
+        row |= dict(zip(names, sizes(one), strict=True))
+        for name, change, band in zip(names[1:], _sensible(one), one.bands, strict=True):
+            of = f"{name}: " if len(names) > 2 else ""
+            row[f"{of}change [%]"] = None if change is None else 100 * change
+            row[f"{of}± [%]"] = None if change is None else 100 * band
+        row["level"] = one.values[0].level
+        row["is known"] = "yes" if one.is_known else "no"
+        rows.append(row)
+    return rows
+
+
+def _bars(found: Sequence[Difference], names: Sequence[str]) -> Chart:
+    shown = [one for one in found if (one.ranks <= _FROM_ZERO).all()]
+    groups = {
+        name: {one.quantity.name: 100 * float(one.changes[k]) for one in shown}
+        for k, name in enumerate(names[1:])
+    }
+    figure = bars(f"Changes against {names[0]}, with their bands", groups, "change [%]")
+    for k, trace in enumerate(figure.figure["data"]):
+        band = [100 * float(one.bands[k]) for one in shown]
+        trace["error_x"] = {"type": "data", "array": band, "thickness": 1.2}
+    return figure
+
+
+def _sweep(
+    found: Sequence[Difference], varied: Varied, unit: str
+) -> tuple[str, list[Record], str, dict[str, str]]:
+    shown = [one for one in found if (one.ranks <= _FROM_ZERO).all()][:_CURVES]
+    rows: list[Record] = []
+    x = f"{varied.key} [{unit}]" if unit else varied.key
+    for number, value in enumerate(varied.values):
+        row: Record = {x: value}
+        for one in shown:
+            change = 0.0 if number == 0 else 100 * float(one.changes[number - 1])
+            row[f"{one.quantity.name}, change [%]"] = change
+        rows.append(row)
+    keys = {f"{one.quantity.name}, change [%]": one.quantity.name for one in shown}
+    first = f"{varied.values[0]:g} {unit}".rstrip()
+    rows.sort(key=lambda row: row[x])
+    return f"Largest changes against {varied.key} = {first}", rows, x, keys
+
+
+def _sensible(one: Difference) -> list[float | None]:
+    """Changes, none where they come from next to nothing."""
+    pairs = zip(one.changes, one.ranks, strict=True)
+    return [float(change) if rank <= _FROM_ZERO else None for change, rank in pairs]

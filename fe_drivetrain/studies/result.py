@@ -1,0 +1,124 @@
+"""What every study returns: numbers with units and bands, answer, checks, and what they are of."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.report.answer import value_with_band
+from fe_drivetrain.report.results import Chart, Figure
+from fe_drivetrain.suite.findings import Found
+from fe_drivetrain.suite.records import as_json
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import plotly.graph_objects as go
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Result(Found):
+    """What a study found.
+
+    ``result["L10mr of bearing front"]`` is a figure, `to_frame` a table, `plot` the chart that
+    answers; `to_json` holds all of it for other programs. Samples of histories are not in it.
+    """
+
+    STUDY: ClassVar[str] = ""
+    """Name of the study, in the schema of its JSON."""
+    SCHEMA_VERSION: ClassVar[int] = 1
+    """Raised where a key of the JSON changes its meaning, or goes."""
+
+    def __getitem__(self, quantity: str) -> Figure:
+        """The figure of that name; KeyError where there is none, with the names that there are."""
+        for figure in self.figures:
+            if figure.quantity == quantity:
+                return figure
+        known = ", ".join(repr(figure.quantity) for figure in self.figures) or "none"
+        raise KeyError(f"{quantity!r} is no figure of this result; its figures are: {known}")
+
+    def __repr__(self) -> str:
+        """One line: what it is of, its first figure, and how its checks stand."""
+        of = " and ".join(dict.fromkeys(one.title for one in self.drivetrains))
+        passed = sum(check.passed for check in self.checks)
+        parts = [f"{self.STUDY} of {of}" if of else self.STUDY]
+        parts += [f"{f.quantity}: {value_with_band(f)}" for f in self.figures[:1]]
+        parts += [f"{passed} of {len(self.checks)} checks pass"] if self.checks else []
+        return f"<{'; '.join(parts)}>"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The content of `to_json` as plain data; NaN and infinity as strings."""
+        return {
+            "schema": f"fe-drivetrain/{self.STUDY}/{self.SCHEMA_VERSION}",
+            "version": version("fe-drivetrain"),
+            "drivetrains": [one.model_dump(mode="json") for one in self.drivetrains],
+            "options": _plain(self.options),
+            "answer": list(self.answer),
+            "figures": [one.model_dump(mode="json") for one in self.figures],
+            "checks": [one.model_dump(mode="json") for one in self.checks],
+            "notes": list(self.notes),
+            "unsettled": list(self.unsettled),
+            "skipped": list(self.skipped),
+            "assumptions": [one.model_dump(mode="json") for one in self.assumptions],
+            "limits": [one.model_dump(mode="json") for one in self.limits],
+            "tables": _plain(self.tables),
+            "seed": self.seed,
+            "times": dict(self.times),
+        }
+
+    def to_json(self) -> str:
+        """All of it for other programs, as JSON with the schema's name and version in it."""
+        return json.dumps(self.to_dict(), ensure_ascii=False, indent=1, allow_nan=False)
+
+    def to_frame(self, table: str = "") -> pd.DataFrame:
+        """A table as a pandas frame; without a name the figures.
+
+        Parameters
+        ----------
+        table : str
+            A key of `tables` that holds records.
+
+        Raises
+        ------
+        InputError
+            pandas is not installed, or there is no such table of records.
+        """
+        try:
+            import pandas as pd
+        except ModuleNotFoundError as error:
+            raise InputError("to_frame needs pandas: pip install pandas") from error
+        if not table:
+            columns = ["quantity", "computed", "band", "unit"]
+            return pd.DataFrame([one.model_dump() for one in self.figures], columns=columns)
+        rows = self.tables.get(table)
+        if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+            known = [name for name, value in self.tables.items() if isinstance(value, list)]
+            raise InputError(f"{table!r} is no table: choose of {', '.join(known) or 'none'}")
+        return pd.DataFrame(rows)
+
+    def chart(self) -> Chart:
+        """The chart that shows the answer, as its page has it."""
+        raise NotImplementedError
+
+    def plot(self) -> go.Figure:
+        """The chart that shows the answer, as a Plotly figure."""
+        import plotly.graph_objects as go
+
+        chart = self.chart()
+        return go.Figure(chart.figure).update_layout(title={"text": chart.caption})
+
+
+def _plain(value: Any) -> Any:
+    """The same as plain JSON data, NaN and infinity as strings."""
+    if isinstance(value, float):
+        return value if abs(value) < float("inf") else str(value)
+    if isinstance(value, str | int) or value is None:
+        return value
+    plain = as_json(value)
+    if isinstance(plain, dict):
+        return {key: _plain(inner) for key, inner in plain.items()}
+    if isinstance(plain, list):
+        return [_plain(inner) for inner in plain]
+    return str(value) if plain is value else _plain(plain)

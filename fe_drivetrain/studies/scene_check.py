@@ -1,0 +1,127 @@
+"""What a scene is and what it costs: parts, masses, bearings, supports, and each model level."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import ClassVar
+
+from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.common.steps import Steps
+from fe_drivetrain.fidelity.level_costs import Forecast, forecast
+from fe_drivetrain.report.charts import chart, trace
+from fe_drivetrain.report.results import Chart
+from fe_drivetrain.response.model import Model
+from fe_drivetrain.scene.left_out import left_out
+from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.studies.named_bearings import named_bearings
+from fe_drivetrain.studies.result import Result
+from fe_drivetrain.studies.scene_description import checked_model, description
+from fe_drivetrain.suite.findings import Findings
+from fe_drivetrain.suite.records import Record
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class CheckResult(Result):
+    """A scene that can be solved.
+
+    Attributes
+    ----------
+    parts : Mapping[str, float]
+        Mass of each part [kg].
+    described : Mapping[str, Sequence[Record]]
+        Parts, bearings and load points, by caption.
+    costs : Sequence[Forecast]
+        Cost of each model level.
+    model : Model
+        The assembled model, of which pictures are drawn; not part of the JSON.
+    """
+
+    STUDY: ClassVar[str] = "check"
+
+    parts: Mapping[str, float]
+    described: Mapping[str, Sequence[Record]]
+    costs: Sequence[Forecast]
+    model: Model = field(repr=False)
+
+    @property
+    def mass(self) -> float:
+        """Mass of all parts [kg]."""
+        return sum(self.parts.values())
+
+    def chart(self) -> Chart:
+        """Time of each model level against its unknowns."""
+        traces = [
+            trace(f"{one.level} {one.title}", [one.unknowns], [one.seconds], points=True)
+            for one in self.costs
+        ]
+        caption = "Time of each model level against the unknowns of its largest system"
+        return chart(caption, traces, "unknowns", "time [s]", logarithmic=("x", "y"))
+
+
+def check(
+    scene: Scene, catalogues: Sequence[Path] = (), *, report: Progress = silent
+) -> CheckResult:
+    """Check that a scene can be solved, describe it, and predict what each model level costs.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    catalogues : Sequence[Path]
+        Bearing catalogues of the user, beside the program's own.
+    report : Progress
+        Called with the name of each step as it begins.
+
+    Raises
+    ------
+    InputError
+        The scene cannot be built or is a mechanism, or a bearing that it names is in no catalogue.
+    """
+    found, steps = Findings(), Steps(report)
+    misfits = [one.misfit for one in named_bearings(scene, catalogues, {}).values()]
+    model = checked_model(steps, scene)
+    found.about(scene)
+    found.assume_all(left_out(scene))
+    found.seed = None
+    parts = {name: float(mass.sum()) for name, mass in model.part_mass.items()}
+    mass = float(model.mass.sum())
+    found.answer(_held(scene, mass, model.n_dofs), *model.warnings, *filter(None, misfits))
+    with steps.step("levels"):
+        costs = forecast(model)
+    found.data("levels", [_cost(one) for one in costs])
+    return CheckResult(
+        parts=parts,
+        described=description(model),
+        costs=costs,
+        model=model,
+        **found.frozen(steps.times, catalogues=[path.name for path in catalogues]),
+    )
+
+
+def _held(scene: Scene, mass: float, n_dofs: int) -> str:
+    """The answer in a sentence."""
+    count = len(scene.bearing_names)
+    on_nose = ""
+    if scene.nose is not None:
+        on_nose = ", some of them on a nose" if scene.bearing_units else " round a nose"
+    return (
+        f"{scene.title}: a shaft of {scene.shaft.length:g} m on {count} "
+        f"bearing{'s' if count > 1 else ''}{on_nose}, {mass:,.0f} kg in all, "
+        f"{n_dofs:,} degrees of freedom; it is held, and can be solved."
+    )
+
+
+def _cost(found: Forecast) -> Record:
+    """A level's cost as a record."""
+    return {
+        "level": f"{found.level} {found.title}",
+        "unknowns": found.unknowns,
+        "time [s]": float(f"{found.seconds:.2g}"),
+        "memory [MiB]": None if found.bytes is None else float(f"{found.bytes / 2**20:.2g}"),
+        "how known": f"predicted, solver {found.solver}"
+        + ("" if found.fits else ": more memory than is free")
+        if found.solver
+        else "it was run",
+    }

@@ -1,0 +1,84 @@
+"""Studies as functions: what a result holds, and how it goes into JSON, tables and charts."""
+
+import dataclasses
+import json
+import math
+from typing import Any
+
+import pytest
+from coarse_scenes import coarse_scene
+
+from fe_drivetrain.common import InputError
+from fe_drivetrain.scene import change_scene
+from fe_drivetrain.studies import CheckResult, CompareResult, Result, check, compare
+from fe_drivetrain.studies.design_comparison import Varied
+
+
+@pytest.fixture(scope="module")
+def checked() -> CheckResult:
+    return check(coarse_scene("bonded"))
+
+
+@pytest.fixture(scope="module")
+def compared() -> CompareResult:
+    scene, key, values = coarse_scene("bonded"), "gearbox.weight", (1e5, 2e5)
+    designs = {f"{value:g}": change_scene(scene, {key: value}) for value in values}
+    return compare(designs, tolerance=0.5, varied=Varied(key, values))
+
+
+@pytest.fixture(params=["checked", "compared"])
+def result(request: pytest.FixtureRequest) -> Result:
+    found: Result = request.getfixturevalue(request.param)
+    return found
+
+
+def test_the_json_of_a_result_is_strict_and_names_its_schema(result: Result) -> None:
+    def refuse(constant: str) -> Any:
+        raise AssertionError(constant)
+
+    found = json.loads(result.to_json(), parse_constant=refuse)
+    assert found["schema"] == f"fe-drivetrain/{result.STUDY}/{result.SCHEMA_VERSION}"
+    assert [one["hash"] for one in found["drivetrains"]] == [d.hash for d in result.drivetrains]
+    assert found["answer"] == list(result.answer)
+    assert len(found["checks"]) == len(result.checks)
+    assert found["tables"].keys() == result.tables.keys()
+
+
+def test_a_result_cannot_be_changed_and_prints_in_one_line(result: Result) -> None:
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        result.answer = ()  # type: ignore[misc]
+    assert "\n" not in repr(result)
+    assert len(repr(result)) < 200
+
+
+def test_a_result_is_drawn_by_plotly(result: Result) -> None:
+    figure = result.plot()
+    assert figure.layout.title.text
+    assert len(figure.data) > 0
+    assert len(figure.data[0].x) > 0
+
+
+def test_a_result_has_frames_of_its_figures_and_tables(result: Result) -> None:
+    pytest.importorskip("pandas")
+    assert len(result.to_frame()) == len(result.figures)
+    with pytest.raises(InputError, match="is no table: choose of"):
+        result.to_frame("nosuch")
+
+
+def test_masses_and_costs_are_numbers(checked: CheckResult) -> None:
+    assert checked.mass == pytest.approx(float(checked.model.mass.sum()))
+    assert [row["unknowns"] for row in checked.tables["levels"]] == [
+        one.unknowns for one in checked.costs
+    ]
+    assert all(math.isfinite(one.seconds) for one in checked.costs)
+
+
+def test_a_figure_is_found_by_its_name(compared: CompareResult) -> None:
+    for figure in compared.figures:
+        assert compared[figure.quantity] is figure
+    with pytest.raises(KeyError, match="is no figure of this result; its figures are:"):
+        compared["nosuch"]
+
+
+def test_what_differs_between_designs_is_named(compared: CompareResult) -> None:
+    assert compared.inputs == {"200000": [("gearbox.weight", 1e5, 2e5)]}
