@@ -131,6 +131,20 @@ def test_profile_and_preload_are_assumed_of_tapered_rollers_alone() -> None:
     assert "ratings of assumed rolling elements" not in found  # they are printed
 
 
+@pytest.mark.parametrize(("element", "pitch", "play"), [(90.0, 4000.0, 0.9), (85.0, 3900.0, 0.85)])
+def test_no_clearance_is_compared_that_a_bearing_cannot_have(
+    tmp_path: Path, element: float, pitch: float, play: float
+) -> None:
+    """1/4000 of the pitch diameter, 1 mm, is more than 1 % of the rollers' diameter."""
+    sizes = {"pitch_diameter": 1e-3 * pitch, "element_diameter": 1e-3 * element}
+    _, file, *_ = own_entry(tmp_path, **sizes, bore=1.2, elements=60)
+    choices = Choices({"main_bearing": "own"}, (Path(file),), True, "rollers", "rigid", True)
+    (one,) = bearings_of(library_scene(SCENE), choices)
+    (found,) = [f for f in what_ifs(one, LifeRules(), choices) if f.assumed == "clearance 0"]
+    assert found.instead == f"{play:g} mm along the contact normal"
+    assert [row.clearance for row in found.rated.bearing.rows] == pytest.approx(2 * [1e-3 * play])
+
+
 def test_a_sample_sums_to_the_whole() -> None:
     """Exactly what goes with the weights; else as means of many draws do."""
     rng = np.random.default_rng(1)

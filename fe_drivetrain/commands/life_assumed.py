@@ -13,7 +13,7 @@ from math import floor, log10
 
 import numpy as np
 
-from fe_drivetrain.bearing.geometry import Bearing
+from fe_drivetrain.bearing.geometry import Bearing, largest_clearance
 from fe_drivetrain.commands.life_bearings import PROFILE, Choices, OneBearing
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.hub_loads.point_loads import PointLoads
@@ -193,8 +193,8 @@ def _of_clearance(one: OneBearing, rules: LifeRules) -> Iterator[WhatIf]:
     if "clearance" in one.entry.model_fields_set:
         return
     bearing = one.rated.bearing
-    most = 0.01 * min(row.diameter for row in bearing.rows)
-    play = _rounded(min(PLAYED * one.rated.pitch_diameter, most))
+    most = min(largest_clearance(row) for row in bearing.rows)
+    play = min(_rounded(PLAYED * one.rated.pitch_diameter), most)
     yield _changed(
         one,
         rules,
