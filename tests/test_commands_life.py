@@ -11,10 +11,7 @@ import numpy as np
 import pytest
 from tiny_case import Result
 
-from fe_drivetrain.commands import life_digest
 from fe_drivetrain.commands.life import parse_lubricant
-from fe_drivetrain.commands.life_bearings import Choices, bearings_of, rollers_in_words
-from fe_drivetrain.commands.life_page import _scatter
 from fe_drivetrain.common.cache import CACHE_VARIABLE
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
@@ -23,6 +20,9 @@ from fe_drivetrain.life.load_series import years
 from fe_drivetrain.life.roller_damage import LifeRules, step_lives
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.scene.reading import library_scene
+from fe_drivetrain.studies import LifeOptions, life_digest
+from fe_drivetrain.studies.life_sums import scatter
+from fe_drivetrain.studies.rolling_bearings import Choices, bearings_of, rollers_in_words
 
 REAL_FOLDER = Path(os.environ.get("FE_DRIVETRAIN_OPENFAST", "no folder is given"))
 SCENE = "main_bearing_bonded"
@@ -117,24 +117,24 @@ RINGS = ("inner", "outer")
 def of_rates(*rates_by_wind: tuple[float, ...]) -> Any:
     """A bearing with such rates of damage in the files of each wind, winds of equal time."""
     speeds = [8.0 + 2.0 * k for k in range(len(rates_by_wind))]
-    digests = [
+    files = [
         SimpleNamespace(wind=speed, damage=SimpleNamespace(totals={"L10mr": 10 * r}, seconds=10.0))
         for speed, rates in zip(speeds, rates_by_wind, strict=True)
         for r in rates
     ]
     shares = np.full(len(speeds), 1.0 / len(speeds))
     site = SimpleNamespace(speeds=np.array(speeds), shares=shares, years={"L10mr": 50.0})
-    return SimpleNamespace(digests=digests, site=site)
+    return SimpleNamespace(files=files, site=site)
 
 
 def test_the_band_of_a_life_is_the_scatter_of_files_of_one_wind() -> None:
-    assert _scatter(of_rates((1.0, 1.0), (2.0, 2.0))) == 0.0
+    assert scatter(of_rates((1.0, 1.0), (2.0, 2.0))) == 0.0
     # a tenth up and down: the mean of the two has a standard error of a tenth
-    assert _scatter(of_rates((0.9, 1.1))) == pytest.approx(2 * 0.1 * 50.0)
-    both = _scatter(of_rates((0.9, 1.1), (0.9, 1.1)))
+    assert scatter(of_rates((0.9, 1.1))) == pytest.approx(2 * 0.1 * 50.0)
+    both = scatter(of_rates((0.9, 1.1), (0.9, 1.1)))
     assert both == pytest.approx(2 * 0.1 * 50.0 / np.sqrt(2))
-    assert _scatter(of_rates((0.9, 1.1), (1.0,))) is None
-    assert _scatter(SimpleNamespace(site=None)) is None  # type: ignore[arg-type]
+    assert scatter(of_rates((0.9, 1.1), (1.0,))) is None
+    assert scatter(SimpleNamespace(site=None)) is None  # type: ignore[arg-type]
 
 
 def test_a_stopped_run_goes_on(
@@ -304,8 +304,9 @@ def test_ends_of_rollers_are_stated_with_profile_and_riser() -> None:
 
 
 def test_lubricants_are_grades_or_two_viscosities() -> None:
-    assert parse_lubricant("460,30.5", 50, "grease", None) == parse_lubricant(
-        "VG 460", 50, "grease", "normal"
-    )
+    assert parse_lubricant("460,30.5") == (460.0, 30.5)
+    oil = LifeOptions(lubricant=(460.0, 30.5)).rules.lubricant
+    assert oil == LifeOptions(lubricant=parse_lubricant("VG 460")).rules.lubricant
+    assert oil == LifeOptions(cleanliness="normal").rules.lubricant
     with pytest.raises(InputError, match="40 and"):
-        parse_lubricant("460", 50, "grease", None)
+        LifeOptions(lubricant=parse_lubricant("460"))

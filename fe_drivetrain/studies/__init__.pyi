@@ -1,6 +1,9 @@
+from .bearing_lives import LifeResult as LifeResult
+from .bearing_lives import life as life
 from .design_comparison import CompareResult as CompareResult
 from .design_comparison import Varied as Varied
 from .design_comparison import compare as compare
+from .life_options import LifeOptions as LifeOptions
 from .result import Result as Result
 from .scene_check import CheckResult as CheckResult
 from .scene_check import check as check

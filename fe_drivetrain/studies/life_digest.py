@@ -1,4 +1,4 @@
-"""What the page of ``life`` needs of one bearing under one file, in little memory."""
+"""What a life needs of one bearing under one file, in little memory."""
 
 from __future__ import annotations
 
@@ -11,8 +11,6 @@ import numpy as np
 
 from fe_drivetrain.bearing.answers import race_pressures
 from fe_drivetrain.bearing.geometry import RollerRow
-from fe_drivetrain.commands.life_assumed import ratios, what_ifs
-from fe_drivetrain.commands.life_bearings import Choices, OneBearing
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
@@ -27,6 +25,8 @@ from fe_drivetrain.life.steps import Steps
 from fe_drivetrain.response.cached import whole_content
 from fe_drivetrain.response.entering import entering
 from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.studies.life_assumptions import ratios, what_ifs
+from fe_drivetrain.studies.rolling_bearings import Choices, OneBearing
 
 WINDOWS = 60
 """Of a file, over which the damage map follows the time."""
@@ -81,7 +81,7 @@ class LifeDigest:
     vertical : tuple of float
         Mean and standard deviation of Fz at the hub [N].
     ratios : Floats
-        Damage with other values of what was assumed, see `fe_drivetrain.commands.life_assumed`.
+        Damage with other values of what was assumed, see `fe_drivetrain.studies.life_assumptions`.
     """
 
     damage: Damage
