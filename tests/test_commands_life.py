@@ -2,6 +2,7 @@
 
 import csv
 import os
+import pickle
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -20,8 +21,9 @@ from fe_drivetrain.life.load_series import years
 from fe_drivetrain.life.roller_damage import LifeRules, step_lives
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.scene.reading import library_scene
-from fe_drivetrain.studies import LifeOptions, life_digest
-from fe_drivetrain.studies.life_sums import scatter
+from fe_drivetrain.studies import LifeOptions, life, life_digest
+from fe_drivetrain.studies.life_options import ASSUMED
+from fe_drivetrain.studies.life_sums import BearingSums, scatter
 from fe_drivetrain.studies.rolling_bearings import Choices, bearings_of, rollers_in_words
 
 REAL_FOLDER = Path(os.environ.get("FE_DRIVETRAIN_OPENFAST", "no folder is given"))
@@ -112,6 +114,53 @@ def test_lives_of_constant_loads_are_those_of_one_step(
 
 CHOICES_REST = (True, "rollers", "rigid", True)
 RINGS = ("inner", "outer")
+
+
+def test_study_and_command_give_the_same_numbers_with_the_same_defaults(
+    invoke: Callable[..., Result], histories: Path
+) -> None:
+    out, loads = histories.parent / "out", str(histories / "*.csv")
+    status, _, error = invoke(
+        *("life", SCENE, "--loads", loads, "--site", "class-II", "--out", str(out))
+    )
+    assert status == 0, error
+    shown = read_results(out / "results.json")
+    found = life(library_scene(SCENE), loads, site_of_class("II"))
+    plain = found.to_dict()
+    assert shown.summary == plain["answer"]
+    assert shown.notes == plain["notes"]
+    assert [one.model_dump(mode="json") for one in shown.answers] == plain["figures"]
+    assert [one.model_dump(mode="json") for one in shown.verdicts] == plain["checks"]
+    assert [one.model_dump(mode="json") for one in shown.assumptions] == plain["assumptions"]
+    assert [one.model_dump(mode="json") for one in shown.drivetrains] == plain["drivetrains"]
+    for name, table in found.tables.items():
+        assert shown.figures[name] == table, name
+    for name in ("files", "winds", "places", "laminae"):
+        written = [list(row.values()) for row in rows_of(out / f"{name}.csv")]
+        table = [
+            [f"{v:.9g}" if isinstance(v, float) else str(v) for v in row.values()]
+            for row in found.all_tables()[name]
+        ]
+        assert written == table, name
+
+
+def test_what_is_kept_of_each_file_is_small(histories: Path) -> None:
+    """Places, laminae and time are those of all files together: memory hardly grows."""
+    options = LifeOptions()
+    scene, rules, choices = library_scene(SCENE), options.rules, options.choices
+    (one,) = bearings_of(scene, choices)
+    digest = life_digest.digest(histories / "v8.csv", one, rules, options.reading, scene, choices)
+    sums = BearingSums(one, None)
+    for _ in range(100):
+        sums.add(histories / "v8.csv", digest)
+    found = sums.life(rules, choices)
+    of_digest = sum(array.nbytes for array in life_digest.as_arrays(digest).values())
+    assert of_digest > 50_000
+    assert all(not one.damage.basic and not one.damage.modified for one in found.files)
+    of_files = sum(len(pickle.dumps(one)) for one in found.files) / 100
+    assert of_files < 0.05 * of_digest
+    assert found.damage.of_bearing == pytest.approx(100 * digest.damage.of_bearing, rel=1e-12)
+    assert found.mean_load == pytest.approx(digest.mean_load, rel=1e-12)
 
 
 def of_rates(*rates_by_wind: tuple[float, ...]) -> Any:
@@ -310,3 +359,29 @@ def test_lubricants_are_grades_or_two_viscosities() -> None:
     assert oil == LifeOptions(cleanliness="normal").rules.lubricant
     with pytest.raises(InputError, match="40 and"):
         LifeOptions(lubricant=parse_lubricant("460"))
+
+
+def test_defaults_are_assumed_and_other_values_are_not() -> None:
+    assert LifeOptions().assumed == ASSUMED
+    some = LifeOptions(temperature=60.0, riser=False, stated=("turning",))
+    assert some.assumed == ("lubricant", "cleanliness", "profile")
+    assert some.choices.assumed == some.assumed
+    assert LifeOptions(stated=ASSUMED).assumed == ()
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"every": 0}, "whole number of samples"),
+        ({"skip": -1.0}, "skip is -1 s"),
+        ({"rotor_speed": float("inf")}, "rotor_speed is inf 1/min"),
+        ({"stated": ("speed",)}, "an option that is stated is 'speed': choose 'lubricant'"),
+        ({"reliability": 91.0}, "99.9 %"),
+        ({"lubricant": (30.0, 460.0)}, "460"),
+        ({"turning": "both"}, "'inner' or 'outer'"),
+    ],
+)
+def test_options_out_of_their_range_are_refused(options: dict[str, Any], words: str) -> None:
+    with pytest.raises(InputError) as error:
+        LifeOptions(**options)
+    assert words in str(error.value)
