@@ -167,12 +167,17 @@ def of_rates(*rates_by_wind: tuple[float, ...]) -> Any:
     """A bearing with such rates of damage in the files of each wind, winds of equal time."""
     speeds = [8.0 + 2.0 * k for k in range(len(rates_by_wind))]
     files = [
-        SimpleNamespace(wind=speed, damage=SimpleNamespace(totals={"L10mr": 10 * r}, seconds=10.0))
+        SimpleNamespace(
+            wind=speed,
+            damage=SimpleNamespace(totals={"L10mr": 10 * r, "L10r": 5 * r**2}, seconds=10.0),
+        )
         for speed, rates in zip(speeds, rates_by_wind, strict=True)
         for r in rates
     ]
     shares = np.full(len(speeds), 1.0 / len(speeds))
-    site = SimpleNamespace(speeds=np.array(speeds), shares=shares, years={"L10mr": 50.0})
+    site = SimpleNamespace(
+        speeds=np.array(speeds), shares=shares, years={"L10mr": 50.0, "L10r": 80.0}
+    )
     return SimpleNamespace(files=files, site=site)
 
 
@@ -180,6 +185,8 @@ def test_the_band_of_a_life_is_the_scatter_of_files_of_one_wind() -> None:
     assert scatter(of_rates((1.0, 1.0), (2.0, 2.0))) == 0.0
     # a tenth up and down: the mean of the two has a standard error of a tenth
     assert scatter(of_rates((0.9, 1.1))) == pytest.approx(2 * 0.1 * 50.0)
+    of_square = 0.5 * (1.1**2 - 0.9**2) / np.mean([1.1**2, 0.9**2])
+    assert scatter(of_rates((0.9, 1.1)), "L10r") == pytest.approx(2 * of_square * 80.0)
     both = scatter(of_rates((0.9, 1.1), (0.9, 1.1)))
     assert both == pytest.approx(2 * 0.1 * 50.0 / np.sqrt(2))
     assert scatter(of_rates((0.9, 1.1), (1.0,))) is None

@@ -73,14 +73,21 @@ class LifeResult(Result):
 
     def chart(self) -> Chart:
         """Lives of all bearings, of each kind; those without end are left out."""
+        ending = {
+            kind: [life for life in self.lives if np.isfinite(life.years[kind])] for kind in KINDS
+        }
         groups = {
-            kind: {
-                life.name: life.years[kind] for life in self.lives if np.isfinite(life.years[kind])
-            }
-            for kind in KINDS
+            kind: {life.name: life.years[kind] for life in lives} for kind, lives in ending.items()
         }
         least = min((v for values in groups.values() for v in values.values()), default=1.0)
-        return bars("Lives of the bearings", groups, "life [years]", least=least)
+        caption = "Lives of the bearings"
+        if any(life.bands["L10mr"] is not None for life in self.lives):
+            caption += ", ± two standard errors of files of the same wind"
+        found = bars(caption, groups, "life [years]", least=least)
+        for trace, (kind, lives) in zip(found.figure["data"], ending.items(), strict=True):
+            bands = [life.bands[kind] or 0.0 for life in lives]
+            trace["error_x"] = {"type": "data", "array": bands, "thickness": 1.2}
+        return found
 
 
 def life(

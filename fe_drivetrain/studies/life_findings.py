@@ -16,7 +16,7 @@ from fe_drivetrain.procedure.failure_modes import TORQUE_AND_BENDING
 from fe_drivetrain.report.answer import value_with_band
 from fe_drivetrain.studies.life_assumptions import in_words, in_years
 from fe_drivetrain.studies.life_options import LifeOptions
-from fe_drivetrain.studies.life_sums import BearingLife, row_names
+from fe_drivetrain.studies.life_sums import BearingLife, row_names, scatter
 from fe_drivetrain.studies.rolling_bearings import rollers_in_words
 from fe_drivetrain.suite.findings import Findings
 from fe_drivetrain.suite.records import Record
@@ -49,12 +49,12 @@ def answers(
         Whose winds are weighted.
     """
     for life in lives:
-        years = life.years
+        years, band = life.years, scatter(life)
         words = f"Bearing {life.name} lives {in_years(years['L10mr'])} {_under(life, site)} (L10mr"
         if np.isfinite(years["L10mr"]):
             which = f"L10mr of bearing {life.name} [years]"
-            found.found(which, years["L10mr"], life.band, (TORQUE_AND_BENDING,))
-        if life.band is not None:
+            found.found(which, years["L10mr"], band, (TORQUE_AND_BENDING,))
+        if band is not None:
             shown = value_with_band(found.answers[-1])
             words = f"Bearing {life.name} lives {shown} {_under(life, site)} (L10mr, ± two "
             words += "standard errors of files of the same wind"

@@ -13,7 +13,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.histories.sites import Site, require_winds, rounded_wind
 from fe_drivetrain.life.at_site import SiteLife, site_lives
 from fe_drivetrain.life.limits import Limits
-from fe_drivetrain.life.roller_damage import Damage, LifeRules
+from fe_drivetrain.life.roller_damage import KINDS, Damage, LifeRules
 from fe_drivetrain.studies.life_assumptions import Assumption, what_ifs
 from fe_drivetrain.studies.life_digest import LifeDigest, worse
 from fe_drivetrain.studies.rolling_bearings import Choices, OneBearing
@@ -131,9 +131,9 @@ class BearingLife:
         return self.damage.lives("Mrev")
 
     @property
-    def band(self) -> float | None:
-        """Scatter of L10mr over files of a wind, two standard errors [years]; see `scatter`."""
-        return scatter(self)
+    def bands(self) -> Mapping[str, float | None]:
+        """Scatter of each of the lives over files of a wind [years]; see `scatter`."""
+        return {kind: scatter(self, kind) for kind in KINDS}
 
 
 class BearingSums:
@@ -254,8 +254,8 @@ def _with_ratio(damage: Damage, ratio: float) -> Damage:
     return replace(damage, of_bearing=damage.of_bearing * [1.0, ratio])
 
 
-def scatter(life: BearingLife) -> float | None:
-    """Two standard errors of L10mr over files of a wind [years]; None where one stands alone.
+def scatter(life: BearingLife, kind: str = "L10mr") -> float | None:
+    """Two standard errors of a life over files of a wind [years]; None where one stands alone.
 
     Each wind's mean rate of damage has the standard error s / sqrt(n) of its n files; those of all
     winds, weighted by their time at the site, add up as squares.
@@ -264,20 +264,22 @@ def scatter(life: BearingLife) -> float | None:
     ----------
     life : BearingLife
         The bearing.
+    kind : str
+        Kind of life, one of `fe_drivetrain.life.KINDS`.
     """
     site = life.site
     if site is None:
         return None
     rates: dict[float, list[float]] = {}
     for one in life.files:
-        rate = one.damage.totals["L10mr"] / one.damage.seconds
+        rate = one.damage.totals[kind] / one.damage.seconds
         rates.setdefault(rounded_wind(one.wind), []).append(rate)
     if min(map(len, rates.values())) < 2:
         return None
     each = [rates[float(speed)] for speed in site.speeds]
     mean = float(site.shares @ [np.mean(one) for one in each])
     errors = site.shares * [np.std(one, ddof=1) / np.sqrt(len(one)) for one in each]
-    return 2.0 * float(np.linalg.norm(errors)) / mean * site.years["L10mr"] if mean else None
+    return 2.0 * float(np.linalg.norm(errors)) / mean * site.years[kind] if mean else None
 
 
 def row_names(count: int) -> list[str]:
