@@ -381,9 +381,9 @@ def test_defaults_are_assumed_and_other_values_are_not() -> None:
     [
         ({"every": 0}, "whole number of samples"),
         ({"skip": -1.0}, "skip is -1 s"),
-        ({"rotor_speed": float("inf")}, "rotor_speed is inf 1/min"),
+        ({"rotor_speed_rpm": float("inf")}, "rotor_speed_rpm is inf 1/min"),
         ({"stated": ("speed",)}, "an option that is stated is 'speed': choose 'lubricant'"),
-        ({"reliability": 91.0}, "99.9 %"),
+        ({"reliability_percent": 91.0}, "99.9 %"),
         ({"lubricant": (30.0, 460.0)}, "460"),
         ({"turning": "both"}, "'inner' or 'outer'"),
     ],

@@ -138,7 +138,7 @@ def life_command(
         typer.Option(
             "--reliability", metavar="PERCENT", help="Of modified lives: 90, 95 to 99, 99.5, 99.9."
         ),
-    ] = LifeOptions.reliability,
+    ] = LifeOptions.reliability_percent,
     channel: Channels = None,
     mapping: Mapping = None,
     rotor_speed: RotorSpeed = None,
@@ -195,9 +195,9 @@ def life_command(
             turning=turning,  # type: ignore[arg-type]
             support=support,
             rings=rings,
-            reliability=reliability,
+            reliability_percent=reliability,
             channels=parse_mapping(mapping, channel or ()),
-            rotor_speed=rotor_speed,
+            rotor_speed_rpm=rotor_speed,
             skip=skip,
             every=every,
             weight=weight,

@@ -53,12 +53,12 @@ class LifeOptions:
         The shaft on its bearings: "rollers" in equilibrium with it, "pinned", or K_R [N m/rad].
     rings : {"rigid", "three-degree", "housing"}
         How the rings share the load among the rollers.
-    reliability : float
+    reliability_percent : float
         Reliability of modified lives, one of `fe_drivetrain.life.RELIABILITY` [%].
     channels : ChannelMap or None
         How files call their channels, and their frame and origin; None takes OpenFAST's names, and
         those of the program's own tables.
-    rotor_speed : float or None
+    rotor_speed_rpm : float or None
         Rotor speed of files that state none [1/min].
     skip : float
         Time that is left out at the beginning of each file [s].
@@ -88,9 +88,9 @@ class LifeOptions:
     turning: Turning = "inner"
     support: str | float = "rollers"
     rings: str = "rigid"
-    reliability: float = 90.0
+    reliability_percent: float = 90.0
     channels: ChannelMap | None = None
-    rotor_speed: float | None = None
+    rotor_speed_rpm: float | None = None
     skip: float = 0.0
     every: int = 1
     weight: bool = True
@@ -101,7 +101,7 @@ class LifeOptions:
             require_known("an option that is stated", name, ASSUMED)
         if not (isinstance(self.every, int) and self.every >= 1):
             raise InputError(f"every is {self.every}: give a whole number of samples from 1 on")
-        for name, unit in (("skip", "s"), ("rotor_speed", "1/min")):
+        for name, unit in (("skip", "s"), ("rotor_speed_rpm", "1/min")):
             value = getattr(self, name)
             if value is not None and not 0.0 <= value < inf:
                 raise InputError(f"{name} is {value:g} {unit}: give a finite number, 0 or more")
@@ -118,14 +118,14 @@ class LifeOptions:
         """Choices that change the life of a bearing under given loads of its rollers."""
         from fe_drivetrain.life.roller_damage import RELIABILITY, LifeRules
 
-        if self.reliability not in RELIABILITY:
+        if self.reliability_percent not in RELIABILITY:
             known = ", ".join(f"{value:g}" for value in RELIABILITY)
-            raise InputError(f"--reliability {self.reliability:g}: choose one of {known} %")
+            raise InputError(f"--reliability {self.reliability_percent:g}: choose one of {known} %")
         return LifeRules(
             self._oil,
             "standard" if self.riser else "none",
             turning=self.turning,
-            reliability=RELIABILITY[self.reliability],
+            reliability=RELIABILITY[self.reliability_percent],
         )
 
     @property
@@ -135,7 +135,7 @@ class LifeOptions:
         from fe_drivetrain.studies.life_digest import Reading
 
         names = OWN_NAMES if self.channels is None else self.channels
-        return Reading(names, self.skip, self.every, self.rotor_speed)
+        return Reading(names, self.skip, self.every, self.rotor_speed_rpm)
 
     @property
     def choices(self) -> Choices:
