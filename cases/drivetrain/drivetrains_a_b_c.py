@@ -291,7 +291,7 @@ def needed(other: Restored, part: str, tabled: float, target: float) -> float:
 
 
 def caption(one: ByTables) -> str:
-    """Of a drivetrain's table of frequencies."""
+    """Caption of a drivetrain's table of frequencies."""
     return f"Drivetrain {one.letter}: {one.table.title.partition(', ')[2]}; generator free"
 
 

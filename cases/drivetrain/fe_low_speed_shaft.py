@@ -202,7 +202,7 @@ def taken_over(meridian: Stiffness, solid: Solid) -> Stiffness:
 
 
 def frequency(name: str, state: GeneratorState, mode: int, K: float) -> float:
-    """Of a model with another low-speed shaft [Hz]."""
+    """Frequency of a model with another low-speed shaft [Hz]."""
     other = published.with_values(TABLE, {"shafts.0.stiffness": K})
     return float(natural_modes(MAKERS[name](other, state)).frequencies[mode])
 

@@ -184,7 +184,7 @@ def check_restored(page: Page, other: Restored, rounding: float) -> None:
 
 
 def frequency(state: GeneratorState, mode: int, shafts: float) -> float:
-    """Of a mode (from 0) with other shafts [N m/rad]."""
+    """Frequency of a mode, counted from 0, with other shafts [N m/rad]."""
     return float(natural_modes(changed(SYSTEMS[state], {"shafts": shafts})).frequencies[mode])
 
 

@@ -223,7 +223,7 @@ def _relative(ours: Floats, theirs: Floats, least: Floats | None = None) -> Floa
 
 
 def ccx_version() -> str:
-    """As ccx prints it."""
+    """Version that ccx prints."""
     printed = subprocess.run([find_calculix(), "-v"], capture_output=True, text=True, check=False)
     return printed.stdout.strip().removeprefix("This is Version").strip()
 
