@@ -255,7 +255,8 @@ def run(run: Run, page: Page) -> None:
     ):
         shown.check_solution(page, solved, label)
     for label, of_meshes in series.items():
-        shown.check_series(page, of_meshes, label)
+        with page.of(kinds[label].scene):
+            shown.check_series(page, of_meshes, label)
     check_beams(page, found, of_beams)
 
     stiffness = bearing_unit_stiffness(spherical.response, name)

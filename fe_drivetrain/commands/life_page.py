@@ -21,6 +21,7 @@ from fe_drivetrain.commands.life_limits import limits, overloaded
 from fe_drivetrain.commands.life_sections import BearingLife, laminae, places, winds
 from fe_drivetrain.commands.loads_tables import write_tables
 from fe_drivetrain.commands.loads_together import require_winds, rounded_wind
+from fe_drivetrain.commands.unused import choices_not_used, speed_not_used
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.histories.sites import Site
 from fe_drivetrain.hub_loads.turbines import different_turbines
@@ -106,6 +107,10 @@ def lived(
     of_first = zip(files, found[0].digests, strict=True)
     if unlike := different_turbines({file.stem: d.vertical for file, d in of_first}):
         page.note(unlike)
+    if unused := speed_not_used(reading.rotor_speed, [d.own_speeds for d in found[0].digests]):
+        page.note(unused)
+    for unused in choices_not_used(scene, choices, bearings):
+        page.note(unused)
     page.note(UNVERIFIED)
     _lives(page, found)
     limits(page, found, rules)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fe_drivetrain.commands.unused import own_speeds
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
@@ -40,16 +41,16 @@ CHANNELS = (*LOADS, "rotor speed", "wind speed")
 UNITS = (*3 * ("N",), *3 * ("N m",), "N", "N m", "rad/s", "m/s")
 
 HIGHEST = 10.0
-"""Of spectra on the page [Hz]."""
+"""Highest frequency of spectra on the page [Hz]."""
 
 SPEED_STEP = 0.05
-"""Of the Campbell diagram [rad/s]."""
+"""Width of the classes of rotor speed in the Campbell diagram [rad/s]."""
 
 PLANES = (("force", 1), ("moment", 4))
 """Names, and where the component along y stands among the six."""
 
 SECTORS = 36
-"""Of directions across the shaft; the first is about 0 deg, which is right."""
+"""Number of directions across the shaft; the first is about 0 deg, which is right."""
 
 POWER = 10.0 / 3.0
 """Exponent of the life of roller bearings (ISO 281)."""
@@ -139,7 +140,7 @@ def digest(found: Recorded, options: Options) -> Digest:
     """
     history = found.history
     step, count = history.step, len(history)
-    speed = found.rotor_speed
+    speed = speed_of_file = found.rotor_speed
     if speed is None and options.rotor_speed is not None:
         speed = np.full(count, options.rotor_speed)
     loads = _all_loads(history.loads)
@@ -152,6 +153,7 @@ def digest(found: Recorded, options: Options) -> Digest:
         "window start": windows.start,
         "window seconds": windows.seconds,
         "window values": windows.values,
+        "own speeds": own_speeds(speed_of_file),
     }
     seconds = np.full(count, step)
     turns = None if speed is None else np.abs(speed) * step / (2.0 * np.pi)

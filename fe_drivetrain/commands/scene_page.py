@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from fe_drivetrain.commands.named_bearings import named_bearings
+from fe_drivetrain.commands.unused import catalogues_not_used
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.fidelity.level_costs import forecast
 from fe_drivetrain.geometry import FurtherPart
@@ -293,7 +294,10 @@ def checked(run: Run, page: Page, scene: Scene, catalogues: Sequence[Path] = ())
     InputError
         See `named_bearings` and `checked_model`.
     """
-    misfits = [one.misfit for one in named_bearings(scene, catalogues, {}).values()]
+    named = named_bearings(scene, catalogues, {})
+    misfits = [one.misfit for one in named.values()]
+    for unused in catalogues_not_used(catalogues, {name: one.name for name, one in named.items()}):
+        page.note(unused)
     model = checked_model(run, scene)
     mass = float(model.mass.sum())
     count = len(scene.bearing_names)
