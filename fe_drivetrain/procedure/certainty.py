@@ -122,8 +122,8 @@ def _of_spread(
     if is_vacuous(spread):
         return [
             f"{value.name!r}: the band of {100 * spread:.3g} % that {value.measured_by!r} leaves "
-            "says nothing: record it for longer or more accurately, or state a band of a document. "
-            f"{must_be_below(_BAND)}"
+            "says nothing: record it for longer or more accurately, or state the band of a "
+            f"document: {must_be_below(_BAND)}"
         ]
     return []
 

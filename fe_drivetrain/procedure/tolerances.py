@@ -60,9 +60,8 @@ def why_vacuous(what: str, share: float, key: str) -> str:
     if not is_vacuous(share):
         return ""
     return (
-        f"{what} of {100 * share:g} % says nothing: values from {100 * (1 - share):g} to "
-        f"{100 * (1 + share):g} % of the right one would pass, and a model that leaves out "
-        f"dynamics or one of two bearings with them. {must_be_below(key)}"
+        f"{what} of {100 * share:g} % says nothing, since {100 * (1 - share):g} to "
+        f"{100 * (1 + share):g} % of the right value would pass: {must_be_below(key)}"
     )
 
 
@@ -76,7 +75,7 @@ def must_be_below(key: str) -> str:
     """
     section, _, name = key.partition(": ")
     return (
-        f"It must be above 0 and below {100 * WIDEST:.3g} %: under {section} set {name} to less "
+        f"it must be above 0 and below {100 * WIDEST:.3g} %: under {section} set {name} to less "
         f"than {WIDEST:.3g}, for instance {name}: {EXAMPLE:g}"
     )
 
