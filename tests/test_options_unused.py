@@ -231,6 +231,32 @@ def test_a_summary_has_all_points(invoke: Invoke, tmp_path: Path) -> None:
     assert not out.exists()
 
 
+@pytest.mark.parametrize(
+    ("file", "options", "words"),
+    [
+        ("a.step", ["--bore", "seat"], "--bore seat names points of a superelement, and a.step is"),
+        ("a.inp", ["--held", "left"], "--held left names points of a superelement, and a.inp is"),
+        ("a.json", ["--picture", "a.png"], "and a.json is a superelement, which has no faces"),
+        ("a.step", ["--overwrite"], "--overwrite is for the file of --picture"),
+    ],
+)
+def test_options_of_another_kind_of_part_are_refused(
+    file: str, options: list[str], words: str, invoke: Invoke
+) -> None:
+    status, _, error = invoke("part", file, *options)
+    assert status == 2
+    assert words in error
+
+
+def test_a_tolerance_beside_a_level_is_refused(invoke: Invoke, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    words = ("uncertainty", SCENE, "--level", "1", "--tolerance", "1%", "--out", str(out))
+    status, _, error = invoke(*words)
+    assert status == 2
+    assert "--tolerance 1% is for the adviser, which --level 1 leaves out" in error
+    assert not out.exists()
+
+
 @pytest.mark.parametrize("settings", [{"torque": 100}, {"machine": "nrel_5mw", "speed": 10}])
 def test_an_operation_of_machines_that_have_their_own_is_refused(
     settings: dict[str, object], tmp_path: Path

@@ -18,13 +18,13 @@ from fe_drivetrain.commands.options import (
     SceneName,
     Scheduler,
     Skip,
+    left_out,
 )
 from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.run import results_text
 from fe_drivetrain.commands.scenes import named_scene
 from fe_drivetrain.commands.settings import SceneSettings, parse_settings, refuse_again
 from fe_drivetrain.commands.terminal import FAILED, PASSED, as_typed, guarded, write
-from fe_drivetrain.commands.unused import left_out
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads

@@ -17,11 +17,11 @@ from fe_drivetrain.commands.options import (
     Scheduler,
     Skip,
     Slopes,
+    require_beside,
 )
 from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.run import results_text
 from fe_drivetrain.commands.terminal import FAILED, PASSED, as_typed, guarded, write
-from fe_drivetrain.commands.unused import require_beside
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads

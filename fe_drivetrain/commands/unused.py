@@ -12,8 +12,6 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 
 if TYPE_CHECKING:
-    import typer
-
     from fe_drivetrain.commands.life_bearings import Choices, OneBearing
     from fe_drivetrain.scene.scene import Scene
 
@@ -128,49 +126,6 @@ def catalogues_not_used(catalogues: Sequence[Path], named: Mapping[str, str]) ->
                 f"--catalogue {path} is not used: no bearing of the scene takes an entry of it, "
                 f"which are {', '.join(read_entries(path))}: name one under catalogue in the scene."
             )
-
-
-def require_beside(
-    context: typer.Context, options: Mapping[str, str], beside: str, why: str
-) -> None:
-    """Refuse options that say nothing where another one is not given.
-
-    Parameters
-    ----------
-    context : typer.Context
-        Knows which options were typed.
-    options : Mapping[str, str]
-        Options by the names of their parameters.
-    beside : str
-        The option that they need.
-    why : str
-        What they are of, as in "weights the winds of a site".
-
-    Raises
-    ------
-    InputError
-        One of them was typed.
-    """
-    for parameter, option in options.items():
-        if not left_out(context, parameter):
-            raise InputError(
-                f"{option} {context.params[parameter]} {why}: give {beside}, too, or leave "
-                f"{option} out"
-            )
-
-
-def left_out(context: typer.Context, parameter: str) -> bool:
-    """Whether an option stands at its default.
-
-    Parameters
-    ----------
-    context : typer.Context
-        Of the command.
-    parameter : str
-        By its name in Python.
-    """
-    source = context.get_parameter_source(parameter)
-    return source is not None and source.name == "DEFAULT"
 
 
 def require_samples(file: Path, count: int, every: int, least: int) -> None:
