@@ -241,6 +241,7 @@ def run(run: Run, page: Page, row: Mapping[str, Any]) -> None:
         work = [jobs.start(compare, changed, form, mesh) for form, changed in forms.items()]
         found = [job.result() for job in work]
     for one in found:
+        page.about(forms[one.label], one.label)
         for quantity, values in one.differences.items():
             page.vanishes(
                 f"{one.label}: {quantity}, largest difference of all unit loads",
