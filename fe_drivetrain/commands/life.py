@@ -18,6 +18,7 @@ from fe_drivetrain.commands.options import (
     SceneName,
     Scheduler,
     Skip,
+    left_out,
 )
 from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.run import results_text
@@ -201,7 +202,7 @@ def life_command(
             skip=skip,
             every=every,
             weight=weight,
-            stated=tuple(name for name in ASSUMED if not _left_out(context, name)),
+            stated=tuple(name for name in ASSUMED if not left_out(context, name)),
         )
         place = None if site is None else parse_site(site)
         files = recorded_files(loads)
@@ -259,12 +260,6 @@ def parse_mapping(file: Path | None, channels: Iterable[str]) -> ChannelMap:
 
     names = OWN_NAMES if file is None else read_channel_map(file)
     return names.with_columns(parse_channels(channels))
-
-
-def _left_out(context: typer.Context, option: str) -> bool:
-    """Whether an option stands at its default."""
-    source = context.get_parameter_source(option)
-    return source is not None and source.name == "DEFAULT"
 
 
 def _pairs(texts: Iterable[str]) -> dict[str, str]:

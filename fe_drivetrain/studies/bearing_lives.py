@@ -135,7 +135,7 @@ def life(
     with steps.step("load steps"):
         lives = list(_lives(scene, bearings, paths, site, asked, resume, report))
     answers(found, lives, asked.rules, site)
-    cautions(found, lives, asked.rules, limit_rows(lives))
+    cautions(found, scene, lives, asked, limit_rows(lives))
     assumptions(found, lives, asked)
     checks(found, lives)
     for name, table in result_tables(lives).items():

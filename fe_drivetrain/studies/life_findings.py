@@ -14,10 +14,12 @@ from fe_drivetrain.life.reference_life import RINGS
 from fe_drivetrain.life.roller_damage import LifeRules
 from fe_drivetrain.procedure.failure_modes import TORQUE_AND_BENDING
 from fe_drivetrain.report.answer import value_with_band
+from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.studies.life_assumptions import in_words, in_years
 from fe_drivetrain.studies.life_options import LifeOptions
 from fe_drivetrain.studies.life_sums import BearingLife, row_names, scatter
 from fe_drivetrain.studies.rolling_bearings import rollers_in_words
+from fe_drivetrain.studies.unused import choices_not_used, speed_not_used
 from fe_drivetrain.suite.findings import Findings
 from fe_drivetrain.suite.records import Record
 
@@ -108,7 +110,11 @@ def _overloaded(life: BearingLife) -> str:
 
 
 def cautions(
-    found: Findings, lives: Sequence[BearingLife], rules: LifeRules, limits: Sequence[Record]
+    found: Findings,
+    scene: Scene,
+    lives: Sequence[BearingLife],
+    options: LifeOptions,
+    limits: Sequence[Record],
 ) -> None:
     """State what must be known before the lives, most severe first.
 
@@ -116,10 +122,12 @@ def cautions(
     ----------
     found : Findings
         Takes the sentences.
+    scene : Scene
+        The drivetrain.
     lives : sequence of BearingLife
         The bearings.
-    rules : LifeRules
-        Choices that change lives.
+    options : LifeOptions
+        What was asked for.
     limits : sequence of dict
         Time beyond the limits of the methods, of each bearing.
     """
@@ -129,11 +137,17 @@ def cautions(
     vertical = {one.file.stem: one.vertical for one in lives[0].files}
     if unlike := different_turbines(vertical):
         found.note(unlike)
+    own_speeds = [one.own_speeds for one in lives[0].files]
+    if unused := speed_not_used(options.rotor_speed_rpm, own_speeds):
+        found.note(unused)
+    for unused in choices_not_used(scene, options.choices, [life.bearing for life in lives]):
+        found.note(unused)
     found.note(UNVERIFIED)
     for life, row in zip(lives, limits, strict=True):
         _beyond_limits(found, life, row)
-    if rules.lubricant is not None and rules.lubricant.caution is not None:
-        found.note(rules.lubricant.caution)
+    oil = options.rules.lubricant
+    if oil is not None and oil.caution is not None:
+        found.note(oil.caution)
     for life in lives:
         if sentence := in_words(life.name, life.years["L10mr"], life.assumptions):
             found.note(sentence)

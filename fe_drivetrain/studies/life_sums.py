@@ -37,6 +37,8 @@ class FileLife:
         Samples that were used.
     vertical : tuple of float
         Mean and standard deviation of Fz at the hub [N].
+    own_speeds : ndarray, (2,)
+        Least and largest rotor speed that the file states [1/min]; NaN where it has none.
     ratios : ndarray, (assumptions,)
         Damage by L10mr with another value of each assumption, over that with the one taken.
     """
@@ -47,6 +49,7 @@ class FileLife:
     speed: float
     samples: float
     vertical: tuple[float, float]
+    own_speeds: Floats
     ratios: Floats
 
 
@@ -181,6 +184,7 @@ class BearingSums:
                 digest.speed,
                 digest.samples,
                 digest.vertical,
+                digest.own_speeds,
                 digest.ratios,
             )
         )
