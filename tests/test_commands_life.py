@@ -291,6 +291,9 @@ def test_what_files_and_scenes_do_not_say_is_asked_for(
     assert status == 2
     assert "--bearing front=ENTRY" in error
     assert not (tmp_path / "out").exists()
+    status, _, error = invoke("life", "stepped_shaft", "--loads", str(tmp_path / "a.csv"))
+    assert "--bearing front=ENTRY" in error
+    assert not (tmp_path / "reports").exists()
 
 
 @pytest.mark.skipif(

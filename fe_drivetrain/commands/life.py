@@ -179,7 +179,7 @@ def life_command(
         from fe_drivetrain.commands.life_page import show_life
         from fe_drivetrain.commands.loads_words import parse_site
         from fe_drivetrain.hub_loads.recorded import recorded_files
-        from fe_drivetrain.studies.bearing_lives import life
+        from fe_drivetrain.studies.bearing_lives import DrivetrainBearings, lives_under
         from fe_drivetrain.suite.case import Case
         from fe_drivetrain.suite.result_folders import run_case
 
@@ -206,17 +206,22 @@ def life_command(
         )
         place = None if site is None else parse_site(site)
         files = recorded_files(loads)
-        case = Case(
-            f"life/{name}",
-            f"{found.title}: rating life of its bearings",
-            "the user's scene and files",
-            shown(
-                lambda run: life(found, files, place, options, resume=resume, report=run.report),
-                show_life,
-            ),
-            command=as_typed(),
-        )
         with show_steps() as report, scheduled_by(scheduler):
+            # before the run: a mistake leaves no trace in a folder of reports
+            report("bearings")
+            drivetrain = DrivetrainBearings(found, options)
+            case = Case(
+                f"life/{name}",
+                f"{drivetrain.scene.title}: rating life of its bearings",
+                "the user's scene and files",
+                shown(
+                    lambda run: lives_under(
+                        drivetrain, files, place, resume=resume, report=run.report
+                    ),
+                    show_life,
+                ),
+                command=as_typed(),
+            )
             results = run_case(case, target.resolve(), report=report)
         write(sys.stdout, results_text(results, target / "report.html"))
         return PASSED if results.passed else FAILED

@@ -32,7 +32,7 @@ from fe_drivetrain.studies.life_options import LifeOptions
 from fe_drivetrain.studies.life_sums import BearingLife, BearingSums
 from fe_drivetrain.studies.life_tables import limit_rows, long_tables, result_tables
 from fe_drivetrain.studies.result import Result
-from fe_drivetrain.studies.rolling_bearings import OneBearing, bearings_of
+from fe_drivetrain.studies.rolling_bearings import bearings_of
 from fe_drivetrain.suite.findings import Findings
 
 _MANY = 8  # files, each of every bearing, for which it pays to start processes
@@ -126,16 +126,78 @@ def life(
     asked = LifeOptions() if options is None else options
     patterns = [files] if isinstance(files, str | os.PathLike) else files
     paths = recorded_files([os.fspath(pattern) for pattern in patterns])
+    report("bearings")
+    drivetrain = DrivetrainBearings(scene, asked)
+    return lives_under(drivetrain, paths, site, resume=resume, report=report)
+
+
+class DrivetrainBearings:
+    """A drivetrain whose rolling bearings are ready for lives.
+
+    Parameters
+    ----------
+    scene : Scene
+        The drivetrain.
+    options : LifeOptions
+        What is asked for.
+
+    Attributes
+    ----------
+    scene : Scene
+        The drivetrain, without its weight where that is asked for.
+    options : LifeOptions
+        What is asked for.
+    bearings : list of OneBearing
+        Its bearings, or the one that is asked for.
+
+    Raises
+    ------
+    InputError
+        The scene has no rolling bearing or an unknown one.
+    """
+
+    def __init__(self, scene: Scene, options: LifeOptions) -> None:
+        self.scene = scene if options.weight else weightless(scene)
+        self.options = options
+        self.bearings = bearings_of(self.scene, options.choices)
+
+
+def lives_under(
+    drivetrain: DrivetrainBearings,
+    files: Sequence[Path],
+    site: Site | None,
+    *,
+    resume: bool = False,
+    report: Progress = silent,
+) -> LifeResult:
+    """Rating lives of bearings that are ready, under hub loads; see `life`.
+
+    Parameters
+    ----------
+    drivetrain : DrivetrainBearings
+        The drivetrain.
+    files : sequence of Path
+        Hub loads, each of one file.
+    site : Site or None
+        Whose winds weight the files.
+    resume : bool
+        Take what an earlier run has done.
+    report : Progress
+        Called with the name of each step as it begins.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read, or a site is given and files have no wind speed.
+    """
     found, steps = Findings(), Steps(report)
-    scene = scene if asked.weight else weightless(scene)
-    with steps.step("bearings"):
-        bearings = bearings_of(scene, asked.choices)
+    asked = drivetrain.options
     found.seed = None
-    found.about(scene)
+    found.about(drivetrain.scene)
     with steps.step("load steps"):
-        lives = list(_lives(scene, bearings, paths, site, asked, resume, report))
+        lives = list(_lives(drivetrain, files, site, resume, report))
     answers(found, lives, asked.rules, site)
-    cautions(found, scene, lives, asked, limit_rows(lives))
+    cautions(found, drivetrain.scene, lives, asked, limit_rows(lives))
     assumptions(found, lives, asked)
     checks(found, lives)
     for name, table in result_tables(lives).items():
@@ -144,26 +206,27 @@ def life(
         bearings={one.name: one for one in lives},
         site=site,
         rules=asked.rules,
-        **found.frozen(steps.times, **_stated(paths, site, asked)),
+        **found.frozen(steps.times, **_stated(files, site, asked)),
     )
 
 
 def _lives(
-    scene: Scene,
-    bearings: Sequence[OneBearing],
+    drivetrain: DrivetrainBearings,
     files: Sequence[Path],
     site: Site | None,
-    options: LifeOptions,
     resume: bool,
     report: Progress,
 ) -> Iterator[BearingLife]:
     """Lives of bearings one after the other; digests of files are added up as they come."""
+    options, scene = drivetrain.options, drivetrain.scene
     rules, choices, reading = options.rules, options.choices, options.reading
     items = [
-        (file, one, rules, reading, scene, choices, resume) for one in bearings for file in files
+        (file, one, rules, reading, scene, choices, resume)
+        for one in drivetrain.bearings
+        for file in files
     ]
     made = mapped(kept_digest, items, len(items) if len(items) >= _MANY else 1, report)
-    for one in bearings:
+    for one in drivetrain.bearings:
         sums = BearingSums(one, site)
         for file, digest in zip(files, islice(made, len(files)), strict=True):
             sums.add(file, digest)
