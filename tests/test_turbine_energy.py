@@ -15,7 +15,6 @@ from fe_drivetrain.hub_loads import turbine_energy as energy
 from fe_drivetrain.hub_loads import turbine_kernel as kernel
 from fe_drivetrain.hub_loads.aero_rotor import Rotor
 from fe_drivetrain.hub_loads.controller import designed_controller
-from fe_drivetrain.hub_loads.energy_account import STORED, WORKS
 from fe_drivetrain.hub_loads.moving_turbine import (
     accounted_history,
     energy_account,
@@ -24,6 +23,7 @@ from fe_drivetrain.hub_loads.moving_turbine import (
 )
 from fe_drivetrain.hub_loads.surrogate import Condition
 from fe_drivetrain.hub_loads.turbine import RIGID, Physics, similar_turbine
+from fe_drivetrain.hub_loads.turbine_account import STORED, WORKS
 from fe_drivetrain.hub_loads.turbine_parts import even_inflow, kernel_parts
 
 TURBINE = similar_turbine(

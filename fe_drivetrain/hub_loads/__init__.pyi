@@ -8,7 +8,6 @@ from .controller import designed_controller as designed_controller
 from .controller import speed_poles as speed_poles
 from .controller import steady_operation as steady_operation
 from .csv_table import write_csv as write_csv
-from .energy_account import EnergyAccount as EnergyAccount
 from .events import RATED as RATED
 from .events import Event as Event
 from .events import grid_loss as grid_loss
@@ -48,6 +47,7 @@ from .turbine import Physics as Physics
 from .turbine import Turbine as Turbine
 from .turbine import natural_frequencies as natural_frequencies
 from .turbine import similar_turbine as similar_turbine
+from .turbine_account import EnergyAccount as EnergyAccount
 from .turbine_parts import Inflow as Inflow
 from .turbine_parts import even_inflow as even_inflow
 from .turbines import different_turbines as different_turbines

@@ -24,11 +24,11 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.hub_loads.aero_rotor import OperatingPoint
 from fe_drivetrain.hub_loads.controller import Controller, designed_controller, steady_operation
 from fe_drivetrain.hub_loads.csv_table import write_csv
-from fe_drivetrain.hub_loads.energy_account import STORED, EnergyAccount
 from fe_drivetrain.hub_loads.histories import MIN_SAMPLES, Attribute, LoadHistory
 from fe_drivetrain.hub_loads.recorded import Recorded
 from fe_drivetrain.hub_loads.surrogate import DURATION, RATE, Condition, made_by
 from fe_drivetrain.hub_loads.turbine import Physics, Turbine
+from fe_drivetrain.hub_loads.turbine_account import STORED, EnergyAccount
 from fe_drivetrain.hub_loads.turbine_parts import (
     Inflow,
     even_inflow,
