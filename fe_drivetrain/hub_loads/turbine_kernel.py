@@ -79,6 +79,8 @@ def moving(
     + FT g cos t sin psi + b (W^2 RX - FX g cos t cos psi);
     hub: m x'' + S FX q'' = thrust - tower; m y'' - S FT cos psi q'' = side - tower;
     J W' + S RT q'' = torque of air and weights less that of the shaft.
+
+    What they leave out of Lagrange's equations is in `turbine_energy`.
     """
     cos_tilt, sin_tilt = math.cos(parts.tilt), math.sin(parts.tilt)
     g, speed = parts.gravity, state[SPEED]
