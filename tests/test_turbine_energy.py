@@ -24,7 +24,8 @@ from fe_drivetrain.hub_loads.moving_turbine import (
 from fe_drivetrain.hub_loads.surrogate import Condition
 from fe_drivetrain.hub_loads.turbine import RIGID, Physics, similar_turbine
 from fe_drivetrain.hub_loads.turbine_account import STORED, WORKS
-from fe_drivetrain.hub_loads.turbine_parts import even_inflow, kernel_parts
+from fe_drivetrain.hub_loads.turbine_parts import Inflow, even_inflow, kernel_parts
+from fe_drivetrain.hub_loads.wind import at_azimuth
 
 TURBINE = similar_turbine(
     Rotor(elements=5, harmonics=3), mass_imbalance=4e3, pitch_errors=(0.01, 0.0, -0.005)
@@ -160,3 +161,19 @@ def test_an_account_changes_nothing_in_the_history() -> None:
     assert account.relative_imbalance < 1e-3
     with pytest.raises(InputError, match=r"longest_step is 0\.0 s; it must be above zero"):
         simulate(TURBINE, CONTROLLER, GUST, longest_step=0.0)
+
+
+def test_fewer_harmonics_are_the_same_wind_without_the_others() -> None:
+    random = np.random.default_rng(2)
+    drawn = random.normal(size=(3, 9, 5)).astype(np.float32)
+    wind = Inflow(10.0, 0.2, drawn, 20.0)
+    assert wind.up_to(4) is wind.up_to(None) is wind
+    few, azimuth = wind.up_to(2), np.array([0.4, 2.0, 5.0])
+    assert few.harmonics.shape == (3, 5, 5)
+    silenced = drawn.copy()
+    silenced[:, [3, 4, 7, 8]] = 0.0
+    kept, whole = (at_azimuth(np.moveaxis(h, 0, -1), azimuth) for h in (few.harmonics, silenced))
+    np.testing.assert_allclose(kept, whole, rtol=1e-5, atol=1e-6)
+    assert np.array_equal(wind.up_to(0).harmonics[:, 0], drawn[:, 0])
+    with pytest.raises(InputError, match="-1 harmonics must stay, but 0 or more can"):
+        wind.up_to(-1)

@@ -41,6 +41,8 @@ PITCH, SPEED = 0, 5
 FOCUS = "moment within 45 deg of left [% of time]"
 SETTLED = 0.02
 """What a step may leave uncertain of a quantity, over it: controller and wake act once in it."""
+OF_HARMONICS = 0.05
+"""What the upper half of the wind's harmonics may change of it: another seed changes as much."""
 
 
 @case(
@@ -85,10 +87,17 @@ def run(run: Run, page: Page) -> None:
 def check_step(page: Page, turbine: Turbine, controller: Controller, length: float) -> None:
     """Energy of one history, and its quantities with the ordinary step, half and twice of it."""
     accounts: list[EnergyAccount] = []
+    finest = 0.5 * LONGEST_STEP
 
-    def run(step: float, _: int) -> InTime:
+    def run(step: float, harmonics: int) -> InTime:
         made, account = accounted_history(
-            Condition(14.0, "medium", 0.2, 1), turbine, controller, None, length, longest_step=step
+            Condition(14.0, "medium", 0.2, 1),
+            turbine,
+            controller,
+            None,
+            length,
+            longest_step=step,
+            harmonics=harmonics or None,
         )
         accounts.append(account)
         loads = 1e-3 * torsional_spring_model(made.history.loads[None], MainBearingBeam())
@@ -96,7 +105,7 @@ def check_step(page: Page, turbine: Turbine, controller: Controller, length: flo
         values = {key: float(of[key]) for key in list(of)[2:]}  # type: ignore[arg-type]
         return InTime(values, account.relative_imbalance)
 
-    found = converge_in_time(run, 0.5 * LONGEST_STEP)
+    found = converge_in_time(run, finest)
     page.section("Energy and step")
     check_in_time(
         page,
@@ -108,8 +117,10 @@ def check_step(page: Page, turbine: Turbine, controller: Controller, length: flo
         "deflections; Runge and Kutta's method of order 4",
         scale={FOCUS: 100.0},
     )
-    check_ordinary(page, found)
     show_account(page, accounts[-1])
+    check_ordinary(page, found)
+    count = turbine.rotor.harmonics // 2
+    check_harmonics(page, count, run(finest, count), found.finest)
 
 
 def check_ordinary(page: Page, found: ConvergenceInTime) -> None:
@@ -119,11 +130,10 @@ def check_ordinary(page: Page, found: ConvergenceInTime) -> None:
         key: abs(ordinary.values[key] - found.value(key)) + found.step_band(key)
         for key in ordinary.values
     }
-    sizes = {key: 100.0 if key == FOCUS else abs(found.value(key)) for key in left}
-    worst = max(left, key=lambda key: left[key] / sizes[key])
+    worst, share = worst_of(left, found.finest)
     page.at_most(
         "history at 14 m/s, step of all histories: left uncertain of the worst quantity, over it",
-        left[worst] / sizes[worst],
+        share,
         SETTLED,
         why="the answer would be one of the step, not of the turbine",
         source=f"half the step, and its band: {worst}",
@@ -137,6 +147,37 @@ def check_ordinary(page: Page, found: ConvergenceInTime) -> None:
         source="Runge and Kutta's method: this step, and half of it",
         measure="identity",
     )
+
+
+def check_harmonics(page: Page, count: int, fewer: InTime, all_of_them: InTime) -> None:
+    """What half of the wind's harmonics of azimuth change."""
+    change = {key: abs(fewer.values[key] - all_of_them.values[key]) for key in fewer.values}
+    worst, share = worst_of(change, all_of_them)
+    page.at_most(
+        "history at 14 m/s: change of the worst quantity by half the wind's harmonics, over it",
+        share,
+        OF_HARMONICS,
+        why="another seed changes each of them by as much in ten minutes",
+        source=f"the same wind with its first {count} harmonics of azimuth alone: {worst}",
+        measure="identity",
+    )
+    page.table(
+        "The wind's harmonics of azimuth",
+        [
+            {"quantity": key, "all": all_of_them.values[key], f"the first {count}": value}
+            for key, value in fewer.values.items()
+        ],
+    )
+
+
+def worst_of(errors: dict[str, float], of: InTime) -> tuple[str, float]:
+    """The quantity whose error is largest over it, and how large; a share of time is over all."""
+    shares = {
+        key: error / (100.0 if key == FOCUS else abs(of.values[key]))
+        for key, error in errors.items()
+    }
+    worst = max(shares, key=lambda key: shares[key])
+    return worst, shares[worst]
 
 
 def show_account(page: Page, account: EnergyAccount) -> None:

@@ -128,7 +128,7 @@ def between_samples(
     upto = float(min(SECONDS_BETWEEN, time[-1] - time[0]))
 
     def run(step: float, _: int) -> InTime:
-        fine = step * np.arange(round(upto / step) + 1)
+        fine = np.asarray(step * np.arange(round(upto / step) + 1), dtype=np.float64)
         loads = np.column_stack([np.interp(fine, time - time[0], c) for c in hub.T])
         lost = moving_energy_error(places, mounts, fine, loads)
         return InTime(peaks_of(moving_three_points(places, mounts, fine, loads)), lost)

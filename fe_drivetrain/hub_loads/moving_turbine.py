@@ -15,6 +15,7 @@ import math
 import os
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 
@@ -226,6 +227,7 @@ def accounted_history(
     rate: float = RATE,
     *,
     longest_step: float = LONGEST_STEP,
+    harmonics: int | None = None,
 ) -> tuple[TurbineHistory, EnergyAccount]:
     """Make one history, with the account of its energy.
 
@@ -237,11 +239,13 @@ def accounted_history(
         As for `turbine_history`.
     longest_step : float
         Of the integration [s], as for `simulate`.
+    harmonics : int or None
+        Of azimuth in the wind, the first of those that are drawn for the rotor; all if not given.
 
     Returns
     -------
     TurbineHistory
-        That of `turbine_history` where the step is.
+        That of `turbine_history` with its step and all harmonics.
     EnergyAccount
         From the beginning, of `SETTLING` before the history, too.
 
@@ -252,7 +256,9 @@ def accounted_history(
     """
     field = _field(turbine, condition.wind_speed, duration, rate)
     chosen, moves = controller or designed_controller(turbine), physics or Physics()
-    made, books = _turbine_history(condition, turbine, chosen, moves, field, longest_step, True)
+    made, books = _turbine_history(
+        condition, turbine, chosen, moves, field, longest_step, harmonics, accounted=True
+    )
     return made, _account(books)
 
 
@@ -369,7 +375,7 @@ def _beginning(
     controller: Controller,
     inflow: Inflow,
     point: OperatingPoint,
-    parts,  # type: ignore[no-untyped-def]
+    parts: Any,
     azimuth: float,
     speed: float,
     pitch: float,
@@ -423,6 +429,8 @@ def _turbine_history(
     physics: Physics,
     field: DiscTurbulence,
     longest_step: float = LONGEST_STEP,
+    highest: int | None = None,
+    *,
     accounted: bool = False,
 ) -> tuple[TurbineHistory, Floats]:
     """A history, and the compiled account, if it is kept."""
@@ -434,7 +442,7 @@ def _turbine_history(
         harmonics = np.ascontiguousarray(np.float32(sigma) * drawn)
     else:
         harmonics = np.zeros((field.samples, 1, field.radius.size), dtype=np.float32)
-    inflow = Inflow(condition.wind_speed, condition.shear, harmonics, field.rate)
+    inflow = Inflow(condition.wind_speed, condition.shear, harmonics, field.rate).up_to(highest)
     loads, beside, books = _run(
         turbine, controller, inflow, physics, azimuth, False, None, longest_step, accounted
     )

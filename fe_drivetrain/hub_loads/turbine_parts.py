@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.hub_loads.controller import (
     CUT_IN_SHARE,
     FULL_SHARE,
@@ -41,6 +42,27 @@ class Inflow:
     shear: float
     harmonics: Singles
     rate: float
+
+    def up_to(self, count: int | None) -> Inflow:
+        """The same wind without harmonics of azimuth above a number of them.
+
+        Parameters
+        ----------
+        count : int or None
+            Harmonics that stay, 0 or more; all if not given, or more than there are.
+
+        Raises
+        ------
+        InputError
+            It is negative.
+        """
+        highest = (self.harmonics.shape[1] - 1) // 2
+        if count is None or count >= highest:
+            return self
+        if count < 0:
+            raise InputError(f"inflow: {count} harmonics must stay, but 0 or more can")
+        rows = [*range(count + 1), *range(highest + 1, highest + 1 + count)]
+        return replace(self, harmonics=np.ascontiguousarray(self.harmonics[:, rows]))
 
 
 def even_inflow(
