@@ -11,6 +11,7 @@ from .csv_table import write_csv as write_csv
 from .events import RATED as RATED
 from .events import Event as Event
 from .events import grid_loss as grid_loss
+from .events import grid_loss_twist as grid_loss_twist
 from .events import made_event as made_event
 from .files import hub_load_files as hub_load_files
 from .files import read_hub_load_files as read_hub_load_files
