@@ -6,20 +6,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from coarse_scenes import coarse_scene
 from tiny_case import Result
 
 from fe_drivetrain.bearing.catalogue import catalogue_entry
 from fe_drivetrain.cases.dynamics.drivetrain_levels import operations
-from fe_drivetrain.commands import scene_page
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.hub_loads.recorded import read_recorded
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.scene.reading import library_scene
+from fe_drivetrain.studies import check
 from fe_drivetrain.studies.rolling_bearings import Choices, bearings_of
 from fe_drivetrain.studies.unused import choices_not_used, own_speeds, speed_not_used
-from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.run import Run
 
 SCENE, ENTRY = "main_bearing_spherical", "main_bearing_spherical"
@@ -207,18 +207,9 @@ def test_a_profile_of_the_entry_comes_before_the_option(tmp_path: Path) -> None:
     assert len(unused(tmp_path, **given)) == 1  # where the option was not given
 
 
-def test_check_names_a_catalogue_that_it_does_not_use(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    def stop(*_: object) -> None:
-        raise InputError("before the mesh")
-
+def test_check_names_a_catalogue_that_it_does_not_use(tmp_path: Path) -> None:
     mine = own_catalogue(tmp_path / "mine.yaml", "mine")
-    monkeypatch.setattr(scene_page, "checked_model", stop)
-    page = Page()
-    with pytest.raises(InputError, match="before the mesh"):
-        scene_page.checked(Run({}, True, tmp_path), page, library_scene(SCENE), (mine,))
-    (note,) = page.notes
+    (note,) = check(coarse_scene("spherical"), (mine,)).notes
     assert note.startswith(f"--catalogue {mine} is not used")
 
 
