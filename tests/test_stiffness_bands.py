@@ -63,8 +63,9 @@ def test_the_band_of_orders_is_two_to_five_times_the_error(order: int, exponent:
     assert 2.0 < band / here < 5.0
 
 
-def test_orders_whose_changes_do_not_shrink_have_a_wide_band() -> None:
-    assert band_of_orders(4, 1e-3, 2e-3) > 50 * 2e-3
+def test_orders_whose_changes_do_not_shrink_are_taken_at_half_of_a_cracks_rate() -> None:
+    assert band_of_orders(4, 1e-3, 2e-3) == pytest.approx(1.25 * 2e-3 / (1 - 4 / 5))
+    assert band_of_orders(4, 1e-3, 1e-9) == pytest.approx(1.25 * 1e-9 / (1 - (4 / 5) ** 2))
     assert band_of_orders(4, 1e-3, 0.0) == 0.0
 
 

@@ -10,12 +10,13 @@ energy of the error falls with the order p at least as p^(-4 a) on the same mesh
 degrees, and 0.5 at a crack, the sharpest of all notches. That exponent bounds what is still missing
 from above, so that the band covers notches of any angle and is at most a few times the error.
 
-That holds of high orders. Of low ones the rate is nearer to (p + 1/2)^(-4 a): where the corners of
-rings decide, as on shafts with fillets, whose elements are of order 4 and less graded, the error
-falls from order 4 to 5 as at a crack, and of the band its safety factor alone is left over. So
-three orders are solved, and the band reaches at least to the limit at half of the rate that these
-show, as series of meshes reach to half of a crack's order (`assembly_bands.LEAST_ORDER`). With q
-the share of the error that one order more leaves, it is then 1.25 (1 + sqrt q) times that error.
+That holds of high orders. Of low ones it falls more slowly, measured as (p + 0.4)^(-4 a): where the
+corners of rings decide, as on shafts with fillets, whose elements are of order 4 and less graded,
+it falls from order 4 to 5 as at a crack, and of the band its safety factor alone is left over. So
+three orders are solved, and the band reaches to the limit at half of the rate that these show where
+that is slower than a crack's, and to that at half of a crack's rate at most, as series of meshes do
+(`assembly_bands.LEAST_ORDER`). With q the share of the error that one order more leaves, it is then
+1.25 (1 + sqrt q) times that error.
 
 The solid is compared with a coarser mesh of it, by the mean size of the elements that there are,
 and its stresses with recovered ones (`fe_drivetrain.solve.error_estimate`); the band is the larger.
@@ -94,13 +95,15 @@ def band_of_orders(order: int, before: float, last: float) -> float:
     Returns
     -------
     float
-        In the unit of the changes: to the limit as at a crack, or at half of the rate that is seen,
-        whichever is farther, times the safety factor.
+        In the unit of the changes: to the limit as at a crack, or at half of the rate that is seen
+        where that is slower, but not below half of a crack's; times the safety factor.
     """
     sizes = 1.0 / np.array([order - 1.0, order, order + 1.0])
     seen = clipped_order(sizes, [before + last, last, 0.0])
-    rate = min(4.0 * SHARPEST, seen / 2.0)
-    return SAFETY * last / (1.0 - (order / (order + 1.0)) ** rate)
+    crack = 4.0 * SHARPEST
+    rate = float(np.clip(seen / 2.0, crack / 2.0, crack))
+    left: float = (order / (order + 1.0)) ** rate
+    return SAFETY * last / (1.0 - left)
 
 
 def banded_solid(scene: Scene, at: Sequence[str] | None = None) -> tuple[Condensed, StiffnessBands]:
