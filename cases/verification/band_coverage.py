@@ -24,7 +24,7 @@ from fe_drivetrain.validation.filleted_shafts import filleted_scenes
 from fe_drivetrain.validation.independent_shafts import FOUND, independent_shaft
 from fe_drivetrain.validation.random_shafts import random_scene
 
-SHAFTS, SOLIDS = 200, 25
+SHAFTS, SOLIDS, FILLETS = 200, 25, 19
 #: Of a quick run: shafts of few elements, one of them also as a solid.
 QUICK, QUICK_SOLIDS, QUICK_FILLETS = (2, 3), (2,), 1
 #: Order of the reference, layers of elements at its corners, in quadrilaterals and where fillets
@@ -187,8 +187,8 @@ def run(run: Run, page: Page) -> None:
     """Random shafts at level 2, some of them at level 3, and shafts with one fillet, with bands."""
     rows: list[Record] = []
     seeds, solids = chosen(run)
-    names = list(filleted_scenes())
-    names = names[: run.count("fillets", QUICK_FILLETS if run.quick else len(names))]
+    fillets = run.count("fillets", QUICK_FILLETS if run.quick else FILLETS)
+    names = list(filleted_scenes())[:fillets]
     with run.side_by_side(1 if run.quick else len(seeds)) as jobs:
         started = [jobs.start(of_seed, seed, seed in solids) for seed in seeds]
         started += [jobs.start(of_fillet, name) for name in names]

@@ -30,7 +30,7 @@ import numpy as np
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.stiffness_bands import StiffnessBands
-from fe_drivetrain.compare.convergence import SAFETY, clipped_order
+from fe_drivetrain.compare.convergence import SAFETY, SOLVER_ROUND_OFF, clipped_order
 from fe_drivetrain.fidelity.shafts import meridian_shaft, shaft_solid
 from fe_drivetrain.mesh.measures import mean_size
 from fe_drivetrain.scene.scene import Scene
@@ -79,7 +79,9 @@ def banded_meridian(
     )
     before = StiffnessBands.of_difference(lower.stiffness, body.stiffness)
     last = StiffnessBands.of_difference(higher.stiffness, body.stiffness)
-    return body, before.each(lambda *changes: band_of_orders(order, *changes), last)
+    found = before.each(lambda *changes: band_of_orders(order, *changes), last)
+    # of what elements have exactly, as torsion without steps, round-off is left
+    return body, found | StiffnessBands.alike(SOLVER_ROUND_OFF)
 
 
 def band_of_orders(order: int, before: float, last: float) -> float:
