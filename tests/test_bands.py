@@ -73,7 +73,6 @@ def test_thin_tubes_give_way_at_their_ends_as_shells_do_and_the_band_holds_the_l
         finer = keep_points(meridian_shaft(scene, order=8), ends)
         apart = np.abs(body.stiffness - finer.stiffness)
         assert (apart <= band.half_widths(body.stiffness)).all()
-        assert band.torsion < 0.01 * band.bending
         bare = beam_shaft(scene, rings=False), meridian_shaft(scene, order=8, rings=False)
         lateral = [shaft_numbers(one)["lateral"] for one in bare]
         share.append(lateral[0] / lateral[1] - 1.0)
