@@ -30,6 +30,8 @@ QUICK, QUICK_SOLIDS, QUICK_FILLETS = (2, 3), (2,), 1
 #: Order of the reference, layers of elements at its corners, in quadrilaterals and where fillets
 #: take triangles, which have no higher order. Elements are half as large as the band's, at most.
 REFERENCE, FILLETED = (8, 5), (6, 4)
+#: Order where quadrilaterals have fillets, which two elements each are to follow.
+ROUNDED = 10
 
 #: Required: share of the bands that hold, and median of the bands over their errors.
 COVERED, WIDE = 0.95, 5.0
@@ -52,7 +54,7 @@ MERIDIAN, SOLID, ONE_FILLET = "2, meridian", "3, solid", "2, one fillet"
 Solve = Callable[[Scene], tuple[Condensed, StiffnessBands]]
 
 
-def reference(scene: Scene) -> tuple[Floats, StiffnessBands]:
+def reference(scene: Scene, quick: bool = False) -> tuple[Floats, StiffnessBands]:
     """Stiffness of the shaft in a much finer meridian, and what may be missing from it still.
 
     The change of its last order, continued as at a crack, where it falls most slowly. Where
@@ -66,9 +68,11 @@ def reference(scene: Scene) -> tuple[Floats, StiffnessBands]:
             for p in (order - 1, order)
         ]
 
-    order = REFERENCE[0]
+    order, layers = REFERENCE
+    if not quick and any(piece.fillet > 0 for piece in scene.shaft.pieces):
+        order = ROUNDED
     try:
-        before, found = last_two(*REFERENCE, per_fillet=2)
+        before, found = last_two(order, layers, per_fillet=2)
     except InputError:  # triangles, which have no such order
         order = FILLETED[0]
         before, found = last_two(*FILLETED, per_fillet=6)
@@ -115,7 +119,7 @@ def independent(seed: int) -> Record:
 
 def judged(run: Run, about: Record, scene: Scene, solve: dict[str, Solve]) -> list[Record]:
     """Bands and errors of one shaft by kind of motion, at each of some levels."""
-    exact, left = run.clocked("references", reference, scene)
+    exact, left = run.clocked("references", reference, scene, run.quick)
     rows: list[Record] = []
     for level, banded in solve.items():
         body, band = run.clocked(f"level {level}", banded, scene)
