@@ -23,7 +23,7 @@ from fe_drivetrain.response.influence_fields import (
 )
 from fe_drivetrain.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
-from fe_drivetrain.solve.error_estimate import SAFETY, recovery_estimate
+from fe_drivetrain.solve.error_estimate import SAFETY, recovered_work, recovery_estimate
 
 BEDPLATE = [1e9, "rigid", 1e9, 1e7, "rigid", 1e7]
 
@@ -175,6 +175,28 @@ def test_the_error_of_a_sum_of_loads_is_at_most_that_of_each(
     load = np.zeros(10)
     load[[2, 4]] = 1.0, -2.0
     columns = np.column_stack([load, np.eye(10)[:, [2, 4]]])
-    both, force, moment = reaction_error(model, response, "main_bearing", [4], columns)[0]
+    found = reaction_error(model, response, "main_bearing", [4], columns)[0]
+    both, force, moment = np.abs(found)
     assert 0 < both <= force + 2.0 * moment
     assert pytest.approx(columns[:, :1].T) == Quantity("main_bearing.My", load).columns(1.0, 10).T
+
+
+def test_thrust_by_loads_to_a_side_has_no_more_error_than_scatter(
+    solved: tuple[Model, Response],
+) -> None:
+    """It vanishes by symmetry, and so does the sum of the works; their sizes do not."""
+    model, response = solved
+    mesh, thrust, sideways = model.mesh, [0], [1, 3, 5]
+    parts = [
+        (mesh.cells[mesh.part_cells(p)], model.scene.material_of(p).lame) for p in mesh.part_names
+    ]
+    u = response.displacements.reshape(-1, 10)
+    work = recovered_work(mesh.points, parts, reaction_influences(model, "gearbox", thrust), u)
+    found = reaction_error(model, response, "gearbox", thrust, np.eye(10))
+    np.testing.assert_allclose(found, work.estimate, rtol=1e-6)
+    size, scatter = (np.abs(of)[0, sideways] for of in (found, work.scatter))
+    assert (scatter <= size).all()
+    assert (size < 1.5 * scatter).all()
+    assert (size < 0.25 * work.sizes[0, sideways]).all()
+    # its own load's works are of one sign
+    assert found[0, 0] == pytest.approx(work.sizes[0, 0], rel=1e-2)

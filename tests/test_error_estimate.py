@@ -5,7 +5,12 @@ import pytest
 
 from fe_drivetrain.mesh.blocks import brick
 from fe_drivetrain.operator.elasticity import assemble
-from fe_drivetrain.solve.error_estimate import energy_density, recovery_estimate
+from fe_drivetrain.solve.error_estimate import (
+    _gather,
+    energy_density,
+    recovered_work,
+    recovery_estimate,
+)
 from fe_drivetrain.validation.exact_blocks import (
     cantilever,
     twisted,
@@ -122,3 +127,75 @@ def test_effectivity_on_smooth_exact_solutions(problem, nodes):
     assert abs(found.improved(computed) - k) < abs(computed - k) or found.relative > (
         2 * solved.relative_error
     )
+
+
+def mirrored(block, v):
+    """A field's parts that a mirror at y = 1/2 keeps, and turns round."""
+    flip = np.array([1.0, -1.0, 1.0])
+    image = flip * v(block.points * flip + [0.0, 1.0, 0.0])
+    return [(v(block.points) + sense * image).reshape(-1, 1) for sense in (1.0, -1.0)]
+
+
+@pytest.mark.parametrize("nodes", [8, 20, 27])
+def test_works_of_either_sign_cancel_and_leave_their_scatter(nodes):
+    """Of one field that is symmetric and one that is antisymmetric on a symmetric mesh."""
+    block = brick((3, 4, 2), nodes)
+    parts = [(block.cells, LAME)]
+    kept, turned = mirrored(block, lambda p: 1e-3 * np.sin(3 * p[:, [1, 2, 0]] + p))
+    work = recovered_work(block.points, parts, kept, turned)
+    assert abs(work.signed[0, 0]) < 1e-10 * work.sizes[0, 0]
+    assert np.abs(work.estimate) == pytest.approx(work.scatter, rel=1e-9)
+    assert 0.0 < work.scatter[0, 0] < 0.6 * work.sizes[0, 0]
+
+
+@pytest.mark.parametrize("nodes", ELEMENTS)
+def test_the_work_of_an_error_on_itself_is_its_energy_and_nothing_cancels(nodes, rng):
+    block = brick((3, 2, 2), nodes)
+    parts = [(block.cells, LAME)]
+    u = rng.standard_normal((block.points.size, 2))
+    work = recovered_work(block.points, parts, u, u)
+    energies = [recovery_estimate(block.points, parts, column).error_energy for column in u.T]
+    for found in (work.signed, work.sizes, work.estimate):
+        np.testing.assert_allclose(found.diagonal(), 2.0 * np.array(energies), rtol=1e-11)
+    np.testing.assert_allclose(work.signed, work.signed.T, rtol=1e-9, atol=1e-12 * energies[0])
+
+
+def test_scatter_is_what_sums_of_random_works_are_apart(rng):
+    """Fields without order, twenty on twenty: their sums are zero on average.
+
+    Neighbours that share few corners count in part, and are as correlated as others: a quarter of
+    the spread is theirs.
+    """
+    block = brick((5, 5, 5), 8)
+    first, second = rng.standard_normal((2, block.points.size, 20))
+    work = recovered_work(block.points, [(block.cells, LAME)], first, second)
+    spread = np.sqrt((work.signed**2).mean())
+    assert 0.6 < np.sqrt((work.scatter**2).mean()) / spread < 1.0
+
+
+@pytest.mark.parametrize(("nodes", "corners"), [(8, 8), (10, 4), (20, 8)])
+def test_scatter_is_of_the_works_round_each_corner(nodes, corners, rng):
+    """Against a loop over the corners, with works of cells from steps of what is gathered."""
+    block = brick((2, 2, 1), nodes)
+    works = rng.standard_normal((len(block.cells), 1, 1))
+    numbers, patch = np.unique(block.cells[:, :corners], return_inverse=True)
+    found = np.zeros((len(numbers), 1))
+    half = len(works) // 2
+    patch = patch.reshape(-1, corners)
+    _gather(found, patch[:half], works[:half])
+    _gather(found, patch[half:], works[half:])
+    expected = [works[(block.cells[:, :corners] == number).any(axis=1)].sum() for number in numbers]
+    np.testing.assert_allclose(found[:, 0], expected, atol=1e-13)
+
+
+def test_one_cell_alone_scatters_by_its_work(rng):
+    """Each of its eight corners sees all of it, and it counts once; others add their squares."""
+    block = brick((1, 1, 1), 8)
+    u = rng.standard_normal((block.points.size, 1))
+    part = (block.cells, LAME)
+    one = recovered_work(block.points, [part], u, u)
+    assert one.scatter == pytest.approx(one.sizes, rel=1e-12)
+    assert one.sizes[0, 0] > 1e9
+    two = recovered_work(block.points, [part, part], u, u)
+    assert two.scatter == pytest.approx(np.sqrt(2.0) * one.scatter, rel=1e-12)
+    assert two.estimate == pytest.approx(two.sizes, rel=1e-12)

@@ -155,7 +155,8 @@ def test_errors_of_reactions_are_those_of_the_assembly(tmp_path) -> None:
     errors, reactions = solved.recovered[name], solved.response.reactions[name]
     assert set(solved.recovered) == {name, "gearbox"}
     # both supports share a force at the hub: what one gets more, the other gets less
-    np.testing.assert_allclose(errors[2, 2], solved.recovered["gearbox"][2, 2], rtol=1e-5)
-    assert 1e-4 < errors[4, 4] / abs(reactions[4, 4]) < 0.2
+    np.testing.assert_allclose(errors[2, 2], -solved.recovered["gearbox"][2, 2], rtol=1e-5)
+    # its mesh is too stiff against tilting, and takes too much of the moment
+    assert 1e-4 < -errors[4, 4] / reactions[4, 4] < 0.2
     figures = bands.of_solved(solved)
     assert figures[f"recovered reaction {name}"] is errors

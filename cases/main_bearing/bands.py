@@ -203,7 +203,7 @@ class Series:
     def _recovered(self, figure: Figure) -> float:
         """What a figure becomes where K_R and reactions are at the ends of their bands.
 
-        These come from recovered stresses. Errors of reactions have no sign: the figure is taken
+        These come from recovered stresses. Signs of errors are not relied upon: the figure is taken
         with all of them larger, and with all smaller.
         """
         own = self.levels[-1]

@@ -180,7 +180,7 @@ def motion_error(model: Model, response: Response, columns: Floats) -> Floats:
         (k, k) [J].
     """
     u = _displacements(response, columns)
-    return recovered_work(model.mesh.points, _parts(model), u, u)
+    return recovered_work(model.mesh.points, _parts(model), u, u).estimate
 
 
 def reaction_error(
@@ -202,11 +202,11 @@ def reaction_error(
     Returns
     -------
     Floats
-        (n, k) of n components [N, N m].
+        (n, k) of n components: what they are short of, and its scatter [N, N m].
     """
     influences = reaction_influences(model, name, components)
     u = _displacements(response, columns)
-    return recovered_work(model.mesh.points, _parts(model), influences, u)
+    return recovered_work(model.mesh.points, _parts(model), influences, u).estimate
 
 
 def all_reaction_errors(model: Model, response: Response) -> dict[str, Floats]:
@@ -225,7 +225,7 @@ def all_reaction_errors(model: Model, response: Response) -> dict[str, Floats]:
     influences = influences_of_all_reactions(model)
     u = _displacements(response, np.eye(len(model.loads)))
     together = np.hstack(list(influences.values()))
-    work = recovered_work(model.mesh.points, _parts(model), together, u)
+    work = recovered_work(model.mesh.points, _parts(model), together, u).estimate
     return dict(zip(influences, work.reshape(-1, 6, u.shape[1]), strict=True))
 
 

@@ -121,15 +121,45 @@ def error_energies(points: Floats, parts: Sequence[tuple[Ints, Lame]], fields: F
     return total
 
 
+@dataclass(frozen=True)
+class RecoveredWork:
+    """Work of the errors of solutions on each other, estimated cell by cell.
+
+    Attributes
+    ----------
+    signed : Floats
+        (a, b) sum over the cells: works of either sign cancel [J].
+    scatter : Floats
+        (a, b) what chance makes of that sum in a mesh that has no order [J].
+    sizes : Floats
+        (a, b) sum of the sizes: none of the works cancel [J].
+    """
+
+    signed: Floats
+    scatter: Floats
+    sizes: Floats
+
+    @property
+    def estimate(self) -> Floats:
+        """(a, b) the sum, by its scatter farther from zero; at most the sum of the sizes [J]."""
+        size = np.minimum(np.abs(self.signed) + self.scatter, self.sizes)
+        return np.asarray(np.copysign(size, self.signed))
+
+
 def recovered_work(
     points: Floats, parts: Sequence[tuple[Ints, Lame]], first: Floats, second: Floats
-) -> Floats:
-    """Estimate the work of the errors of solutions on each other, cell by cell without sign.
+) -> RecoveredWork:
+    """Estimate the work of the errors of solutions on each other, cell by cell with its sign.
 
     What a linear functional of a solution is short of is the work of the stresses of its error on
     the strains of the error of the functional's own solution, its influence function (Becker and
-    Rannacher 2001, Acta Numerica 10, 1-102). Errors of either sign may cancel from cell to cell;
-    they are not relied upon to do so.
+    Rannacher 2001, Acta Numerica 10, 1-102). Works of either sign cancel from cell to cell, by
+    symmetry for instance, as far as the mesh has it, too. What remains where it has not is their
+    scatter. Errors of cells that share a corner are correlated, since their stresses are recovered
+    from the same patches; the variance of the sum is estimated from products of their works,
+    weighted by the share of the corners that they have in common (Conley 1999, J. Econometrics 92,
+    1-45). That is the squared sum of the works round each corner, over the number of corners of a
+    cell. Of fields without any order it finds 0.7 of the spread; `SAFETY` has more room than that.
 
     Parameters
     ----------
@@ -140,26 +170,50 @@ def recovered_work(
 
     Returns
     -------
-    Floats
-        (a, b) [J].
+    RecoveredWork
+        See there.
     """
     fields = [first[: points.size]]
     if second is not first:
         fields.append(second[: points.size])
-    columns = np.hstack(fields)
-    total = np.zeros((first.shape[1], second.shape[1]))
-    for cells, (lam, mu) in parts:
-        for volumes, _, d in _errors(points, np.asarray(cells), (lam, mu), columns):
-            acting, moved = d[:, :, : first.shape[1]], d[:, :, -second.shape[1] :]
-            strains = moved * np.repeat([1.0, 2.0], 3)
-            shrunk = lam / (3.0 * lam + 2.0 * mu) * moved[..., :3].sum(axis=-1)
-            strains[..., :3] -= shrunk[..., None]
-            strains *= volumes[..., None, None] / (2.0 * mu)
-            n, n_q = volumes.shape
-            left = np.moveaxis(acting, 2, 1).reshape(n, -1, n_q * 6)
-            right = np.swapaxes(strains, 2, 3).reshape(n, n_q * 6, -1)
-            total += np.abs(left @ right).sum(axis=0)
-    return total
+    columns, shape = np.hstack(fields), (first.shape[1], second.shape[1])
+    signed, squares, sizes = np.zeros((3, *shape))
+    for cells, lame in parts:
+        corners = cells[:, : element_kind(cells.shape[1]).n_corners]
+        nodes, patch = np.unique(corners, return_inverse=True)
+        patch, done = patch.reshape(corners.shape), 0
+        round_corners = np.zeros((len(nodes), shape[0] * shape[1]))
+        for volumes, _, d in _errors(points, cells, lame, columns):
+            works = _works(volumes, d[:, :, : shape[0]], d[:, :, -shape[1] :], lame)
+            signed += works.sum(axis=0)
+            sizes += np.abs(works).sum(axis=0)
+            _gather(round_corners, patch[done : done + len(works)], works)
+            done += len(works)
+        squares += (round_corners**2).sum(axis=0).reshape(shape) / corners.shape[1]
+    return RecoveredWork(signed, np.sqrt(squares), sizes)
+
+
+def _works(volumes: Floats, acting: Floats, moved: Floats, lame: Lame) -> Floats:
+    """Works (n_cells, a, b) of stresses (n_cells, n_q, a, 6) on the strains of others, b."""
+    lam, mu = lame
+    strains = moved * np.repeat([1.0, 2.0], 3)
+    shrunk = lam / (3.0 * lam + 2.0 * mu) * moved[..., :3].sum(axis=-1)
+    strains[..., :3] -= shrunk[..., None]
+    strains *= volumes[..., None, None] / (2.0 * mu)
+    n, n_q = volumes.shape
+    left = np.moveaxis(acting, 2, 1).reshape(n, -1, n_q * 6)
+    right = np.swapaxes(strains, 2, 3).reshape(n, n_q * 6, -1)
+    return np.asarray(left @ right)
+
+
+def _gather(total: Floats, patch: Ints, works: Floats) -> None:
+    """Add works (n_cells, a, b) to those (n_patches, a b) round each of the cells' corners."""
+    met, number = np.unique(patch, return_inverse=True)
+    cell = np.repeat(np.arange(len(patch)), patch.shape[1])
+    onto = sparse.csr_array(
+        (np.ones(patch.size), (number.ravel(), cell)), shape=(len(met), len(patch))
+    )
+    total[met] += onto @ works.reshape(len(works), -1)
 
 
 def _energies(
