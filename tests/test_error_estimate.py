@@ -199,3 +199,19 @@ def test_one_cell_alone_scatters_by_its_work(rng):
     two = recovered_work(block.points, [part, part], u, u)
     assert two.scatter == pytest.approx(np.sqrt(2.0) * one.scatter, rel=1e-12)
     assert two.estimate == pytest.approx(two.sizes, rel=1e-12)
+
+
+def test_works_of_one_part_do_not_cancel_those_of_another(rng):
+    """Two bodies apart, whose works are equal but for the sign."""
+    block = brick((2, 1, 1), 8)
+    n = len(block.points)
+    points = np.vstack([block.points, block.points + 5.0])
+    u = rng.standard_normal((3 * n, 1))
+    first, second = np.vstack([u, u]), np.vstack([u, -u])
+    parts = [(block.cells, LAME), (block.cells + n, LAME)]
+    apart = recovered_work(points, parts, first, second)
+    assert apart.signed == pytest.approx(0.0, abs=1e-9 * apart.sizes[0, 0])
+    assert np.abs(apart.estimate) == pytest.approx(apart.sizes)
+    as_one = recovered_work(points, [(np.vstack([c for c, _ in parts]), LAME)], first, second)
+    assert np.abs(as_one.estimate) == pytest.approx(as_one.scatter, rel=1e-9)
+    assert as_one.scatter < 0.95 * as_one.sizes

@@ -127,22 +127,32 @@ class RecoveredWork:
 
     Attributes
     ----------
-    signed : Floats
-        (a, b) sum over the cells: works of either sign cancel [J].
+    by_part : Floats
+        (n_parts, a, b) sum over the cells of each part: works of either sign cancel [J].
     scatter : Floats
-        (a, b) what chance makes of that sum in a mesh that has no order [J].
+        (a, b) what chance makes of those sums in a mesh that has no order [J].
     sizes : Floats
         (a, b) sum of the sizes: none of the works cancel [J].
     """
 
-    signed: Floats
+    by_part: Floats
     scatter: Floats
     sizes: Floats
 
     @property
+    def signed(self) -> Floats:
+        """(a, b) sum over all cells [J]."""
+        return np.asarray(self.by_part.sum(axis=0))
+
+    @property
     def estimate(self) -> Floats:
-        """(a, b) the sum, by its scatter farther from zero; at most the sum of the sizes [J]."""
-        size = np.minimum(np.abs(self.signed) + self.scatter, self.sizes)
+        """(a, b) with the sign of the sum, at most the sum of the sizes [J].
+
+        The sums of the parts by their sizes, and the scatter. What share of the error is found
+        differs from part to part, with their elements and edges: no sum is relied upon to cancel
+        that of another.
+        """
+        size = np.minimum(np.abs(self.by_part).sum(axis=0) + self.scatter, self.sizes)
         return np.asarray(np.copysign(size, self.signed))
 
 
@@ -177,8 +187,8 @@ def recovered_work(
     if second is not first:
         fields.append(second[: points.size])
     columns, shape = np.hstack(fields), (first.shape[1], second.shape[1])
-    signed, squares, sizes = np.zeros((3, *shape))
-    for cells, lame in parts:
+    by_part, (squares, sizes) = np.zeros((len(parts), *shape)), np.zeros((2, *shape))
+    for signed, (cells, lame) in zip(by_part, parts, strict=True):
         corners = cells[:, : element_kind(cells.shape[1]).n_corners]
         nodes, patch = np.unique(corners, return_inverse=True)
         patch, done = patch.reshape(corners.shape), 0
@@ -190,7 +200,7 @@ def recovered_work(
             _gather(round_corners, patch[done : done + len(works)], works)
             done += len(works)
         squares += (round_corners**2).sum(axis=0).reshape(shape) / corners.shape[1]
-    return RecoveredWork(signed, np.sqrt(squares), sizes)
+    return RecoveredWork(by_part, np.sqrt(squares), sizes)
 
 
 def _works(volumes: Floats, acting: Floats, moved: Floats, lame: Lame) -> Floats:
