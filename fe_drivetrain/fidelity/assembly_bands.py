@@ -202,7 +202,7 @@ def reaction_error(
     Returns
     -------
     Floats
-        (n, k) of n components: what they are short of, and its scatter [N, N m].
+        (n, k) of n components: what they are short of, farther from zero by its scatter [N, N m].
     """
     influences = reaction_influences(model, name, components)
     u = _displacements(response, columns)

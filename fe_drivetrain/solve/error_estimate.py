@@ -128,11 +128,11 @@ class RecoveredWork:
     Attributes
     ----------
     by_part : Floats
-        (n_parts, a, b) sum over the cells of each part: works of either sign cancel [J].
+        Sums over the cells of each part (n_parts, a, b): works of either sign cancel [J].
     scatter : Floats
-        (a, b) what chance makes of those sums in a mesh that has no order [J].
+        Standard deviation (a, b) of the sums in a mesh that has no order [J].
     sizes : Floats
-        (a, b) sum of the sizes: none of the works cancel [J].
+        Sums of the sizes (a, b): no works cancel [J].
     """
 
     by_part: Floats
@@ -141,16 +141,16 @@ class RecoveredWork:
 
     @property
     def signed(self) -> Floats:
-        """(a, b) sum over all cells [J]."""
+        """Sums over all cells (a, b) [J]."""
         return np.asarray(self.by_part.sum(axis=0))
 
     @property
     def estimate(self) -> Floats:
-        """(a, b) with the sign of the sum, at most the sum of the sizes [J].
+        """Sums of the parts by their sizes, and the scatter, with the sign of the whole sum [J].
 
-        The sums of the parts by their sizes, and the scatter. What share of the error is found
-        differs from part to part, with their elements and edges: no sum is relied upon to cancel
-        that of another.
+        At most the sums of the sizes of all works. The share of the error that is found differs
+        from part to part, with their elements and edges: sums of parts are not relied upon to
+        cancel.
         """
         size = np.minimum(np.abs(self.by_part).sum(axis=0) + self.scatter, self.sizes)
         return np.asarray(np.copysign(size, self.signed))
@@ -176,12 +176,12 @@ def recovered_work(
     points, parts : Floats, Sequence[tuple[Ints, Lame]]
         See `recovery_estimate`.
     first, second : Floats
-        (3 n, a) and (3 n, b) or longer, displacements of solutions [m].
+        Displacements of solutions, (3 n, a) and (3 n, b) or longer [m].
 
     Returns
     -------
     RecoveredWork
-        See there.
+        Works (a, b) [J].
     """
     fields = [first[: points.size]]
     if second is not first:
