@@ -10,7 +10,17 @@ from coarse_scenes import coarse_scene
 
 from fe_drivetrain.common import InputError
 from fe_drivetrain.scene import change_scene
-from fe_drivetrain.studies import CheckResult, CompareResult, Result, check, compare
+from fe_drivetrain.studies import (
+    AdviseResult,
+    CheckResult,
+    CompareResult,
+    Result,
+    UncertaintyResult,
+    advise,
+    check,
+    compare,
+    uncertainty,
+)
 from fe_drivetrain.studies.design_comparison import Varied
 
 
@@ -26,7 +36,20 @@ def compared() -> CompareResult:
     return compare(designs, tolerance=0.5, varied=Varied(key, values))
 
 
-@pytest.fixture(params=["checked", "compared"])
+@pytest.fixture(scope="module")
+def advised() -> AdviseResult:
+    load = {"hub.My": 1e6}
+    return advise(coarse_scene("bonded"), "main_bearing.My", tolerance=0.5, load=load)
+
+
+@pytest.fixture(scope="module")
+def uncertain() -> UncertaintyResult:
+    spreads = {"gearbox.stiffness.2": {"uniform": 0.2}, "shaft.front": {"uniform": 0.01}}
+    scene = coarse_scene("bonded", uncertainty=spreads)
+    return uncertainty(scene, ["main_bearing.My"], {"hub.My": 1e6}, level=1, samples=40, sobol=True)
+
+
+@pytest.fixture(params=["checked", "compared", "advised", "uncertain"])
 def result(request: pytest.FixtureRequest) -> Result:
     found: Result = request.getfixturevalue(request.param)
     return found
@@ -82,3 +105,41 @@ def test_a_figure_is_found_by_its_name(compared: CompareResult) -> None:
 
 def test_what_differs_between_designs_is_named(compared: CompareResult) -> None:
     assert compared.inputs == {"200000": [("gearbox.weight", 1e5, 2e5)]}
+
+
+def test_a_level_that_is_enough_is_within_the_tolerance(advised: AdviseResult) -> None:
+    chosen = advised.chosen
+    assert chosen is not None
+    assert chosen.model.level == advised.level
+    (figure,), (check,) = advised.figures, advised.checks
+    assert figure.computed == pytest.approx(100 * check.computed)
+    assert check.computed <= advised.advice.tolerance
+    # the change of each detail, the largest first
+    changes = [abs(effect.change) for effect in advised.effects]
+    assert changes == sorted(changes, reverse=True)
+    assert [row["detail left out"] for row in advised.tables["details"]] == [
+        effect.detail for effect in advised.effects
+    ]
+
+
+def test_a_band_is_of_the_inputs_and_stands_beside_the_error(uncertain: UncertaintyResult) -> None:
+    moment, spring = "main_bearing.My", "gearbox.stiffness.2"
+    assert next(iter(uncertain.bands)) == moment
+    band = uncertain.bands[moment]
+    assert band.low < uncertain.nominal[moment] < band.high
+    # first order: two uniform values of known spread, so that the band lies within their reach
+    slopes = uncertain.sensitivities[moment]
+    reach = abs(slopes[spring]) * 0.2 + abs(slopes["shaft.front"]) * 0.01
+    half = (band.high - band.low) / 2 / abs(uncertain.nominal[moment])
+    assert 0.5 * reach < half < 1.1 * reach
+    assert sum(uncertain.shares[moment].total) > 0.9
+    assert uncertain.units.keys() == uncertain.errors.keys() == uncertain.bands.keys()
+    assert [row["quantity"] for row in uncertain.rows()] == list(uncertain.bands)
+
+
+def test_a_load_that_a_scene_does_not_have_is_refused() -> None:
+    scene = coarse_scene("bonded")
+    with pytest.raises(InputError, match="load 'hub.Fq' is unknown: use one of hub.Fx"):
+        advise(scene, "main_bearing.My", load={"hub.Fq": 1.0})
+    with pytest.raises(InputError, match="load 'hub.Fx' is nan but must be finite"):
+        advise(scene, "main_bearing.My", load={"hub.Fx": math.nan})

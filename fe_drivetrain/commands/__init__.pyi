@@ -1,5 +1,3 @@
-from .advice_page import QUICK_BAND as QUICK_BAND
-from .advice_page import advised as advised
 from .app import main as main
 from .app import main_of_case as main_of_case
 from .loads_against import beside as beside
@@ -13,5 +11,3 @@ from .settings import parse_settings as parse_settings
 from .settings import parse_tolerance as parse_tolerance
 from .study_loads import own_loads as own_loads
 from .study_page import studied as studied
-from .uncertainty_page import bands as bands
-from .uncertainty_page import uncertain as uncertain

@@ -83,9 +83,7 @@ def compare_command(
         from fe_drivetrain.response.model import scene_loads
         from fe_drivetrain.studies.design_comparison import compare
 
-        names = scene_loads(next(iter(designs.values())))
-        factors = parse_loads(load or (), names)
-        given = None if factors is None else dict(zip(names, factors.values.tolist(), strict=True))
+        given = parse_loads(load or (), scene_loads(next(iter(designs.values()))))
         asked = [Quantity(name) for name in quantity] if quantity else None
         for one in asked or ():
             for scene in designs.values():

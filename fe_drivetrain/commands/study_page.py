@@ -11,8 +11,6 @@ from fe_drivetrain.commands.scene_page import describe
 from fe_drivetrain.commands.study_errors import errors
 from fe_drivetrain.commands.study_loads import StudyLoads, surrogate_loads, weightless
 from fe_drivetrain.commands.study_reactions import STATISTICS, reactions, write_reactions
-from fe_drivetrain.commands.uncertainty_page import bands, inputs
-from fe_drivetrain.commands.uncertainty_page import slopes as slopes_section
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.compare.time_weighted import weighted_statistics
 from fe_drivetrain.export.formats.stiffness_file import stiffness_matrix, write_stiffness_json
@@ -27,6 +25,8 @@ from fe_drivetrain.fidelity.over_loads import (
 from fe_drivetrain.fidelity.quantities import UNIT, unit_numbers
 from fe_drivetrain.histories.damage import SLOPES
 from fe_drivetrain.mesh.files import write
+from fe_drivetrain.pages.uncertainty import bands, inputs
+from fe_drivetrain.pages.uncertainty import slopes as slopes_section
 from fe_drivetrain.report.charts import trace
 from fe_drivetrain.report.pictures import NoPictureError, picture_of_model
 from fe_drivetrain.report.solid_view import deformed_shape

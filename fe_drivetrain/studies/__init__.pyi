@@ -1,6 +1,10 @@
 from .design_comparison import CompareResult as CompareResult
 from .design_comparison import Varied as Varied
 from .design_comparison import compare as compare
+from .input_uncertainty import UncertaintyResult as UncertaintyResult
+from .input_uncertainty import uncertainty as uncertainty
+from .level_advice import AdviseResult as AdviseResult
+from .level_advice import advise as advise
 from .result import Result as Result
 from .scene_check import CheckResult as CheckResult
 from .scene_check import check as check
