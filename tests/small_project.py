@@ -95,7 +95,7 @@ def small_project(folder: Path) -> Content:
                 {"load": REVERSALS},
                 {"load": "resonance", "variables": ["torque"]},
             ],
-            "gaps": [{"load": "resonance", "evidence": [MARGIN]}],
+            "gaps": [{"load": "resonance", "evidence": [dict(MARGIN)]}],
         },
         "model": {
             "decision": "rigid",
@@ -112,7 +112,7 @@ def small_project(folder: Path) -> Content:
                     "edition": "3",
                     "number": "1.2",
                     "loads": [REVERSALS],
-                    "evidence": [RANGE],
+                    "evidence": [dict(RANGE)],
                 }
             ],
         },

@@ -3,12 +3,15 @@
 import dataclasses
 import json
 import math
+from pathlib import Path
 from typing import Any
 
 import pytest
 from coarse_scenes import coarse_scene
+from small_project import OWN, Content, small_project
 
 from fe_drivetrain.common import InputError
+from fe_drivetrain.procedure import Project
 from fe_drivetrain.scene import change_scene
 from fe_drivetrain.studies import (
     AdviseResult,
@@ -16,10 +19,12 @@ from fe_drivetrain.studies import (
     CompareResult,
     Result,
     UncertaintyResult,
+    ValidateResult,
     advise,
     check,
     compare,
     uncertainty,
+    validate,
 )
 from fe_drivetrain.studies.design_comparison import Varied
 
@@ -49,7 +54,13 @@ def uncertain() -> UncertaintyResult:
     return uncertainty(scene, ["main_bearing.My"], {"hub.My": 1e6}, level=1, samples=40, sobol=True)
 
 
-@pytest.fixture(params=["checked", "compared", "advised", "uncertain"])
+@pytest.fixture(scope="module")
+def validated(tmp_path_factory: pytest.TempPathFactory) -> ValidateResult:
+    folder = tmp_path_factory.mktemp("project")
+    return validate(Project.model_validate(small_project(folder)), folder)
+
+
+@pytest.fixture(params=["checked", "compared", "advised", "uncertain", "validated"])
 def result(request: pytest.FixtureRequest) -> Result:
     found: Result = request.getfixturevalue(request.param)
     return found
@@ -139,7 +150,33 @@ def test_a_band_is_of_the_inputs_and_stands_beside_the_error(uncertain: Uncertai
 
 def test_a_load_that_a_scene_does_not_have_is_refused() -> None:
     scene = coarse_scene("bonded")
-    with pytest.raises(InputError, match="load 'hub.Fq' is unknown: use one of hub.Fx"):
+    with pytest.raises(InputError, match=r"load 'hub.Fq' is unknown: use one of hub.Fx"):
         advise(scene, "main_bearing.My", load={"hub.Fq": 1.0})
-    with pytest.raises(InputError, match="load 'hub.Fx' is nan but must be finite"):
+    with pytest.raises(InputError, match=r"load 'hub.Fx' is nan but must be finite"):
         advise(scene, "main_bearing.My", load={"hub.Fx": math.nan})
+
+
+def test_a_project_is_signed_for_what_it_is(validated: ValidateResult, tmp_path: Path) -> None:
+    assert [state.lacks for state in validated.states] == 6 * [()]
+    assert validated.drivetrain is not None
+    assert validated.drivetrain.hash == OWN.hash
+    assert validated["complete steps of six"].computed == 6.0
+    content: Content = small_project(tmp_path)
+
+    def signed(digest: str) -> ValidateResult:
+        content["signed"] = [
+            {"name": "N", "role": "engineer", "date": "2026-01-31", "digest": digest}
+        ]
+        return validate(Project.model_validate(content), tmp_path)
+
+    other = signed("0" * 16)
+    assert not other.passed
+    again = signed(other.digest)
+    assert again.passed
+    assert again.holds(again.project.signed[0])
+    # a step that is not complete: there is nothing to sign
+    content["campaign"] = None
+    open_ = signed(other.digest)
+    assert (open_.digest, open_.complete) == ("", False)
+    assert not open_.holds(open_.project.signed[0])
+    assert open_["complete steps of six"].computed == 5.0

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fe_drivetrain.commands.progress import show_steps
-from fe_drivetrain.commands.scenes import named_scene_or_component
 from fe_drivetrain.commands.settings import SceneSettings, parse_settings
 from fe_drivetrain.commands.terminal import PASSED, guarded, write
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import check_writable
 from fe_drivetrain.common.threads import hold_threads
+from fe_drivetrain.scene.named_scenes import named_scene_or_component
 
 if TYPE_CHECKING:
     from fe_drivetrain.export.superelement import Superelement

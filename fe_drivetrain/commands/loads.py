@@ -187,11 +187,11 @@ def loads_command(
             parse_ultimate,
             parse_winds,
         )
-        from fe_drivetrain.commands.scenes import named_scene
         from fe_drivetrain.histories.cycles import RESIDUES
         from fe_drivetrain.histories.damage import SLOPES, check_slope
         from fe_drivetrain.hub_loads.channel_map import read_channel_map
         from fe_drivetrain.hub_loads.recorded import OWN_NAMES, recorded_files
+        from fe_drivetrain.scene.named_scenes import named_scene
         from fe_drivetrain.suite.case import Case
         from fe_drivetrain.suite.ownership import check_result_folder
         from fe_drivetrain.suite.result_folders import run_case

@@ -12,7 +12,6 @@ import typer
 from fe_drivetrain.commands.options import Catalogues, Mapping, SceneName, Scheduler, Skip, Slopes
 from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.run import Quick, results_text, tables_text
-from fe_drivetrain.commands.scenes import named_scene
 from fe_drivetrain.commands.settings import (
     Loads,
     SceneSettings,
@@ -26,6 +25,7 @@ from fe_drivetrain.commands.terminal import FAILED, PASSED, as_typed, guarded, w
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
+from fe_drivetrain.scene.named_scenes import named_scene
 from fe_drivetrain.suite.ownership import check_result_folder
 
 if TYPE_CHECKING:
