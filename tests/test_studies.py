@@ -6,27 +6,39 @@ import math
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from coarse_scenes import coarse_scene
 from small_project import OWN, Content, small_project
 
+from fe_drivetrain import export
 from fe_drivetrain.common import InputError
+from fe_drivetrain.common.components import MOTIONS
+from fe_drivetrain.export import Superelement
+from fe_drivetrain.geometry import MeshSizes, Section, Shaft
+from fe_drivetrain.mesh import cached_mesh
+from fe_drivetrain.mesh import write as write_mesh
 from fe_drivetrain.procedure import Project
 from fe_drivetrain.scene import change_scene
 from fe_drivetrain.studies import (
     AdviseResult,
     CheckResult,
     CompareResult,
+    PartResult,
     Result,
     UncertaintyResult,
     ValidateResult,
     advise,
     check,
     compare,
+    part,
     uncertainty,
     validate,
 )
 from fe_drivetrain.studies.design_comparison import Varied
+
+HOLLOW = Shaft(front=0.0, sections=(Section(length=0.6, outer_diameter=0.3, inner_diameter=0.1),))
+STIFFNESS = np.diag([1e9, 2e9, 3e9, 1e7, 4e7, 5e7])
 
 
 @pytest.fixture(scope="module")
@@ -51,7 +63,7 @@ def advised() -> AdviseResult:
 def uncertain() -> UncertaintyResult:
     spreads = {"gearbox.stiffness.2": {"uniform": 0.2}, "shaft.front": {"uniform": 0.01}}
     scene = coarse_scene("bonded", uncertainty=spreads)
-    return uncertainty(scene, ["main_bearing.My"], {"hub.My": 1e6}, level=1, samples=40, sobol=True)
+    return uncertainty(scene, ["main_bearing.My"], {"hub.My": 1e6}, level=1, samples=40)
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +72,29 @@ def validated(tmp_path_factory: pytest.TempPathFactory) -> ValidateResult:
     return validate(Project.model_validate(small_project(folder)), folder)
 
 
-@pytest.fixture(params=["checked", "compared", "advised", "uncertain", "validated"])
+@pytest.fixture(scope="module")
+def shaped(tmp_path_factory: pytest.TempPathFactory) -> PartResult:
+    """A hollow cylinder, meshed."""
+    sizes = MeshSizes(shaft=0.15, elements_per_turn=8)
+    mesh = cached_mesh(HOLLOW, [], {}, sizes, frozenset())
+    path = tmp_path_factory.mktemp("part") / "hollow.vtu"
+    write_mesh(mesh, path)
+    return part(path)
+
+
+@pytest.fixture(scope="module")
+def condensed(tmp_path_factory: pytest.TempPathFactory) -> PartResult:
+    """A housing on springs of its own, as a superelement."""
+    path = tmp_path_factory.mktemp("superelement") / "mine.csv"
+    place = np.zeros((1, 3))
+    export.write(path, Superelement("mine", ("bore",), place, STIFFNESS, supported=True), "csv")
+    return part(path)
+
+
+RESULTS = ("checked", "compared", "advised", "uncertain", "validated", "shaped", "condensed")
+
+
+@pytest.fixture(params=RESULTS)
 def result(request: pytest.FixtureRequest) -> Result:
     found: Result = request.getfixturevalue(request.param)
     return found
@@ -143,7 +177,6 @@ def test_a_band_is_of_the_inputs_and_stands_beside_the_error(uncertain: Uncertai
     reach = abs(slopes[spring]) * 0.2 + abs(slopes["shaft.front"]) * 0.01
     half = (band.high - band.low) / 2 / abs(uncertain.nominal[moment])
     assert 0.5 * reach < half < 1.1 * reach
-    assert sum(uncertain.shares[moment].total) > 0.9
     assert uncertain.units.keys() == uncertain.errors.keys() == uncertain.bands.keys()
     assert [row["quantity"] for row in uncertain.rows()] == list(uncertain.bands)
 
@@ -180,3 +213,28 @@ def test_a_project_is_signed_for_what_it_is(validated: ValidateResult, tmp_path:
     assert (open_.digest, open_.complete) == ("", False)
     assert not open_.holds(open_.project.signed[0])
     assert open_["complete steps of six"].computed == 5.0
+
+
+def test_bores_planes_and_volume_of_a_part_are_numbers(shaped: PartResult) -> None:
+    assert shaped.survey is not None
+    bore, outside = shaped.survey.bores
+    assert (bore.name, bore.hole, outside.hole) == ("S1", True, False)
+    assert bore.radius == pytest.approx(0.05, rel=1e-6)
+    assert bore.length == pytest.approx(0.6, rel=1e-9)
+    assert np.abs(bore.axis) == pytest.approx([1.0, 0.0, 0.0], abs=1e-9)
+    area = math.pi / 4 * (0.3**2 - 0.1**2)
+    # facets within the circles: the mesh has eight elements a turn
+    ends = shaped.survey.planes[:2]
+    assert sorted(plane.point[0] for plane in ends) == pytest.approx([0.0, 0.6], abs=1e-9)
+    assert [plane.area for plane in ends] == pytest.approx(2 * [area], rel=0.11)
+    (volume,) = shaped.figures
+    assert volume.computed == pytest.approx(0.6 * area, rel=5e-3)
+
+
+def test_a_superelement_has_its_stiffness_at_the_bore(condensed: PartResult) -> None:
+    assert condensed.housing is not None
+    np.testing.assert_array_equal(condensed.housing.stiffness, STIFFNESS)
+    for k, motion in enumerate(MOTIONS):
+        unit = "N/m" if k < 3 else "N m/rad"
+        found = condensed[f"{motion} at the bore, other motions held"]
+        assert (found.computed, found.unit) == (STIFFNESS[k, k], unit)

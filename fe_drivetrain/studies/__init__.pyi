@@ -5,6 +5,8 @@ from .input_uncertainty import UncertaintyResult as UncertaintyResult
 from .input_uncertainty import uncertainty as uncertainty
 from .level_advice import AdviseResult as AdviseResult
 from .level_advice import advise as advise
+from .part_survey import PartResult as PartResult
+from .part_survey import part as part
 from .project_validation import ValidateResult as ValidateResult
 from .project_validation import validate as validate
 from .result import Result as Result
