@@ -4,7 +4,7 @@ import dataclasses
 import json
 import math
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -16,14 +16,16 @@ from fe_drivetrain.common import InputError
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.export import Superelement
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
-from fe_drivetrain.mesh import cached_mesh
+from fe_drivetrain.mesh import Mesh, cached_mesh
 from fe_drivetrain.mesh import write as write_mesh
 from fe_drivetrain.procedure import Project
-from fe_drivetrain.scene import change_scene
+from fe_drivetrain.response import Model
+from fe_drivetrain.scene import change_scene, library_component
 from fe_drivetrain.studies import (
     AdviseResult,
     CheckResult,
     CompareResult,
+    ExportResult,
     PartResult,
     Result,
     UncertaintyResult,
@@ -32,6 +34,7 @@ from fe_drivetrain.studies import (
     check,
     compare,
     part,
+    prepare_export,
     uncertainty,
     validate,
 )
@@ -91,7 +94,15 @@ def condensed(tmp_path_factory: pytest.TempPathFactory) -> PartResult:
     return part(path)
 
 
-RESULTS = ("checked", "compared", "advised", "uncertain", "validated", "shaped", "condensed")
+@pytest.fixture(scope="module")
+def exported() -> ExportResult:
+    return prepare_export(coarse_scene("bonded"), at=["hub", "gearbox"])
+
+
+RESULTS = (
+    *("checked", "compared", "advised", "uncertain", "validated"),
+    *("shaped", "condensed", "exported"),
+)
 
 
 @pytest.fixture(params=RESULTS)
@@ -238,3 +249,50 @@ def test_a_superelement_has_its_stiffness_at_the_bore(condensed: PartResult) -> 
         unit = "N/m" if k < 3 else "N m/rad"
         found = condensed[f"{motion} at the bore, other motions held"]
         assert (found.computed, found.unit) == (STIFFNESS[k, k], unit)
+
+
+def test_what_is_exported_has_the_facts_of_its_header(exported: ExportResult) -> None:
+    element = exported.content
+    assert isinstance(element, Superelement)
+    assert exported.points == element.points == ("hub", "gearbox")
+    assert exported.level.startswith("2 ")
+    assert exported.band == element.band
+    inertia = element.inertia()
+    assert inertia is not None
+    assert exported["mass"].computed == inertia[0, 0] == pytest.approx(inertia[2, 2], rel=1e-9)
+    assert [row["point"] for row in exported.tables["points"]] == ["hub", "gearbox"]
+    assert exported.tables["checks"]["force against rigid motions"] < 1e-9
+
+
+@pytest.mark.parametrize("kind", ["mesh", "model"])
+def test_a_mesh_is_counted_by_part(kind: Literal["mesh", "model"]) -> None:
+    result = prepare_export(coarse_scene("bonded"), kind)
+    mesh = result.content.mesh if isinstance(result.content, Model) else result.content
+    assert isinstance(mesh, Mesh)
+    counts = {row["part"]: row["elements"] for row in result.tables["elements"]}
+    assert sum(counts.values()) == len(mesh.cells)
+    assert result.answer[0].startswith(f"{len(mesh.cells):,} elements")
+    assert result.chart().figure["data"][0]["x"] == list(counts.values())
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"kind": "modes", "what": "seats"}, "modes are for the free shaft, not for 'seats'"),
+        ({"kind": "modes", "level": 3}, "modes are for the shaft of level 2, not 3"),
+        ({"what": "tower"}, "'tower' cannot be exported: use one of shaft"),
+        ({"level": 7}, "level 7 of shaft is unknown"),
+    ],
+)
+def test_what_cannot_be_exported_is_refused(options: dict[str, Any], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        prepare_export(coarse_scene("bonded"), **options)
+
+
+def test_a_component_is_no_model() -> None:
+    component = library_component("planet_carrier")
+    for kind in ("model", "summary"):
+        with pytest.raises(InputError, match="is a component: export its mesh"):
+            prepare_export(component, kind)
+    with pytest.raises(InputError, match="modes are for the shaft of a scene"):
+        prepare_export(component, "modes", modes=1)

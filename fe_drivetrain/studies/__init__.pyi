@@ -1,6 +1,8 @@
 from .design_comparison import CompareResult as CompareResult
 from .design_comparison import Varied as Varied
 from .design_comparison import compare as compare
+from .export_content import ExportResult as ExportResult
+from .export_content import prepare_export as prepare_export
 from .input_uncertainty import UncertaintyResult as UncertaintyResult
 from .input_uncertainty import uncertainty as uncertainty
 from .level_advice import AdviseResult as AdviseResult

@@ -9,6 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
@@ -17,10 +18,11 @@ from fe_drivetrain.export.limited_reading import read_limited
 from fe_drivetrain.export.superelement import Superelement
 from fe_drivetrain.foreign.survey import Survey, surveyed
 from fe_drivetrain.geometry import CondensedHousing
-from fe_drivetrain.report.charts import bars, heat_map
+from fe_drivetrain.report.charts import bars, stiffness_chart
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.suite.findings import Findings
+from fe_drivetrain.suite.records import Record
 
 SUPERELEMENTS = {".json": "json", ".csv": "csv", ".bdf": "dmig", ".op4": "op4", ".h5": "hdf5"}
 """Format of a superelement by the ending of its file."""
@@ -49,11 +51,8 @@ class PartResult(Result):
     def chart(self) -> Chart:
         """Radius of each bore; of a superelement its stiffness at the bore, of a unit diagonal."""
         if self.housing is not None:
-            K = np.array(self.housing.stiffness, dtype=np.float64)
-            size = np.sqrt(np.where(K.diagonal() > 0.0, K.diagonal(), np.inf))
-            titles = ("motion", "force", "of the diagonal [-]")
-            caption = f"Stiffness of {self.housing.source}, of a unit diagonal"
-            return heat_map(caption, MOTIONS, MOTIONS, K / np.outer(size, size), titles, (-1, 1))
+            stiffness = np.array(self.housing.stiffness, dtype=np.float64)
+            return stiffness_chart(self.housing.source, ("bore",), stiffness)
         assert self.survey is not None
         radii = {one.name: one.radius for one in reversed(self.survey.bores)}
         unit = self.survey.unit or "the file's unit"
@@ -103,6 +102,14 @@ def part(
     )
 
 
+def place_records(points: Sequence[str], positions: Floats) -> list[Record]:
+    """Names and places (n, 3) [m] of points, as records."""
+    return [
+        {"point": name, "x [m]": x, "y [m]": y, "z [m]": z}
+        for name, (x, y, z) in zip(points, positions.tolist(), strict=True)
+    ]
+
+
 def _find_survey(found: Findings, file: Path, survey: Survey) -> None:
     """Volume, bores and planes of a body."""
     unit = survey.unit or "unit of the file"
@@ -125,13 +132,7 @@ def _find_stiffness(
         unit = "N/m" if k < 3 else "N m/rad"
         value = float(housing.stiffness[k][k])
         found.found(f"{motion} at the bore, other motions held [{unit}]", value)
-    found.data(
-        "points",
-        [
-            {"point": name, "x [m]": x, "y [m]": y, "z [m]": z}
-            for name, (x, y, z) in zip(element.points, element.positions.tolist(), strict=True)
-        ],
-    )
+    found.data("points", place_records(element.points, element.positions))
     found.data(
         "stiffness [N/m, N, N m/rad]",
         [dict(zip(MOTIONS, row, strict=True)) for row in housing.stiffness],
