@@ -302,7 +302,7 @@ def test_a_component_s_mesh_is_written(tmp_path: Path) -> None:
         (["--level", "1", "--at", "rim"], "point 'rim' is unknown: use hub, pin_1"),
         (["--level", "1", "--at", "hub,hub"], "must be one or more, each once"),
         (["--level", "1", "--what", "supported", "--at", "hub"], "'hub' is held rigidly"),
-        (["--modes", "3"], "modes are for the shaft of a scene, not for a component"),
+        (["--modes", "3"], "--modes is for the shaft of a scene, not for a component"),
     ],
 )
 def test_what_cannot_be_exported_is_said(tmp_path: Path, options: list[str], message: str) -> None:

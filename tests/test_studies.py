@@ -278,8 +278,8 @@ def test_a_mesh_is_counted_by_part(kind: Literal["mesh", "model"]) -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"kind": "modes", "what": "seats"}, "modes are for the free shaft, not for 'seats'"),
-        ({"kind": "modes", "level": 3}, "modes are for the shaft of level 2, not 3"),
+        ({"kind": "modes", "what": "seats"}, "--modes is for the free shaft, not for --what seats"),
+        ({"kind": "modes", "level": 3}, "--modes is for the shaft of level 2, not --level 3"),
         ({"what": "tower"}, "'tower' cannot be exported: use one of shaft"),
         ({"level": 7}, "level 7 of shaft is unknown"),
     ],
@@ -294,5 +294,5 @@ def test_a_component_is_no_model() -> None:
     for kind in ("model", "summary"):
         with pytest.raises(InputError, match="is a component: export its mesh"):
             prepare_export(component, kind)
-    with pytest.raises(InputError, match="modes are for the shaft of a scene"):
+    with pytest.raises(InputError, match="--modes is for the shaft of a scene"):
         prepare_export(component, "modes", modes=1)

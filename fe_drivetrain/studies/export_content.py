@@ -192,12 +192,13 @@ def _scene_of_modes(drivetrain: Scene | Component, what: str, level: int | None)
         It is another part, at another level, or of a component.
     """
     if not isinstance(drivetrain, Scene):
-        raise InputError("modes are for the shaft of a scene, not for a component: leave modes out")
+        raise InputError("--modes is for the shaft of a scene, not for a component: leave it out")
     if what not in ("", SHAFT):
-        raise InputError(f"modes are for the free shaft, not for {what!r}: leave what out")
+        raise InputError(f"--modes is for the free shaft, not for --what {what}: leave --what out")
     if level not in (None, _MODES_LEVEL):
         raise InputError(
-            f"modes are for the shaft of level {_MODES_LEVEL}, not {level}: leave the level out"
+            f"--modes is for the shaft of level {_MODES_LEVEL}, not --level {level}: leave "
+            "--level out"
         )
     return drivetrain
 
