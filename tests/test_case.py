@@ -129,8 +129,9 @@ def test_details_that_change_nothing_have_no_empty_bars() -> None:
             drivetrain=scene, advice=advice, effects=effects, effects_level=1, **Page().frozen({})
         )
 
-    section = tornado(result(Effect("bore", 0.0), Effect("rings", 0.0)))
-    (said,) = section.items
+    items = tornado(result(Effect("bore", 0.0), Effect("rings", 0.0))).items
+    assert [item.kind for item in items] == ["text"]
+    said: Any = items[0]
     assert said.text == (
         "No detail changes hub.Fz at level 1 with housings as springs: bore, rings."
     )
