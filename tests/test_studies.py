@@ -282,11 +282,19 @@ def test_a_mesh_is_counted_by_part(kind: Literal["mesh", "model"]) -> None:
         ({"kind": "modes", "level": 3}, "--modes is for the shaft of level 2, not --level 3"),
         ({"what": "tower"}, "'tower' cannot be exported: use one of shaft"),
         ({"level": 7}, "level 7 of shaft is unknown"),
+        ({"modes": 3}, "modes is not used by an export of kind 'superelement': leave it out"),
+        ({"kind": "mesh", "at": ["hub"]}, "at is not used by an export of kind 'mesh'"),
+        ({"kind": "summary", "at": ["hub"]}, "--at hub is not used by --what summary"),
     ],
 )
 def test_what_cannot_be_exported_is_refused(options: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError, match=message):
         prepare_export(coarse_scene("bonded"), **options)
+
+
+def test_points_of_a_mesh_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="--held foot names points of a superelement"):
+        part(tmp_path / "any.vtu", held=["foot"])
 
 
 def test_a_component_is_no_model() -> None:

@@ -185,7 +185,7 @@ def run_new(out: Path) -> int:
 
 
 def run_in_place(out: Path) -> int:
-    """As a program without protection does it: it empties the folder and writes into it."""
+    """Run a case as a program without protection would: empty the folder and write into it."""
     shutil.rmtree(out)
     out.mkdir()
     run_into(CASE_KILLED, out, {"mark": NEW}, False, _say)

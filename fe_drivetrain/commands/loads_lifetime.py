@@ -25,7 +25,7 @@ from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
 
 CYCLES = 1e7
-"""Of the equivalent load of a lifetime."""
+"""Number of cycles of the equivalent load of a lifetime."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Event:
 
     @property
     def name(self) -> str:
-        """Of its files."""
+        """Name of the first of its files, and how many more there are."""
         first = self.files[0].stem
         return first if len(self.files) == 1 else f"{first} and {len(self.files) - 1} more"
 

@@ -89,6 +89,7 @@ class Together:
     read: dict[str, int] = field(default_factory=dict)
     vertical: dict[str, tuple[float, float]] = field(default_factory=dict)
     windows: list[Record] = field(default_factory=list)
+    own_speeds: list[Floats] = field(default_factory=list)
     files: list[Record] = field(default_factory=list)
     damages: list[Floats] = field(default_factory=list)
     spectra: dict[int, tuple[Floats, float]] = field(default_factory=dict)
@@ -104,6 +105,7 @@ class Together:
         start, end, step, count = found["time"].tolist()
         seconds = count * step
         self.names.append(name)
+        self.own_speeds.append(found["own speeds"])
         self.seconds += seconds
         self.samples += int(count)
         damage, cycles = found["damage"], found["cycles"]

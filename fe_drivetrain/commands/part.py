@@ -50,7 +50,14 @@ def part_command(
     def work() -> int:
         from fe_drivetrain.studies.part_survey import SUPERELEMENTS, part
 
-        if picture is not None and file.suffix.lower() not in SUPERELEMENTS:
+        if overwrite and picture is None:
+            raise InputError("--overwrite is for the file of --picture: give --picture PNG, too")
+        if picture is not None and file.suffix.lower() in SUPERELEMENTS:
+            raise InputError(
+                f"--picture {picture} is of a STEP or mesh file, and {file} is a superelement, "
+                "which has no faces: leave --picture out"
+            )
+        if picture is not None:
             _check_picture(picture, overwrite)
         result = part(file, bore, [point for point in held.split(",") if point])
         if result.survey is not None:

@@ -118,11 +118,13 @@ def prepare_export(
     Raises
     ------
     InputError
-        There is no such part, point or level, or a component has nothing of this kind.
+        There is no such part, point or level, a component has nothing of this kind, or an argument
+        is not used by this kind.
     """
     found, steps = Findings(), Steps(report)
     found.about(drivetrain)
     found.seed = None
+    _refuse_unused(kind, what, at, level, modes)
     content: Content
     if kind in ("model", "mesh"):
         content = _model_or_mesh(found, steps, drivetrain, kind)
@@ -147,6 +149,23 @@ def prepare_export(
         band=content.band if isinstance(content, Superelement) else None,
         **found.frozen(steps.times, kind=kind, what=what, at=at, level=level, modes=modes),
     )
+
+
+def _refuse_unused(
+    kind: Kind, what: str, at: Sequence[str] | None, level: int | None, modes: int
+) -> None:
+    """Refuse arguments that a kind of export does not use."""
+    if kind == "summary" and at is not None:
+        raise InputError(
+            f"--at {','.join(at)} is not used by --what summary, which has all points of the "
+            "scene: leave --at out"
+        )
+    given = {"what": what, "at": at, "level": level, "modes": modes}
+    used = {"superelement": ("what", "at", "level"), "summary": ("level",)}
+    used["modes"] = ("what", "at", "level", "modes")
+    unused = [name for name, value in given.items() if value and name not in used.get(kind, ())]
+    if unused:
+        raise InputError(f"{unused[0]} is not used by an export of kind {kind!r}: leave it out")
 
 
 def _superelement(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import ClassVar
@@ -11,6 +11,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import MOTIONS
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.export.condensed_housing import condensed_housing
@@ -79,11 +80,14 @@ def part(
     Raises
     ------
     InputError
-        The file cannot be read, a point is unknown, or what is left of a superelement moves freely.
+        The file cannot be read, a point is unknown or of no superelement, or what is left of one
+        moves freely.
     """
     found, steps = Findings(), Steps(report)
     found.seed = None
     survey, element, housing = None, None, None
+    if file.suffix.lower() not in SUPERELEMENTS:
+        _refuse_points(file, {"--bore": bore, "--held": ",".join(held)})
     with steps.step("read"):
         if file.suffix.lower() in SUPERELEMENTS:
             element = read_limited(file, SUPERELEMENTS[file.suffix.lower()])
@@ -100,6 +104,16 @@ def part(
         housing=housing,
         **found.frozen(steps.times, file=file.name, bore=bore, held=list(held)),
     )
+
+
+def _refuse_points(file: Path, options: Mapping[str, str]) -> None:
+    """Refuse points of a file that is no superelement, and so has none."""
+    for option, value in options.items():
+        if value:
+            raise InputError(
+                f"{option} {value} names points of a superelement, and {file} is none: leave "
+                f"{option} out, or give a file that ends in {', '.join(SUPERELEMENTS)}"
+            )
 
 
 def place_records(points: Sequence[str], positions: Floats) -> list[Record]:
