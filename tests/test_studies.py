@@ -10,22 +10,25 @@ import numpy as np
 import pytest
 from coarse_scenes import coarse_scene
 from small_project import OWN, Content, small_project
+from test_commands_life import write_history
 
 from fe_drivetrain import export
 from fe_drivetrain.common import InputError
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.export import Superelement
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
+from fe_drivetrain.histories import Site
 from fe_drivetrain.mesh import Mesh, cached_mesh
 from fe_drivetrain.mesh import write as write_mesh
 from fe_drivetrain.procedure import Project
 from fe_drivetrain.response import Model
-from fe_drivetrain.scene import change_scene, library_component
+from fe_drivetrain.scene import change_scene, library_component, library_scene
 from fe_drivetrain.studies import (
     AdviseResult,
     CheckResult,
     CompareResult,
     ExportResult,
+    LifeResult,
     PartResult,
     Result,
     UncertaintyResult,
@@ -33,6 +36,7 @@ from fe_drivetrain.studies import (
     advise,
     check,
     compare,
+    life,
     part,
     prepare_export,
     uncertainty,
@@ -99,8 +103,16 @@ def exported() -> ExportResult:
     return prepare_export(coarse_scene("bonded"), at=["hub", "gearbox"])
 
 
+@pytest.fixture(scope="module")
+def lived(tmp_path_factory: pytest.TempPathFactory) -> LifeResult:
+    folder = tmp_path_factory.mktemp("histories")
+    for wind in (8.0, 14.0):
+        write_history(folder / f"v{wind:g}.csv", wind)
+    return life(library_scene("main_bearing_spherical"), folder / "*.csv", Site(8.5))
+
+
 RESULTS = (
-    *("checked", "compared", "advised", "uncertain", "validated"),
+    *("checked", "compared", "advised", "uncertain", "validated", "lived"),
     *("shaped", "condensed", "exported"),
 )
 
@@ -120,7 +132,7 @@ def test_the_json_of_a_result_is_strict_and_names_its_schema(result: Result) -> 
     assert [one["hash"] for one in found["drivetrains"]] == [d.hash for d in result.drivetrains]
     assert found["answer"] == list(result.answer)
     assert len(found["checks"]) == len(result.checks)
-    assert found["tables"].keys() == result.tables.keys()
+    assert found["tables"].keys() == result.all_tables().keys() >= result.tables.keys()
 
 
 def test_a_result_cannot_be_changed_and_prints_in_one_line(result: Result) -> None:
@@ -173,7 +185,7 @@ def test_a_level_that_is_enough_is_within_the_tolerance(advised: AdviseResult) -
     # the change of each detail, the largest first
     changes = [abs(effect.change) for effect in advised.effects]
     assert changes == sorted(changes, reverse=True)
-    assert [row["detail left out"] for row in advised.tables["details"]] == [
+    assert [row["detail left out"] for row in advised.all_tables()["details"]] == [
         effect.detail for effect in advised.effects
     ]
 
@@ -189,7 +201,7 @@ def test_a_band_is_of_the_inputs_and_stands_beside_the_error(uncertain: Uncertai
     half = (band.high - band.low) / 2 / abs(uncertain.nominal[moment])
     assert 0.5 * reach < half < 1.1 * reach
     assert uncertain.units.keys() == uncertain.errors.keys() == uncertain.bands.keys()
-    assert [row["quantity"] for row in uncertain.rows()] == list(uncertain.bands)
+    assert [row["quantity"] for row in uncertain.all_tables()["bands"]] == list(uncertain.bands)
 
 
 def test_a_load_that_a_scene_does_not_have_is_refused() -> None:
@@ -304,3 +316,28 @@ def test_a_component_is_no_model() -> None:
             prepare_export(component, kind)
     with pytest.raises(InputError, match="--modes is for the shaft of a scene"):
         prepare_export(component, "modes", modes=1)
+
+
+def test_a_life_is_a_number_with_what_takes_it(lived: LifeResult) -> None:
+    (one,) = lived.bearings.values()
+    years = one.years["L10mr"]
+    assert lived["L10mr of bearing main_bearing"].computed == years
+    assert one.site is not None
+    turns = one.million_revolutions["L10mr"] / one.damage.turns * 1e6  # in a year at the site
+    assert turns == pytest.approx(years, rel=1e-12)
+    assert one.damage.of_rows(True).sum() == pytest.approx(1.0 / years, rel=1e-9)
+    assert one.site.of_winds("L10mr").sum() == pytest.approx(1.0)
+    whole = sum(f.damage.seconds for f in one.files)
+    mean = one.mean_load.mean(axis=1)
+    assert whole == pytest.approx(20.0)
+    assert (one.peak_load.max(axis=1) >= mean).all()
+
+
+def test_tables_of_lives_by_file_and_place_are_frames(lived: LifeResult) -> None:
+    pytest.importorskip("pandas")
+    assert list(lived.to_frame("files")["file"]) == ["v14.csv", "v8.csv"]
+    places, rings = lived.to_frame("places"), lived.to_frame("main_bearing: rows and rings")
+    (one,) = lived.bearings.values()
+    by_place = places["outer ring, damage by L10mr"].sum()
+    outer = rings[rings["ring"] == "outer"]["share of L10mr's damage [%]"].sum()
+    assert by_place * one.years["L10mr"] == pytest.approx(0.01 * outer, rel=1e-9)

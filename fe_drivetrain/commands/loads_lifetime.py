@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from fe_drivetrain.commands.loads_digest import LOADS, UNITS, Digest, Options, classes_of
-from fe_drivetrain.commands.loads_together import Together, rounded_wind
+from fe_drivetrain.commands.loads_together import Together
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.histories.classes import Classes, added
 from fe_drivetrain.histories.sites import (
@@ -18,6 +18,7 @@ from fe_drivetrain.histories.sites import (
     Transient,
     lifetime_damage,
     midpoint_edges,
+    rounded_wind,
     time_factors,
 )
 from fe_drivetrain.report.charts import trace

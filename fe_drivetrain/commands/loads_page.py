@@ -25,14 +25,14 @@ from fe_drivetrain.commands.loads_reactions import (
 )
 from fe_drivetrain.commands.loads_shape import shape
 from fe_drivetrain.commands.loads_tables import write_tables
-from fe_drivetrain.commands.loads_together import WIND_BIN, Together, require_winds, windows_table
+from fe_drivetrain.commands.loads_together import Together, windows_table
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.histories.cycles import Cycles
-from fe_drivetrain.histories.sites import Site
+from fe_drivetrain.histories.sites import WIND_BIN, Site, require_winds
 from fe_drivetrain.histories.windows import COLUMNS, CaptureMatrix, capture_matrix
 from fe_drivetrain.hub_loads.recorded import read_recorded
 from fe_drivetrain.report.charts import trace

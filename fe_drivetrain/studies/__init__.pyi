@@ -1,3 +1,5 @@
+from .bearing_lives import LifeResult as LifeResult
+from .bearing_lives import life as life
 from .design_comparison import CompareResult as CompareResult
 from .design_comparison import Varied as Varied
 from .design_comparison import compare as compare
@@ -7,6 +9,7 @@ from .input_uncertainty import UncertaintyResult as UncertaintyResult
 from .input_uncertainty import uncertainty as uncertainty
 from .level_advice import AdviseResult as AdviseResult
 from .level_advice import advise as advise
+from .life_options import LifeOptions as LifeOptions
 from .part_survey import PartResult as PartResult
 from .part_survey import part as part
 from .project_validation import ValidateResult as ValidateResult

@@ -9,6 +9,7 @@ from typing import ClassVar, Literal
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
+from fe_drivetrain.common.stiffness_bands import KINDS, StiffnessBands
 from fe_drivetrain.export.craig_bampton import CraigBampton, craig_bampton_shaft
 from fe_drivetrain.export.formats.summary import SummaryFile, summary
 from fe_drivetrain.export.from_component import BODY, component_superelement
@@ -54,9 +55,9 @@ class ExportResult(Result):
         Names of the points that matrices are at; empty where there are none.
     level : str
         Level of the ladder, with its name; empty of model and mesh.
-    band : float or None
-        Half width of the uncertainty of a superelement's stiffness, of any entry relative to the
-        diagonal entries of its row and column; None where it is not known.
+    band : StiffnessBands or None
+        Half widths of the bands of a superelement's stiffness by kind of motion; None where they
+        are not known.
     """
 
     STUDY: ClassVar[str] = "export"
@@ -66,7 +67,7 @@ class ExportResult(Result):
     content: Content = field(repr=False)
     points: tuple[str, ...]
     level: str
-    band: float | None
+    band: StiffnessBands | None
 
     def chart(self) -> Chart:
         """Stiffness between points; masses of a summary; elements of each part of a mesh."""
@@ -272,7 +273,8 @@ def _data(found: Findings, content: Content) -> None:
         found.data("frequencies [rad/s]", content.omega)
         return
     if content.band is not None:
-        found.found("band of the stiffness, of the diagonal [%]", 100 * content.band)
+        for kind, band in zip(KINDS, content.band, strict=True):
+            found.found(f"band of the stiffness, {kind} [%]", 100 * band)
     if (inertia := content.inertia()) is not None:
         found.found("mass [kg]", float(inertia[0, 0]))
     found.data("checks", content.checks())

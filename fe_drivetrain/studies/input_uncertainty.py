@@ -80,6 +80,10 @@ class UncertaintyResult(Result):
             for name, band in self.bands.items()
         ]
 
+    def all_tables(self) -> Mapping[str, Any]:
+        """Tables by name: those of the page, and `rows` as "bands"."""
+        return {**self.tables, "bands": self.rows()}
+
     def chart(self) -> Chart:
         """Half of each band beside the error of the level."""
         return half_bands(self.study)

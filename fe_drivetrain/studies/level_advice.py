@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
@@ -59,6 +59,13 @@ class AdviseResult(Result):
         """Result of that level."""
         advice = self.advice
         return None if advice.chosen is None else advice.results[advice.chosen]
+
+    def all_tables(self) -> Mapping[str, Any]:
+        """Tables by name: those of the page, and the change for each detail that is left out."""
+        details = [
+            {"detail left out": one.detail, "change [%]": 100 * one.change} for one in self.effects
+        ]
+        return {**self.tables, "details": details}
 
     def chart(self) -> Chart:
         """Error of each level over its time."""
@@ -133,7 +140,7 @@ def advise(
     if chosen is not None and chosen.model.neglects:
         found.answer(f"It neglects {', '.join(chosen.model.neglects)}.")
     _judge(found, advice, advice.top if chosen is None else chosen)
-    _data(found, advice, ranked)
+    _data(found, advice)
     return AdviseResult(
         drivetrain=scene,
         advice=advice,
@@ -165,15 +172,10 @@ def _judge(found: Findings, advice: Advice, known: LevelResult) -> None:
     )
 
 
-def _data(found: Findings, advice: Advice, ranked: Sequence[Effect]) -> None:
-    """Keep levels and details for other programs."""
+def _data(found: Findings, advice: Advice) -> None:
+    """Keep the levels for other programs."""
     found.data("quantity", advice.quantity.name)
     found.data("levels", [_level(result) for result in advice.results])
-    if ranked:
-        found.data(
-            "details",
-            [{"detail left out": one.detail, "change [%]": 100 * one.change} for one in ranked],
-        )
 
 
 def _level(result: LevelResult) -> Record:
