@@ -9,11 +9,7 @@ import numpy as np
 import pytest
 from tiny_case import Result
 
-from fe_drivetrain.commands import loads_page
-from fe_drivetrain.commands.loads_digest import Options, digest
-from fe_drivetrain.commands.loads_reactions import scene_reactions
 from fe_drivetrain.commands.loads_tables import write_tables
-from fe_drivetrain.commands.loads_together import Together
 from fe_drivetrain.common.cache import CACHE_VARIABLE
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
@@ -23,6 +19,10 @@ from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.recorded import Recorded, read_recorded
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.scene.reading import library_scene
+from fe_drivetrain.studies import load_reactions
+from fe_drivetrain.studies.load_digest import LoadOptions, digest
+from fe_drivetrain.studies.load_reactions import scene_reactions
+from fe_drivetrain.studies.load_totals import LoadSums
 
 HERTZ = 0.25  # of the rotor
 COLUMNS = "--channel", "wind speed=Vhub", "--channel", "rotor speed=N"
@@ -136,7 +136,7 @@ def test_a_stopped_run_goes_on(
             raise KeyboardInterrupt
         return read_recorded(path, *more)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(loads_page, "read_recorded", counted)
+    monkeypatch.setattr(load_reactions, "read_recorded", counted)
     command = ("loads", str(histories), "--out", str(histories.parent / "out"), *COLUMNS)
     status, _, err = invoke(*command)
     assert status == 130
@@ -158,7 +158,7 @@ def test_what_is_kept_of_a_file_is_known_by_its_content(
         read.append(path.name)
         return read_recorded(path, *more)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(loads_page, "read_recorded", counted)
+    monkeypatch.setattr(load_reactions, "read_recorded", counted)
     command = ("loads", str(histories), "--out", str(histories.parent / "out"), *COLUMNS)
     assert invoke(*command)[0] == 0
     file = histories / "b.csv"
@@ -281,24 +281,24 @@ def test_reactions_balance_hub_loads_and_weights(rng: np.random.Generator) -> No
 
 
 def test_files_together_are_what_they_are_apart(rng: np.random.Generator) -> None:
-    options = Options({}, 0.0, (3.0,), "half", 0.0, 1.5)
+    options = LoadOptions(slopes=(3.0,), rotor_speed=1.5)
     walk = 1e5 * rng.standard_normal((2400, 6)).cumsum(axis=0)
     parts = [walk[:1200], walk[1200:]]
-    together = Together()
+    sums, first = LoadSums(), LoadSums()
     for k, part in enumerate(parts):
         history = LoadHistory(str(k), np.arange(1200) * 0.1, part)
-        together.add(str(k), digest(Recorded(history), options))
+        sums.add(str(k), digest(Recorded(history), options))
+    together = sums.totals()
     np.testing.assert_allclose(
-        together.overall()[:6],
+        together.statistics.overall[:6],
         np.column_stack([walk.min(0), walk.mean(0), walk.max(0), walk.std(0)]),
     )
     one = digest(Recorded(LoadHistory("0", np.arange(1200) * 0.1, parts[0])), options)
-    single = Together()
-    single.add("0", one)
-    assert single.damage is not None
-    assert together.damage is not None
-    assert (together.damage >= single.damage).all()
-    assert together.classes["turns at Mx"].amount.sum() == pytest.approx(240.0 * 1.5 / 2 / np.pi)
+    first.add("0", one)
+    single = first.totals()
+    assert (together.cycles.damage >= single.cycles.damage).all()
+    np.testing.assert_allclose(together.damages.sum(axis=0), together.cycles.damage)
+    assert together.levels.turns["Mx"].amount.sum() == pytest.approx(240.0 * 1.5 / 2 / np.pi)
 
 
 def test_mistakes_are_one_sentence(invoke: Callable[..., Result], histories: Path) -> None:

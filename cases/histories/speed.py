@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.commands import Options, digest
 from fe_drivetrain.common import Floats, timed_runs
 from fe_drivetrain.histories import (
     even_levels,
@@ -21,6 +20,8 @@ from fe_drivetrain.histories import (
     window_statistics,
 )
 from fe_drivetrain.hub_loads import LoadHistory, Recorded, find_loops
+from fe_drivetrain.studies import LoadOptions
+from fe_drivetrain.studies.load_digest import digest
 from fe_drivetrain.suite import Page, Record, Run, goal
 
 STEP = 0.05
@@ -266,11 +267,10 @@ def cores(run: Run, page: Page, repeats: int) -> None:
 
 
 def whole(seed: int, size: int) -> int:
-    """The digest of a made history; how many arrays it has."""
+    """The digest of a made history; how many of its samples were counted."""
     loads = np.column_stack([1e3 * noise(size, 10 * seed + c) for c in range(6)])
     history = LoadHistory("made", STEP * np.arange(size, dtype=np.float64), loads)
-    options = Options({}, 0.0, (3.0, 4.0, 10.0), "half", 0.0, None)
-    return len(digest(Recorded(history, np.full(size, 1.2)), options))
+    return digest(Recorded(history, np.full(size, 1.2)), LoadOptions()).span.samples
 
 
 def in_process(_report: object, seed: int, size: int) -> int:

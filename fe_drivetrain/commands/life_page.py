@@ -20,9 +20,8 @@ from fe_drivetrain.commands.life_digest import (
 from fe_drivetrain.commands.life_limits import limits, overloaded
 from fe_drivetrain.commands.life_sections import BearingLife, laminae, places, winds
 from fe_drivetrain.commands.loads_tables import write_tables
-from fe_drivetrain.commands.loads_together import require_winds, rounded_wind
 from fe_drivetrain.common.jobs import mapped
-from fe_drivetrain.histories.sites import Site
+from fe_drivetrain.histories.sites import Site, require_winds, rounded_wind
 from fe_drivetrain.hub_loads.turbines import different_turbines
 from fe_drivetrain.life.at_site import site_lives
 from fe_drivetrain.life.reference_life import RINGS, reference_load

@@ -1,6 +1,10 @@
 from .design_comparison import CompareResult as CompareResult
 from .design_comparison import Varied as Varied
 from .design_comparison import compare as compare
+from .load_digest import LoadOptions as LoadOptions
+from .load_histories import LoadsResult as LoadsResult
+from .load_histories import loads as loads
+from .load_winds import CaptureTarget as CaptureTarget
 from .result import Result as Result
 from .scene_check import CheckResult as CheckResult
 from .scene_check import check as check
