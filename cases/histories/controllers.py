@@ -73,7 +73,7 @@ def run(run: Run, page: Page) -> None:
 
 
 def measures(made: TurbineHistory, loads: Floats) -> Record:
-    """Of one history; loads on the bearing (n, 6) [kN, kN m]."""
+    """Measures of one history; loads on the bearing (n, 6) [kN, kN m]."""
     force, moment = np.hypot(*loads[:, 1:3].T), np.hypot(*loads[:, 4:6].T)
     # looking downwind, y is to the left: overturning, which is along +y, points left
     return {
@@ -176,7 +176,7 @@ def compare(page: Page, found: dict[str, list[Record]]) -> None:
 
 
 def mean(values: Sequence[object]) -> float:
-    """Of numbers of records."""
+    """Mean of each number over records."""
     return float(np.mean([float(v) for v in values]))  # type: ignore[arg-type]
 
 

@@ -115,6 +115,7 @@ def unit_load_page(run: Run, page: Page, scene: Scene, forms: Sequence[str] = ()
     forms : sequence of str
         Other interfaces of all bearings, beside that of the scene.
     """
+    page.about(scene)
     solved = study.solve_scene(run, scene, "scene")
     others = {
         form: study.solve_scene(run, _with_interface(scene, form), form)
@@ -293,6 +294,7 @@ def wall_page(run: Run, page: Page, scenes: Mapping[int, Scene]) -> None:
     scenes : mapping
         Scenes by wall, in percent of the solid radius, the solid shaft first.
     """
+    page.about(next(iter(scenes.values())))
     with run.step("hub loads"):
         history = hub_loads(Condition(16.0, "medium", 0.2, 1)).between(100.0, 110.0)
     solutions = {
@@ -359,6 +361,7 @@ def secant_page(run: Run, page: Page, scene: Scene, cases: Cases) -> None:
         Load cases at the hub and at the scene's load points.
     """
     hub, weights = cases.hub, cases.weights
+    page.about(scene)
     solved = study.solve_scene(run, scene, "scene")
     with run.step("bearing units, two bounds"):
         bounds = bounds_of(scene)

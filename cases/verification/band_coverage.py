@@ -113,7 +113,7 @@ def judged(run: Run, seed: int, with_solid: bool) -> list[Record]:
 
 
 def kept(run: Run, seed: int, with_solid: bool) -> list[Record]:
-    """As `judged`, or what an earlier run found."""
+    """Bands as of `judged`, or what an earlier run found."""
     content = {"case": "band_coverage", "seed": seed, "with solid": with_solid}
     return run.kept(content, partial(judged, run, seed, with_solid))
 

@@ -18,6 +18,7 @@ from fe_drivetrain.commands.options import (
     SceneName,
     Scheduler,
     Skip,
+    left_out,
 )
 from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.run import results_text
@@ -205,7 +206,7 @@ def life_command(
             rings,
             weight,
             only,
-            tuple(name for name in _ASSUMED if _left_out(context, name)),
+            tuple(name for name in _ASSUMED if left_out(context, name)),
         )
         place = None if site is None else parse_site(site)
         files = recorded_files(loads)
@@ -268,12 +269,6 @@ def parse_lubricant(
             ) from error
     usual = "normal" if supply == "grease" else "-/15/12"
     return Lubricant(at_40, at_100, temperature, supply, cleanliness or usual)  # type: ignore[arg-type]
-
-
-def _left_out(context: typer.Context, option: str) -> bool:
-    """Whether an option stands at its default."""
-    source = context.get_parameter_source(option)
-    return source is not None and source.name == "DEFAULT"
 
 
 def _a_1(percent: float) -> float:

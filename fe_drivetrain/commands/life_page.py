@@ -30,6 +30,7 @@ from fe_drivetrain.procedure.failure_modes import TORQUE_AND_BENDING
 from fe_drivetrain.report.answer import value_with_band
 from fe_drivetrain.response.stated import HUB_LOADS
 from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.studies.unused import choices_not_used, speed_not_used
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
 from fe_drivetrain.suite.run import Run
@@ -105,6 +106,10 @@ def lived(
     of_first = zip(files, found[0].digests, strict=True)
     if unlike := different_turbines({file.stem: d.vertical for file, d in of_first}):
         page.note(unlike)
+    if unused := speed_not_used(reading.rotor_speed, [d.own_speeds for d in found[0].digests]):
+        page.note(unused)
+    for unused in choices_not_used(scene, choices, bearings):
+        page.note(unused)
     page.note(UNVERIFIED)
     _lives(page, found)
     limits(page, found, rules)

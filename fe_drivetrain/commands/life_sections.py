@@ -49,7 +49,7 @@ class BearingLife:
 
     @property
     def limits(self) -> Limits:
-        """Of the files as they are."""
+        """Limits of the methods in the files as they are, not weighted by a site."""
         total = self.digests[0].damage
         for found in self.digests[1:]:
             total = total + found.damage

@@ -152,7 +152,7 @@ def _cycles(samples: Floats, least: float) -> Cycles:
 
 
 def _rows(name: str, found: _Found, slopes: Sequence[float]) -> list[Record]:
-    """Of the page [kN, kN m]; round-off as zero."""
+    """Values as the page shows them [kN, kN m]; round-off as zero."""
     least = _ROUND_OFF * float(np.abs(found.statistics).max())
     shown = np.where(np.abs(found.statistics) < least, 0.0, found.statistics) / 1e3
     rows: list[Record] = []

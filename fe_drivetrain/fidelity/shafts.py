@@ -208,7 +208,7 @@ def condensed_shaft(scene: Scene, level: int) -> Condensed:
 
 
 def _radius(shaft: Shaft, span: Band) -> float:
-    """Of the face of a shaft that a bearing or a load is on."""
+    """Radius of the face of a shaft that a bearing or a load is on."""
     middle = (span.low + span.high) / 2
     return shaft.inner_radius(middle) if span.inside else shaft.outer_radius(middle)
 

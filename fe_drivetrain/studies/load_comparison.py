@@ -142,15 +142,24 @@ class LoadSet:
     ----------
     slopes : sequence of float
         With which files are counted.
+
+    Attributes
+    ----------
+    features : dict
+        Quantities of each history, by mean wind speed.
+    own_speeds : list of ndarray
+        (2,) least and largest rotor speed that each states [1/min]; NaN where it has none.
     """
 
     def __init__(self, slopes: Sequence[float]) -> None:
         self._slopes = slopes
         self.features: dict[str, list[dict[str, float]]] = {}
+        self.own_speeds: list[Floats] = []
         self._spectra: dict[str, dict[str, Floats] | None] = {}
 
     def add(self, found: FileDigest) -> None:
         """Add the digest of a file."""
+        self.own_speeds.append(found.hub.own_speeds)
         wind = found.hub.mean_of("wind speed")
         name = "wind not known" if np.isnan(wind) else f"{rounded_wind(wind):g} m/s"
         self.features.setdefault(name, []).append(all_features(found, self._slopes))

@@ -28,6 +28,7 @@ from fe_drivetrain.histories.windows import Windows, window_statistics
 from fe_drivetrain.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.hub_loads.recorded import OWN_NAMES, Recorded
 from fe_drivetrain.studies.load_planes import PLANES, PlaneDigest, plane_digest
+from fe_drivetrain.studies.unused import own_speeds
 
 LOADS = (*FORCES, "radial force", "bending moment")
 """Channels that are counted; the last two are sizes across the shaft."""
@@ -167,6 +168,8 @@ class Digest:
         Spectra of `LOADS`; None of a file shorter than half a segment.
     planes : Mapping[str, PlaneDigest]
         Force and moment across the shaft.
+    own_speeds : ndarray, (2,)
+        Least and largest rotor speed that the file states [1/min]; NaN where it has none.
     """
 
     channels: str
@@ -178,6 +181,7 @@ class Digest:
     torque: TorqueSums
     spectra: HistorySpectra | None
     planes: Mapping[str, PlaneDigest]
+    own_speeds: Floats
 
     def mean_of(self, channel: str) -> float:
         """Mean of one of `CHANNELS` over the file; NaN where it has none."""
@@ -224,6 +228,7 @@ def digest(found: Recorded, options: LoadOptions) -> Digest:
             name: plane_digest(history.time, loads[:, y], loads[:, y + 1], step, speed)
             for name, y in PLANES
         },
+        own_speeds=own_speeds(found.rotor_speed),
     )
 
 

@@ -35,8 +35,9 @@ from fe_drivetrain.studies.load_records import (
     torque_rows,
 )
 from fe_drivetrain.studies.load_totals import EquivalentLoad, LoadSums, LoadTotals
-from fe_drivetrain.studies.load_winds import Capture, CaptureTarget, captured
+from fe_drivetrain.studies.load_winds import Capture, CaptureTarget, captured, winds_not_used
 from fe_drivetrain.studies.result import Result
+from fe_drivetrain.studies.unused import RPM, speed_not_used
 from fe_drivetrain.suite.findings import Findings
 from fe_drivetrain.suite.records import Record
 
@@ -197,7 +198,11 @@ def loads(
         require_winds(files, hub.statistics.mean_of("wind speed").tolist())
     capture = captured(hub.statistics, target)
     _answer(found, hub, options)
-    for sentence in (*cautions(hub, options), *_aliased(hub)):
+    for sentence in (
+        *cautions(hub, options),
+        *winds_not_used(target, capture),
+        *_aliased(hub),
+    ):
         found.note(sentence)
     if capture is not None:
         found.answer(capture.sentence)
@@ -212,14 +217,18 @@ def loads(
         with steps.step("transients"):
             life = lifetime(hub, site, _events(transients, options, resume, report))
         found.data("lifetime", lifetime_rows(life, options))
-    comparison = None
+    comparison, its = None, LoadSet(options.slopes)
     if mine is not None:
         with steps.step("the others"):
-            its = LoadSet(options.slopes)
             for _, one in digests(against, options, resume, "the others", report, reactions):
                 its.add(one)
             comparison = compare_sets(mine, its)
         found.answer(*comparison.sentences)
+    of_events = life.events if life is not None else ()
+    speeds = [*hub.files.own_speeds, *(s for e in of_events for s in e.own_speeds), *its.own_speeds]
+    given = None if options.rotor_speed is None else options.rotor_speed * RPM
+    if unused := speed_not_used(given, speeds):
+        found.note(unused)
     _checks(found, hub)
     return LoadsResult(
         asked=options,

@@ -39,11 +39,14 @@ class Event:
         Sums of n r^m of one event.
     levels : tuple of LevelSums
         Time and turns at level of each history; each stands for as many events.
+    own_speeds : tuple of ndarray
+        (2,) least and largest rotor speed that each history states [1/min]; NaN where it has none.
     """
 
     transient: Transient
     damage: Floats
     levels: tuple[LevelSums, ...]
+    own_speeds: tuple[Floats, ...]
 
 
 def event(a_year: float, files: Sequence[Path], found: Iterable[Digest]) -> Event:
@@ -58,15 +61,16 @@ def event(a_year: float, files: Sequence[Path], found: Iterable[Digest]) -> Even
     found : iterable of Digest
         Their digests.
     """
-    seconds, damages, levels = [], [], []
+    seconds, damages, levels, speeds = [], [], [], []
     for one in found:
         seconds.append(one.span.seconds)
         damages.append(one.cycles.damage)
         levels.append(one.levels)
+        speeds.append(one.own_speeds)
     first = files[0].stem
     name = first if len(files) == 1 else f"{first} and {len(files) - 1} more"
     transient = Transient(name, a_year, float(np.mean(seconds)))
-    return Event(transient, np.asarray(np.mean(damages, axis=0)), tuple(levels))
+    return Event(transient, np.asarray(np.mean(damages, axis=0)), tuple(levels), tuple(speeds))
 
 
 @dataclass(frozen=True, eq=False)

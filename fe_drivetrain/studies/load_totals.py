@@ -30,11 +30,14 @@ class LoadFiles:
         When each is.
     channels : Mapping[str, int]
         Which channels were read, and in how many files.
+    own_speeds : tuple of ndarray
+        (2,) least and largest rotor speed that each states [1/min]; NaN where it has none.
     """
 
     names: tuple[str, ...]
     spans: tuple[Span, ...]
     channels: Mapping[str, int]
+    own_speeds: tuple[Floats, ...]
 
     @property
     def seconds(self) -> float:
@@ -213,6 +216,7 @@ class LoadSums:
         self._names: list[str] = []
         self._spans: list[Span] = []
         self._channels: dict[str, int] = {}
+        self._own_speeds: list[Floats] = []
         self._windows: list[Windows] = []
         self._means: list[Floats] = []
         self._damages: list[Floats] = []
@@ -229,6 +233,7 @@ class LoadSums:
         self._names.append(name)
         self._spans.append(found.span)
         self._channels[found.channels] = self._channels.get(found.channels, 0) + 1
+        self._own_speeds.append(found.own_speeds)
         self._windows.append(found.windows)
         means = found.windows.values[:, :, 1].T @ found.windows.seconds / seconds
         self._means.append(means)
@@ -261,7 +266,12 @@ class LoadSums:
         assert self._sums is not None
         cycles, levels, torque = self._sums
         return LoadTotals(
-            LoadFiles(tuple(self._names), tuple(self._spans), dict(self._channels)),
+            LoadFiles(
+                tuple(self._names),
+                tuple(self._spans),
+                dict(self._channels),
+                tuple(self._own_speeds),
+            ),
             LoadStatistics(tuple(self._windows), np.array(self._means)),
             cycles,
             np.array(self._damages),

@@ -150,3 +150,13 @@ def captured(statistics: LoadStatistics, target: CaptureTarget) -> Capture | Non
     asked = np.where(within, target.windows, 0)
     missing = np.maximum(asked - matrix.counts.sum(axis=0), 0)
     return Capture(matrix, middles, asked, missing, target, int((~known).sum()))
+
+
+def winds_not_used(target: CaptureTarget, capture: Capture | None) -> list[str]:
+    """A sentence on a range of winds that says nothing, since no file has a wind speed."""
+    if target.low is None or capture is not None:
+        return []
+    return [
+        f"--winds {target.low:g}:{target.high:g} m/s is not used: no file has a wind speed. Name "
+        "its channel, as in --channel 'wind speed=Vhub'."
+    ]
