@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
@@ -190,45 +191,33 @@ def loads(
     if scene is not None:
         found.about(scene)
         reactions = steps.timed("scene", scene_reactions, scene, level)
-    mine = LoadSet(options.slopes) if against else None
-    hub, of_scene, others = _added_up(files, options, resume, steps, reactions, mine)
+    mine, its = LoadSet(options.slopes), LoadSet(options.slopes)
+    hub, of_scene, others = _added_up(
+        files, options, resume, steps, reactions, mine if against else None
+    )
     if not hub.has_loads:
         raise InputError("all hub loads of all files are zero: give histories with loads")
-    if site is not None:
-        require_winds(files, hub.statistics.mean_of("wind speed").tolist())
     capture = captured(hub.statistics, target)
-    _answer(found, hub, options)
-    for sentence in (
-        *cautions(hub, options),
-        *winds_not_used(target, capture),
-        *_aliased(hub),
-    ):
-        found.note(sentence)
-    if capture is not None:
-        found.answer(capture.sentence)
-    _data(found, hub, options, capture)
+    _hub_findings(found, hub, options, target, capture)
     if reactions is not None:
         found.data("reactions", reaction_rows(of_scene, options))
         found.data("reactions_stated", reactions.stated.facts())
     if others:
         found.data("other_channels", other_rows(others, options))
-    life = None
+    life = comparison = None
     if site is not None:
+        require_winds(files, hub.statistics.mean_of("wind speed").tolist())
         with steps.step("transients"):
             life = lifetime(hub, site, _events(transients, options, resume, report))
         found.data("lifetime", lifetime_rows(life, options))
-    comparison, its = None, LoadSet(options.slopes)
-    if mine is not None:
+    if against:
         with steps.step("the others"):
             for _, one in digests(against, options, resume, "the others", report, reactions):
                 its.add(one)
             comparison = compare_sets(mine, its)
         found.answer(*comparison.sentences)
-    of_events = life.events if life is not None else ()
-    speeds = [*hub.files.own_speeds, *(s for e in of_events for s in e.own_speeds), *its.own_speeds]
-    given = None if options.rotor_speed is None else options.rotor_speed * RPM
-    if unused := speed_not_used(given, speeds):
-        found.note(unused)
+    of_events = [] if life is None else [one.own_speeds for one in life.events]
+    _speed_not_used(found, options, [hub.files.own_speeds, *of_events, its.own_speeds])
     _checks(found, hub)
     return LoadsResult(
         asked=options,
@@ -239,8 +228,41 @@ def loads(
         lifetime=life,
         comparison=comparison,
         scene_reactions=reactions,
-        **found.frozen(steps.times, **_options(files, options, target, site, transients, against)),
+        **found.frozen(
+            steps.times,
+            level=None if scene is None else level,
+            **_options(files, options, target, site, transients, against),
+        ),
     )
+
+
+def _hub_findings(
+    found: Findings,
+    hub: LoadTotals,
+    options: LoadOptions,
+    target: CaptureTarget,
+    capture: Capture | None,
+) -> None:
+    """Answer, cautions and numbers of the hub loads."""
+    _answer(found, hub, options)
+    if capture is not None:
+        found.answer(capture.sentence)
+    for sentence in cautions(hub, options):
+        found.note(sentence)
+    for sentence in winds_not_used(target, capture):
+        found.note(sentence)
+    for sentence in _aliased(hub):
+        found.note(sentence)
+    _data(found, hub, options, capture)
+
+
+def _speed_not_used(
+    found: Findings, options: LoadOptions, stated: Sequence[Sequence[Floats]]
+) -> None:
+    """Note files that state a speed of their own where another one is given."""
+    given = None if options.rotor_speed is None else options.rotor_speed * RPM
+    if unused := speed_not_used(given, [speeds for own in stated for speeds in own]):
+        found.note(unused)
 
 
 def _added_up(
