@@ -1,10 +1,6 @@
 from .classes import Classes as Classes
 from .classes import added as added
 from .classes import in_classes as in_classes
-from .cycle_sums import CycleRule as CycleRule
-from .cycle_sums import CycleSums as CycleSums
-from .cycle_sums import count_cycles as count_cycles
-from .cycle_sums import equivalent_loads as equivalent_loads
 from .cycles import RESIDUES as RESIDUES
 from .cycles import Cycles as Cycles
 from .cycles import exceedance as exceedance

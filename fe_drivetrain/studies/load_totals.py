@@ -25,7 +25,7 @@ class LoadFiles:
     Attributes
     ----------
     names : tuple of str
-        Of each file.
+        Name of each file.
     spans : tuple of Span
         When each is.
     channels : Mapping[str, int]
@@ -57,7 +57,7 @@ class LoadStatistics:
     Attributes
     ----------
     windows : tuple of Windows
-        Of each file.
+        Windows of each file.
     means : ndarray, (files, channels)
         Mean over each file; NaN of what it has not.
     """
