@@ -140,13 +140,19 @@ def test_distributions_hold_all_time_and_turns(loaded: LoadsResult) -> None:
     )
 
 
-def test_loads_without_files_or_winds_are_refused(loaded: LoadsResult, tmp_path: Path) -> None:
+def test_loads_without_files_winds_or_slopes_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="there are no files"):
         loads([])
     still = tmp_path / "still.csv"
     write_csv(LoadHistory("still", np.arange(20) * 0.1, np.ones((20, 6))), still)
     with pytest.raises(InputError, match="no wind speed, by which --site weights"):
         loads([still], site=Site(8.5))
+    with pytest.raises(InputError, match="give a site, too"):
+        loads(still, transients=[(700.0, still)])
+    with pytest.raises(InputError, match="no slope of an S-N curve"):
+        LoadOptions(slopes=())
+    with pytest.raises(InputError, match="must be from 1 to 20"):
+        LoadOptions(slopes=(0.5,))
 
 
 def test_a_lifetime_is_that_of_its_winds_and_events(tmp_path: Path) -> None:
@@ -165,10 +171,14 @@ def test_a_lifetime_is_that_of_its_winds_and_events(tmp_path: Path) -> None:
     def damage(size: float) -> float:  # 0, 1, -1, 1, -1, 0: three half cycles of 2, two of 1
         return (1.5 * 2.0**slope + 1.0) * size**slope
 
-    files = [written("calm", 1e3, 8.0), written("storm", 2e3, 12.0)]
+    written("calm", 1e3, 8.0)
+    written("storm", 2e3, 12.0)
     stops = [written("stop", 3e3, 9.0), written("other_stop", 4e3, 9.0)]
     found = loads(
-        files, LoadOptions(slopes=(slope,)), site=Site(9.0), transients=[(500.0, stops)]
+        tmp_path / "*m.csv",  # calm and storm
+        LoadOptions(slopes=(slope,)),
+        site=Site(9.0),
+        transients=[(500.0, stops)],
     ).lifetime
     assert found is not None
     hours = Site(9.0).hours([6.0, 10.0, 14.0])

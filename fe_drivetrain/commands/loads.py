@@ -190,7 +190,7 @@ def loads_command(
         from fe_drivetrain.commands.scenes import named_scene
         from fe_drivetrain.commands.showing import shown
         from fe_drivetrain.histories.cycles import RESIDUES
-        from fe_drivetrain.histories.damage import SLOPES, check_slope
+        from fe_drivetrain.histories.damage import SLOPES
         from fe_drivetrain.hub_loads.channel_map import read_channel_map
         from fe_drivetrain.hub_loads.recorded import OWN_NAMES, recorded_files
         from fe_drivetrain.studies.load_digest import LoadOptions
@@ -200,8 +200,6 @@ def loads_command(
         from fe_drivetrain.suite.result_folders import run_case
 
         check_result_folder(out)
-        for exponent in slope or ():
-            check_slope(exponent)
         if residue not in RESIDUES:
             raise InputError(f"--residue {residue}: choose one of {', '.join(RESIDUES)}")
         options = LoadOptions(

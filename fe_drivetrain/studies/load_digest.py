@@ -11,10 +11,11 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.made_by import file_digest, program_hash
 from fe_drivetrain.histories.cycle_sums import CycleRule, CycleSums, count_cycles
 from fe_drivetrain.histories.cycles import Cycles, Residue
-from fe_drivetrain.histories.damage import FREQUENCY, SLOPES
+from fe_drivetrain.histories.damage import FREQUENCY, SLOPES, check_slope
 from fe_drivetrain.histories.faults import lone_samples, times_as_far
 from fe_drivetrain.histories.level_sums import (
     LevelSums,
@@ -69,6 +70,11 @@ class LoadOptions:
         How files call their channels, and their frame and origin.
     also : Sequence[str]
         Further channels, as files call them, of which there are statistics and cycles, too.
+
+    Raises
+    ------
+    InputError
+        A slope is not from 1 to 20, or there is none.
     """
 
     columns: Mapping[str, str] = field(default_factory=dict)
@@ -81,6 +87,12 @@ class LoadOptions:
     frequency: float = FREQUENCY
     mapping: ChannelMap = OWN_NAMES
     also: Sequence[str] = ()
+
+    def __post_init__(self) -> None:
+        if not self.slopes:
+            raise InputError("load histories: there is no slope of an S-N curve: give one or more")
+        for slope in self.slopes:
+            check_slope(slope)
 
     @property
     def names(self) -> ChannelMap:

@@ -15,6 +15,7 @@ from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.histories.sites import Site, require_winds
 from fe_drivetrain.histories.spectra import MULTIPLES
+from fe_drivetrain.hub_loads.recorded import Files, recorded_files
 from fe_drivetrain.procedure.failure_modes import ROTOR_TORQUE
 from fe_drivetrain.report.answer import value_with_band
 from fe_drivetrain.report.charts import chart, trace
@@ -42,12 +43,12 @@ from fe_drivetrain.studies.unused import RPM, speed_not_used
 from fe_drivetrain.suite.findings import Findings
 from fe_drivetrain.suite.records import Record
 
-_DEFAULT = LoadOptions()
-_TARGET = CaptureTarget()
 _NAMED = 3  # files that are sampled too slowly
 
-Transients = Sequence[tuple[float, Sequence[Path]]]
+Transients = Sequence[tuple[float, Files]]
 """Events of a lifetime: how many a year, and histories of one each."""
+
+_Event = tuple[float, Sequence[Path]]
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -137,13 +138,13 @@ class LoadsResult(Result):
 
 
 def loads(
-    files: Sequence[Path],
-    options: LoadOptions = _DEFAULT,
-    target: CaptureTarget = _TARGET,
+    files: Files,
+    options: LoadOptions | None = None,
+    target: CaptureTarget | None = None,
     *,
     site: Site | None = None,
     transients: Transients = (),
-    against: Sequence[Path] = (),
+    against: Files = (),
     scene: Scene | None = None,
     level: Literal[1, 4] = 1,
     resume: bool = False,
@@ -156,18 +157,19 @@ def loads(
 
     Parameters
     ----------
-    files : sequence of Path
-        Histories, of any length and step: see `fe_drivetrain.hub_loads.recorded_files`.
-    options : LoadOptions
-        How they are read and counted.
-    target : CaptureTarget
-        What the capture matrix should hold.
+    files : str, path, or sequence of these
+        Hub loads of any length and step: files (.out, .outb of OpenFAST, or .csv), folders, or
+        patterns as "outputs/*.outb".
+    options : LoadOptions or None
+        How they are read and counted; None takes all defaults.
+    target : CaptureTarget or None
+        What the capture matrix should hold; None takes six windows at each wind speed of the files.
     site : Site, optional
         Site whose winds weight the files over a lifetime.
-    transients : sequence of (float, sequence of Path)
-        Events of the lifetime: how many a year, and histories of one each.
-    against : sequence of Path
-        Another set of histories, with which these are compared.
+    transients : sequence of (float, files)
+        Events of the lifetime: how many a year, and histories of one each, as `files`.
+    against : str, path, or sequence of these
+        Another set of histories, with which these are compared, as `files`.
     scene : Scene, optional
         Scene whose bearing reactions to these loads are counted, too.
     level : int
@@ -181,46 +183,51 @@ def loads(
     ------
     InputError
         There is no file, one cannot be read, all hold zeros alone, a site is given and files have
-        no wind speed, or no wind has histories of both sets.
+        no wind speed, transients are given without a site, or no wind has histories of both sets.
     """
-    if not files:
+    paths, others_of = recorded_files(files), recorded_files(against)
+    events = [(a_year, recorded_files(of)) for a_year, of in transients]
+    if not paths:
         raise InputError("load histories: there are no files: give one or more")
+    if events and site is None:
+        raise InputError("load histories: transients count events of a lifetime: give a site, too")
+    asked, aim = options or LoadOptions(), target or CaptureTarget()
     found, steps = Findings(), Steps(report)
     found.seed = None
     reactions = None
     if scene is not None:
         found.about(scene)
         reactions = steps.timed("scene", scene_reactions, scene, level)
-    mine, its = LoadSet(options.slopes), LoadSet(options.slopes)
+    mine, its = LoadSet(asked.slopes), LoadSet(asked.slopes)
     hub, of_scene, others = _added_up(
-        files, options, resume, steps, reactions, mine if against else None
+        paths, asked, resume, steps, reactions, mine if others_of else None
     )
     if not hub.has_loads:
         raise InputError("all hub loads of all files are zero: give histories with loads")
-    capture = captured(hub.statistics, target)
-    _hub_findings(found, hub, options, target, capture)
+    capture = captured(hub.statistics, aim)
+    _hub_findings(found, hub, asked, aim, capture)
     if reactions is not None:
-        found.data("reactions", reaction_rows(of_scene, options))
+        found.data("reactions", reaction_rows(of_scene, asked))
         found.data("reactions_stated", reactions.stated.facts())
     if others:
-        found.data("other_channels", other_rows(others, options))
+        found.data("other_channels", other_rows(others, asked))
     life = comparison = None
     if site is not None:
-        require_winds(files, hub.statistics.mean_of("wind speed").tolist())
+        require_winds(paths, hub.statistics.mean_of("wind speed").tolist())
         with steps.step("transients"):
-            life = lifetime(hub, site, _events(transients, options, resume, report))
-        found.data("lifetime", lifetime_rows(life, options))
-    if against:
+            life = lifetime(hub, site, _events(events, asked, resume, report))
+        found.data("lifetime", lifetime_rows(life, asked))
+    if others_of:
         with steps.step("the others"):
-            for _, one in digests(against, options, resume, "the others", report, reactions):
+            for _, one in digests(others_of, asked, resume, "the others", report, reactions):
                 its.add(one)
             comparison = compare_sets(mine, its)
         found.answer(*comparison.sentences)
     of_events = [] if life is None else [one.own_speeds for one in life.events]
-    _speed_not_used(found, options, [hub.files.own_speeds, *of_events, its.own_speeds])
+    _speed_not_used(found, asked, [hub.files.own_speeds, *of_events, its.own_speeds])
     _checks(found, hub)
     return LoadsResult(
-        asked=options,
+        asked=asked,
         hub=hub,
         reactions=of_scene,
         others=others,
@@ -231,7 +238,7 @@ def loads(
         **found.frozen(
             steps.times,
             level=None if scene is None else level,
-            **_options(files, options, target, site, transients, against),
+            **_options(paths, asked, aim, site, events, others_of),
         ),
     )
 
@@ -300,7 +307,7 @@ def _name(file: Path, files: Sequence[Path]) -> str:
 
 
 def _events(
-    transients: Transients, options: LoadOptions, resume: bool, report: Progress
+    transients: Sequence[_Event], options: LoadOptions, resume: bool, report: Progress
 ) -> list[Event]:
     return [
         event(
@@ -414,7 +421,7 @@ def _options(
     options: LoadOptions,
     target: CaptureTarget,
     site: Site | None,
-    transients: Transients,
+    transients: Sequence[_Event],
     against: Sequence[Path],
 ) -> dict[str, Any]:
     """What was asked for, as plain data."""
