@@ -11,7 +11,6 @@ from tiny_case import Result
 
 from fe_drivetrain.bearing.catalogue import catalogue_entry
 from fe_drivetrain.cases.dynamics.drivetrain_levels import operations
-from fe_drivetrain.commands.life_bearings import Choices, bearings_of
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.hub_loads.channel_map import ChannelMap
@@ -19,6 +18,7 @@ from fe_drivetrain.hub_loads.recorded import read_recorded
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.scene.reading import library_scene
 from fe_drivetrain.studies import check
+from fe_drivetrain.studies.rolling_bearings import Choices, bearings_of
 from fe_drivetrain.studies.unused import choices_not_used, own_speeds, speed_not_used
 from fe_drivetrain.suite.run import Run
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from fe_drivetrain.commands.scene_page import describe
 from fe_drivetrain.commands.study_errors import errors
-from fe_drivetrain.commands.study_loads import StudyLoads, surrogate_loads, weightless
+from fe_drivetrain.commands.study_loads import StudyLoads, surrogate_loads
 from fe_drivetrain.commands.study_reactions import STATISTICS, reactions, write_reactions
 from fe_drivetrain.commands.uncertainty_page import bands, inputs
 from fe_drivetrain.commands.uncertainty_page import slopes as slopes_section
@@ -36,6 +36,7 @@ from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.unit_loads import Response
 from fe_drivetrain.scene.left_out import left_out
 from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.scene.without_weight import weightless
 from fe_drivetrain.studies.scene_description import checked_model, description, quick_scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record

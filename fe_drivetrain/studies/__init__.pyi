@@ -1,6 +1,9 @@
+from .bearing_lives import LifeResult as LifeResult
+from .bearing_lives import life as life
 from .design_comparison import CompareResult as CompareResult
 from .design_comparison import Varied as Varied
 from .design_comparison import compare as compare
+from .life_options import LifeOptions as LifeOptions
 from .load_digest import LoadOptions as LoadOptions
 from .load_histories import LoadsResult as LoadsResult
 from .load_histories import loads as loads

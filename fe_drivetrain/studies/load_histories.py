@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
@@ -42,6 +42,9 @@ from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.unused import RPM, speed_not_used
 from fe_drivetrain.suite.findings import Findings
 from fe_drivetrain.suite.records import Record
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 _NAMED = 3  # files that are sampled too slowly
 
@@ -120,6 +123,22 @@ class LoadsResult(Result):
         if self.comparison is not None:
             found["beside"] = rows.comparison_rows(self.comparison)
         return found
+
+    def to_frame(self, table: str = "") -> pd.DataFrame:
+        """A table as a pandas frame, those of `file_tables` first; without a name the figures.
+
+        Parameters
+        ----------
+        table : str
+            As "windows", "equivalent_loads" or "loops".
+
+        Raises
+        ------
+        InputError
+            pandas is not installed, or there is no such table.
+        """
+        every = replace(self, tables={**self.tables, **self.file_tables()})
+        return Result.to_frame(every, table)
 
     def chart(self) -> Chart:
         """Cycles of a range or a larger one, of the moments."""

@@ -12,8 +12,8 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 
 if TYPE_CHECKING:
-    from fe_drivetrain.commands.life_bearings import Choices, OneBearing
     from fe_drivetrain.scene.scene import Scene
+    from fe_drivetrain.studies.rolling_bearings import Choices, OneBearing
 
 RPM = 30.0 / np.pi
 """Revolutions a minute in a radian per second."""

@@ -1,4 +1,4 @@
-"""What the page of ``life`` needs of one bearing under one file, in little memory."""
+"""What a life needs of one bearing under one file, in little memory."""
 
 from __future__ import annotations
 
@@ -11,8 +11,6 @@ import numpy as np
 
 from fe_drivetrain.bearing.answers import race_pressures
 from fe_drivetrain.bearing.geometry import RollerRow
-from fe_drivetrain.commands.life_assumed import ratios, what_ifs
-from fe_drivetrain.commands.life_bearings import Choices, OneBearing
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
@@ -28,6 +26,8 @@ from fe_drivetrain.life.steps import Steps
 from fe_drivetrain.response.cached import whole_content
 from fe_drivetrain.response.entering import entering
 from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.studies.life_assumptions import ratios, what_ifs
+from fe_drivetrain.studies.rolling_bearings import Choices, OneBearing
 from fe_drivetrain.studies.unused import RPM, own_speeds, require_samples
 
 WINDOWS = 60
@@ -85,7 +85,7 @@ class LifeDigest:
     own_speeds : Floats
         (2,) least and largest rotor speed that the file states [1/min]; NaN where it has none.
     ratios : Floats
-        Damage with other values of what was assumed, see `fe_drivetrain.commands.life_assumed`.
+        Damage with other values of what was assumed, see `fe_drivetrain.studies.life_assumptions`.
     """
 
     damage: Damage
