@@ -10,6 +10,10 @@ from .input_uncertainty import uncertainty as uncertainty
 from .level_advice import AdviseResult as AdviseResult
 from .level_advice import advise as advise
 from .life_options import LifeOptions as LifeOptions
+from .load_digest import LoadOptions as LoadOptions
+from .load_histories import LoadsResult as LoadsResult
+from .load_histories import loads as loads
+from .load_winds import CaptureTarget as CaptureTarget
 from .part_survey import PartResult as PartResult
 from .part_survey import part as part
 from .project_validation import ValidateResult as ValidateResult
