@@ -27,9 +27,9 @@ class Steel:
     Attributes
     ----------
     youngs_modulus : float
-        [Pa].
+        Young's modulus of both gears [Pa].
     poisson_ratio : float
-        Of both.
+        Poisson ratio of both gears.
     """
 
     youngs_modulus: float = 206e9
@@ -62,9 +62,9 @@ class ToothCompliance:
     Attributes
     ----------
     bending, shear, axial : (n,) array
-        Of the tooth as a beam.
+        Compliance of the tooth as a beam [m^2/N].
     body : (n,) array
-        Of the gear below it.
+        Compliance of the gear body below the tooth [m^2/N].
     """
 
     bending: Floats
@@ -200,11 +200,11 @@ def line_contact(
     Parameters
     ----------
     load : float
-        On a length of face [N/m].
+        Load per length of face [N/m].
     curvatures : tuple of two (n,) arrays
         Radii of both flanks [m], negative if concave.
     depths : tuple of two (n,) arrays
-        Of both points, as those of the centre lines [m].
+        Depths of both points below the surfaces, such as those of the centre lines [m].
     steel : Steel
         Elastic constants.
 
@@ -254,14 +254,15 @@ def energy_law(
     hub_radii : tuple of two floats
         Where each gear body is held [m].
     load : float, optional
-        On a length of face [N/m], for `line_contact`; without one `yang_sun_contact`.
+        Load per length of face [N/m], for `line_contact`; without one `yang_sun_contact`.
     steel : Steel
         Elastic constants.
 
     Returns
     -------
     Law
-        Of the place of contact.
+        Stiffness of one pair of teeth per length of face [N/m^2], as a function of the place of
+        contact.
     """
 
     def law(place: Floats) -> Floats:

@@ -29,9 +29,9 @@ class Rack:
     Attributes
     ----------
     addendum : float
-        Of the gear's teeth.
+        Addendum of the gear's teeth.
     dedendum : float
-        Of the gear's teeth.
+        Dedendum of the gear's teeth.
     fillet : float
         Radius of the rack's tip, which makes the roots of an external gear.
     """
@@ -154,7 +154,7 @@ class Gear:
     def form_curvature(self) -> float:
         """Radius of curvature where the involute begins [m].
 
-        Of an external gear cut by its rack: where the straight flank of the rack ends. An internal
+        For an external gear cut by its rack: where the straight flank of the rack ends. An internal
         gear is cut by a pinion that is not known, so that its root circle stands in its place.
         """
         if self.internal:
@@ -187,7 +187,7 @@ class Gear:
         Parameters
         ----------
         radius : float
-            Of the circle [m], not below the base circle.
+            Radius of the circle [m], not below the base circle.
 
         Returns
         -------
@@ -351,7 +351,8 @@ class Pair:
         Returns
         -------
         tuple of two arrays
-            Of the first and of the second gear [m]; the concave one of an internal gear negative.
+            Radii of the first and of the second gear's flank [m]; an internal gear's (concave) is
+            negative.
         """
         first = np.asarray(place, dtype=np.float64)
         total = self.second.sign * self.centre_distance * sin(self.working_angle)

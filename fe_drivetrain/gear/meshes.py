@@ -26,9 +26,9 @@ class MeshStiffness:
     Attributes
     ----------
     mean : float
-        Over a period [N/m].
+        Mean stiffness over a period [N/m].
     contact_ratio : float
-        Of the gears; total pairs in contact, on average.
+        Contact ratio of the gears: mean number of pairs in contact.
     cosines, sines : (n,) array
         Coefficients of orders 1 to n [N/m]; empty for a constant stiffness.
     """
@@ -105,9 +105,9 @@ class StiffnessTable:
     Attributes
     ----------
     values : (n,) array
-        At phases 0, 1/n, ... (n-1)/n [N/m].
+        Stiffness at phases 0, 1/n, ... (n-1)/n [N/m].
     contact_ratio : float
-        Of the gears.
+        Contact ratio of the gears.
     """
 
     values: Floats
@@ -144,7 +144,7 @@ class StiffnessTable:
         Parameters
         ----------
         orders : int
-            How many, at most (n - 1) // 2 of n values.
+            Number of orders, at most (n - 1) // 2 of n values.
 
         Returns
         -------
@@ -172,11 +172,11 @@ def square_wave(pair_stiffness: float, contact_ratio: float, phase: float | Floa
     Parameters
     ----------
     pair_stiffness : float
-        Of one pair [N/m].
+        Stiffness of one pair of teeth [N/m].
     contact_ratio : float
-        1 or more.
+        Contact ratio, 1 or more.
     phase : float or array
-        In periods; at 0 a pair comes into contact.
+        Phase in periods; at 0 a pair comes into contact.
 
     Returns
     -------
@@ -199,16 +199,16 @@ def square_wave_series(pair_stiffness: float, contact_ratio: float, orders: int)
     Parameters
     ----------
     pair_stiffness : float
-        Of one pair, k / C of the paper [N/m].
+        Stiffness of one pair of teeth, k / C of the paper [N/m].
     contact_ratio : float
-        1 or more.
+        Contact ratio, 1 or more.
     orders : int
-        How many.
+        Number of orders.
 
     Returns
     -------
     MeshStiffness
-        Of mean C times the pair's stiffness.
+        Series whose mean is C times the pair's stiffness.
 
     Raises
     ------
@@ -242,7 +242,7 @@ def mesh_stiffness(pair: Pair, law: Law, points: int = 200, along: int = 2000) -
     pair : Pair
         Spur or helical.
     law : Law
-        Of one pair [N/m^2].
+        Stiffness of one pair of teeth per length of face [N/m^2].
     points : int
         Phases of the table.
     along : int
@@ -251,7 +251,7 @@ def mesh_stiffness(pair: Pair, law: Law, points: int = 200, along: int = 2000) -
     Returns
     -------
     StiffnessTable
-        [N/m].
+        Stiffness of the mesh at `points` phases [N/m].
     """
     path, pitch = pair.path, pair.first.base_pitch
     lag = pair.face_width * abs(tan(pair.first.base_helix))  # of the last slice along the path
@@ -278,7 +278,7 @@ def planet_meshes(
     Parameters
     ----------
     sun, ring : MeshStiffness
-        Of one planet, each with phase 0 where a pair comes into contact.
+        Meshes of one planet, each with phase 0 where a pair comes into contact.
     behind : float
         Delay of a planet's mesh with the ring against that with the sun, `ring_after_sun`.
     phases : (n,) array

@@ -39,11 +39,11 @@ class Running:
     Attributes
     ----------
     torque : float
-        On the first gear in this mesh [N m].
+        Torque on the first gear in this mesh [N m].
     speed : float
-        Of the first gear, against the carrier in a planetary stage [rad/s].
+        Speed of the first gear, against the carrier in a planetary stage [rad/s].
     viscosity : float
-        Of the oil at 40 degrees [m^2/s].
+        Kinematic viscosity of the oil at 40 degrees Celsius [m^2/s].
     flank_roughness : tuple of float
         R_z of both flanks [m], such as 4.8e-6.
     root_roughness : tuple of float
@@ -162,7 +162,7 @@ def elasticity_factor(first: GearMaterial, second: GearMaterial) -> float:
     Parameters
     ----------
     first, second : GearMaterial
-        Of both gears.
+        Materials of both gears.
 
     Returns
     -------
@@ -206,11 +206,11 @@ def contact_stress(
     pair : Pair
         Two gears.
     torque : float
-        On the first gear in this mesh [N m].
+        Torque on the first gear in this mesh [N m].
     factors : LoadFactors
-        Of this mesh.
+        Load factors of this mesh.
     materials : tuple of GearMaterial
-        Of both gears.
+        Materials of both gears.
 
     Returns
     -------
@@ -247,7 +247,7 @@ def helix_factor(gear: Gear, overlap_ratio: float) -> float:
     gear : Gear
         One of the pair.
     overlap_ratio : float
-        Of the pair; counts up to 1, the helix angle up to 30 degrees.
+        Overlap ratio of the pair; counts up to 1, the helix angle up to 30 degrees.
 
     Returns
     -------
@@ -307,11 +307,11 @@ def root_stress(
     pair : Pair
         Two gears.
     torque : float
-        On the first gear in this mesh [N m].
+        Torque on the first gear in this mesh [N m].
     factors : LoadFactors
-        Of this mesh.
+        Load factors of this mesh.
     cutter : Cutter, optional
-        Of an internal gear.
+        Tool that makes an internal gear.
     rims : tuple of float or None
         Thickness of the rims [m].
 
@@ -362,7 +362,7 @@ def endured_contact(
     running : Running
         Speed, oil and roughness.
     materials : tuple of GearMaterial
-        Of both gears.
+        Materials of both gears.
     endless : bool
         Whether less than the stress of 1e10 cycles is endured for ever.
 

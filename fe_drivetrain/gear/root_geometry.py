@@ -84,7 +84,7 @@ def tooth_root(gear: Gear, transverse_ratio: float, cutter: Cutter | None = None
     transverse_ratio : float
         Transverse contact ratio of the pair.
     cutter : Cutter, optional
-        Of an internal gear; its tip radius is the fillet of the gear's rack.
+        Tool that makes an internal gear; its tip radius is the fillet of the gear's rack.
 
     Returns
     -------

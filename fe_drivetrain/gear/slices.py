@@ -56,7 +56,7 @@ class Modifications:
     slope: float = 0.0
 
     def gap(self, pair: Pair, place: Floats, x: Floats, driving: bool = True) -> Floats:
-        """Gap that they leave.
+        """Gap that the modifications leave.
 
         Parameters
         ----------
@@ -65,9 +65,9 @@ class Modifications:
         place : ndarray, (n,)
             Distances from T1 along the line of action [m].
         x : ndarray, (n,)
-            From the middle of the face [m].
+            Distances from the middle of the face [m].
         driving : bool
-            Of the driving flank, or of the other.
+            Whether the gap is that of the driving flank, or of the other.
 
         Returns
         -------
@@ -97,11 +97,12 @@ class SlicedMesh:
     pair : Pair
         Two gears; the sign of the first one's helix counts.
     stiffness : Law
-        Of one pair of teeth per face width, in the transverse plane [N/m^2], of distances from T1.
+        Stiffness of one pair of teeth per face width, in the transverse plane [N/m^2], as a
+        function of distances from T1.
     modifications : Modifications
-        Of both flanks.
+        Modifications of both flanks.
     slices : int
-        Over the face width.
+        Number of slices over the face width.
     backlash : float, optional
         Play along the line of action in the transverse plane [m]; that of the pair's profile shifts
         where left out.
@@ -171,7 +172,7 @@ def contacts(mesh: SlicedMesh, phase: float) -> Contacts:
     Parameters
     ----------
     mesh : SlicedMesh
-        Of the pair.
+        Pair of gears, its teeth in slices.
     phase : float
         How far the mesh has turned, in periods: at 0 a pair of teeth begins at the middle of the
         face.
@@ -179,7 +180,7 @@ def contacts(mesh: SlicedMesh, phase: float) -> Contacts:
     Returns
     -------
     Contacts
-        Of the flanks that point either way, half the backlash from each.
+        Contacts of the flanks that point either way, half the backlash from each.
     """
     pair, x = mesh.pair, mesh.x
     first, path, pitch = pair.first, pair.path, pair.first.base_pitch

@@ -110,7 +110,7 @@ class LifeCurve:
         Parameters
         ----------
         cycles : float
-            Of load.
+            Number of load cycles.
 
         Returns
         -------
@@ -175,9 +175,9 @@ def life_factor(material: GearMaterial, cycles: float, root: bool = False) -> fl
     Parameters
     ----------
     material : GearMaterial
-        Of the gear.
+        Material of the gear.
     cycles : float
-        Of load on one flank of a tooth.
+        Load cycles of one flank of a tooth.
     root : bool
         Whether the root is asked for.
 
@@ -198,7 +198,7 @@ def lubricant_factor(contact_limit: float, viscosity: float) -> float:
     contact_limit : float
         sigma_Hlim of the softer gear [Pa].
     viscosity : float
-        Of the oil at 40 degrees [m^2/s].
+        Kinematic viscosity of the oil at 40 degrees Celsius [m^2/s].
 
     Returns
     -------
@@ -238,7 +238,7 @@ def roughness_factor(contact_limit: float, roughness: float, radius: float) -> f
     roughness : float
         Mean R_z of both flanks [m].
     radius : float
-        Of relative curvature at the pitch point, rho_red [m].
+        Radius of relative curvature at the pitch point, rho_red [m].
 
     Returns
     -------
@@ -263,7 +263,7 @@ def hardness_factor(
     Parameters
     ----------
     brinell : float
-        Of the softer gear [HB].
+        Brinell hardness of the softer gear [HB].
     equivalent_roughness : float
         R_zH of the hard one [m], counted from 3 to 16 um.
     static : bool
@@ -291,16 +291,16 @@ def equivalent_roughness(
     hard, soft : float
         R_z of both flanks [m].
     radius : float
-        Of relative curvature [m].
+        Radius of relative curvature [m].
     viscosity : float
-        Of the oil at 40 degrees [m^2/s].
+        Kinematic viscosity of the oil at 40 degrees Celsius [m^2/s].
     speed : float
-        At the reference circle [m/s].
+        Speed at the reference circle [m/s].
 
     Returns
     -------
     float
-        [m].
+        Equivalent roughness R_zH [m].
     """
     film = (1e6 * viscosity * speed / 1500.0) ** 0.33
     return float(hard * (0.01 / radius) ** 0.33 * (hard / soft) ** 0.66 / film)
@@ -316,7 +316,7 @@ def notch_factor(material: GearMaterial, notch: float) -> float:
     Parameters
     ----------
     material : GearMaterial
-        Of the gear.
+        Material of the gear.
     notch : float
         Notch parameter q_s.
 
@@ -337,7 +337,7 @@ def surface_factor(material: GearMaterial, roughness: float) -> float:
     Parameters
     ----------
     material : GearMaterial
-        Of the gear; through-hardened with a tensile strength of 800 MPa at least.
+        Material of the gear; through-hardened with a tensile strength of 800 MPa at least.
     roughness : float
         R_z of the fillet [m], counted from 1 to 40 um.
 
@@ -358,9 +358,9 @@ def size_factor(material: GearMaterial, normal_module: float) -> float:
     Parameters
     ----------
     material : GearMaterial
-        Of the gear.
+        Material of the gear.
     normal_module : float
-        [m].
+        Normal module [m].
 
     Returns
     -------
