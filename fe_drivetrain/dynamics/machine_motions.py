@@ -17,7 +17,7 @@ from fe_drivetrain.dynamics.modes import spring_frequencies, system_modes
 from fe_drivetrain.dynamics.system import System, without_massless
 from fe_drivetrain.torsion.system import resolved
 
-#: Of what a spring's parts do to its length: turning that winds it by less is round-off.
+#: Share of what a spring's parts do to its length below which turning that winds it is round-off.
 WOUND = 1e-9
 #: Motions that are named in one message.
 NAMED = 3

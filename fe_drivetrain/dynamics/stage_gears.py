@@ -13,9 +13,9 @@ def stage_pairs(stage: PlanetaryData | ParallelData, name: str) -> dict[str, Pai
     Parameters
     ----------
     stage : PlanetaryData or ParallelData
-        With teeth, module and profile shifts.
+        Stage with teeth, module and profile shifts.
     name : str
-        Of it, in messages.
+        Name of the stage in messages.
 
     Raises
     ------

@@ -159,14 +159,14 @@ CONTACT_LIFE: dict[str, tuple[float, float, float]] = {
     "through-hardened": (1e5, 1.6, 5e7),
     "nitrided": (1e5, 1.3, 2e6),
 }
-"""Of Z_NT, where no pitting is allowed: last cycles of the static value, that value, the knee."""
+"""Z_NT, where no pitting is allowed: last cycles of the static value, that value, the knee."""
 
 ROOT_LIFE: dict[str, tuple[float, float, float]] = {
     "case-hardened": (1e3, 2.5, 3e6),
     "through-hardened": (1e4, 2.5, 3e6),
     "nitrided": (1e3, 1.6, 3e6),
 }
-"""Of Y_NT, as `CONTACT_LIFE`."""
+"""Y_NT, with the same three values as `CONTACT_LIFE`."""
 
 
 def life_factor(material: GearMaterial, cycles: float, root: bool = False) -> float:
@@ -307,7 +307,7 @@ def equivalent_roughness(
 
 
 SLIP_LAYERS = ((500e6, 600e6, 800e6, 1000e6), (0.0281, 0.0194, 0.0064, 0.0014))
-"""Of through-hardened steel: yield strength [Pa], slip layer thickness rho' [mm]."""
+"""Yield strength [Pa] and slip layer thickness rho' [mm] of through-hardened steel."""
 
 
 def notch_factor(material: GearMaterial, notch: float) -> float:
