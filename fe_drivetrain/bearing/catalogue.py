@@ -140,7 +140,7 @@ class Entry(BaseModel):
         Parameters
         ----------
         name : str
-            For messages and reports.
+            Name for messages and reports.
 
         Returns
         -------
@@ -235,7 +235,7 @@ def catalogue_bearing(name: str, *more: str | Path, **changes: Any) -> Bearing:
     Parameters
     ----------
     name : str
-        Of the entry.
+        Name of the entry.
     *more : str or Path
         Catalogue files beside the package's.
     **changes : Any
@@ -244,7 +244,7 @@ def catalogue_bearing(name: str, *more: str | Path, **changes: Any) -> Bearing:
     Returns
     -------
     bearing : Bearing
-        Named as the entry.
+        Bearing named as the entry.
 
     Raises
     ------
@@ -255,12 +255,12 @@ def catalogue_bearing(name: str, *more: str | Path, **changes: Any) -> Bearing:
 
 
 def catalogue_entry(name: str, *more: str | Path, **changes: Any) -> Entry:
-    """What a catalogue says of a bearing; see `catalogue_bearing`.
+    """Catalogue entry of a bearing; see `catalogue_bearing`.
 
     Parameters
     ----------
     name : str
-        Of the entry.
+        Name of the entry.
     *more : str or Path
         Catalogue files beside the package's.
     **changes : Any
@@ -269,7 +269,7 @@ def catalogue_entry(name: str, *more: str | Path, **changes: Any) -> Entry:
     Returns
     -------
     entry : Entry
-        With its changes, checked.
+        Entry with its changes, checked.
 
     Raises
     ------

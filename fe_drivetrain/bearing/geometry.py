@@ -22,7 +22,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 
 LAMINAE = 30
-"""Laminae of a roller where nothing else is given, the least of ISO/TS 16281."""
+"""Laminae of a roller where nothing else is given, the minimum of ISO/TS 16281."""
 
 
 @dataclass(frozen=True)
@@ -32,26 +32,26 @@ class RollerRow:
     Attributes
     ----------
     rollers : int
-        How many.
+        Number of rollers.
     place : float
-        x of the rollers' middles [m].
+        Axial place x of the rollers' middles [m].
     radius : float
-        Of the rollers' middles from the axis: half the pitch diameter [m].
+        Distance of the rollers' middles from the axis: half the pitch diameter [m].
     angle : float
         Contact angle [rad]; the sign says which push of the inner ring the row carries.
     diameter, length : float
-        Of a roller: in its middle, and effective [m].
+        Diameter of a roller in its middle, and effective length [m].
     law : ContactLaw
-        Of one roller.
+        Contact law of one roller.
     clearance : float
-        Along the contact normal, both contacts together [m]; negative is a preload.
+        Clearance along the contact normal, both contacts together [m]; negative is a preload.
     laminae : int
-        Slices of a roller; 0 is the closed form along a straight roller.
+        Number of slices of a roller; 0 is the closed form along a straight roller.
     crown : float
         Factor of the logarithmic profile of one contact [m], both being crowned; 0 is straight.
     aligning : bool
-        The rollers carry no moment, as on a race that is a sphere about the bearing's centre, or in
-        a toroidal bearing.
+        Whether the rollers carry no moment, as on a race that is a sphere about the bearing's
+        centre, or in a toroidal bearing.
     phase : float
         Angle of the first roller [rad].
     """
@@ -116,20 +116,20 @@ class BallRow:
     Attributes
     ----------
     balls : int
-        How many.
+        Number of balls.
     place, radius : float
-        x and radius of the balls' centres [m].
+        Axial place x and radius of the balls' centres [m].
     angle : float
         Contact angle of the unloaded bearing without clearance [rad]: 0 is a deep groove.
     diameter : float
-        Of a ball [m].
+        Diameter of a ball [m].
     inner_groove, outer_groove : float
         Radii of the grooves [m].
     law : ContactLaw
-        Of one ball.
+        Contact law of one ball.
     clearance : float
-        Along the contact normal [m]: half of the radial internal clearance of a deep groove;
-        negative is a preload.
+        Clearance along the contact normal [m]: half of the radial internal clearance of a deep
+        groove; negative is a preload.
     phase : float
         Angle of the first ball [rad].
     """
@@ -183,9 +183,9 @@ class Bearing:
     Attributes
     ----------
     name : str
-        For messages and reports.
+        Name for messages and reports.
     rows : tuple
-        Of `RollerRow` and `BallRow`, upwind first.
+        Rows, each a `RollerRow` or a `BallRow`, upwind first.
     """
 
     name: str
@@ -202,7 +202,7 @@ class Bearing:
 
     @property
     def arm(self) -> float:
-        """The length that makes moments of forces: the largest pitch radius [m]."""
+        """Length that makes moments of forces: the maximum pitch radius [m]."""
         return max(row.radius for row in self.rows)
 
     def with_rows(self, **changes: float | int | ContactLaw) -> Bearing:

@@ -40,12 +40,12 @@ class Packed(NamedTuple):
     first : Ints
         (rows + 1,) where the rolling elements of each row begin.
     sines, cosines : Floats
-        (total,) of the places of all rolling elements.
+        Sines and cosines (total,) of the places of all rolling elements.
     lam : Ints
         (rows + 1,) where the laminae of each row begin.
     xi, free, shares : Floats
-        (laminae,) their places along the roller, what each has to approach first [m], and its share
-        of the roller's stiffness.
+        Places (laminae,) along the roller, what each has to approach first [m], and its share of
+        the roller's stiffness.
     nodes, node_shares : Floats
         (rows, NODES) places and shares that stand for all laminae of a straight roller which is
         loaded along all of its length: `gauss_of_laminae`.

@@ -13,7 +13,7 @@ from fe_drivetrain.common.arrays import Floats, Ints
 MAX_STEPS = 100
 MAX_TRIALS = 80
 
-# Of the stiffness of all contacts, for what none carries yet, at the first step.
+# Share of the stiffness of all contacts, for what none carries yet, at the first step.
 FIRMEST = 1e-3
 
 
@@ -230,13 +230,13 @@ def solve_cases(
     Parameters
     ----------
     loads : Floats
-        (n, 5) on the inner ring.
+        Loads (n, 5) on the inner ring.
     bases : Floats
-        (1 or n, 5, m): the motions that are free, as columns.
+        Motions (1 or n, 5, m) that are free, as columns.
     guesses : Floats
-        (n, m) to start from where there is no case before.
+        Unknowns (n, m) to start from where there is no case before.
     soft, scales : Floats
-        (n or 1, m, m) stiffness by which singular tangents are held, and (n,) its factor.
+        Stiffness (n or 1, m, m) by which singular tangents are held, and its factor (n,).
     bearing : Packed
         The bearing.
     tolerance : float
@@ -244,7 +244,7 @@ def solve_cases(
     warm, damped : bool
         Start from the case before; damp the steps.
     displacements, steps, evaluations, residuals : arrays
-        (n, 5), (n,), (n,), (n,): filled.
+        Results (n, 5), (n,), (n,), (n,), overwritten.
     """
     m = bases.shape[2]
     start, F, K = np.zeros(m), np.empty(5), np.empty((5, 5))

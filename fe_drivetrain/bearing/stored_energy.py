@@ -26,12 +26,12 @@ def energy_of(bearing: Bearing, displacements: ArrayLike) -> Floats:
     bearing : Bearing
         The bearing.
     displacements : array_like
-        (n, 5) or (5,): u_x, u_y, u_z [m], theta_y, theta_z [rad].
+        Displacements (n, 5) or (5,): u_x, u_y, u_z [m], theta_y, theta_z [rad].
 
     Returns
     -------
     energy : Floats
-        (n,) [J].
+        Energy (n,) [J].
     """
     u = checked_motions(bearing, displacements)
     pack = packed(bearing)

@@ -57,7 +57,7 @@ BODY_RANGE = (1.4, 7.0)
 
 @dataclass(frozen=True)
 class ToothCompliance:
-    """What gives way under a line load on one tooth, by part [m^2/N].
+    """Compliance of one tooth under a line load, by part [m^2/N].
 
     Attributes
     ----------
