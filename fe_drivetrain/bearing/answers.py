@@ -120,8 +120,8 @@ def laminae_of_contacts(row: RollerRow, approach: ArrayLike, lean: ArrayLike) ->
     row : RollerRow
         Row with one lamina or more.
     approach, lean : array_like
-        Approach (n, rollers) of the races at the roller's middle [m], and along the roller [rad],
-        as `fe_drivetrain.rings.AssemblyEquilibrium.deflections` has them.
+        Approach (n, rollers) of the races at the roller's middle [m], and lean along the roller
+        [rad], as `fe_drivetrain.rings.AssemblyEquilibrium.deflections` has them.
 
     Returns
     -------

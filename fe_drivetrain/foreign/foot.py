@@ -30,7 +30,7 @@ from fe_drivetrain.mesh.facets import MEANS, face_weights
 from fe_drivetrain.mesh.mesh import Mesh
 
 MOST_PATCHES = 400
-"""Of a foot: its contact is a dense problem."""
+"""Maximum number of patches of a foot: its contact is a dense problem."""
 
 _LEAST_AREA = 0.2  # of the mean area of patches: smaller ones join their neighbours
 _NOTHING = 1e-9  # of the largest force or lift: round-off, no change of contact
@@ -62,18 +62,18 @@ def foot_patches(mesh: Mesh, name: str, size: float, n_dofs: int) -> Patches:
     Parameters
     ----------
     mesh : Mesh
-        With the face "NAME.housing.base".
+        Mesh with the face "NAME.housing.base".
     name : str
-        Of the bearing.
+        Name of the bearing.
     size : float
-        Most of a patch's sides [m].
+        Maximum length of a patch's sides [m].
     n_dofs : int
         Degrees of freedom of the model.
 
     Returns
     -------
     Patches
-        Points "NAME.foot 1", ... at the centroids.
+        Patches with points "NAME.foot 1", ... at the centroids.
 
     Raises
     ------
@@ -144,7 +144,7 @@ class FootState(NamedTuple):
     Attributes
     ----------
     motion : Floats
-        (6,) of the seat since the bolts were tightened [m, rad].
+        Motion (6,) of the seat since the bolts were tightened [m, rad].
     closed : Bools
         (P,) which patches are pressed.
     forces : Floats
@@ -184,9 +184,9 @@ class ClampedFoot:
     Attributes
     ----------
     compliance : Floats
-        (n, n) of the foot, the seat held [m/N, 1/N, rad/(N m)].
+        Compliance (n, n) of the foot, the seat held [m/N, 1/N, rad/(N m)].
     rigid : Floats
-        (n, 6) motions of the foot with the seat, where nothing strains.
+        Motions (n, 6) of the foot with the seat, where nothing strains.
     areas : Floats
         (P,) of the patches [m^2].
     places : Floats
@@ -325,7 +325,7 @@ class ClampedFoot:
         Parameters
         ----------
         wrench : Floats
-            (6,) force and moment on the seat, at the bearing's centre [N, N m].
+            Force and moment (6,) on the seat, at the bearing's centre [N, N m].
 
         Raises
         ------
@@ -352,7 +352,7 @@ class ClampedFoot:
         Parameters
         ----------
         wrench : Floats
-            (6,) force and moment on the seat, at the bearing's centre [N, N m].
+            Force and moment (6,) on the seat, at the bearing's centre [N, N m].
         """
         pressed = self._tightened.pressed
         return self._state(pressed, pressed, self._loads(wrench))
@@ -402,19 +402,19 @@ class ClampedFoot:
         return forces[:, 0], self._tension(u, np.zeros((len(self.axes), 6)))
 
     def opening(self, wrench: Floats) -> tuple[float, int]:
-        """The least factor on a load at which a pressed patch opens, and its number.
+        """Minimum factor on a load at which a pressed patch opens, and the number of the patch.
 
         Parameters
         ----------
         wrench : Floats
-            (6,) force and moment on the seat, at the bearing's centre [N, N m].
+            Force and moment (6,) on the seat, at the bearing's centre [N, N m].
 
         Returns
         -------
         float
             inf where none ever opens.
         int
-            From 0.
+            Number of the patch, from 0.
         """
         pressed = self.tightened
         change = self.slopes()[0] @ wrench
@@ -443,8 +443,8 @@ class ClampedFoot:
         Parameters
         ----------
         wrench : Floats
-            (6,) force and moment on the seat, at the bearing's centre [N, N m].
+            Force and moment (6,) on the seat, at the bearing's centre [N, N m].
         factors : Sequence[float]
-            On it.
+            Factors on the wrench.
         """
         return [self.state(factor * np.asarray(wrench)) for factor in factors]

@@ -1,8 +1,8 @@
-"""Healing of a STEP file's solids in the open gmsh model, in mm: only where needed, least first.
+"""Healing of a STEP file's solids in the open gmsh model, in mm: only where needed.
 
 Healing can lose a sound solid: sewing takes a torus, one face without an edge, for no shell. So a
 file is taken as it is where its shells are closed and gmsh meshes their faces; else the steps of
-healing are tried from least to most, each from the file as it was read.
+healing are tried from the smallest to the largest, each from the file as it was read.
 
 This runs in a process of its own, see `reading`; it imports little else than gmsh and numpy.
 """
@@ -36,7 +36,7 @@ class Step(NamedTuple):
     Attributes
     ----------
     words : str
-        What was done, for users.
+        Sentence that says what was done, for users.
     flags : tuple[bool, bool, bool, bool, bool]
         Degenerated edges, small edges and small faces repaired; faces sewn, solids made of shells.
     """
@@ -56,14 +56,14 @@ _REMOVING = [step for step in _STEPS if step.flags[2]]  # where small details ar
 
 
 class Healed(NamedTuple):
-    """What is in the model now, and what it took.
+    """Contents of the model after healing, and the step that it took.
 
     Attributes
     ----------
     after : dict[str, Any]
-        Of `counted`.
+        Counts after healing, from `counted`.
     words : str
-        What was done, in a sentence.
+        Sentence that says what was done.
     step : int or None
         Place of the step of healing among those tried; None where there was none.
     """
@@ -134,7 +134,7 @@ def surface_mesh(finer: float = 1.0) -> None:
     Parameters
     ----------
     finer : float
-        How many times finer.
+        Factor by which elements are smaller.
     """
     size = size_of_all() / finer
     gmsh.option.setNumber("Mesh.MeshSizeMax", size / _COARSE)
@@ -191,20 +191,22 @@ def heal(
     smallest_detail: float,
     known: Mapping[str, Any] | None = None,
 ) -> Healed:
-    """Leave sound solids in the model: as they are read, or with the least healing that they need.
+    """Leave sound solids in the model: as they are read, or with the minimum healing that they
+    need.
 
     Parameters
     ----------
     name : str
-        Of the file, for messages.
+        Name of the file, for messages.
     before : dict[str, Any]
-        Of `counted`, of what is in the model now.
+        Counts from `counted`, of what is in the model now.
     read : callable
-        Puts what is in the file into an empty model.
+        Function that puts what is in the file into an empty model.
     smallest_detail : float
-        Edges and small faces below it are removed; none are if 0 [mm].
+        Size below which edges and small faces are removed; none are if 0 [mm].
     known : Mapping[str, Any] or None
-        "words" and "step" of `Healed`, as found before for the same file: it is not tried again.
+        Values "words" and "step" of `Healed`, as found before for the same file: it is not tried
+        again.
 
     Returns
     -------

@@ -40,20 +40,20 @@ def opened(
     part: str | None = None,
     known: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
-    """Import and heal the solids of a STEP file, or one of them; what is known, for `Survey`.
+    """Import and heal the solids of a STEP file, or one of them; returns its survey, for `Survey`.
 
     Several solids are glued: they share the faces in which they touch.
 
     Parameters
     ----------
     path : str
-        The file.
+        Path of the file.
     smallest_detail : float
-        Of `heal` [mm].
+        Size below which details are removed, see `heal` [mm].
     part : str or None
-        The name of the solid that is wanted alone.
+        Name of the solid that is wanted alone.
     known : Mapping[str, Any] or None
-        "healed" of an earlier result for the same file, detail and part.
+        Value "healed" of an earlier result for the same file, detail and part.
     """
     name = Path(path).name
     for option in ("FixDegenerated", "FixSmallEdges", "FixSmallFaces", "SewFaces", "MakeSolids"):

@@ -31,13 +31,13 @@ class Mark(NamedTuple):
     Attributes
     ----------
     name : str
-        As the text has it.
+        Name as in the text.
     place : tuple[float, float, float]
-        Where it is, in the file's unit; of a bore its middle.
+        Position, in the file's unit; of a bore its middle.
     reach : tuple[float, float, float]
-        From the middle of a bore to one of its ends.
+        Vector from the middle of a bore to one of its ends.
     normal : tuple[float, float, float]
-        Outward, of a plane; zeros of a bore.
+        Outward normal of a plane; zeros of a bore.
     """
 
     name: str
@@ -52,11 +52,11 @@ class Survey(NamedTuple):
     Attributes
     ----------
     text : str
-        In words and numbers, for the terminal.
+        Text in words and numbers, for the terminal.
     points : Floats
-        (n, 3) of its surface, in the file's unit.
+        Points (n, 3) of its surface, in the file's unit.
     triangles : Ints
-        (k, 3) of its surface.
+        Triangles (k, 3) of its surface.
     marks : tuple[Mark, ...]
         Seats and planes by the names that the text gives them.
     """
