@@ -114,7 +114,7 @@ def factorise(K: sparse.bsr_array, method: str) -> Factor:
     Parameters
     ----------
     K : sparse.bsr_array
-        (n, n).
+        Stiffness (n, n).
     method : str
         ``superlu``, ``pardiso`` or ``cholmod``.
 

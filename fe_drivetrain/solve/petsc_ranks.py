@@ -68,8 +68,8 @@ def rows_of(folder: Path, low: int, high: int) -> Any:
 class Joined:
     """A preconditioner of bodies, corrected for joints that take means over faces.
 
-    As `multigrid.Joined`, whose parts it has for the rows of this process; sums over all processes
-    are of as many numbers as joints have rows.
+    Same as `multigrid.Joined`, whose parts it has for the rows of this process; sums over all
+    processes are of as many numbers as joints have rows.
     """
 
     def __init__(self, rank: Rank, pc: Any) -> None:
@@ -229,7 +229,7 @@ class Rank:
         )
 
     def _checks(self, x: Floats, F: Floats) -> dict[str, Any]:
-        """Largest |K x - f| / |f|, and |x|.|K||x| and x.K x of each column; see `rounding`."""
+        """Maximum |K x - f| / |f|, and |x|.|K||x| and x.K x of each column; see `rounding`."""
         indptr, columns, data = self.K.getValuesCSR()
         low, high = 3 * self.low, 3 * self.high
         outside = (columns < low) | (columns >= high)

@@ -17,7 +17,7 @@ TOLERANCE = 1e-9
 """Energy error at which iterations stop, relative; squared, that of a load's own stiffness."""
 
 LAST_DIGIT = 1e-32
-"""Of the squared residual in the preconditioner's norm: below it a column is solved."""
+"""Share of the squared residual in the preconditioner's norm below which a column is solved."""
 
 _RECENT = 1e-2
 _PATIENCE = 40
@@ -32,7 +32,7 @@ def energy_error(terms: NDArray[np.float64]) -> float:
     Parameters
     ----------
     terms : ndarray
-        (k, m) what each step of conjugate gradients added to the squared energy norm.
+        Terms (k, m) that each step of conjugate gradients added to the squared energy norm.
     """
     last = terms[-1]
     tails = np.cumsum(terms[::-1], axis=0)[::-1]  # from each step to the last
@@ -59,11 +59,11 @@ def is_hopeless(
     Parameters
     ----------
     errors : sequence of float
-        After each step so far.
+        Energy errors after each step so far.
     tolerance : float
-        To come to.
+        Tolerance to come to.
     most : int
-        Steps that there are.
+        Maximum number of steps.
     foreseen : callable
         Gives the number of steps that it was thought to take; asked only where it decides.
     """
