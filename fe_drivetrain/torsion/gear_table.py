@@ -110,7 +110,7 @@ class PlanetaryStage(_Stage):
     planet_teeth: Teeth | None = Field(
         default=None,
         description="teeth of a planet, beside those of ring and sun; without, (ring - sun) / 2, "
-        "as of stages without profile shift",
+        "as in stages without profile shift",
         json_schema_extra={"unit": "-", "source": "assumed: (ring - sun) / 2, no profile shift"},
     )
     carrier: float = _inertia("inertia of the carrier, planets as points")
