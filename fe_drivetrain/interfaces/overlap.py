@@ -42,12 +42,12 @@ class Pieces:
     Attributes
     ----------
     slave, master : Ints
-        (n,) facets.
+        Facets (n,) of both faces.
     area : Floats
-        (n,) [m^2].
+        Area (n,) [m^2].
     own, across : Floats
-        (n, k, k) and (n, k, l): integrals of products of the slave's shape functions with
-        themselves and with the master's [m^2].
+        Integrals (n, k, k) and (n, k, l) of products of the slave's shape functions with themselves
+        and with the master's [m^2].
     """
 
     slave: Ints
@@ -352,16 +352,16 @@ def _bulges(points: Floats, facets: Ints, outward: bool) -> tuple[Ints, Floats]:
     Parameters
     ----------
     points : Floats
-        (n, 3) nodes [m].
+        Nodes (n, 3) [m].
     facets : Ints
-        (nf, k) the face.
+        Facets (nf, k) of the face.
     outward : bool
         Chords of edges that bulge outward and half chords of others, or the other way round.
 
     Returns
     -------
     owner, triangles
-        (m,) facets, and (m, 3, 3) corners, turned as the facets [m].
+        Facets (m,), and corners (m, 3, 3), turned as the facets [m].
     """
     if facets.shape[1] in (3, 4):
         return np.zeros(0, dtype=np.int64), np.zeros((0, 3, 3))
