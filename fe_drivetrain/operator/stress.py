@@ -18,11 +18,11 @@ def stresses(
     Parameters
     ----------
     points : Floats
-        (n, 3) node coordinates [m].
+        Node coordinates (n, 3) [m].
     cells : Ints
         (n_cells, k) node numbers in VTK's order.
     u : Floats
-        (3 n,) or longer, displacements [m].
+        Displacements (3 n,) or longer [m].
     lame : tuple[float, float]
         Lame's constants (lambda, mu) [Pa].
     at : Floats
@@ -96,12 +96,12 @@ def nodal_stresses(points: Floats, cells: Ints, u: Floats, lame: tuple[float, fl
     Parameters
     ----------
     points, cells, u, lame : Floats, Ints, Floats, tuple[float, float]
-        As for `stresses`; cells of one material.
+        Arguments of `stresses`; cells of one material.
 
     Returns
     -------
     stresses
-        (n, 6) [Pa]; NaN at nodes that no cell has.
+        Stresses (n, 6) [Pa]; NaN at nodes that no cell has.
     """
     kind = element_kind(cells.shape[1])
     at, weights, to_nodes = _best_points(kind)
