@@ -58,14 +58,14 @@ def generate(
     Parameters
     ----------
     shaft, bearings, housings, sizes, bonded, bands : see `fe_drivetrain.geometry.build`
-        As there.
+        Parts and sizes, as `fe_drivetrain.geometry.build` takes them.
     local : LocalSizes or None
-        Smaller sizes where they are wanted, see `fe_drivetrain.mesh.adaptivity`.
+        Local sizes, smaller where they are wanted, see `fe_drivetrain.mesh.adaptivity`.
 
     Returns
     -------
     Mesh
-        Every element valid everywhere inside.
+        Mesh in which every element is valid everywhere inside.
 
     Raises
     ------
@@ -118,7 +118,7 @@ def relax_flat_cells(mesh: Mesh, floor: float = 0.05, passes: int = 4) -> Mesh:
     floor : float
         Cells of a smaller scaled Jacobian are relaxed.
     passes : int
-        How often at most; each halves what curvature is left.
+        Maximum number of passes; each halves the curvature that is left.
     """
     points, moves = mesh.points.copy(), np.ones(len(mesh.points), dtype=bool)
     for name in set(mesh.faces) - {"shaft.front", "shaft.rear", "shaft.bore"}:

@@ -13,7 +13,7 @@ def jacobian(points: Floats, cells: Ints, gradients: Floats) -> tuple[Floats, Fl
     Parameters
     ----------
     points : Floats
-        (n, 3) node coordinates [m].
+        Node coordinates (n, 3) [m].
     cells : Ints
         (n_cells, n_nodes) node numbers.
     gradients : Floats
