@@ -103,20 +103,20 @@ _CHART_TEMPLATE: dict[str, Any] = {
 
 
 def styled(traces: Sequence[Mapping[str, Any]], layout: Mapping[str, Any]) -> dict[str, Any]:
-    """A figure in the project's look.
+    """Put a figure into the project's look.
 
     Parameters
     ----------
     traces : sequence of mapping
-        As Plotly has them.
+        Traces in Plotly's form.
     layout : mapping
         Titles of axes and what else is the figure's own.
 
     Returns
     -------
     dict
-        "data" and "layout": each trace in a colour of its own, a known method in that method's;
-        texts typeset, and null for what JSON has no number for.
+        Entries "data" and "layout": each trace in a colour of its own, a known method in that
+        method's; texts typeset, and null for what JSON has no number for.
     """
     layout = {**layout, "template": _CHART_TEMPLATE}
     if layout.get("title"):
