@@ -111,7 +111,7 @@ class GearData(Part):
         default=1,
         ge=1,
         le=99,
-        description="of each mesh over the face width",
+        description="slices of each mesh over the face width",
         json_schema_extra={
             "unit": "-",
             "source": "assumed: each mesh in one point, without stiffness against tilt",
@@ -193,7 +193,7 @@ class PlanetaryData(GearData):
     planet: RotorBody = Field(description="one planet")
     sun: RotorBody = Field(description="sun")
     ring: RotorBody | None = Field(default=None, description="ring, where it is not held")
-    ring_support: Six | None = Field(default=None, description="of a ring that is not held")
+    ring_support: Six | None = Field(default=None, description="support of a ring that is not held")
     cutter: int | None = Field(
         default=None,
         ge=5,
