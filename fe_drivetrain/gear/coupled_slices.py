@@ -19,7 +19,7 @@ class Coupling:
     Attributes
     ----------
     length : float
-        Over which a load of one slice spreads to its neighbours [m].
+        Length over which a load of one slice spreads to its neighbours [m].
     hertz : float
         Stiffness of the contact alone per face width [N/m^2], in series with the teeth:
         1 / `yang_sun_contact()`, say.

@@ -30,7 +30,7 @@ class PlanetaryStage:
     sun, planet, ring : int
         Teeth, counted positive.
     planets : int
-        How many.
+        Number of planets.
     """
 
     sun: int
@@ -69,7 +69,7 @@ def loads_per_turn(stages: Sequence[PlanetaryStage | ParallelStage]) -> dict[str
     Parameters
     ----------
     stages : sequence
-        From the slow shaft to the fast one.
+        Stages, from the slow shaft to the fast one.
 
     Returns
     -------
@@ -171,7 +171,7 @@ class ToothDamage:
         Parameters
         ----------
         count : float
-            How often.
+            Number of times.
 
         Returns
         -------
@@ -196,8 +196,8 @@ def damage_of_turns(tooth: RatedTooth, torques: ArrayLike, turns: ArrayLike) -> 
     Returns
     -------
     ToothDamage
-        With contact stress that goes with the root of the torque, and root stress with the torque:
-        load factors stay as they are at the torque of the rating.
+        Damage with contact stress that goes with the root of the torque, and root stress with the
+        torque: load factors stay as they are at the torque of the rating.
     """
     load = np.asarray(torques, dtype=np.float64) / tooth.torque
     counts = np.asarray(turns, dtype=np.float64) * tooth.loads_per_turn
@@ -224,7 +224,7 @@ def damage_of_levels(tooth: RatedTooth, levels: Levels) -> ToothDamage:
     Returns
     -------
     ToothDamage
-        With every level at its middle.
+        Damage with every level at its middle.
     """
     return damage_of_turns(tooth, levels.middles, levels.amount)
 

@@ -90,7 +90,7 @@ def tooth_compliance(
     curvature : (n,) array
         Radii of curvature of the flank where it is loaded [m].
     hub_radius : float
-        Where the gear body is held [m].
+        Radius at which the gear body is held [m].
     steel : Steel
         Elastic constants.
 
@@ -154,7 +154,7 @@ def _body(gear: Gear, h: float, crossing: float, slope: float, along: float) -> 
 
 
 def contact_depths(gear: Gear, curvature: Floats) -> Floats:
-    """From the flank along the line of action to the tooth's centre line.
+    """Depths from the flank to the tooth's centre line, along the line of action.
 
     Parameters
     ----------
@@ -166,7 +166,7 @@ def contact_depths(gear: Gear, curvature: Floats) -> Floats:
     Returns
     -------
     (n,) array
-        [m].
+        Depths [m].
     """
     points, pushes = flank_points(gear, curvature), flank_normals(gear, curvature)
     return np.asarray(-points[:, 0] / pushes[:, 0], dtype=np.float64)
@@ -227,7 +227,7 @@ def contact_half_width(
     Parameters
     ----------
     load : float
-        On a length of face [N/m].
+        Load per length of face [N/m].
     curvatures : tuple of two (n,) arrays
         Radii of both flanks [m], negative if concave.
     steel : Steel
@@ -252,7 +252,7 @@ def energy_law(
     pair : Pair
         External spur gears.
     hub_radii : tuple of two floats
-        Where each gear body is held [m].
+        Radius at which each gear body is held [m].
     load : float, optional
         Load per length of face [N/m], for `line_contact`; without one `yang_sun_contact`.
     steel : Steel

@@ -95,7 +95,7 @@ class LineContact:
         Parameters
         ----------
         x : array_like, (n,)
-            From its middle [m].
+            Distance from the middle of the strip [m].
 
         Returns
         -------
@@ -151,7 +151,7 @@ class LineContact:
         Returns
         -------
         tuple of float
-            [Pa, m]; 0.5575 p_0 at 0.704 a with 0.3.
+            Stress and depth [Pa, m]; 0.5575 p_0 at 0.704 a with 0.3.
         """
         stress, depth = _largest("von Mises", poisson_ratio)
         return stress * self.pressure, depth * self.half_width
@@ -168,7 +168,7 @@ def shear_stress(stresses: Floats) -> Floats:
     Returns
     -------
     ndarray, (...)
-        [Pa].
+        Shear stress [Pa].
     """
     xx, _, zz, xz = np.moveaxis(stresses, -1, 0)
     return np.asarray(np.hypot(0.5 * (xx - zz), xz), dtype=np.float64)
@@ -185,7 +185,7 @@ def von_mises(stresses: Floats) -> Floats:
     Returns
     -------
     ndarray, (...)
-        [Pa].
+        Von Mises stress [Pa].
     """
     xx, yy, zz, xz = np.moveaxis(stresses, -1, 0)
     squares = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2 + 6.0 * xz**2

@@ -77,7 +77,7 @@ def spare_angle_of_tips(
     Returns
     -------
     float
-        [rad]; 0 where the tip circles do not cross, negative where teeth are cut.
+        Spare angle [rad]; 0 where the tip circles do not cross, negative where teeth are cut.
     """
     one, two = tips
     if two - one >= centres:

@@ -48,11 +48,11 @@ class Gear:
     Attributes
     ----------
     teeth : int
-        How many; negative for an internal gear.
+        Number of teeth; negative for an internal gear.
     normal_module : float
-        [m].
+        Normal module [m].
     face_width : float
-        [m].
+        Face width [m].
     helix : float
         Angle on the reference cylinder [rad], positive for a right hand.
     shift : float
@@ -62,7 +62,7 @@ class Gear:
     rack : Rack
         Basic rack.
     tip_diameter : float, optional
-        [m]; without one that of the rack's addendum.
+        Tip diameter [m]; without one that of the rack's addendum.
     """
 
     teeth: int
@@ -192,7 +192,7 @@ class Gear:
         Returns
         -------
         float
-            [m].
+            Arc length [m].
         """
         half = (0.5 * pi + 2.0 * self.shift * tan(self.pressure_angle)) / self.teeth
         here = acos(self.base_radius / radius)
@@ -249,7 +249,7 @@ class Pair:
     second : Gear
         External or internal.
     centre_distance : float
-        Between parallel axes [m], positive for both kinds.
+        Distance between parallel axes [m], positive for both kinds.
     """
 
     first: Gear
@@ -369,7 +369,7 @@ class Pair:
         Returns
         -------
         tuple of two arrays
-            From the axes of the first and of the second gear [m].
+            Radii from the axes of the first and of the second gear [m].
         """
         one, two = self.curvatures(place)
         return np.hypot(self.first.base_radius, one), np.hypot(self.second.base_radius, two)
@@ -380,12 +380,12 @@ class Pair:
         Parameters
         ----------
         torque : float
-            On the first gear in this mesh [N m].
+            Torque on the first gear in this mesh [N m].
 
         Returns
         -------
         float
-            [N].
+            Tangential force [N].
         """
         return torque / self.first.reference_radius
 
@@ -395,12 +395,12 @@ class Pair:
         Parameters
         ----------
         torque : float
-            On the first gear in this mesh [N m].
+            Torque on the first gear in this mesh [N m].
 
         Returns
         -------
         float
-            [N].
+            Normal force [N].
         """
         return torque / (self.first.base_radius * cos(self.first.base_helix))
 

@@ -60,7 +60,7 @@ def theoretical_stiffness(pair: Pair) -> float:
     Returns
     -------
     float
-        [N/m^2].
+        Stiffness per face width [N/m^2].
     """
     first, second = sorted((pair.first, pair.second), key=lambda gear: abs(gear.teeth))
     one = 1.0 / first.virtual_teeth
@@ -116,7 +116,7 @@ def rack_factor(gear: Gear) -> float:
     Parameters
     ----------
     gear : Gear
-        Whose rack it is.
+        Gear whose rack it is.
 
     Returns
     -------

@@ -142,15 +142,15 @@ class Period:
     Attributes
     ----------
     phases : ndarray, (n,)
-        In periods.
+        Phases of the mesh, in periods.
     approach : ndarray, (n,)
         Transmission error [m].
     over_face : ndarray, (n, slices)
         Load of each slice [N].
     wrenches : ndarray, (n, 12)
-        On both gears [N, N m].
+        Forces and moments on both gears [N, N m].
     converged : bool
-        At all phases.
+        Whether forces are in balance at all phases.
     """
 
     phases: Floats
@@ -224,7 +224,7 @@ def supported(
     Returns
     -------
     loaded : Loaded
-        With `converged` false where the residual stays above 1e-9 of the load.
+        Load of the slices, with `converged` false where the residual stays above 1e-9 of the load.
     motion : ndarray, (12,)
         Motion of both gears [m, rad].
 

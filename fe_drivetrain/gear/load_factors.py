@@ -208,7 +208,7 @@ def dynamic_factor(
     Returns
     -------
     float
-        At least 1 below resonance: ranges up to N_S, to 1.15, to 1.5, and above.
+        Dynamic factor, at least 1 below resonance: ranges up to N_S, to 1.15, to 1.5, and above.
     """
     B_p = stiffness * deviations.pitch / line_load
     B_f = stiffness * deviations.profile / line_load
@@ -299,7 +299,7 @@ def transverse_factors(
     Returns
     -------
     tuple of float
-        Between 1 and what one pair alone would have to carry.
+        K_Halpha and K_Falpha, between 1 and what one pair alone would have to carry.
     """
     gamma, alpha = pair.contact_ratio, pair.transverse_ratio
     spread = stiffness * deviation / line_load

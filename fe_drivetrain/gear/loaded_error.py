@@ -1,4 +1,4 @@
-"""Transmission error of a mesh in slices: under load, and what of it is left without.
+"""Transmission error of a mesh in slices: under load, and the part that remains without load.
 
 Under the torque T the first gear is ahead by delta(psi), the static transmission error (Harris
 1958). About that state the mesh is a spring of the stiffness k(psi) of all slices in contact with

@@ -44,12 +44,12 @@ class MeshStiffness:
         Parameters
         ----------
         phase : float or array
-            In periods.
+            Phase in periods.
 
         Returns
         -------
         array
-            [N/m].
+            Stiffness [N/m].
         """
         angle = self._angles(phase)
         return np.asarray(self.mean + np.cos(angle) @ self.cosines + np.sin(angle) @ self.sines)
@@ -60,12 +60,12 @@ class MeshStiffness:
         Parameters
         ----------
         phase : float or array
-            In periods.
+            Phase in periods.
 
         Returns
         -------
         array
-            [N/m per period].
+            Slope [N/m per period].
         """
         angle, orders = self._angles(phase), 2.0 * pi * np.arange(1, len(self.sines) + 1)
         return np.asarray(
@@ -78,12 +78,12 @@ class MeshStiffness:
         Parameters
         ----------
         phase : float
-            In periods.
+            Delay in periods.
 
         Returns
         -------
         MeshStiffness
-            With turned coefficients.
+            Series with turned coefficients.
         """
         turn = 2.0 * pi * phase * np.arange(1, len(self.sines) + 1)
         c, s = np.cos(turn), np.sin(turn)
@@ -129,12 +129,12 @@ class StiffnessTable:
         Parameters
         ----------
         phase : float or array
-            In periods.
+            Phase in periods.
 
         Returns
         -------
         array
-            [N/m].
+            Stiffness [N/m].
         """
         return np.asarray(np.interp(phase, self.phases, self.values, period=1.0))
 
@@ -149,12 +149,12 @@ class StiffnessTable:
         Returns
         -------
         MeshStiffness
-            With the same mean.
+            Series with the same mean.
 
         Raises
         ------
         InputError
-            If the table has too few values for so many orders.
+            The table has too few values for this number of orders.
         """
         n = len(self.values)
         if not 0 <= orders <= (n - 1) // 2:

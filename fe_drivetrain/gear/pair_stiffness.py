@@ -157,12 +157,12 @@ def kuang_yang_tooth(gear: Gear, radius: Floats) -> Floats:
     gear : Gear
         External; a helical one by its virtual teeth.
     radius : (n,) array
-        Where the load acts [m].
+        Radius at which the load acts [m].
 
     Returns
     -------
     (n,) array
-        [N/m^2].
+        Stiffness of the tooth per face width [N/m^2].
 
     Raises
     ------

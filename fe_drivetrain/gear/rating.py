@@ -84,7 +84,7 @@ class ContactStress:
     nominal : float
         sigma_H0 at the pitch point [Pa].
     at_pitch_point : float
-        With all load factors, sigma_Hw [Pa].
+        Pressure at the pitch point with all load factors, sigma_Hw [Pa].
     stress : tuple of float
         sigma_H of both gears [Pa].
     """
@@ -167,7 +167,7 @@ def elasticity_factor(first: GearMaterial, second: GearMaterial) -> float:
     Returns
     -------
     float
-        [sqrt(Pa)]; 189.8 sqrt(MPa) of steel on steel.
+        Elasticity factor [sqrt(Pa)]; 189.8 sqrt(MPa) of steel on steel.
     """
     yields = sum((1.0 - m.poisson_ratio**2) / m.youngs_modulus for m in (first, second))
     return sqrt(1.0 / (pi * yields))

@@ -44,7 +44,7 @@ class ToothRoot:
     fillet : float
         Radius of the fillet at the critical section, rho_F.
     load_angle : float
-        Between the load and the normal to the tooth's middle, alpha_Fen [rad].
+        Angle between the load and the normal to the tooth's middle, alpha_Fen [rad].
     pressure_angle : float
         Normal one of the rack [rad].
     """

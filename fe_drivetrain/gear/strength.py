@@ -36,16 +36,17 @@ class GearMaterial:
     root_limit : float
         Nominal root stress endured at the knee, sigma_Flim [Pa]; twice that is sigma_FE.
     yield_strength : float
-        [Pa]; the notch sensitivity of through-hardened steel follows it, which must have it.
+        Yield strength [Pa]; the notch sensitivity of through-hardened steel follows it, which must
+        have it.
     brinell : float
         Hardness of the flank [HB]; counts where a through-hardened gear meets a hard one, which
         must have it.
     youngs_modulus : float
-        [Pa].
+        Young's modulus [Pa].
     poisson_ratio : float
-        [-].
+        Poisson ratio [-].
     density : float
-        [kg/m^3].
+        Density [kg/m^3].
     """
 
     kind: Kind
@@ -128,7 +129,7 @@ class LifeCurve:
         Parameters
         ----------
         stresses : array_like, (n,)
-            In the unit of the curve.
+            Stresses in the unit of the curve.
 
         Returns
         -------
@@ -217,7 +218,7 @@ def velocity_factor(contact_limit: float, speed: float) -> float:
     contact_limit : float
         sigma_Hlim of the softer gear [Pa].
     speed : float
-        At the reference circle [m/s].
+        Speed at the reference circle [m/s].
 
     Returns
     -------
@@ -272,7 +273,7 @@ def hardness_factor(
     Returns
     -------
     float
-        At least 1.
+        Work hardening factor, at least 1.
     """
     hard = (min(max(brinell, 130.0), 470.0) - 130.0) / 1700.0
     if static:
