@@ -19,7 +19,7 @@ from .shaft import Shaft
 from .walls import check_sizes
 
 NO_BANDS: Mapping[str, Band] = MappingProxyType({})
-"""Where loads enter the shaft at its ends and seats alone."""
+"""No bands: loads enter the shaft at its ends and seats alone."""
 
 
 def build(

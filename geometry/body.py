@@ -1,4 +1,4 @@
-"""What bodies of one volume share: element sizes, named faces, and how faces are found."""
+"""Base of bodies of one volume: element sizes, named faces, and how faces are found."""
 
 from __future__ import annotations
 

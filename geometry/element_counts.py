@@ -1,4 +1,4 @@
-"""How many elements the parts of a scene make, from their dimensions: no CAD model is needed.
+"""Number of elements of a scene's parts, from their dimensions: no CAD model is needed.
 
 What `fe_drivetrain.geometry.element_sizes` foresees on the faces of the CAD model, in closed form.
 """

@@ -134,7 +134,7 @@ def apply_sizes(sizes: MeshSizes, parts: Mapping[str, int], faces: Mapping[str, 
 
 
 def elements_within(name: str, volume: float, size: float) -> float:
-    """About how many elements of a size fill a part.
+    """Approximate number of elements of a size that fill a part.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def elements_within(name: str, volume: float, size: float) -> float:
 
 
 def _elements_beside(face: int, size: float) -> float:
-    """About how many elements a face of the open gmsh model makes."""
+    """Approximate number of elements that a face of the open gmsh model makes."""
     area, meridian = gmsh.model.occ.getMass(2, face), revolved_ranges(face)
     box = gmsh.model.getBoundingBox(2, face)
     length = math.dist(box[:3], box[3:])

@@ -263,12 +263,12 @@ class ForeignFile(Part):
         return self
 
     def what(self) -> str:
-        """What it is, for messages."""
+        """Name of the part, for messages."""
         return "a housing from a file"
 
     @property
     def file(self) -> str:
-        """Its file."""
+        """Path of its file."""
         return self.step or self.mesh or ""
 
     @property
@@ -318,7 +318,7 @@ class ForeignHousing(ForeignFile):
 
     @property
     def held_by(self) -> str:
-        """How it is held, in words."""
+        """Phrase that says how it is held."""
         if self.bolts is None:
             return "held faces fixed"
         return {
@@ -377,7 +377,7 @@ class FurtherPart(ForeignFile):
     held: tuple[Pick, ...] = Field(default=(), max_length=100)
 
     def what(self) -> str:
-        """What it is, for messages."""
+        """Name of the part, for messages."""
         return f"part {self.name!r}"
 
 

@@ -1,4 +1,4 @@
-"""What every parametric part has in common: frozen, no unknown keys, one-sentence errors."""
+"""Base of every parametric part: frozen, no unknown keys, one-sentence errors."""
 
 from __future__ import annotations
 
@@ -208,7 +208,7 @@ class Part(BaseModel):
 
 
 def assumed_in(parts: Sequence[tuple[str, Part]]) -> list[Assumption]:
-    """What parts do not give and have all the same, by the name of each part and its key."""
+    """Assumed values of parts, by the name of each part and its key."""
     return [
         row._replace(name=f"{owner}: {row.name}")
         for owner, part in parts

@@ -28,7 +28,7 @@ from fe_drivetrain.solve.condensation import Condensed, condense
 
 @dataclass(frozen=True)
 class CrossSection:
-    """What a beam's section does, in its principal axes.
+    """Properties of a beam's section, in its principal axes.
 
     Attributes
     ----------

@@ -162,7 +162,7 @@ def approaches(row: RollerRow, displacements: ArrayLike) -> Floats:
 
 
 def end_loads(row: RollerRow, displacements: ArrayLike) -> Floats:
-    """How much the ends of each roller carry: load per length there over that of the whole roller.
+    """Relative load of each roller's ends: load per length there over that of the whole roller.
 
     Parameters
     ----------
@@ -287,7 +287,7 @@ def truncations(
     shoulders: tuple[float, float] = (0.2, 0.2),
     youngs_modulus: float = STEEL_E,
 ) -> tuple[Floats, Floats]:
-    """How far the contact ellipse of each ball runs over the shoulder of its groove.
+    """Share of each ball's contact ellipse that runs over the shoulder of its groove.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""How a rolling element pushes back: load over deflection, profiles, Hertz pressure.
+"""Contact of a rolling element: load over deflection, profiles, Hertz pressure.
 
 A law is Q = K delta^n, of both contacts of a rolling element (inner and outer) in series, delta the
 approach of the two races along the common normal; no load where they are apart.
@@ -236,7 +236,7 @@ def line_pressure(
 
 
 def log_profile(places: Floats, length: float, drop: float) -> Floats:
-    """What a crowned roller leaves free of one race, at places along it.
+    """Gap that a crowned roller leaves to one race, at places along it.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What the inner ring and each rolling element feel at given displacements of the inner ring.
+"""Forces on the inner ring and each rolling element at given displacements of the inner ring.
 
 The inner ring moves by u = (u_x, u_y, u_z [m], theta_y, theta_z [rad]) against the fixed outer
 ring, under the loads (Fx, Fy, Fz [N], My, Mz [N m]) at the bearing's centre.

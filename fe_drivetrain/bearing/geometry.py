@@ -1,4 +1,4 @@
-"""What a rolling bearing is: rows of rollers or balls between rigid rings.
+"""Geometry of rolling bearings: rows of rollers or balls between rigid rings.
 
 Frame: x downwind along the shaft, z up, y = z cross x, origin at the bearing's centre. The angle of
 a rolling element is 0 on the right, looking downwind, 90 degrees on top (Stirling 2023, section
@@ -103,7 +103,7 @@ class RollerRow:
 
     @property
     def free(self) -> Floats:
-        """What each lamina has to approach before it carries, without the clearance [m]."""
+        """Approach at which each lamina begins to carry, without the clearance [m]."""
         if not self.crown:
             return np.zeros(max(self.laminae, 1))
         return 2.0 * log_profile(self.places, self.length, self.crown)
@@ -206,7 +206,7 @@ class Bearing:
         return max(row.radius for row in self.rows)
 
     def with_rows(self, **changes: float | int | ContactLaw) -> Bearing:
-        """The same bearing with the same change to every row, as ``with_rows(laminae=60)``."""
+        """Bearing with the same change to every row, as ``with_rows(laminae=60)``."""
         return replace(self, rows=tuple(replace(row, **changes) for row in self.rows))  # type: ignore[arg-type]
 
 

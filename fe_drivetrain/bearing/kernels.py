@@ -100,7 +100,7 @@ _TO_MIDDLE, _OF_MIDDLE, _SERIES = 2048, 2048 + 2**_BITS, 2048 + 2 * 2**_BITS
 
 
 def power_table(q: float) -> Floats:
-    """What `power` needs for the exponent q: (POWERS,)."""
+    """Constants that `power` needs for the exponent q: (POWERS,)."""
     table = np.zeros(POWERS)
     with np.errstate(over="ignore", under="ignore"):
         table[1:_TO_MIDDLE] = 2.0 ** (q * (np.arange(1.0, 2048.0) - 1023.0))

@@ -55,7 +55,7 @@ Bracket = tuple[float, float, float, float, float]
 def narrowed(
     low: float, high: float, slope_low: float, slope_high: float, step: float, slope: float
 ) -> Bracket:
-    """Where to look next for the zero of a slope, which along a line only grows: energy is convex.
+    """Narrow the bracket of the zero of a slope, which along a line only grows: energy is convex.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def narrowed(
 
 @njit(cache=True, error_model="numpy")
 def next_firmness(firm: float, step: float) -> float:
-    """How firmly to hold what no contact carries, after a step: softer where it was too short."""
+    """Firmness that holds what no contact carries, after a step: lower where that was too short."""
     if step > 1.0:
         return 0.1 * firm
     return min(10.0 * firm, FIRMEST) if step < 0.5 else firm

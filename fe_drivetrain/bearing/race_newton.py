@@ -25,7 +25,7 @@ MAX_TRIALS = 60
 
 
 class Body(NamedTuple):
-    """What rollers touch, as these loops take it.
+    """Body that rollers touch, as these loops take it.
 
     Attributes
     ----------

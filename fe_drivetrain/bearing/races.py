@@ -288,7 +288,7 @@ def equilibrium_on_races(
 
 
 class Solved(NamedTuple):
-    """What the compiled loops have found, see `race_newton.solve_cases`."""
+    """Results of the compiled loops, see `race_newton.solve_cases`."""
 
     unknowns: Floats
     rollers: Floats

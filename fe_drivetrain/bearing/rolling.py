@@ -43,7 +43,7 @@ CARRIED = 1e-9
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """Where the inner ring comes to rest under each load case.
+    """Equilibrium of the inner ring under each load case.
 
     Attributes
     ----------

@@ -181,7 +181,7 @@ class HardenedCase:
 
 @dataclass(frozen=True)
 class Exposure:
-    """How much of the strength a contact asks for.
+    """Share of the strength that a contact uses.
 
     Attributes
     ----------

@@ -109,7 +109,7 @@ class LinearBody:
         return found.reshape(n, -1, 6)
 
     def reactions(self, factors: Floats, forces: Floats, deflections: Floats) -> dict[str, Floats]:
-        """What the body puts on its linear supports, (n, 6) by name [N, N m].
+        """Reactions (n, 6) of the body on its linear supports, by name [N, N m].
 
         Parameters
         ----------

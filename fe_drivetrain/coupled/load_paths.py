@@ -1,4 +1,4 @@
-"""From hub loads to the laminae of one bearing in a shaft, at any level of the model."""
+"""Loads of the laminae of one bearing in a shaft from hub loads, at any level of the model."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ PINNED = 0.0
 
 @dataclass(frozen=True, eq=False)
 class LoadPath:
-    """How hub loads reach the rollers of a bearing.
+    """Path of hub loads to the rollers of a bearing.
 
     Attributes
     ----------

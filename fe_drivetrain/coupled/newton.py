@@ -47,7 +47,7 @@ _CONTINUED, _TIMES = 4.0, 8
 
 @dataclass(frozen=True, eq=False)
 class CoupledEquilibrium:
-    """Where a body comes to rest on its bearings under each load case.
+    """Equilibrium of a body on its bearings under each load case.
 
     Attributes
     ----------
@@ -97,7 +97,7 @@ class CoupledEquilibrium:
         return self.body.bearings.index(name)
 
     def reactions(self) -> dict[str, Floats]:
-        """What the body puts on its linear supports, (n, 6) by name [N, N m]."""
+        """Reactions (n, 6) of the body on its linear supports, by name [N, N m]."""
         return self.body.reactions(self.factors, self.forces, self.deflections)
 
     def imbalance(self) -> Floats:
@@ -282,7 +282,7 @@ def _refuse_lifted(body: LinearBody, deflections: Floats, converged: Bools) -> N
 
 
 def _first(problem: _Problem, F: Floats) -> Floats:
-    """Where all contacts are approached equally: a linear solution."""
+    """Linear solution with all contacts approached equally."""
     B = problem.basis
     H = B.T @ (problem.K + problem.soft) @ B
     return np.asarray(np.linalg.solve(H, (F @ B).T).T @ B.T)
@@ -365,7 +365,7 @@ def _search(
 
 
 def _continued(problem: _Problem, F: Floats, tolerance: float) -> _Found:
-    """Down from larger loads, under which a clearance is small: each from the one before."""
+    """Solve from larger loads down, under which a clearance is small: each from the one before."""
     most = _CONTINUED**_TIMES
     found = _newton(problem, most * F, _first(problem, most * F), tolerance)
     steps = found.iterations

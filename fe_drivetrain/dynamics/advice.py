@@ -22,7 +22,7 @@ from fe_drivetrain.torsion.system import natural_modes
 
 @dataclass(frozen=True)
 class Operation:
-    """What a drivetrain carries while it is asked.
+    """Loads of a drivetrain for which the questions are asked.
 
     Attributes
     ----------
@@ -79,12 +79,12 @@ class Asked:
 
     @cached_property
     def modes(self) -> SystemModes:
-        """At rest."""
+        """Modes of the system at rest."""
         return system_modes(self.system)
 
     @cached_property
     def system(self) -> System:
-        """With the generator free to turn."""
+        """System with the generator free to turn."""
         return machine_system(self.machine, self.rung.level, flexible=self.rung.flexible)
 
     @cached_property

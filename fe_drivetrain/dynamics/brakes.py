@@ -157,7 +157,7 @@ def transient(
 
 
 class _Run:
-    """What has been found so far, and the factors of the matrices."""
+    """Results so far, and the factors of the matrices."""
 
     def __init__(self, dt: float, scheme: Scheme, start: State) -> None:
         self.dt, self.scheme, self.state = dt, scheme, start
@@ -180,7 +180,7 @@ class _Run:
         brake: Brake | None = None,
         side: float = 0.0,
     ) -> bool:
-        """To a time, or until a disc that turns to one side stops: whether it has."""
+        """Integrate to a time, or until a disc that turns to one side stops: whether it has."""
         stop = Stop(np.zeros(len(equations.mass)) if brake is None else brake.row, side)
 
         def torque(motion: Motion) -> Floats:
@@ -292,7 +292,7 @@ class _Run:
 
 
 def _shortened(motion: Motion, before: State) -> Motion:
-    """Without the last step."""
+    """Motion without the last step."""
     return replace(
         motion,
         times=motion.times[:-1],

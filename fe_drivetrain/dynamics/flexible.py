@@ -71,7 +71,7 @@ class ElasticHousing:
     mass: Floats | None = None
 
     def holds(self, name: str, at: ArrayLike) -> Place:
-        """What holds a ring or bearing of a name at a place (3,) [m]."""
+        """Place that holds a ring or bearing of a name at a place (3,) [m]."""
         away = np.linalg.norm(self.positions - np.asarray(at, dtype=float), axis=1)
         k = self.points.index(name) if name in self.points else int(away.argmin())
         x, y, z = self.positions[k]
@@ -80,7 +80,7 @@ class ElasticHousing:
 
 @dataclass(frozen=True)
 class Flexible:
-    """What of a machine gives beside shafts and bearings.
+    """Flexible bodies of a machine beside shafts and bearings.
 
     Attributes
     ----------
@@ -176,7 +176,7 @@ def housing_bodies(housing: Housing | ElasticHousing) -> tuple[list[Body], Super
 
 
 def held_by(housing: Housing | ElasticHousing | None, name: str, at: ArrayLike) -> Place | None:
-    """What holds a ring or bearing of a name at a place (3,): the housing, or none, the ground."""
+    """Place that holds a ring or bearing of a name at a place (3,); none is the ground."""
     if isinstance(housing, ElasticHousing):
         return housing.holds(name, at)
     return None if housing is None else Place("housing", housing.position)

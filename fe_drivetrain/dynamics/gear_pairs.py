@@ -177,7 +177,7 @@ def mesh_stresses(
 
 
 def silent_keys(stage: PlanetaryData | ParallelData) -> list[str]:
-    """What of a stage's gears is not given and is taken all the same, a phrase each."""
+    """Assumed keys of a stage's gears, a phrase each."""
     of_gears = ("pressure_angle", *OF_TEETH)
     silent = [row for row in stage.assumptions() if row.is_assumed]
     return [f"{row.name}: {row.source}" for row in silent if row.name in of_gears]

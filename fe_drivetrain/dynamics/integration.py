@@ -106,7 +106,7 @@ def generalised_alpha(spectral_radius: float) -> Scheme:
 
 @dataclass(frozen=True)
 class State:
-    """Where a system is.
+    """State of a system at a time.
 
     Attributes
     ----------

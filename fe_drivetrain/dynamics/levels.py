@@ -47,11 +47,11 @@ from fe_drivetrain.solve.condensation import Condensed
 from fe_drivetrain.torsion.system import Element, Inertia, Torsional
 
 TURNS = frozenset({"rx"})
-"""What moves in a torsional model."""
+"""Degree of freedom of a body in a torsional model."""
 
 
 class Level(Enum):
-    """What of a drivetrain may move."""
+    """Level of a drivetrain's model: what may move."""
 
     TORSIONAL = "torsional"
     """Each body turns about its axis; planets go with their carrier."""
@@ -63,7 +63,7 @@ class Level(Enum):
 
 @dataclass(frozen=True)
 class Assembly:
-    """What a machine is made of at one level, before it is one system.
+    """Parts of a machine at one level, before it is one system.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a machine is made of: bodies, shafts and bearings, in their ranges."""
+"""Parts of a machine: bodies, shafts and bearings, in their ranges."""
 
 from math import pi
 from typing import Annotated, Literal, Self

@@ -67,7 +67,7 @@ def wave_of(stiffness: MeshStiffness | StiffnessTable) -> Floats:
 
 @dataclass(frozen=True)
 class Meshing:
-    """How a mesh varies.
+    """Variation of a mesh's stiffness.
 
     Attributes
     ----------

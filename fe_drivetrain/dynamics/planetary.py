@@ -141,12 +141,12 @@ class PlanetarySet:
 
     @property
     def sun_base_radius(self) -> float:
-        """In the transverse section [m]."""
+        """Base radius of the sun in the transverse section [m]."""
         return self.sun_radius * cos(self.sun_mesh.pressure_angle)
 
     @property
     def planet_base_radius(self) -> float:
-        """In the transverse section [m]."""
+        """Base radius of the planet in the transverse section [m]."""
         return (self.centre_distance - self.sun_radius) * cos(self.sun_mesh.pressure_angle)
 
     @property
@@ -156,7 +156,7 @@ class PlanetarySet:
 
     @property
     def ring_base_radius(self) -> float:
-        """In the transverse section [m]."""
+        """Base radius of the ring in the transverse section [m]."""
         turned = self.centre_distance * cos(self.ring_mesh.pressure_angle)
         return turned + self.planet_base_radius
 

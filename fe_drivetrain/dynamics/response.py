@@ -168,7 +168,7 @@ def mesh_response(
 
 @dataclass(frozen=True)
 class Crossing:
-    """Where a harmonic of an order meets a natural frequency.
+    """Crossing of a harmonic of an order with a natural frequency.
 
     Attributes
     ----------

@@ -188,7 +188,7 @@ class _Run:
         return _At(d, T, spring, damper, resisted, K, energy, power, followed)
 
     def sizes(self, z: Floats, before: Floats) -> Floats:
-        """What a change of each row is measured by."""
+        """Scale by which a change of each row is measured."""
         found = np.maximum(before, np.abs(z))
         moved = found[self.moves].max(initial=0.0)
         found[self.moves] = moved
@@ -317,7 +317,7 @@ class _At:
 
 
 class _Records:
-    """What is kept of a run."""
+    """Records of a run."""
 
     def __init__(self) -> None:
         self.rows: list[tuple[Floats, ...]] = []

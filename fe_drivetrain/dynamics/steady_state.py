@@ -1,4 +1,4 @@
-"""Where a drivetrain stands under steady loads: wound up, and turning freely as a whole."""
+"""State of a drivetrain under steady loads: wound up, and turning freely as a whole."""
 
 from dataclasses import dataclass
 

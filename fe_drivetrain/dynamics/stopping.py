@@ -37,7 +37,7 @@ from fe_drivetrain.torsion.system import Torsional, damped
 
 @dataclass(frozen=True)
 class StopSequence:
-    """When what happens.
+    """Times of the events of a shutdown.
 
     Attributes
     ----------

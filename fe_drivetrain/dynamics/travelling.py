@@ -49,7 +49,7 @@ EXACT = 1e-9
 
 @dataclass(frozen=True)
 class Turning:
-    """What turns with one carrier, as cosines and sines of its azimuth from degree 1 on.
+    """Terms that turn with one carrier, as cosines and sines of its azimuth from degree 1 on.
 
     Attributes
     ----------

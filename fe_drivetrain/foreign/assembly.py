@@ -282,7 +282,8 @@ def bolt_stiffness(
 
 
 def base_centre(unit: BearingUnit, mesh: Mesh) -> Floats:
-    """Where a housing stands (3,) [m]: under the bearing, in the mean height of its held faces.
+    """Position (3,) at which a housing stands [m]: under the bearing, in the mean height of its
+    held faces.
 
     Parameters
     ----------

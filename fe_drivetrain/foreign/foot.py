@@ -277,7 +277,7 @@ class ClampedFoot:
 
     @cached_property
     def _tightened(self) -> _Tightened:
-        """What the bolts alone do; the foot slides while they are tightened."""
+        """State under the bolts alone; the foot slides while they are tightened."""
         free = np.zeros(len(self.areas), dtype=np.bool_)
 
         def solved(pressed: Bools) -> tuple[Floats, Floats]:
@@ -320,7 +320,7 @@ class ClampedFoot:
         return self.linear(np.zeros(6))
 
     def state(self, wrench: Floats) -> FootState:
-        """What a load at the seat does, contact and all.
+        """State under a load at the seat, contact and all.
 
         Parameters
         ----------
@@ -347,7 +347,7 @@ class ClampedFoot:
             stuck = stuck & pressed
 
     def linear(self, wrench: Floats) -> FootState:
-        """The same where every patch stays as it is after tightening: the levels' answer.
+        """State where every patch stays as it is after tightening: the levels' answer.
 
         Parameters
         ----------
@@ -387,7 +387,7 @@ class ClampedFoot:
         return scaled_solve(0.5 * (C + C.T), np.eye(6))
 
     def slopes(self) -> tuple[Floats, Floats]:
-        """What unit loads at the seat change while the foot stays as it is after tightening.
+        """Changes by unit loads at the seat while the foot stays as it is after tightening.
 
         Returns
         -------
@@ -425,12 +425,12 @@ class ClampedFoot:
         return float(factors[first]), first
 
     def opened_by(self, wrenches: Floats) -> Bools:
-        """Under which of many loads the linear answer pulls on a patch.
+        """Flags (N,): whether the linear answer pulls on a patch, for each of many loads.
 
         Parameters
         ----------
         wrenches : Floats
-            (N, 6) at the seat [N, N m].
+            Wrenches (N, 6) at the seat [N, N m].
         """
         pressed = self.tightened
         forces = pressed.forces[:, 0] + wrenches @ self.slopes()[0].T

@@ -132,7 +132,7 @@ def _of_mesh(part: FurtherPart, shift: Floats) -> dict[str, NDArray[Any]]:
 
 
 def touching(name: str, points: Floats, face: Ints, outside: Ints) -> Ints:
-    """What a face of a part lies on: facets of another part's outside.
+    """Facets of another part's outside that a face of a part lies on.
 
     Parameters
     ----------

@@ -243,7 +243,7 @@ def _off(at: Floats, centre: Floats, axis: Floats, radius: float) -> float:
 
 
 def _reached(corners: Ints, facets: Ints, start: Ints) -> Ints:
-    """Those of some facets that hang together with some nodes."""
+    """Facets, of some, that hang together with some nodes."""
     if not len(facets):
         return facets
     nodes, local = np.unique(corners, return_inverse=True)

@@ -31,7 +31,7 @@ _DELAUNAY, _HXT = 1, 10  # gmsh's numbers: HXT is ten times as fast, Delaunay sa
 
 
 class Step(NamedTuple):
-    """What one step of healing does.
+    """One step of healing.
 
     Attributes
     ----------
@@ -93,7 +93,7 @@ def size_of_all() -> float:
 
 
 def fault() -> str:
-    """What is wrong with the solids, in words; "" where they are sound.
+    """Sentence on what is wrong with the solids; "" where they are sound.
 
     They are where each encloses a volume, no edge of its shells ends in free air, and gmsh can
     mesh their faces.
@@ -107,7 +107,7 @@ def fault() -> str:
 
 
 def free_edges(faces: list[int]) -> str:
-    """Where the shells of faces are open, in words; "" where they are closed.
+    """Sentence on where the shells of faces are open; "" where they are closed.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def _unfilled(mesher: int) -> str:
 
 
 def reason(error: Exception) -> str:
-    """What gmsh says of its failure, in one line."""
+    """Reason of gmsh's failure, in one line."""
     found = str(gmsh.logger.getLastError() or error or "no reason given")
     return " ".join(found.split())[:200].rstrip(".")
 
@@ -255,7 +255,7 @@ def heal(
 
 
 def _tried(read: Callable[[], None], step: Step, smallest_detail: float) -> dict[str, Any]:
-    """What is there after one step, of the file as it was read."""
+    """Contents after one step, of the file as it was read."""
     gmsh.clear()
     read()
     occ, there = gmsh.model.occ, gmsh.model.getEntities(3)

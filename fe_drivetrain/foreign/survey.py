@@ -1,4 +1,4 @@
-"""What is in a STEP or mesh file: what a user looks at first, to pick a seat and held faces."""
+"""Contents of a STEP or mesh file: what a user looks at first, to pick a seat and held faces."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Mark(NamedTuple):
 
 
 class Survey(NamedTuple):
-    """What is in a file.
+    """Contents of a file.
 
     Attributes
     ----------

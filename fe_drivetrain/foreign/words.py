@@ -1,4 +1,4 @@
-"""What the messages of several modules say of faces."""
+"""Words of several modules' messages about faces."""
 
 from __future__ import annotations
 

@@ -64,7 +64,7 @@ class ParallelStage:
 
 
 def loads_per_turn(stages: Sequence[PlanetaryStage | ParallelStage]) -> dict[str, float]:
-    """How often one flank of a tooth is loaded per turn of the first shaft.
+    """Number of loads of one flank of a tooth per turn of the first shaft.
 
     Parameters
     ----------

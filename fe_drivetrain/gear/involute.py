@@ -298,7 +298,7 @@ class Pair:
 
     @property
     def reference_centre_distance(self) -> float:
-        """Without profile shifts [m]."""
+        """Centre distance without profile shifts [m]."""
         return abs(self.first.reference_radius + self.second.sign * self.second.reference_radius)
 
     @property

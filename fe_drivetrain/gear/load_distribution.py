@@ -1,4 +1,4 @@
-"""How a torque is shared by slices of a mesh: face load factor, transmission error, wrenches."""
+"""Share of a torque between slices of a mesh: face load factor, transmission error, wrenches."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ def loaded(
 
 
 def _approach(side: Floats, stiffness: Floats, away: Floats, load: float) -> float:
-    """Where springs that begin at side * away sum to a load: by the places of their beginnings."""
+    """Approach at which springs that begin at side * away sum to a load, by their beginnings."""
     begins, order = np.sort(side * away), np.argsort(side * away)
     # springs of one side are pressed beyond their beginning, those of the other before it
     up = np.where(side > 0.0, stiffness, 0.0)[order]

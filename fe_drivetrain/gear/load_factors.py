@@ -1,4 +1,4 @@
-"""What makes the load of a tooth larger than its share of the torque: ISO 6336-1, method B.
+"""Factors of a tooth's load over its share of the torque: ISO 6336-1, method B.
 
 Deviations of the teeth, running-in, resonance of a pair, misalignment over the face width. The
 standard itself was not read: equations stand in public programs and in IACS UR M56, and the cases
@@ -120,7 +120,7 @@ def resonance_speed(stiffness: float, mass: float, teeth: int) -> float:
 
 
 def running_in(material: GearMaterial, deviation: float, speed: float) -> float:
-    """How much of a deviation of pitch or profile a gear loses by running in.
+    """Part of a deviation of pitch or profile that a gear loses by running in.
 
     Parameters
     ----------

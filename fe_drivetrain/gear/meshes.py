@@ -73,7 +73,7 @@ class MeshStiffness:
         )
 
     def delayed(self, phase: float) -> MeshStiffness:
-        """The same mesh, later: its stiffness at t is this one's at t - phase.
+        """Delay the mesh: its stiffness at t is that of this one at t - phase.
 
         Parameters
         ----------
@@ -115,12 +115,12 @@ class StiffnessTable:
 
     @property
     def mean(self) -> float:
-        """Over a period [N/m]."""
+        """Mean stiffness over a period [N/m]."""
         return float(np.mean(self.values))
 
     @property
     def phases(self) -> Floats:
-        """Where the values are [periods]."""
+        """Phases of the values [periods]."""
         return np.arange(len(self.values)) / len(self.values)
 
     def at(self, phase: float | Floats) -> Floats:

@@ -1,4 +1,4 @@
-"""What the teeth of a planetary stage fix: where planets fit, and the phases of their meshes.
+"""Phases of a planetary stage's meshes, and positions where planets fit, as its teeth fix them.
 
 Phases are delays in periods of the mesh, between 0 and 1, against the first planet: the stiffness
 of planet n's mesh at the time t is that of the first planet's at t - phase (Parker and Lin 2004).

@@ -34,7 +34,7 @@ from fe_drivetrain.gear.strength import (
 
 @dataclass(frozen=True)
 class Running:
-    """Under what a pair runs.
+    """Operating conditions of a pair.
 
     Attributes
     ----------
@@ -335,7 +335,7 @@ def root_stress(
 
 @dataclass(frozen=True)
 class Endured:
-    """What one gear of a pair endures.
+    """Strength of one gear of a pair.
 
     Attributes
     ----------

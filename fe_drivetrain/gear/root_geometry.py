@@ -1,4 +1,4 @@
-"""Where a tooth would break: critical section, lever arm and fillet by ISO 6336-3, method B.
+"""Critical section, lever arm and fillet of a tooth, where it would break: ISO 6336-3, method B.
 
 Everything is in the normal section, in normal modules. The section is where tangents of 30 degrees
 (internal gears 60) to the tooth's middle touch the fillet that the rack, or the cutter, leaves; the

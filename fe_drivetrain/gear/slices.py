@@ -29,7 +29,7 @@ SLICES = 35
 
 @dataclass(frozen=True)
 class Modifications:
-    """What is taken off the flanks of a pair, along the line of action [m].
+    """Material taken off the flanks of a pair, along the line of action [m].
 
     Attributes
     ----------

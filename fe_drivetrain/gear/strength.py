@@ -1,4 +1,4 @@
-"""What gear steels endure: limits, life curves, influence of oil, roughness, hardness and size.
+"""Strength of gear steels: limits, life curves, influence of oil, roughness, hardness and size.
 
 ISO 6336-2 (flanks), -3 (roots) and -5 (limits). The standards were not read: equations stand in
 IACS UR M56 and in public programs, and reproduce factors that KISSsoft 03/2017 prints for

@@ -37,7 +37,7 @@ _OUTLINE = {
 
 @dataclass(frozen=True)
 class Pieces:
-    """What slave and master facets have in common, piece by piece.
+    """Common pieces of slave and master facets.
 
     Attributes
     ----------
@@ -294,7 +294,7 @@ class OppositePoints:
 
 
 def opposite_points(kind: FacetKind, nodes: Floats, x: Floats, direction: Floats) -> OppositePoints:
-    """Where lines from x (q, 3) meet facets with these nodes (q, k, 3): Newton's method."""
+    """Points where lines from x (q, 3) meet facets with these nodes (q, k, 3): Newton's method."""
     at = np.repeat(kind.places.mean(axis=0)[:, None], len(x), axis=1)
     distance = np.zeros(len(x))
     for _ in range(_STEPS):

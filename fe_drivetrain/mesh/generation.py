@@ -38,7 +38,7 @@ DEFAULT_SIZES = MeshSizes()
 ATTEMPTS = 4
 
 REFINEMENT = 1.3
-"""Where elements fold over, the mesh of that kind of part is refined so much, and tried again."""
+"""Refinement factor for a kind of part whose elements fold over, before it is meshed again."""
 
 
 def generate(

@@ -1,4 +1,4 @@
-"""From the reference element to its place: of numpy alone, for processes that have no more."""
+"""Mapping from the reference element to its place: numpy alone, for processes with no more."""
 
 from __future__ import annotations
 

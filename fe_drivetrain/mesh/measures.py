@@ -141,7 +141,7 @@ def inverted_cells(mesh: Mesh, depth: int = 3) -> Ints:
 
 @dataclass(frozen=True)
 class MeshQuality:
-    """How well shaped a mesh is.
+    """Shape quality of a mesh.
 
     Attributes
     ----------

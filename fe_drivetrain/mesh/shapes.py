@@ -1,4 +1,4 @@
-"""What an element is: nodes, shape functions and quadrature of tetrahedra and hexahedra."""
+"""Element kinds: nodes, shape functions and quadrature of tetrahedra and hexahedra."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

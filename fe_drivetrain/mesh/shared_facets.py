@@ -62,7 +62,7 @@ class SharedFacets:
 
     @staticmethod
     def of(mesh: Mesh) -> SharedFacets:
-        """Those of a mesh of tetrahedra."""
+        """Facets of a mesh of tetrahedra."""
         keys = facet_keys(mesh.cells[:, FACETS[:, :3]].reshape(-1, 3), len(mesh.points))
         order = np.argsort(keys, kind="stable")
         keys = keys[order]

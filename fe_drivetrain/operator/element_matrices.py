@@ -16,7 +16,7 @@ from fe_drivetrain.mesh.mapping import jacobian
 
 @dataclass(frozen=True)
 class Rule:
-    """How elements of one kind are integrated.
+    """Quadrature of elements of one kind.
 
     Attributes
     ----------

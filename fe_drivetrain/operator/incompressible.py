@@ -201,7 +201,7 @@ def _projected(points: Floats, cells: Ints) -> tuple[Floats, Floats]:
 
 
 def full_rule(kind: ElementKind) -> Rule:
-    """That of curved elements."""
+    """Quadrature rule of curved elements."""
     at, weights = get_quadrature(kind.element.refdom, kind.degree)
     values, gradients = kind.shape(at)
     return Rule(gradients, weights, values)

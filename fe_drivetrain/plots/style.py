@@ -177,7 +177,7 @@ def _range_of_both(traces: list[dict[str, Any]], logarithmic: bool) -> dict[str,
 
 
 def _coloured(traces: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The same traces, each in a colour of its own, those of a known method in that method's.
+    """Traces, each in a colour of its own, those of a known method in that method's.
 
     Where there are more than colours, the lines of the others are drawn in another style.
     """
@@ -225,7 +225,7 @@ def _of_method(name: str) -> str | None:
 
 
 def _finite(value: Any) -> Any:
-    """The same data, its texts typeset, with null for what JSON has no number for."""
+    """Data with its texts typeset, and null for what JSON has no number for."""
     if isinstance(value, dict):
         return {key: _finite(inner) for key, inner in value.items()}
     if isinstance(value, list | tuple):

@@ -229,7 +229,7 @@ def _sharp(shaft: Shaft) -> Shaft:
 
 
 def _foot(arc: Segment) -> Place:
-    """Where the step's face and the thinner surface would meet, equally far from both ends."""
+    """Meeting point of the step's face and the thinner surface, equally far from both ends."""
     on_thin, (x, high) = sorted((arc.start, arc.end), key=lambda place: place[1])
     along, down = on_thin[0] - x, high - on_thin[1]
     return x, high - (along**2 + down**2) / (2.0 * down)

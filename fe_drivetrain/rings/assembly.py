@@ -108,7 +108,7 @@ class RollerAssembly:
 
 @dataclass(frozen=True, eq=False)
 class AssemblyEquilibrium:
-    """Where a scene comes to rest on its rollers.
+    """Equilibrium of a scene on its rollers.
 
     Attributes
     ----------

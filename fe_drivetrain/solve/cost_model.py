@@ -1,4 +1,4 @@
-"""What each solver will take, in seconds and bytes, before it is set up.
+"""Cost of each solver, in seconds and bytes, before it is set up.
 
 Nested dissection of a solid whose cross-section has w nodes, n unknowns in all, fills a factor with
 about n w^(1/2) entries at n w^(3/2) operations (George 1973 for squares and cubes; a slender solid

@@ -74,7 +74,7 @@ class ElementSystem:
 
     @cached_property
     def sums(self) -> Sums | None:
-        """Its joints that take means over faces; None where there are none."""
+        """Joints that take means over faces; None where there are none."""
         constraints = self.elimination.constraints
         means = [c.is_mean for c in constraints] + [point.is_mean for point, _ in self.springs]
         return sums_of(self.elimination, self.springs) if any(means) else None

@@ -1,4 +1,4 @@
-"""How far a stiffness is from its limit, estimated on one mesh: energy of the error by recovery.
+"""Error of a stiffness, estimated on one mesh: energy of the error by recovery.
 
 A displacement model under given forces stores too little energy, by exactly the energy of its
 error: for one load F with its displacement or rotation d, the compliance d / F is too low and the

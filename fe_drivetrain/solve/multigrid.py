@@ -342,7 +342,7 @@ def _within_bodies(K: sparse.bsr_array, body: Ints) -> sparse.csr_matrix:
 
 @dataclass(frozen=True)
 class Iteration:
-    """What conjugate gradients came to.
+    """Result of conjugate gradients.
 
     Attributes
     ----------

@@ -250,7 +250,7 @@ def keep(file: Path, share: Share, reductions: Sequence[Reduction]) -> None:
 
 
 def kept(file: Path) -> tuple[Share, tuple[Reduction, ...]]:
-    """What `keep` has kept."""
+    """Load what `keep` has kept."""
     with np.load(file) as values:
 
         def matrix(name: str) -> sparse.csr_array:

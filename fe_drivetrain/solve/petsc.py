@@ -40,7 +40,7 @@ from fe_drivetrain.solve.rounding import worst
 METHODS = ("petsc", "petsc-mumps")
 
 Facts = dict[str, Any]
-"""What processes say of their work; see `Ranks`."""
+"""Messages of processes about their work; see `Ranks`."""
 
 MOST = 400
 """Iterations: 30 to 50 of GAMG are usual, a rigid spherical joint took 94 and more."""

@@ -181,7 +181,7 @@ def diagonal_blocks(K: sparse.bsr_array) -> Floats:
 
 
 def _diagonal_places(K: sparse.bsr_array) -> Ints:
-    """Where the diagonal blocks stand; -1 where there are none."""
+    """Places of the diagonal blocks; -1 where there are none."""
     nodes = np.arange(len(K.indptr) - 1)
     return np.asarray(graph.places(*kernels.pattern_of(K), nodes, nodes), dtype=np.int64)
 
@@ -249,7 +249,7 @@ def motions_with_points(points: Floats, elimination: Elimination) -> Floats:
 def _prolongation(
     cells: Ints, n_nodes: int, T: sparse.csr_array, free: np.ndarray
 ) -> tuple[sparse.csr_array, Ints]:
-    """From degrees of freedom of corner nodes (and reference points) to all, constraints fulfilled.
+    """Prolongation from corner nodes (and reference points) to all, constraints fulfilled.
 
     Returns
     -------

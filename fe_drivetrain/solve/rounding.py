@@ -1,4 +1,4 @@
-"""What rounding does to a slender or thin solid before any solver sees it."""
+"""Effect of rounding on a slender or thin solid before any solver sees it."""
 
 from dataclasses import dataclass
 

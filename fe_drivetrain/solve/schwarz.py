@@ -37,7 +37,7 @@ Index = NDArray[np.int32]
 
 @dataclass(frozen=True)
 class Options:
-    """How patches and coarse space are made; ``cases/stability/thin_walls.py`` shows others.
+    """Options of patches and coarse space; ``cases/stability/thin_walls.py`` shows others.
 
     Attributes
     ----------

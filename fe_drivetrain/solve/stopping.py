@@ -1,4 +1,4 @@
-"""When conjugate gradients have done enough, or will never: of numpy alone, for all who iterate.
+"""Stopping of conjugate gradients, converged or hopeless: numpy alone, for all who iterate.
 
 The residual says little about slender solids, whose stiffest and softest motions are ten decades
 apart. What conjugate gradients add in step k to the squared energy norm is known exactly, Delta_k =

@@ -28,7 +28,7 @@ _NONE = np.zeros(0, dtype=np.int64)
 
 @dataclass(frozen=True)
 class Sums:
-    """What the joints of a system are, that take sums over groups of nodes.
+    """Joints of a system that take sums over groups of nodes.
 
     Attributes
     ----------

@@ -289,7 +289,7 @@ class Drivetrain(Part):
         return self
 
     def assumptions(self) -> list[Assumption]:
-        """What the table does not give and is taken all the same, of all of its rows."""
+        """Assumptions of all rows: what the table does not give."""
         named: list[tuple[str, Part]] = [(f"shaft {shaft.name}", shaft) for shaft in self.shafts]
         named += [(f"stage {k}", stage) for k, stage in enumerate(self.stages, start=1)]
         return assumed_in([*named, ("generator", self.generator)])

@@ -80,7 +80,7 @@ def mesh_orders(stages: Iterable[Geared]) -> dict[str, float]:
 
 
 def absolute_sun_orders(stages: Iterable[Geared]) -> dict[str, float]:
-    """What Table 4.8 of Al-Hamadani 2018 prints: of planetary stages, z_ring + z_sun; wrong."""
+    """Teeth of Table 4.8 of Al-Hamadani 2018: for planetary stages z_ring + z_sun, which is wrong."""
     return _orders(stages, absolute=True)
 
 

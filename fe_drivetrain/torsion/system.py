@@ -141,7 +141,7 @@ class Torsional:
         return np.asarray(self.B.T @ (c[:, None] * self.B))
 
     def place(self, name: str) -> int:
-        """Where an inertia stands.
+        """Number of an inertia in the system.
 
         Raises
         ------
@@ -191,7 +191,7 @@ class Modes:
 
     @property
     def energy_shares(self) -> dict[str, Floats]:
-        """By name of each inertia (kinetic) and element (strain), (n,) shares in each mode."""
+        """Shares (n,) in each mode, by name of each inertia (kinetic) and element (strain)."""
         return dict(
             zip(
                 (*self.names, *self.elements),
@@ -329,7 +329,7 @@ def damped(system: Torsional, dampings: Mapping[str, float]) -> Torsional:
 
 
 def referred(system: Torsional, speeds: Mapping[str, float]) -> Torsional:
-    """The same system in other angles: that of each inertia over its speed ratio.
+    """System in other angles: that of each inertia over its speed ratio.
 
     An angle theta' = theta / s is that seen from a shaft that turns 1 / s as fast; its inertia is
     s^2 J (Al-Hamadani 2018, Eq 4.8-4.12), windings by it are s times as large. Frequencies stay.
