@@ -171,9 +171,9 @@ def face_load(of: Asked) -> float | None:
 
 
 def contact_stress(of: Asked) -> float:
-    """Largest contact stress of a gear: one pair of teeth at the pitch point [MPa].
+    """Maximum contact stress of a gear: one pair of teeth at the pitch point [MPa].
 
-    Hertz pressure of the slice of the planet that has most. A torsional level has an answer, too:
+    Hertz pressure of the slice of the planet with the maximum. A torsional level has an answer, too:
     planets share equally there, and so does the face width.
     """
     largest = 0.0

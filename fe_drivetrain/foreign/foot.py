@@ -33,7 +33,7 @@ MOST_PATCHES = 400
 """Maximum number of patches of a foot: its contact is a dense problem."""
 
 _LEAST_AREA = 0.2  # of the mean area of patches: smaller ones join their neighbours
-_NOTHING = 1e-9  # of the largest force or lift: round-off, no change of contact
+_NOTHING = 1e-9  # of the maximum force or lift: round-off, no change of contact
 _TOGETHER = 30  # passes in which all wrong patches change at once, then one by one
 _MOST_PASSES = 2000
 

@@ -41,7 +41,7 @@ class WeakMotion:
         Sentence on what moves and how, as in "shaft can nearly turn about x through (0, 0, 0) m".
     ratio : float
         Work of the springs over that of a spring of the bodies' own scale, Young's modulus times
-        length, which is stretched by the largest displacement anywhere in the body.
+        length, which is stretched by the maximum displacement anywhere in the body.
     """
 
     description: str

@@ -71,7 +71,7 @@ def refined_sizes(mesh: Mesh, cells: Ints, factor: float = FACTOR) -> LocalSizes
         raise InputError(f"factor = {factor:g} on the size of marked cells must be in (0, 1)")
     sizes = cell_sizes(mesh.points, mesh.cells)
     corners = mesh.cells[:, :4]
-    # a node takes the mean of its cells, but the least where one of them is marked
+    # a node takes the mean of its cells, but the minimum where one of them is marked
     number, total = np.zeros(len(mesh.points)), np.zeros(len(mesh.points))
     np.add.at(number, corners, 1.0)
     np.add.at(total, corners, sizes[:, None])

@@ -240,7 +240,7 @@ def _flat(mesh: Mesh) -> list[Fault]:
         mesh,
         "flat",
         np.flatnonzero(flat < FLATTEST),
-        f"are flatter than {FLATTEST:g} (least height over longest edge; the worst "
+        f"are flatter than {FLATTEST:g} (minimum height over longest edge; the worst "
         f"{flat.min():.1g})",
         "let the mesher optimise them away, or make the mesh finer there",
     )

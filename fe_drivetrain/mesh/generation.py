@@ -107,9 +107,9 @@ def relax_flat_cells(mesh: Mesh, floor: float = 0.05, passes: int = 4) -> Mesh:
 
     Where a cell has two facets on one smooth surface, or lies across a sharp fillet, curving its
     edges to the surface can fold it. Its mid-side nodes are then drawn half way towards the
-    straight edge, again and again, until it is sound; the shape gives way there by a fraction of
+    straight edge, again and again, until it is sound; the shape changes there by a fraction of
     an edge's sagitta. Nodes of seats, joints and bases stay exactly where they are; the ends and
-    the bore of the shaft may give way like any other surface.
+    the bore of the shaft may change like any other surface.
 
     Parameters
     ----------

@@ -146,7 +146,7 @@ class MeshQuality:
     Attributes
     ----------
     minimum_scaled_jacobian : float
-        Least ratio of the Jacobian in a curved element to that of the straight-sided element
+        Minimum ratio of the Jacobian in a curved element to that of the straight-sided element
         with the same corners: 1 where every edge is straight, 0 or less where an element folds
         over (gmsh's minSJ). Sampled at the 20 points of the cubic lattice.
     minimum_scaled_jacobian_of : dict[str, float]

@@ -1,7 +1,7 @@
 """The next coarser level by smoothed aggregation, of pyamg's steps.
 
 Vanek, Mandel, Brezina 1996, Computing 56, 179-196. The prolongation is smoothed by a step of the
-block Jacobi iteration, whose inverses and largest eigenvalue the smoother of the level needs anyway
+block Jacobi iteration, whose inverses and maximum eigenvalue the smoother of the level needs anyway
 and pyamg would estimate again, from random numbers.
 """
 

@@ -351,7 +351,7 @@ class Iteration:
     iterations : int
         Number of them.
     energy_error : float
-        Largest estimate, over the columns, of the relative error in the energy norm; infinite where
+        Maximum estimate, over the columns, of the relative error in the energy norm; infinite where
         stiffness or preconditioner turned out not to be positive.
     """
 

@@ -24,7 +24,7 @@ METHODS = ("auto", "superlu", "cholmod", "pardiso", "multigrid", "schwarz", *pet
 ITERATIVE = ("multigrid", "schwarz", *petsc.METHODS)
 
 _USELESS = 1e-2  # a direct solver's residual; 1e-7 is seen in slender solids whose answer is right
-_SURELY = 1e-2  # of a tolerance: a sum of errors is seldom so much less than the largest
+_SURELY = 1e-2  # of a tolerance: a sum of errors is seldom so much less than the maximum
 _DOUBTFUL, _LOST = 1e-4, 0.1
 """Bounds of what rounding does, above which it is reported, and refused: of first order, they bound
 nothing where they are not small. Mostly it does a tenth to a hundredth of that, see

@@ -3,7 +3,7 @@
 The residual says little about slender solids, whose stiffest and softest motions are ten decades
 apart. What conjugate gradients add in step k to the squared energy norm is known exactly, Delta_k =
 alpha_k (r_k, z_k), and the squared error is the sum of what is still to come. It is taken as
-Delta_k times the largest such ratio seen in the steps before (Meurant, Papez, Tichy 2021, Accurate
+Delta_k times the maximum such ratio seen in the steps before (Meurant, Papez, Tichy 2021, Accurate
 error estimation in CG, section 4).
 """
 

@@ -80,7 +80,7 @@ def mesh_orders(stages: Iterable[Geared]) -> dict[str, float]:
 
 
 def absolute_sun_orders(stages: Iterable[Geared]) -> dict[str, float]:
-    """Teeth of Table 4.8 of Al-Hamadani 2018: for planetary stages z_ring + z_sun, which is wrong."""
+    """Orders of Table 4.8 of Al-Hamadani 2018, with z_ring + z_sun in planetary stages: wrong."""
     return _orders(stages, absolute=True)
 
 
