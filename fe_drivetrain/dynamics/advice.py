@@ -173,8 +173,8 @@ def face_load(of: Asked) -> float | None:
 def contact_stress(of: Asked) -> float:
     """Maximum contact stress of a gear: one pair of teeth at the pitch point [MPa].
 
-    Hertz pressure of the slice of the planet with the maximum. A torsional level has an answer, too:
-    planets share equally there, and so does the face width.
+    Hertz pressure of the slice and planet with the maximum load. A torsional level has an answer,
+    too: planets share equally there, and so does the face width.
     """
     largest = 0.0
     for mesh, contact in pitch_contacts(of.machine).items():
