@@ -82,7 +82,7 @@ def coarse_thread(diameter: float) -> Thread:
     Returns
     -------
     Thread
-        Its diameters.
+        Diameters of the thread.
 
     Raises
     ------

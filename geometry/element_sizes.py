@@ -82,7 +82,7 @@ class MeshSizes(Part):
         Parameters
         ----------
         kinds : Iterable[str]
-            Any of 'shaft', 'bearing', 'housing'.
+            Kinds of parts: any of 'shaft', 'bearing', 'housing'.
         factor : float
             Factor, above 1 for a finer mesh.
         """
@@ -141,7 +141,7 @@ def elements_within(name: str, volume: float, size: float) -> float:
     name : str
         Name of the part.
     volume, size : float
-        Its volume, m^3, and the size of its elements, m.
+        Volume of the part, m^3, and size of its elements, m.
 
     Raises
     ------

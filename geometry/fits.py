@@ -169,7 +169,7 @@ def refuse_millimetres(part: str, long: float, wide: float, longest: float = LON
     part : str
         Name of the part, for the message.
     long, wide : float
-        Its extents along x and across, m.
+        Extents of the part along x and across, m.
     longest : float
         Maximum length along x, m.
 

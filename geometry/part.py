@@ -119,7 +119,7 @@ def rows_of(what: str, of: type[Part] | Mapping[str, type[Part]]) -> Any:
     what : str
         Name of a row, in messages.
     of : type or mapping of str to type
-        Its part, or parts by their ``kind``.
+        Part of the row, or parts by their ``kind``.
 
     Returns
     -------

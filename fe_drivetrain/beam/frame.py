@@ -136,11 +136,11 @@ class Member:
     Attributes
     ----------
     nodes : tuple[int, int]
-        Their numbers.
+        Numbers of the nodes.
     ends : tuple[Floats, Floats]
         Positions (3,) of both ends of the beam [m].
     section : CrossSection
-        Its section.
+        Cross-section of the beam.
     first_axis : Floats
         Direction (3,) of the section's first axis, made square to the beam.
     """

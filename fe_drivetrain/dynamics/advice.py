@@ -66,7 +66,7 @@ class Asked:
     Attributes
     ----------
     machine : Machine
-        Its table.
+        Table of the machine.
     rung : Rung
         Level, and what gives.
     operation : Operation

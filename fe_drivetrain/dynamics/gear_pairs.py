@@ -30,7 +30,7 @@ def machine_pairs(machine: Machine) -> dict[str, Pair]:
     Parameters
     ----------
     machine : Machine
-        Its table, with a module, teeth and profile shifts of each stage.
+        Table of the machine, with a module, teeth and profile shifts of each stage.
 
     Returns
     -------
@@ -223,7 +223,7 @@ def pitch_contacts(machine: Machine) -> dict[str, PitchContact]:
     Parameters
     ----------
     machine : Machine
-        Its table; profile shifts are not needed.
+        Table of the machine; profile shifts are not needed.
 
     Returns
     -------

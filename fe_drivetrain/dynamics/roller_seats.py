@@ -84,7 +84,7 @@ def seat(
     inner, outer : Place, Place or None
         Bodies of its rings; none is the ground.
     point : array_like, (3,)
-        Its centre [m].
+        Centre of the bearing [m].
     angle : float
         Angle from y to z, by which the bearing's own y is turned about x [rad], as that of a
         planet's pin is, whose inner ring turns with the carrier.

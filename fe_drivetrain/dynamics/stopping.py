@@ -73,7 +73,7 @@ class Shutdown:
     Attributes
     ----------
     system : Torsional
-        Its masses.
+        Masses of the drivetrain, with the springs between them.
     speeds : dict[str, float]
         Speed of each mass, over that of the rotor.
     torque : float

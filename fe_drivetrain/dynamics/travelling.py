@@ -54,13 +54,13 @@ class Turning:
     Attributes
     ----------
     carrier : int
-        Its number.
+        Number of the carrier.
     ratio : float
-        Its speed over that of reference.
+        Speed of the carrier over that of reference.
     rows : Floats
         Change (2 d, m, n) of the springs' rows: cosine and sine of degree 1, of degree 2, ...
     extra : Floats
-        (2 d', n, n) of the stiffness of superelements.
+        Change (2 d', n, n) of the stiffness of superelements.
     bearings : Floats
         Change (2 d, b, 5, n) of the rows of rolling bearings.
     """
@@ -220,7 +220,7 @@ def travelling(
     Parameters
     ----------
     machine : Machine
-        Its table.
+        Table of the machine.
     level, elements, held_generator, flexible : Level, int, bool, Flexible
         Level and its options, see `machine_system`.
     rollers : mapping of int to Bearing, optional

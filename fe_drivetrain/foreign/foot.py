@@ -146,15 +146,15 @@ class FootState(NamedTuple):
     motion : Floats
         Motion (6,) of the seat since the bolts were tightened [m, rad].
     closed : Bools
-        (P,) which patches are pressed.
+        Flags (P,): patches that are pressed.
     forces : Floats
-        (P, 3) of the ground on the patches: pressing, and two across [N].
+        Forces (P, 3) of the ground on the patches: pressing, and two across [N].
     lifts : Floats
-        (P,) of the patches off the ground [m].
+        Distances (P,) of the patches off the ground [m].
     bolts : Floats
-        (B, 6) forces and moments of the bolts on the housing at their heads [N, N m].
+        Forces and moments (B, 6) of the bolts on the housing at their heads [N, N m].
     tension : Floats
-        (B,) of the bolts [N].
+        Tension (B,) of the bolts [N].
     """
 
     motion: Floats
@@ -188,19 +188,19 @@ class ClampedFoot:
     rigid : Floats
         Motions (n, 6) of the foot with the seat, where nothing strains.
     areas : Floats
-        (P,) of the patches [m^2].
+        Areas (P,) of the patches [m^2].
     places : Floats
-        (P, 3) their centroids [m].
+        Centroids (P, 3) of the patches [m].
     directions : Floats
         (P, 3, 3) rows: out of the ground, and two across.
     bolts : Floats
         (B, 6, 6) stiffness of each bolt at its head, its end in the ground held.
     axes : Floats
-        (B, 3) from the ground to the head.
+        Vectors (B, 3) from the ground to the head.
     preload : Floats
-        (B,) tension after tightening [N].
+        Tension (B,) after tightening [N].
     ground : float
-        Stiffness of the ground over its area, along and across [N/m^3]; inf where it does not give.
+        Stiffness of the ground over its area, along and across [N/m^3]; inf where it is rigid.
     """
 
     compliance: Floats

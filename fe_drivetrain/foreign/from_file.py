@@ -61,7 +61,7 @@ def kept_part(
     source : ForeignFile
         The part.
     part : str
-        Its name in the mesh.
+        Name of the part in the mesh.
     content : Mapping[str, Any]
         Values that its mesh depends on beside the file.
     make : callable
@@ -221,7 +221,7 @@ def body_of_mesh(source: ForeignFile) -> tuple[Mesh, Surface]:
     Mesh
         One part, "body", without faces, in the file's frame and unit.
     Surface
-        Its outside.
+        Outside of the mesh.
 
     Raises
     ------
@@ -289,7 +289,7 @@ def named_arrays(name: str, mesh: Mesh, facts: Mapping[str, Any]) -> dict[str, N
     mesh : Mesh
         Mesh of one part, "body".
     facts : Mapping[str, Any]
-        Plain data.
+        Facts as plain data.
 
     Raises
     ------

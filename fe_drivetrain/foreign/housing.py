@@ -42,7 +42,7 @@ def placed_housing(
     housing : ForeignHousing
         The housing.
     bearing : Bearing
-        Its bearing.
+        Bearing of the housing.
     sizes : MeshSizes
         Element sizes of the scene; "housing" and "elements_per_turn" are used for a STEP file.
     cache : Cache or None

@@ -112,7 +112,7 @@ def free_edges(faces: list[int]) -> str:
     Parameters
     ----------
     faces : list of int
-        Their tags; each edge must bound an even number of them, a seam the same face twice.
+        Tags of the faces; each edge must bound an even number of them, a seam the same face twice.
     """
     count = Counter(
         edge
@@ -290,7 +290,7 @@ def sewn(read: Callable[[], None], sound: bool) -> str:
     Parameters
     ----------
     read : callable
-        Puts what is in the file into an empty model.
+        Function that puts what is in the file into an empty model.
     sound : bool
         Whether the solids are known to be sound; else that is found out.
     """

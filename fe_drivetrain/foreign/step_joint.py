@@ -27,7 +27,7 @@ def annulus(place: Sequence[float], axis: Sequence[float], inner: float, outer: 
     place, axis : Sequence[float]
         Middle and normal (3,) of the annulus.
     inner, outer : float
-        Its radii.
+        Radii of the annulus.
     """
     occ = gmsh.model.occ
     ring, _ = occ.cut(

@@ -70,7 +70,7 @@ def spare_angle_of_tips(
     teeth : tuple of two ints
         Numbers of teeth of the pinion and the internal gear, both positive.
     bases, tips : tuples of two floats
-        Their base and tip radii [m].
+        Base and tip radii of both [m].
     centres : float
         Centre distance [m].
 

@@ -84,9 +84,9 @@ def parabolic_mean(pair: Pair, ratio: float, greatest: float = DIN_3990) -> floa
     pair : Pair
         Gears in mesh.
     ratio : float
-        SR of `parabolic_law`.
+        Ratio SR of `parabolic_law`.
     greatest : float
-        Its k_max [N/m^2].
+        Stiffness k_max of `parabolic_law` [N/m^2].
 
     Returns
     -------

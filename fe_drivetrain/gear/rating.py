@@ -106,7 +106,7 @@ class RootStress:
     Attributes
     ----------
     root : ToothRoot
-        Its section, with Y_F and Y_S.
+        Root section, with Y_F and Y_S.
     Y_beta, Y_B : float
         Helix and rim factor.
     nominal : float
@@ -411,9 +411,9 @@ def endured_root(
     gear : Gear
         One of the pair.
     root : ToothRoot
-        Its root.
+        Root of the gear.
     material : GearMaterial
-        Its steel.
+        Steel of the gear.
     roughness : float
         R_z of the fillet [m].
     mean_stress : float

@@ -307,7 +307,7 @@ class Elimination:
     T : sparse.csr_array
         (n_dofs, n_dofs); the columns of eliminated degrees of freedom are empty.
     free : NDArray[np.bool_]
-        (n_dofs,) which degrees of freedom are left.
+        Flags (n_dofs,): degrees of freedom that are left.
     constraints : tuple[Constraint, ...]
         Constraints that were eliminated.
     """

@@ -42,7 +42,7 @@ class Joint:
     Attributes
     ----------
     constraints : tuple[Constraint, ...]
-        Its rows.
+        Constraints of the joint.
     springs : tuple[tuple[ReferencePoint, Floats], ...]
         Relative motions of bearing against housing, and their (6, 6) stiffness.
     """

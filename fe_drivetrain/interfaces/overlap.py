@@ -175,12 +175,12 @@ def _cut(polygons: Floats) -> tuple[Ints, Floats]:
     Parameters
     ----------
     polygons : Floats
-        (n, v, 2), anticlockwise.
+        Polygons (n, v, 2), anticlockwise.
 
     Returns
     -------
     polygon, triangles
-        (m,) which polygon each comes from, and (m, 3, 2).
+        Number (m,) of the polygon that each comes from, and triangles (m, 3, 2).
     """
     number = np.arange(len(polygons))
     for side in range(3):
@@ -208,7 +208,8 @@ def _halved(polygons: Floats, inside: Floats) -> tuple[Floats, Ints]:
     Returns
     -------
     polygons, corners
-        (n, w, 2), of which the last corner is repeated where there are fewer, and how many.
+        Polygons (n, w, 2), whose last corner is repeated where there are fewer, and numbers of
+        corners.
     """
     following, then = np.roll(polygons, -1, axis=1), np.roll(inside, -1, axis=1)
     crosses = (inside > 0.0) != (then > 0.0)

@@ -78,7 +78,7 @@ def find_faults(mesh: Mesh, faces: Iterable[str] = (), joints: Joints | None = N
     Parameters
     ----------
     mesh : Mesh
-        Any.
+        Mesh of any kind.
     faces : Iterable[str]
         Names of the faces that loads, supports and interfaces need.
     joints : Joints or None

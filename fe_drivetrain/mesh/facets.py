@@ -109,7 +109,7 @@ class FacetPoints:
     normals : Floats
         (n_facets, n_q, 3) unit normals, outward.
     areas : Floats
-        (n_facets, n_q) what each point weighs [m^2].
+        Weight (n_facets, n_q) of each point [m^2].
     """
 
     values: Floats

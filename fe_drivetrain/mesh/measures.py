@@ -150,9 +150,9 @@ class MeshQuality:
         with the same corners: 1 where every edge is straight, 0 or less where an element folds
         over (gmsh's minSJ). Sampled at the 20 points of the cubic lattice.
     minimum_scaled_jacobian_of : dict[str, float]
-        The same, part by part.
+        Minimum of each part by its name.
     elements, nodes : int
-        Their numbers.
+        Numbers of elements and nodes.
     inverted : int
         Number of elements not proved valid everywhere inside (`inverted_cells`).
     """

@@ -35,7 +35,7 @@ def meshed(build: Callable[[BodySizes], None], sizes: BodySizes) -> tuple[Mesh, 
     Raises
     ------
     InputError
-        It cannot be built, or elements fold over whatever is done.
+        It cannot be built, or elements fold over at every mesh size tried.
     """
     for _ in range(ATTEMPTS):
         with gmsh_session():

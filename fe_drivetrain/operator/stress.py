@@ -31,7 +31,7 @@ def stresses(
     Returns
     -------
     stresses
-        (n_cells, n_q, 6) in the order of `STRESSES` [Pa].
+        Stresses (n_cells, n_q, 6) in the order of `STRESSES` [Pa].
     """
     lam, mu = lame
     e = strains(points, cells, u, at)
@@ -71,7 +71,7 @@ def stresses_of_fields(physical: Floats, moved: Floats, lame: tuple[float, float
     Returns
     -------
     stresses
-        (n_cells, n_q, m, 6) as of `stresses` [Pa].
+        Stresses (n_cells, n_q, m, 6), in the form of `stresses` [Pa].
     """
     lam, mu = lame
     n, n_q, _, k = physical.shape

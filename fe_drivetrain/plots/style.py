@@ -144,7 +144,7 @@ def styled(traces: Sequence[Mapping[str, Any]], layout: Mapping[str, Any]) -> di
 def _log_ticks(axis: str, traces: list[dict[str, Any]]) -> dict[str, Any]:
     """Labels of a logarithmic axis that do not run into each other: decades, or 1, 2 and 5.
 
-    Between decades they are whole numbers: a 2 alone says nothing of its power of ten.
+    Between decades they are whole numbers: a 2 alone does not tell its power of ten.
     """
     values = [v for trace in traces for v in trace.get(axis, []) if is_number(v) and v > 0]
     low, high = (min(values), max(values)) if values else (1.0, 1.0)

@@ -65,12 +65,11 @@ class Factor:
     Attributes
     ----------
     dofs : Ints
-        Numbers of each front's degrees of freedom, one front after the other; the eliminated ones
-        first.
+        Numbers of each front's degrees of freedom, front by front; the eliminated ones first.
     sizes, gone : Ints
         Numbers (fronts,) of degrees of freedom of each front, and of those that are eliminated.
     values : Floats
-        Their rows of the factor, in panels whose diagonal blocks are inverted.
+        Rows of the factor, in panels whose diagonal blocks are inverted.
     """
 
     dofs: Ints

@@ -48,7 +48,7 @@ class Strip:
     radius : float
         Radius of the surface [m].
     low, high : float
-        Its two ends along x [m].
+        Both ends along x [m].
     """
 
     radius: float
@@ -67,9 +67,9 @@ class InfluenceFunctions:
     half_angle : float
         Half of a patch's arc [rad].
     harmonic_compliances : Floats
-        (N + 1, m, m) of harmonics 0 to N: amplitude of the mean radial displacement of a strip,
-        outwards, for radial pressure on another of an amplitude of 1 / (2 pi) newtons a radian in
-        harmonic 0, of 1 / pi in others [m/N].
+        Compliances (N + 1, m, m) of harmonics 0 to N: amplitude of the mean radial displacement of
+        a strip, outwards, for radial pressure on another of an amplitude of 1 / (2 pi) newtons a
+        radian in harmonic 0, of 1 / pi in others [m/N].
     limits : Floats
         Product (m,) of order and compliance of each strip, on a half space in plane strain [m/N]:
         what high orders tend to away from the strip's ends.

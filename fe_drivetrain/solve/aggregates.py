@@ -80,7 +80,7 @@ def between_aggregates(K: sparse.bsr_array, prolongation: sparse.bsr_array) -> s
     K : sparse.bsr_array
         Stiffness (n, n).
     prolongation : sparse.bsr_array
-        (n, n_coarse), in blocks with as many rows.
+        Prolongation (n, n_coarse), in blocks with as many rows.
     """
     if len(K.indices) <= _MANY:
         return prolongation.T @ (K @ prolongation)

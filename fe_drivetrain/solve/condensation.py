@@ -259,10 +259,10 @@ class Supported:
     Attributes
     ----------
     motions : Floats
-        (6 n, 6 n + 3) of all points, for unit forces and moments at all points and for 1 m/s^2
-        along x, y, z.
+        Motions (6 n, 6 n + 3) of all points, for unit forces and moments at all points and for 1
+        m/s^2 along x, y, z.
     reactions : Mapping[str, Floats]
-        (6, 6 n + 3) by support: what the body puts on it, at its point.
+        Loads (6, 6 n + 3) of the body on each support, at its point.
     """
 
     motions: Floats

@@ -61,7 +61,7 @@ class System:
         Stiffness (n, n), symmetric positive definite, 3x3 blocks; rows of eliminated degrees of
         freedom are diagonal.
     prolongation : sparse.csr_array or None
-        (n, n_corner) from the linear elements on the same corners to the quadratic ones, in
+        Matrix (n, n_corner) from the linear elements on the same corners to the quadratic ones, in
         degrees of freedom that fulfil the constraints; None where the elements are linear.
     near_nullspace : Floats
         (n_corner, 6), or (n, 6) of linear elements: the rigid motions.

@@ -65,7 +65,7 @@ def is_hopeless(
     most : int
         Maximum number of steps.
     foreseen : callable
-        Gives the number of steps that it was thought to take; asked only where it decides.
+        Function that returns the number of steps foreseen; called only where it decides.
     """
     k = len(errors)
     if k < _PATIENCE:

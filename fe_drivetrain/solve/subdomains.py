@@ -30,9 +30,10 @@ class Partition:
     Attributes
     ----------
     patch : Ints
-        (n_blocks,) of each node block.
+        Patch (n_blocks,) of each node block.
     blocks, starts : Ints
-        Blocks in the order of their patches, and (n_patches + 1,) where each patch begins.
+        Blocks in the order of their patches, and the place (n_patches + 1,) where each patch
+        begins.
     cells, cell_starts : Ints
         The same of elements. Patches of reference points have none.
     """
