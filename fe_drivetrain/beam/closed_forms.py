@@ -199,8 +199,8 @@ def torsional_spring_reaction(
         total = 1.0 / bearing_stiffness + lift + bend
         if total == 0.0:
             raise InputError(
-                "bearing, gearbox and shaft stiffness inf share the load in a way that statics "
-                "cannot tell: make at least one of them finite."
+                "bearing, gearbox and shaft have infinite stiffness, so that their shares of the "
+                "load are indeterminate: make at least one of them finite."
             )
         bearing_moment = (arm * bend + (arm - G * span) * lift) / total
     reaction = (M + B * (overhang + span) - bearing_moment) / span

@@ -186,7 +186,7 @@ def unit_load_response(
     ------
     InputError
         If a station is not on the beam, the supports leave the beam free to move (the motion is
-        named), or two rigid supports share a load in a way that statics cannot tell.
+        named), or two rigid supports share a load indeterminately.
     """
     loaded = stations_on(beam, "load station", load_stations)
     wanted = stations_on(beam, "output station", [] if at is None else at)

@@ -74,8 +74,8 @@ class Races:
         values = np.linalg.eigvalsh(self._scaled)
         if values[0] < -_NEGATIVE * max(values[-1], 0.0):
             raise InputError(
-                f"compliance of the races of {self.bearing.name} gives energy back: its minimum "
-                f"eigenvalue is {values[0]:.3g} m/N; check the signs of its columns"
+                f"compliance of the races of {self.bearing.name} must have no "
+                f"negative eigenvalue, but has {values[0]:.3g} m/N: check the signs of its columns"
             )
 
     @property

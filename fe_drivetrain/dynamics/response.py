@@ -140,8 +140,8 @@ def mesh_response(
     turns |= set() if still is None else {1.0}
     if len(turns) != 1 or (still is None and any(m.error is None for m in meshing.values())):
         raise InputError(
-            "meshes of one frequency response must all have errors of one number of periods for "
-            "each of the mesh, 1 beside courses of stiffness: leave the others out"
+            "meshes of one frequency response must all have errors with the same number of periods "
+            "per mesh period, 1 where stiffness varies, too: leave the others out"
         )
     each = turns.pop()
     e, kappa = (np.zeros(len(s.spring_names), dtype=complex) for _ in range(2))

@@ -73,8 +73,8 @@ def loaded_with_coupling(
     local = np.full(m, coupling.hertz * width)
     if not (local > touching.stiffness).all():
         raise InputError(
-            f"the contact of teeth is {1e-9 * coupling.hertz:.4g} N/(mm um) stiff, less than the "
-            "teeth with it: give more"
+            f"the stiffness of the teeth's contact is {1e-9 * coupling.hertz:.4g} N/(mm um) but "
+            "must be above that of teeth and contact in series: raise it"
         )
     bending = 1.0 / (1.0 / touching.stiffness - 1.0 / local)
     B = np.diag(bending)

@@ -254,8 +254,8 @@ def _warn_of_coarse_slave(name: str, points: Floats, slave: Ints, master: Ints) 
     if others > _FINER * own:
         warnings.warn(
             f"tie {name!r}: the master face has {others / own:.3g} times as many nodes to an area "
-            f"as the slave, but {_FINER:g} times is as much as is sound: take the finer face as "
-            "the slave, else stress beside the tie may be wrong and all nodes of the master are "
+            f"as the slave, but must have at most {_FINER:g} times: take the finer face as the "
+            "slave, else stress beside the tie may be wrong and all nodes of the master are "
             "coupled with one another",
             stacklevel=3,
         )

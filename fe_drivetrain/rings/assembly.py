@@ -265,8 +265,8 @@ def _solved(scene: Scene, bearings: Mapping[str, Bearing], method: str) -> dict[
     least = np.linalg.eigvalsh(S / scale)
     if least[0] < -_NEGATIVE * least[-1]:
         raise InputError(
-            f"the scene without its rollers gives energy back ({least[0]:.3g} N/m): the solver "
-            'was not exact enough; give method="direct"'
+            f"the scene without its rollers has a negative eigenvalue of stiffness, {least[0]:.3g} "
+            'N/m: the solver was not exact enough; give method="superlu"'
         )
     points = model.points.values()
     return {

@@ -242,7 +242,7 @@ def on_supports(
         group = next((g for g in together if name in g and 6 * len(g) == k.shape[1]), None)
         if group is None:
             raise InputError(
-                f"support {name!r} gives together with others, which this cannot take: use one of "
+                f"support {name!r} is coupled with others, which is not possible here: use one of "
                 "levels 1 to 4 of the scene"
             )
         for other, block in zip(group, np.split(k, len(group), axis=1), strict=True):
