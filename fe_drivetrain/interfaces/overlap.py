@@ -23,7 +23,7 @@ _STEP = 1e-12  # of a facet: Newton's last step, which squares itself once more
 _STEPS = 20
 _DEGREE = {3: 1, 6: 2, 4: 2, 8: 3, 9: 4}  # of the shape functions on a straight facet
 _DIVISIONS = 8  # of half an edge: of what lies beyond half chords a sixty-fourth is left out
-# Of what lies between an arc of up to 60 degrees and its chord, a parabola misses as much whose
+# Share of what lies between an arc of up to 60 degrees and its chord that a parabola misses whose
 # middle node is off the middle by a quarter of the way to an end, as optimised meshes may have it.
 _OFF_MIDDLE = 0.14
 _OUTLINE = {
