@@ -1,4 +1,4 @@
-"""What is in a STEP or mesh file: what a user looks at first, to pick a seat and held faces."""
+"""Contents of a STEP or mesh file: what a user looks at first, to pick a seat and held faces."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ class Mark(NamedTuple):
     Attributes
     ----------
     name : str
-        As the text has it.
+        Name as in the text.
     place : tuple[float, float, float]
-        Where it is, in the file's unit; of a bore its middle.
+        Position, in the file's unit; of a bore its middle.
     reach : tuple[float, float, float]
-        From the middle of a bore to one of its ends.
+        Vector from the middle of a bore to one of its ends.
     normal : tuple[float, float, float]
-        Outward, of a plane; zeros of a bore.
+        Outward normal of a plane; zeros of a bore.
     """
 
     name: str
@@ -92,16 +92,16 @@ class Plane(NamedTuple):
 
 
 class Survey(NamedTuple):
-    """What is in a file.
+    """Contents of a file.
 
     Attributes
     ----------
     text : str
-        In words and numbers, for the terminal.
+        Text in words and numbers, for the terminal.
     points : Floats
-        (n, 3) of its surface, in the file's unit.
+        Points (n, 3) of its surface, in the file's unit.
     triangles : Ints
-        (k, 3) of its surface.
+        Triangles (k, 3) of its surface.
     marks : tuple[Mark, ...]
         Seats and planes by the names that the text gives them.
     unit : str
