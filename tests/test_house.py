@@ -23,10 +23,10 @@ FLOORS = (
     {"interfaces"},
     {"foreign", "solve"},
     {"beam", "response"},
-    {"dynamics", "fidelity", "peers", "report", "rings"},
+    {"dynamics", "fidelity", "report", "rings"},
     {"coupled", "export", "procedure", "suite", "uncertainty"},
     {"studies"},
-    {"commands", "validation"},
+    {"commands"},
     {"cases"},
 )
 

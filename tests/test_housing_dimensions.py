@@ -3,15 +3,10 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.references import housing_dimensions as housings
+from fe_drivetrain.cases.references.housing_dimensions import BOLTED, ONE_BODY, STEEL, WIDTH
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.scene.reading import change_scene, library_scene
-from fe_drivetrain.validation import housing_dimensions as housings
-from fe_drivetrain.validation.housing_dimensions import (
-    BOLTED,
-    ONE_BODY,
-    STEEL,
-    WIDTH,
-)
 
 PLATE = np.array([0.14, 0.11, 0.5, 0.95, 0.1])
 

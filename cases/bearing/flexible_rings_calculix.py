@@ -13,19 +13,19 @@ from fe_drivetrain.bearing import (
     roller_motions,
 )
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats
-from fe_drivetrain.export import find_calculix, four_point_stiffness, read_dat, run_calculix
-from fe_drivetrain.report import rolling_elements
-from fe_drivetrain.rings import HousingSolid, contact_compliance, housing_solid
-from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import Page, Run
-from fe_drivetrain.validation.housed_bearing import (
+from fe_drivetrain.cases.references.housed_bearing import (
     ASSUMED_HOUSING,
     NAME,
     Size,
     bearing_s,
     housed_scene,
 )
+from fe_drivetrain.common import Floats
+from fe_drivetrain.export import find_calculix, four_point_stiffness, read_dat, run_calculix
+from fe_drivetrain.report import rolling_elements
+from fe_drivetrain.rings import HousingSolid, contact_compliance, housing_solid
+from fe_drivetrain.scene import Material
+from fe_drivetrain.suite import Page, Run
 
 #: Loads [N, N m].
 LOADS = {"radial, up": (0.0, 0.0, 4e5, 0.0, 0.0), "combined": (2e5, 0.0, -4e5, 8e5, 0.0)}

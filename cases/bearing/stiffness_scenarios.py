@@ -4,6 +4,17 @@ import numpy as np
 
 from fe_drivetrain.bearing import Arrangement, Bearing, double_row_tapered, equilibrium, sjovall
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references.thesis_beam import (
+    ASSUMED,
+    BEARINGS,
+    BEST_FIT,
+    HOUSING_TILT,
+    WIND_SPEEDS,
+    beam_body,
+    bearing_s,
+    histories,
+    radial,
+)
 from fe_drivetrain.common import Floats
 from fe_drivetrain.coupled import (
     SCENARIOS,
@@ -15,17 +26,6 @@ from fe_drivetrain.coupled import (
 )
 from fe_drivetrain.report import rolling_elements, trace
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.thesis_beam import (
-    ASSUMED,
-    BEARINGS,
-    BEST_FIT,
-    HOUSING_TILT,
-    WIND_SPEEDS,
-    beam_body,
-    bearing_s,
-    histories,
-    radial,
-)
 
 #: Distance of the middles of the inner races: half the width of Table 4.1 [m].
 RACES = 0.1524

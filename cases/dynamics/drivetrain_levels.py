@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.dynamics.machine_shafts import shaft_scene
+from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.dynamics import (
     QUESTIONS,
     RUNGS,
@@ -33,8 +35,6 @@ from fe_drivetrain.report import trace
 from fe_drivetrain.scene import CarrierComponent, HousingComponent, library_component
 from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.torsion import Drivetrain, gear_masses, natural_modes, static_stiffness
-from fe_drivetrain.validation import published_drivetrains as published
-from fe_drivetrain.validation.machine_shafts import shaft_scene
 
 #: Machines with torque of the rotor and tilting moment of the hub [N m], and where it is from.
 OPERATIONS = {

@@ -16,13 +16,8 @@ from fe_drivetrain.cases.main_bearing.housing_families import (
     other_readings,
     with_wide_ring,
 )
-from fe_drivetrain.common import Floats
-from fe_drivetrain.report import trace
-from fe_drivetrain.response import ESTIMATORS
-from fe_drivetrain.scene import Scene
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation import housing_dimensions as housings
-from fe_drivetrain.validation.housing_dimensions import (
+from fe_drivetrain.cases.references import housing_dimensions as housings
+from fe_drivetrain.cases.references.housing_dimensions import (
     BOLTED,
     CENTRE,
     DIMENSIONS,
@@ -33,6 +28,11 @@ from fe_drivetrain.validation.housing_dimensions import (
     WIDTH,
     Member,
 )
+from fe_drivetrain.common import Floats
+from fe_drivetrain.report import trace
+from fe_drivetrain.response import ESTIMATORS
+from fe_drivetrain.scene import Scene
+from fe_drivetrain.suite import Page, Record, Run
 
 #: Housings sampled by form.
 SAMPLES, BOLTED_SAMPLES, QUICK_SAMPLES = 60, 36, 8

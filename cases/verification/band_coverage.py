@@ -7,14 +7,14 @@ from itertools import pairwise
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.verification.independent_shafts import FOUND, independent_shaft
+from fe_drivetrain.cases.verification.random_shafts import random_scene
 from fe_drivetrain.common import Floats, MissingToolError, largest_difference
 from fe_drivetrain.compare import SAFETY
 from fe_drivetrain.fidelity import banded_meridian, banded_solid, meridian_shaft, ringed_shaft
 from fe_drivetrain.report import shaft_with_rings
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.suite import Page, Record, Run, column, grouped
-from fe_drivetrain.validation.independent_shafts import FOUND, independent_shaft
-from fe_drivetrain.validation.random_shafts import random_scene
 
 SHAFTS, SOLIDS = 200, 25
 #: Of a quick run: shafts of few elements, one of them also as a solid.

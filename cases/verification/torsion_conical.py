@@ -3,11 +3,11 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import end_loaded, solid_shafts
+from fe_drivetrain.cases.references.shaft_theory import michell_torque, within_arcs
 from fe_drivetrain.cases.verification.shaft_inputs import begin, show_inputs
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
-from fe_drivetrain.validation import end_loaded, solid_shafts
-from fe_drivetrain.validation.shaft_theory import michell_torque, within_arcs
 
 STEEL = MATERIALS["steel"]
 #: Radii at the ends [m] and half angle of the cone [degrees].
