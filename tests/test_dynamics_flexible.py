@@ -7,7 +7,7 @@ import pytest
 from scipy.linalg import eigh
 
 from fe_drivetrain.bearing.arrangements import cylindrical
-from fe_drivetrain.cases.dynamics.machine_shafts import shaft_scene
+from fe_drivetrain.cases.references.machine_shafts import shaft_scene
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import point_motions

@@ -13,8 +13,8 @@ from fe_drivetrain.bearing import (
     equilibrium_on_races,
 )
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.bearing.flexible_rings_calculix import PART, calculix_rollers
-from fe_drivetrain.cases.bearing.ladder import (
+from fe_drivetrain.cases.bearing.gap_springs import PART, calculix_rollers
+from fe_drivetrain.cases.bearing.peak_rollers import (
     CROWN,
     FIVE,
     LOADS,

@@ -4,6 +4,12 @@ import numpy as np
 
 from fe_drivetrain.bearing import Arrangement, Bearing, double_row_tapered, equilibrium, sjovall
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.bearing.tilt_scenarios import (
+    SCENARIOS,
+    best_fit,
+    displacement_scenarios,
+    tilt_curve,
+)
 from fe_drivetrain.cases.references.thesis_beam import (
     ASSUMED,
     BEARINGS,
@@ -16,14 +22,7 @@ from fe_drivetrain.cases.references.thesis_beam import (
     radial,
 )
 from fe_drivetrain.common import Floats
-from fe_drivetrain.coupled import (
-    SCENARIOS,
-    best_fit,
-    displacement_scenarios,
-    on_springs,
-    tilt_curve,
-    tilt_springs,
-)
+from fe_drivetrain.coupled import on_springs, tilt_springs
 from fe_drivetrain.report import rolling_elements, trace
 from fe_drivetrain.suite import Page, Record, Run
 

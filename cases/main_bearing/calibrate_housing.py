@@ -7,17 +7,8 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import bands, shown, study
-from fe_drivetrain.cases.main_bearing.housing_families import (
-    TOLERANCE,
-    Family,
-    assembled,
-    band_of,
-    family_of,
-    other_readings,
-    with_wide_ring,
-)
-from fe_drivetrain.cases.references import housing_dimensions as housings
-from fe_drivetrain.cases.references.housing_dimensions import (
+from fe_drivetrain.cases.main_bearing import housing_dimensions as housings
+from fe_drivetrain.cases.main_bearing.housing_dimensions import (
     BOLTED,
     CENTRE,
     DIMENSIONS,
@@ -27,6 +18,15 @@ from fe_drivetrain.cases.references.housing_dimensions import (
     PUBLISHED,
     WIDTH,
     Member,
+)
+from fe_drivetrain.cases.main_bearing.housing_families import (
+    TOLERANCE,
+    Family,
+    assembled,
+    band_of,
+    family_of,
+    other_readings,
+    with_wide_ring,
 )
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report import trace

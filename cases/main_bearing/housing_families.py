@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.cases.main_bearing import bands, study
-from fe_drivetrain.cases.references import housing_dimensions as housings
-from fe_drivetrain.cases.references.housing_dimensions import (
+from fe_drivetrain.cases.main_bearing import housing_dimensions as housings
+from fe_drivetrain.cases.main_bearing.housing_dimensions import (
     CENTRE,
     DIMENSIONS,
     ONE_BODY,

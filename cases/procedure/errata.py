@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.procedure.identification import (
+from fe_drivetrain.cases.procedure.known_drivetrain import (
     BRAKING,
     BROAD,
     FRONT,
@@ -18,7 +18,7 @@ from fe_drivetrain.cases.procedure.identification import (
     TURN,
     simulated,
 )
-from fe_drivetrain.cases.procedure.pitch_and_yaw import (
+from fe_drivetrain.cases.procedure.slewing_drives import (
     AXIAL,
     BRIDGES,
     DEFICIT,

@@ -7,7 +7,6 @@ from . import exact_shafts as exact_shafts
 from . import fillet_factors as fillet_factors
 from . import growing_shafts as growing_shafts
 from . import housed_bearing as housed_bearing
-from . import housing_dimensions as housing_dimensions
 from . import implied_shafts as implied_shafts
 from . import independent_torsion as independent_torsion
 from . import interference_fits as interference_fits
@@ -15,6 +14,8 @@ from . import layers as layers
 from . import loaded_blocks as loaded_blocks
 from . import locking_bars as locking_bars
 from . import locking_solids as locking_solids
+from . import machine_rungs as machine_rungs
+from . import machine_shafts as machine_shafts
 from . import manufactured as manufactured
 from . import mathieu as mathieu
 from . import one_norm as one_norm

@@ -2,11 +2,21 @@
 
 from collections.abc import Sequence
 from functools import partial
-from itertools import pairwise
 
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.verification.bands_over_errors import (
+    BAND,
+    BINS,
+    COVERED,
+    ERROR,
+    HOLDS,
+    LEFT,
+    RATIO,
+    WIDE,
+    counted,
+)
 from fe_drivetrain.cases.verification.independent_shafts import FOUND, independent_shaft
 from fe_drivetrain.cases.verification.random_shafts import random_scene
 from fe_drivetrain.common import Floats, MissingToolError, largest_difference
@@ -23,18 +33,9 @@ QUICK, QUICK_SOLIDS = (2, 3), (2,)
 #: have no higher order. Elements are half as large as the band's, at most.
 REFERENCE, FILLETED = (8, 5), (6, 4)
 
-#: Required: share of the bands that hold, and median of the bands over their errors.
-COVERED, WIDE = 0.95, 5.0
 #: Largest order of the meridian that is judged.
 ORDER = 6
-#: Edges of the histogram's bins.
-EDGES = (0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 10.0, np.inf)
-BINS = [
-    f"{low:g} to {high:g}" if high < np.inf else f"above {low:g}" for low, high in pairwise(EDGES)
-]
 
-BAND, ERROR, RATIO = "band, relative", "error, relative", "band over error"
-LEFT, HOLDS = "left of the reference, relative", "holds"
 #: Shafts without fillets that an independent program solves, too, hub and gearbox kept.
 INDEPENDENT, QUICK_INDEPENDENT = (2, 8, 1, 3, 13, 14), (2,)
 MERIDIAN, SOLID = "2, meridian", "3, solid"
@@ -53,11 +54,6 @@ def reference(scene: Scene) -> tuple[Floats, float]:
     )
     share = ((order - 1) / order) ** 2
     return found, largest_difference(before, found) * share / (1.0 - share)
-
-
-def counted(rows: list[Record]) -> list[int]:
-    """How many bands over errors are in each of the `BINS`."""
-    return [int(n) for n in np.histogram(column(rows, RATIO), EDGES)[0]]
 
 
 def chosen(run: Run) -> tuple[Sequence[int], Sequence[int]]:

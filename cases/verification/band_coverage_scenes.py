@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.band_coverage import (
+from fe_drivetrain.cases.verification.bands_over_errors import (
     BAND,
     BINS,
     COVERED,

@@ -60,7 +60,7 @@ def generate(
     shaft, bearings, housings, sizes, bonded, bands : see `fe_drivetrain.geometry.build`
         As there.
     local : LocalSizes or None
-        Smaller sizes where they are wanted, see `fe_drivetrain.mesh.adaptivity`.
+        Smaller sizes where they are wanted.
 
     Returns
     -------

@@ -8,8 +8,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from fe_drivetrain.cases.main_bearing.calibration import (
+    Calibrated,
+    Surface,
+    calibrated,
+    fitted,
+    hypercube,
+    nearest,
+)
 from fe_drivetrain.common import Floats, InputError, Progress, silent
-from fe_drivetrain.compare import Calibrated, Surface, calibrated, fitted, hypercube, nearest
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft, unit_solids
 from fe_drivetrain.response import (
     ESTIMATORS,
@@ -287,7 +294,7 @@ def member(
     Parameters
     ----------
     scene, form, surface, start, free, wanted, tolerance, most, ratio : see `calibrated`
-        As of `fe_drivetrain.compare.calibrated`.
+        As of `calibrated`.
     estimator : int
         Place in `fe_drivetrain.response.ESTIMATORS`.
     mesh : MeshSizes or None
