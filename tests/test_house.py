@@ -6,6 +6,7 @@ import re
 import sys
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -195,16 +196,30 @@ def test_names_are_found_through_faces() -> None:
     )
 
 
+def installed() -> dict[str, Any]:
+    """What of the repository a wheel takes."""
+    tool = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]
+    return tool["setuptools"]
+
+
 def test_every_package_is_installed() -> None:
-    packages = set(
-        tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]["packages"]
-    )
+    packages = set(installed()["packages"])
     there = {
         f"fe_drivetrain.{name}".rstrip(".")
         for name, path in house.modules().items()
         if path.name == "__init__.py"
     }
     assert there <= packages
+
+
+def test_what_lies_beside_modules_at_the_top_level_is_installed() -> None:
+    data = installed()["package-data"]
+    folders = [ROOT / name for name in house.TOP_LEVEL]
+    there = [p for folder in folders for end in ("pyi", "yaml") for p in folder.rglob(f"*.{end}")]
+    assert there
+    for path in there:
+        package = ".".join((house.PACKAGE, *path.parent.relative_to(ROOT).parts))
+        assert any(path.match(pattern) for pattern in data.get(package, ())), path
 
 
 def test_the_picture_of_the_floors_is_up_to_date() -> None:
