@@ -3,13 +3,10 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.references.exact_blocks import cantilever, twisted
 from fe_drivetrain.mesh.blocks import brick
 from fe_drivetrain.operator.elasticity import assemble
 from fe_drivetrain.solve.error_estimate import energy_density, recovery_estimate
-from fe_drivetrain.validation.exact_blocks import (
-    cantilever,
-    twisted,
-)
 
 LAME = (1.2e11, 8e10)
 ELEMENTS = (4, 8, 10, 20, 27)

@@ -60,7 +60,7 @@ def generate(
     shaft, bearings, housings, sizes, bonded, bands : see `fe_drivetrain.geometry.build`
         Parts and sizes, as `fe_drivetrain.geometry.build` takes them.
     local : LocalSizes or None
-        Local sizes, smaller where they are wanted, see `fe_drivetrain.mesh.adaptivity`.
+        Smaller sizes where they are wanted.
 
     Returns
     -------
