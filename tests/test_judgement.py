@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain.commands.study_errors import enough
 from fe_drivetrain.fidelity.adviser import advise
 from fe_drivetrain.fidelity.judgement import Judged, judge_levels
 from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.scene.reading import library_scene
 from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.studies.level_errors import enough
 
 LENGTH = 3.8
 BOUNDS = {"1 beam": ["beam"], "2 meridian": ["meridian"]}

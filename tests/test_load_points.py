@@ -8,7 +8,6 @@ import pytest
 
 from fe_drivetrain.beam.sections import cowper_shear_coefficient
 from fe_drivetrain.commands.loads_reactions import scene_reactions
-from fe_drivetrain.commands.study_loads import own_loads, weightless
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.export.calculix_plan import plan_deck
 from fe_drivetrain.fidelity.ladder import (
@@ -28,6 +27,7 @@ from fe_drivetrain.response.entering import entering
 from fe_drivetrain.response.model import Model, build_model, mesh_scene, scene_loads
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
 from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.studies.study_loads import own_loads, weightless
 
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
 

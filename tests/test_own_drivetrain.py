@@ -15,9 +15,7 @@ import pytest
 from test_hub_loads import rotating_columns, write_outb
 from tiny_case import Result
 
-from fe_drivetrain.commands import study_loads
 from fe_drivetrain.commands.app import main
-from fe_drivetrain.commands.study_loads import own_loads
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import parse_mapping
@@ -44,8 +42,10 @@ from fe_drivetrain.scene.arrangements import (
 )
 from fe_drivetrain.scene.reading import change_scene, is_component, library_scene, parse_scene
 from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.studies import study_loads
 from fe_drivetrain.studies.named_bearings import named_bearings
 from fe_drivetrain.studies.scene_description import description
+from fe_drivetrain.studies.study_loads import own_loads
 
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
 

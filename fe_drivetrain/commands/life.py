@@ -180,10 +180,10 @@ def life_command(
         from fe_drivetrain.commands.life_digest import Reading
         from fe_drivetrain.commands.life_page import lived
         from fe_drivetrain.commands.loads_words import parse_channels, parse_site
-        from fe_drivetrain.commands.study_loads import weightless
         from fe_drivetrain.hub_loads.channel_map import read_channel_map
         from fe_drivetrain.hub_loads.recorded import OWN_NAMES, recorded_files
         from fe_drivetrain.life.roller_damage import LifeRules
+        from fe_drivetrain.studies.study_loads import weightless
         from fe_drivetrain.suite.case import Case
         from fe_drivetrain.suite.result_folders import run_case
 

@@ -1,6 +1,12 @@
 from .design_comparison import CompareResult as CompareResult
 from .design_comparison import Varied as Varied
 from .design_comparison import compare as compare
+from .level_errors import LevelErrors as LevelErrors
+from .reaction_statistics import ReactionStatistics as ReactionStatistics
+from .reaction_statistics import Statistics as Statistics
 from .result import Result as Result
 from .scene_check import CheckResult as CheckResult
 from .scene_check import check as check
+from .scene_study import StudyResult as StudyResult
+from .scene_study import study as study
+from .study_loads import StudyLoads as StudyLoads
