@@ -5,13 +5,26 @@ import json
 import math
 from typing import Any
 
+import numpy as np
 import pytest
 from coarse_scenes import coarse_scene
 
-from fe_drivetrain.common import InputError
+from fe_drivetrain.common import GRAVITY, InputError
+from fe_drivetrain.compare import statistics
+from fe_drivetrain.fidelity import statics_level
+from fe_drivetrain.hub_loads import LoadHistory, PointLoads
 from fe_drivetrain.scene import change_scene
-from fe_drivetrain.studies import CheckResult, CompareResult, Result, check, compare
+from fe_drivetrain.studies import (
+    CheckResult,
+    CompareResult,
+    Result,
+    StudyResult,
+    check,
+    compare,
+    study,
+)
 from fe_drivetrain.studies.design_comparison import Varied
+from fe_drivetrain.studies.scene_study import statics_error
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +39,22 @@ def compared() -> CompareResult:
     return compare(designs, tolerance=0.5, varied=Varied(key, values))
 
 
-@pytest.fixture(params=["checked", "compared"])
+def made_history(name: str, count: int, step: float, seed: int) -> LoadHistory:
+    """A short history of hub loads about the front face."""
+    size = np.array([2e5, 5e4, -3.7e5, 9e5, 3e5, 5e4])
+    loads = size * (1.0 + 0.3 * np.random.default_rng(seed).standard_normal((count, 6)))
+    return LoadHistory(name, step * np.arange(count), loads, about="front face")
+
+
+HISTORIES = (made_history("calm", 40, 0.1, 1), made_history("storm", 60, 0.05, 2))
+
+
+@pytest.fixture(scope="module")
+def studied() -> StudyResult:
+    return study(coarse_scene("bonded"), HISTORIES, slopes=(4.0,))
+
+
+@pytest.fixture(params=["checked", "compared", "studied"])
 def result(request: pytest.FixtureRequest) -> Result:
     found: Result = request.getfixturevalue(request.param)
     return found
@@ -82,3 +110,90 @@ def test_a_figure_is_found_by_its_name(compared: CompareResult) -> None:
 
 def test_what_differs_between_designs_is_named(compared: CompareResult) -> None:
     assert compared.inputs == {"200000": [("gearbox.weight", 1e5, 2e5)]}
+
+
+def test_reactions_to_further_loads_carry_all_weight(studied: StudyResult) -> None:
+    further = made_history("further", 5, 1.0, 3)
+    mass = sum(float(part.sum()) for part in studied.model.part_mass.values())
+    weight = GRAVITY * mass + studied.model.scene.gearbox.weight
+    for model in ("assembly", "beam, soft housings"):
+        found = studied.reactions(further, model)
+        assert found.keys() == {"main_bearing", "gearbox"}
+        total = found["main_bearing"] + found["gearbox"]
+        expected = further.loads[:, :3] - [0.0, 0.0, weight]
+        # a beam has no weight of its ring's foot, and less of its shaft under the flange
+        np.testing.assert_allclose(total[:, :3], expected, rtol=0, atol=1e-6 * weight)
+    with pytest.raises(
+        InputError, match="'nosuch' is not one of this study: choose of beam, rigid"
+    ):
+        studied.reactions(further, "nosuch")
+
+
+def test_statistics_are_of_the_reactions_each_history_by_its_time(studied: StudyResult) -> None:
+    samples = [studied.reactions(history)["main_bearing"] for history in HISTORIES]
+    found = studied.reaction_statistics["main_bearing"]
+    for one, sample in zip(found.by_history, samples, strict=True):
+        expected = [sample.min(0), sample.mean(0), sample.max(0), sample.std(0)]
+        np.testing.assert_allclose(one.values, np.transpose(expected), rtol=1e-9, atol=1e-3)
+    mean = (40 * 0.1 * samples[0].mean(0) + 60 * 0.05 * samples[1].mean(0)) / (4.0 + 3.0)
+    np.testing.assert_allclose(found.whole.values[:, 1], mean, rtol=1e-9, atol=1e-3)
+    assert [one.samples for one in studied.loads.histories] == [40, 60]
+
+
+def test_stiffness_of_a_unit_is_between_its_bounds(studied: StudyResult) -> None:
+    for axis, at in (("y", 4), ("z", 5)):
+        figure = studied[f"K_R about {axis} of main_bearing"]
+        assert figure.unit == "MN m/rad"
+        assert figure.band is not None
+        unit = studied.units["main_bearing"]
+        stiff, soft = (1e-6 / np.linalg.inv(k)[at, at] for k in (unit.stiff, unit.soft))
+        assert figure.computed + figure.band == pytest.approx(stiff)
+        assert figure.computed - figure.band == pytest.approx(soft * (1.0 - unit.mesh))
+
+
+def test_closed_forms_are_compared_with_the_solid_without_its_weight(studied: StudyResult) -> None:
+    assert list(studied.closed_forms) == [
+        "pinned beam",
+        "torsional-spring beam, stiff housing",
+        "torsional-spring beam, soft housing",
+    ]
+    scene, errors = studied.model.scene, []
+    front = scene.shaft.front
+    for history in HISTORIES:
+        solid = studied.response.history(
+            "main_bearing", PointLoads(history.loads, front), scene.gearbox.weight
+        )
+        # Eq 3.1: moments about the gearbox's end, which holds none in bending
+        fy, fz, my, mz = history.loads[:, [1, 2, 4, 5]].T
+        bearing, rear = scene.bearing_units[0].bearing.x, scene.shaft.rear
+        pinned = np.hypot(
+            (fy * (rear - front) - mz) / (rear - bearing),
+            (fz * (rear - front) + my) / (rear - bearing),
+        )
+        force = np.hypot(solid[:, 1], solid[:, 2])
+        errors.append(float(statistics.mean_percentage_error(force, pinned)))
+    expected = (4.0 * errors[0] + 3.0 * errors[1]) / 7.0
+    assert studied.closed_forms["pinned beam"].mean_error == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_solid_that_statics_contradicts_is_noticed(studied: StudyResult) -> None:
+    scene = coarse_scene("spherical")
+    exact = {
+        name: np.hstack([np.nan_to_num(matrix[:, :6]), np.zeros((6, 4))])
+        for name, matrix in statics_level(scene).reaction_matrices.items()
+    }
+    response = dataclasses.replace(studied.response, reactions=exact)
+    worst, count = statics_error(scene, response)
+    assert worst == 0.0
+    assert count > 5
+    exact["main_bearing"][2, 2] *= 1.001
+    assert statics_error(scene, response)[0] > 1e-4
+
+
+def test_histories_without_loads_are_refused_before_any_work() -> None:
+    still = LoadHistory("still", np.arange(4.0), np.zeros((4, 6)), about="front face")
+    for histories in ([still], []):
+        with pytest.raises(InputError, match=r"give (histories with loads|one or more)"):
+            study(coarse_scene("bonded"), histories)
+    with pytest.raises(InputError, match="slope"):
+        study(coarse_scene("bonded"), HISTORIES, slopes=(-1.0,))

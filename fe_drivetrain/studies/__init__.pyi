@@ -1,3 +1,6 @@
+from .closed_forms import ForceErrors as ForceErrors
+from .closed_forms import LinearModel as LinearModel
+from .closed_forms import closed_form_errors as closed_form_errors
 from .design_comparison import CompareResult as CompareResult
 from .design_comparison import Varied as Varied
 from .design_comparison import compare as compare

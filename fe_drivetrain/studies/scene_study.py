@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
+import numpy as np
+
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
@@ -13,6 +15,7 @@ from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.fidelity.bearing_units import UnitBounds
 from fe_drivetrain.fidelity.foot_opening import foot_warnings
 from fe_drivetrain.fidelity.judgement import Judgement, judge_levels
+from fe_drivetrain.fidelity.ladder import statics_level
 from fe_drivetrain.fidelity.over_loads import Levels, imbalance, levels_of, reaction_history
 from fe_drivetrain.fidelity.quantities import UNIT, unit_numbers
 from fe_drivetrain.histories.damage import SLOPES, check_slope
@@ -26,6 +29,7 @@ from fe_drivetrain.response.stated import Stated, stated_reactions
 from fe_drivetrain.response.unit_loads import Response
 from fe_drivetrain.scene.left_out import left_out
 from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.studies.closed_forms import ForceErrors, closed_form_errors, closed_form_rows
 from fe_drivetrain.studies.design_measures import DesignMeasures, design_measures
 from fe_drivetrain.studies.level_errors import (
     ENOUGH,
@@ -76,6 +80,8 @@ class StudyResult(Result):
         The cheapest level that is enough for all reactions that count.
     measures : DesignMeasures
         Errors of each level by what a part is designed for.
+    closed_forms : Mapping[str, ForceErrors]
+        Errors of the closed forms of one bearing on a uniform shaft; empty where they do not apply.
     uncertainty : Study or None
         Effect of the spreads that the scene states; None where it states none.
     loads : LoadFacts
@@ -99,6 +105,7 @@ class StudyResult(Result):
     errors: LevelErrors
     judgement: Judgement
     measures: DesignMeasures
+    closed_forms: Mapping[str, ForceErrors]
     uncertainty: input_study.Study | None
     loads: LoadFacts
     stated: Stated
@@ -195,13 +202,16 @@ def study(
             step.name += ", from the cache"
     with steps.step("levels 1 and 2"):
         levels = levels_of(scene, response, report)
+    units = _units(levels)
     _check(found, scene, response, levels)
     _answer(found, model, response, entered, quick)
-    found.data("unit_stiffness", _stiffness_rows(levels))
+    _stiffness(found, units)
     with steps.step("reactions of all load steps"):
         reactions = _reactions(found, scene, levels, entered, slopes, report)
     with steps.step("beams against FE"):
         errors, judgement, measures = _errors(found, scene, levels, entered, slopes)
+        forms = closed_form_errors(scene, response, units, entered)
+        found.data("closed_forms", closed_form_rows(forms))
     facts = load_facts(scene, entered)
     found.seed = None if given.own else 1
     level = int(judgement.nearest[0])
@@ -210,11 +220,12 @@ def study(
     found.assume_all(given.assumptions)
     options = {"loads": given.statement, "slopes": slopes, "weight": weight, "quick": quick}
     return StudyResult(
-        units=_units(levels),
+        units=units,
         reaction_statistics=reactions,
         errors=errors,
         judgement=judgement,
         measures=measures,
+        closed_forms=forms,
         uncertainty=uncertainty,
         loads=facts,
         stated=_stated(model, facts.gravity),
@@ -250,6 +261,44 @@ def _check(found: Findings, scene: Scene, response: Response, levels: Levels) ->
         why="each level must be in equilibrium, whatever its stiffness",
         source="statics",
     )
+    worst, count = statics_error(scene, response)
+    if count:
+        found.vanishes(
+            f"{count} reactions to unit hub loads that statics decides, assembly against statics",
+            worst,
+            within=1e-6,
+            why="solver accuracy; the nodes of a curved raceway meet at its centre to the mesh's "
+            "order",
+            source="statics: what has no stiffness in it",
+        )
+
+
+def statics_error(scene: Scene, response: Response) -> tuple[float, int]:
+    """Largest error of the reactions to unit hub loads that equilibrium alone decides.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    response : Response
+        Unit loads on its assembly.
+
+    Returns
+    -------
+    worst, count : float, int
+        Error, relative to a unit load with moments divided by the length of the shaft, and how
+        many of these reactions are not zero.
+    """
+    worst, count = 0.0, 0
+    size = np.array([1.0, 1.0, 1.0, *3 * (scene.shaft.length,)])
+    for name, matrix in statics_level(scene).reaction_matrices.items():
+        exact = matrix[:, :6]
+        known = np.isfinite(exact)
+        count += int((known & (exact != 0.0)).sum())
+        error = np.abs(response.reactions[name][:, :6] - exact)[known]
+        scale = np.outer(size, 1.0 / size)[known]
+        worst = max(worst, float((error / scale).max(initial=0.0)))
+    return worst, count
 
 
 def _answer(
@@ -277,27 +326,33 @@ def _stated(model: Model, gravity: float) -> Stated:
     return stated_reactions(model.scene, masses, gravity)
 
 
-def _stiffness_rows(levels: Levels) -> list[Record]:
+def _stiffness(found: Findings, units: Mapping[str, UnitBounds]) -> None:
     """K_R and the other stiffnesses of each unit between two bounds."""
     rows: list[Record] = []
-    for name, stiff in levels.stiff.items():
-        high, low = unit_numbers(stiff), unit_numbers(levels.soft[name])
-        rows += [
-            {
-                "bearing": name,
-                "quantity": {"tilt": "K_R about y", "yaw": "K_R about z"}.get(
-                    quantity, quantity.replace("_", " along ")
-                ),
-                "unit": "MN/m" if component < 3 else "MN\u00a0m/rad",
-                "face on average (soft)": low[quantity] / 1e6,
-                "face in shape (stiff)": high[quantity] / 1e6,
-                "range [%]": 100.0 * (high[quantity] / low[quantity] - 1.0),
-                "mesh: less by up to [%]": 100.0 * levels.unit_mesh[name],
-            }
-            for quantity, component in UNIT.items()
-            if high[quantity] != 0.0
-        ]
-    return rows
+    for name, unit in units.items():
+        high, low = unit_numbers(unit.stiff), unit_numbers(unit.soft)
+        for quantity, component in UNIT.items():
+            if high[quantity] == 0.0:
+                continue
+            words = {"tilt": "K_R about y", "yaw": "K_R about z"}.get(
+                quantity, quantity.replace("_", " along ")
+            )
+            rows.append(
+                {
+                    "bearing": name,
+                    "quantity": words,
+                    "unit": "MN/m" if component < 3 else "MN\u00a0m/rad",
+                    "face on average (soft)": low[quantity] / 1e6,
+                    "face in shape (stiff)": high[quantity] / 1e6,
+                    "range [%]": 100.0 * (high[quantity] / low[quantity] - 1.0),
+                    "mesh: less by up to [%]": 100.0 * unit.mesh,
+                }
+            )
+            if component > 2:
+                least = low[quantity] * (1.0 - unit.mesh)
+                middle, half = (high[quantity] + least) / 2e6, (high[quantity] - least) / 2e6
+                found.found(f"{words} of {name} [MN m/rad]", middle, half)
+    found.data("unit_stiffness", rows)
 
 
 def _reactions(
