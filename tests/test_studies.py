@@ -116,16 +116,15 @@ def test_reactions_to_further_loads_carry_all_weight(studied: StudyResult) -> No
     further = made_history("further", 5, 1.0, 3)
     mass = sum(float(part.sum()) for part in studied.model.part_mass.values())
     weight = GRAVITY * mass + studied.model.scene.gearbox.weight
-    for model in ("assembly", "beam, soft housings"):
-        found = studied.reactions(further, model)
-        assert found.keys() == {"main_bearing", "gearbox"}
-        total = found["main_bearing"] + found["gearbox"]
-        expected = further.loads[:, :3] - [0.0, 0.0, weight]
-        # a beam has no weight of its ring's foot, and less of its shaft under the flange
-        np.testing.assert_allclose(total[:, :3], expected, rtol=0, atol=1e-6 * weight)
-    with pytest.raises(
-        InputError, match="'nosuch' is not one of this study: choose of beam, rigid"
-    ):
+    found = studied.reactions(further)
+    assert found.keys() == {"main_bearing", "gearbox"}
+    total = found["main_bearing"] + found["gearbox"]
+    expected = further.loads[:, :3] - [0.0, 0.0, weight]
+    np.testing.assert_allclose(total[:, :3], expected, rtol=0, atol=1e-6 * weight)
+    # another model has other shares of the same hub loads
+    change = studied.reactions(further, "beam, soft housings")["gearbox"] - found["gearbox"]
+    assert 1e-3 < np.abs(change[:, 2]).max() / np.abs(found["gearbox"][:, 2]).max() < 0.5
+    with pytest.raises(InputError, match="'nosuch' is not one of this study: choose of beam"):
         studied.reactions(further, "nosuch")
 
 
