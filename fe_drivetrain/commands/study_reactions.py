@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from fe_drivetrain.commands.study_files import STATISTICS
-from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.histories.cycles import RULE
 from fe_drivetrain.histories.damage import FREQUENCY
-from fe_drivetrain.studies.reaction_statistics import COLUMNS
+from fe_drivetrain.studies.load_facts import hub_load_rows
 from fe_drivetrain.studies.scene_study import StudyResult
 from fe_drivetrain.suite.page import Page
 
@@ -46,16 +45,9 @@ def show_reactions(page: Page, result: StudyResult) -> None:
 
 def _loads(page: Page, result: StudyResult) -> None:
     """Range of each hub load, where a wrong sign or unit shows; channels and times of files."""
-    units = 3 * ("kN",) + 3 * ("kN\u00a0m",)
     page.table(
         "Hub loads over all histories, about the hub in the shaft frame that does not turn",
-        [
-            {
-                "component": f"{component} [{unit}]",
-                **dict(zip(COLUMNS, (values / 1e3).tolist(), strict=True)),
-            }
-            for component, unit, values in zip(FORCES, units, result.loads.statistics, strict=False)
-        ],
+        hub_load_rows(result.loads.statistics),
     )
     if not result.loads.own:
         return

@@ -5,6 +5,8 @@ from .design_comparison import CompareResult as CompareResult
 from .design_comparison import Varied as Varied
 from .design_comparison import compare as compare
 from .level_errors import LevelErrors as LevelErrors
+from .load_facts import LoadFacts as LoadFacts
+from .load_facts import hub_load_rows as hub_load_rows
 from .reaction_statistics import ReactionStatistics as ReactionStatistics
 from .reaction_statistics import Statistics as Statistics
 from .result import Result as Result

@@ -7,11 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.compare.time_weighted import weighted_statistics
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.point_loads import PointLoads
 from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.studies.reaction_statistics import COLUMNS
 from fe_drivetrain.studies.study_loads import EnteredLoads
+from fe_drivetrain.suite.records import Record
 
 _SHOWN = 60.0  # seconds of the history whose beginning is kept
 
@@ -141,3 +144,21 @@ def _beginning(loads: EnteredLoads) -> Beginning:
     history = loads.given.histories[middle]
     shown = history.time - history.time[0] <= _SHOWN
     return Beginning(history.name, history.time[shown], loads.each[middle][shown])
+
+
+def hub_load_rows(statistics: Floats) -> list[Record]:
+    """Records of the range of each hub load, where a wrong sign or unit shows [kN, kN m].
+
+    Parameters
+    ----------
+    statistics : ndarray, (6 or more, 4)
+        Min, mean, max, standard deviation of each component [N, N m].
+    """
+    units = 3 * ("kN",) + 3 * ("kN\u00a0m",)
+    return [
+        {
+            "component": f"{component} [{unit}]",
+            **dict(zip(COLUMNS, (values / 1e3).tolist(), strict=True)),
+        }
+        for component, unit, values in zip(FORCES, units, statistics, strict=False)
+    ]
