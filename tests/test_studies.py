@@ -150,6 +150,26 @@ def test_stiffness_of_a_unit_is_between_its_bounds(studied: StudyResult) -> None
         assert figure.computed - figure.band == pytest.approx(soft * (1.0 - unit.mesh))
 
 
+def test_secants_in_the_drivetrain_are_those_of_the_samples(studied: StudyResult) -> None:
+    scene, response = studied.model.scene, studied.response
+    assert [(one.bearing, one.axis) for one in studied.secants] == [
+        ("main_bearing", "y"),
+        ("main_bearing", "z"),
+    ]
+    both = np.zeros((2, 2))  # M theta and theta^2 about both axes
+    for history in HISTORIES:
+        factors = np.zeros((len(history), 10))
+        factors[:, :6], factors[:, 9] = history.loads, scene.gearbox.weight
+        moments = factors @ response.reactions["main_bearing"][4:].T
+        tilts = factors @ response.motions["main_bearing.seat"][4:].T
+        both += history.step * np.array([(moments * tilts).sum(0), (tilts**2).sum(0)])
+    for one, (product, square) in zip(studied.secants, both.T, strict=True):
+        assert one.stiffness == pytest.approx(product / square, rel=1e-9)
+        soft, stiff = one.bounds
+        assert 0.3 * soft < one.stiffness < 1.5 * stiff
+        assert "K_R about" in one.statement
+
+
 def test_closed_forms_are_compared_with_the_solid_without_its_weight(studied: StudyResult) -> None:
     assert list(studied.closed_forms) == [
         "pinned beam",

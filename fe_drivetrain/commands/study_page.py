@@ -103,6 +103,14 @@ def _stiffness(page: Page, result: StudyResult) -> None:
             f"No axial stiffness of {', '.join(floating)}: the bearing floats, and leaves axial "
             "force to the others at every level."
         )
+    if result.secants:
+        page.table(
+            "K_R in the drivetrain, as a secant over load steps without the weight of shaft, "
+            "bearings and housings, and that of the unit alone",
+            result.tables["secants"],
+        )
+        for one in result.secants:
+            page.text(f"{one.bearing}: {one.statement}.")
 
 
 def _errors(page: Page, result: StudyResult) -> None:

@@ -15,3 +15,4 @@ from .scene_check import check as check
 from .scene_study import StudyResult as StudyResult
 from .scene_study import study as study
 from .study_loads import StudyLoads as StudyLoads
+from .tilt_secants import TiltSecant as TiltSecant

@@ -53,6 +53,7 @@ from fe_drivetrain.studies.study_loads import (
     surrogate_loads,
     weightless,
 )
+from fe_drivetrain.studies.tilt_secants import TiltSecant, secant_rows, tilt_secants
 from fe_drivetrain.suite.findings import Findings
 from fe_drivetrain.suite.records import Record
 from fe_drivetrain.uncertainty import input_study
@@ -72,6 +73,8 @@ class StudyResult(Result):
     ----------
     units : Mapping[str, UnitBounds]
         (6, 6) stiffness of each bearing unit between two bounds, and the band of its mesh.
+    secants : tuple of TiltSecant
+        K_R of each bearing that carries moments, as the load steps show it in the drivetrain.
     reaction_statistics : Mapping[str, ReactionStatistics]
         Of each bearing and "gearbox": extremes, means, deviations, damage-equivalent loads.
     errors : LevelErrors
@@ -101,6 +104,7 @@ class StudyResult(Result):
     STUDY: ClassVar[str] = "study"
 
     units: Mapping[str, UnitBounds]
+    secants: tuple[TiltSecant, ...]
     reaction_statistics: Mapping[str, ReactionStatistics]
     errors: LevelErrors
     judgement: Judgement
@@ -208,6 +212,8 @@ def study(
     _stiffness(found, units)
     with steps.step("reactions of all load steps"):
         reactions = _reactions(found, scene, levels, entered, slopes, report)
+        secants = tilt_secants(scene, response, units, entered)
+        found.data("secants", secant_rows(secants))
     with steps.step("beams against FE"):
         errors, judgement, measures = _errors(found, scene, levels, entered, slopes)
         forms = closed_form_errors(scene, response, units, entered)
@@ -221,6 +227,7 @@ def study(
     options = {"loads": given.statement, "slopes": slopes, "weight": weight, "quick": quick}
     return StudyResult(
         units=units,
+        secants=secants,
         reaction_statistics=reactions,
         errors=errors,
         judgement=judgement,
