@@ -250,7 +250,6 @@ def test_the_point_of_a_scene_is_asked_for_where_loads_enter_and_nowhere_else() 
     }
     says = {"studies/scene_description.py", "studies/study_loads.py"}  # in words alone
     assert asking == {
-        "cases/main_bearing/loads.py",  # in words, too
         *(f"fe_drivetrain/{name}" for name in says),
         *(f"fe_drivetrain/scene/{name}.py" for name in ("entrance", "gate", "scene")),
         *(f"fe_drivetrain/response/{name}.py" for name in ("entering", "stated")),

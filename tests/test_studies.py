@@ -1,19 +1,23 @@
 """Studies as functions: what a result holds, and how it goes into JSON, tables and charts."""
 
+import csv
 import dataclasses
 import json
 import math
+import re
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from coarse_scenes import coarse_scene
 
+from fe_drivetrain.commands.study_files import write_reactions
 from fe_drivetrain.common import GRAVITY, InputError
 from fe_drivetrain.compare import statistics
 from fe_drivetrain.fidelity import statics_level
 from fe_drivetrain.hub_loads import LoadHistory, PointLoads
-from fe_drivetrain.scene import change_scene
+from fe_drivetrain.scene import Scene, change_scene
 from fe_drivetrain.studies import (
     CheckResult,
     CompareResult,
@@ -207,6 +211,61 @@ def test_a_solid_that_statics_contradicts_is_noticed(studied: StudyResult) -> No
     assert count > 5
     exact["main_bearing"][2, 2] *= 1.001
     assert statics_error(scene, response)[0] > 1e-4
+
+
+def test_reactions_over_time_are_written_with_all_weight(tmp_path: Path) -> None:
+    """A shaft on a spherical bearing and a gearbox: statics says what each of them carries."""
+    found = study(coarse_scene("spherical"), HISTORIES)
+    write_reactions(tmp_path, found, HISTORIES[:1])
+    lines = (tmp_path / "reactions_calm.csv").read_text("utf-8").splitlines()
+    facts = dict(line[2:].split(" = ", 1) for line in lines if line[0] == "#")
+    stated = {p: 1e3 * float(w) for p, w in re.findall(r"([\w.]+) ([\d.]+) kN", facts["weight"])}
+    weight = {p: GRAVITY * float(mass.sum()) for p, mass in found.model.part_mass.items()}
+    for part, own in weight.items():
+        assert stated[part] == pytest.approx(own, rel=5e-4)  # four digits
+    rows = list(csv.DictReader(line for line in lines if line[0] != "#"))
+    force = [float(row["main_bearing Fz [N]"]) for row in rows]
+    # the shaft reaches from 1 m before the bearing to 1.2 m behind it, where the gearbox is
+    loads = HISTORIES[0].loads
+    without_weight = (2.2 * loads[:, 2] + loads[:, 4]) / 1.2
+    unit = weight["main_bearing"] + weight["main_bearing.housing"]
+    nodes = found.model.part_mass["shaft"]
+    centre = float(nodes @ found.model.mesh.points[:, 0]) / float(nodes.sum())
+    assert centre == pytest.approx(0.1, abs=1e-3)  # of a coarse mesh
+    expected = without_weight - unit - weight["shaft"] * (1.2 - centre) / 1.2
+    np.testing.assert_allclose(force, expected, rtol=1e-6, atol=0.1)
+    assert facts["model"] == "the assembly of solids"
+    assert "x downwind along the shaft, z up" in facts["frame"]
+    assert "main_bearing at x = 0 m" in facts["origin of moments"]
+
+
+def test_two_bearings_and_a_brake_are_studied(tmp_path: Path) -> None:
+    sizes = {"mesh.housing": 0.15, "mesh.bearing": 0.12}
+    front, rear = (
+        coarse_scene(kind, **sizes).model_dump(mode="json") for kind in ("bonded", "spherical")
+    )
+    units = [scene["bearing_units"][0] for scene in (front, rear)]
+    for unit, name, x in zip(units, ("front", "rear"), (-0.4, 0.7), strict=True):
+        unit["bearing"] |= {"name": name, "x": x}
+    brake = {"name": "brake", "x": 1.0, "width": 0.1, "weight": 2e4}
+    scene = Scene.model_validate(front | {"bearing_units": units, "load_points": [brake]})
+    found = study(scene, HISTORIES)
+    assert found.passed
+    assert found.closed_forms == {}  # of one bearing
+    assert {one.bearing for one in found.secants} == {"front"}  # the rear one slides on a sphere
+    models = found.levels.models
+    for model in models.values():
+        # a force at the brake goes into the supports as one at the hub does
+        for load in (2, 12):
+            total = sum(matrix[2, load] for matrix in model.reaction_matrices.values())
+            assert total == pytest.approx(1.0, abs=1e-6)
+    hub = {
+        name: models[f"beam, {name} housings"].compliance.diagonal()[:6]
+        for name in ("rigid", "stiff", "soft")
+    }
+    # a housing that gives makes the hub softer
+    assert (hub["rigid"][[1, 2, 4, 5]] < hub["stiff"][[1, 2, 4, 5]]).all()
+    assert (hub["stiff"][[1, 2, 4, 5]] < hub["soft"][[1, 2, 4, 5]]).all()
 
 
 def test_histories_without_loads_are_refused_before_any_work() -> None:

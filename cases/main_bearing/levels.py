@@ -142,6 +142,9 @@ def show(page: Page, found: Mapping[str, StudyResult]) -> None:
 @case(
     "The study of a main bearing judged: K_R, closed forms, reactions and errors of its beams",
     source="Stirling 2023, PhD thesis, chapter 3 (Eq 3.1-3.20); statics; FE with the shaft",
+    settings={
+        "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
+    },
     changes="scene",
 )
 def run(run: Run, page: Page) -> None:
