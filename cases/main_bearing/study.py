@@ -126,12 +126,10 @@ def with_kind(scene: Scene, kind: str) -> Scene:
     interface = scene.bearing_units[0].interface
     if interface == kind or (kind == "spherical" and interface in SPHERICAL):
         return scene
-    changes = {
-        "spherical": {"bearing.kind": "spherical", "interface": "sliding"},
-        "bonded": {"bearing.kind": "ring", "interface": "bonded"},
-    }[kind]
-    changes |= {"stiffness": None, "rollers": None}
-    return change_scene(scene, {f"bearing_units.0.{k}": v for k, v in changes.items()})
+    bearing, joint = {"spherical": ("spherical", "sliding"), "bonded": ("ring", "bonded")}[kind]
+    unit = "bearing_units.0"
+    kinds = {f"{unit}.bearing.kind": bearing, f"{unit}.interface": joint}
+    return change_scene(scene, kinds | {f"{unit}.stiffness": None, f"{unit}.rollers": None})
 
 
 def with_interface(scene: Scene, interface: str) -> Scene:
