@@ -30,8 +30,8 @@ SIZE_PER_WALL = 3.0
 """Largest mesh size, in thicknesses of the thinnest wall: elements flatter than this fold over."""
 
 
-LEAST_TURN, SOUND_TURN = 6, 8
-"""Fewest elements round any cylinder or sphere, and fewest that fold over but seldom."""
+LEAST_TURN, SOUND_TURN, MOST_TURN = 6, 8, 360
+"""Fewest elements round any cylinder or sphere, fewest that fold over but seldom, and most."""
 
 
 class MeshSizes(Part):
@@ -46,7 +46,7 @@ class MeshSizes(Part):
     elements_per_turn: int = Field(
         default=12,
         ge=LEAST_TURN,
-        le=360,
+        le=MOST_TURN,
         description="least number of elements round any cylinder or sphere",
     )
 

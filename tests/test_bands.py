@@ -7,6 +7,7 @@ import pytest
 from coarse_scenes import coarse_scene
 
 from fe_drivetrain.common.scaling import largest_difference
+from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.fidelity.bearing_units import banded_unit, unit_stiffness
 from fe_drivetrain.fidelity.ladder import shaft_level
 from fe_drivetrain.fidelity.quantities import shaft_numbers
@@ -30,8 +31,10 @@ def test_the_meridians_band_holds_what_higher_orders_on_finer_meshes_say(seed: i
     filleted = any(piece.fillet > 0 for piece in scene.shaft.pieces)
     # order 6 or a fifth layer at the corners changes these errors by 1 % at most
     finer = meridian_shaft(scene, widest / 2, 5 if filleted else 8, layers=4)
-    error = largest_difference(body.stiffness, finer.stiffness)
-    assert error < band < 5 * error
+    error = StiffnessBands.of_difference(body.stiffness, finer.stiffness)
+    for half_width, found in zip(band, error, strict=True):
+        assert found < half_width < 5 * found
+    assert (np.abs(body.stiffness - finer.stiffness) <= band.half_widths(body.stiffness)).all()
 
 
 def tube(wall: float) -> Scene:
@@ -68,7 +71,8 @@ def test_thin_tubes_give_way_at_their_ends_as_shells_do_and_the_band_holds_the_l
         scene = tube(wall)
         body, band = banded_meridian(scene, ends)
         finer = keep_points(meridian_shaft(scene, order=8), ends)
-        assert largest_difference(body.stiffness, finer.stiffness) < band
+        apart = np.abs(body.stiffness - finer.stiffness)
+        assert (apart <= band.half_widths(body.stiffness)).all()
         bare = beam_shaft(scene, rings=False), meridian_shaft(scene, order=8, rings=False)
         lateral = [shaft_numbers(one)["lateral"] for one in bare]
         share.append(lateral[0] / lateral[1] - 1.0)
@@ -90,8 +94,9 @@ def test_the_solids_band_holds_the_meridian() -> None:
     """The same body without its ring's housing, in two discretisations that share nothing."""
     scene = random_scene(2)
     body, band = banded_solid(scene)
-    error = largest_difference(body.stiffness, meridian_shaft(scene).stiffness)
-    assert error < band < 5 * error
+    error = StiffnessBands.of_difference(body.stiffness, meridian_shaft(scene).stiffness)
+    for half_width, found in zip(band, error, strict=True):
+        assert found < half_width < 5 * found
 
 
 def test_points_that_are_left_out_follow_without_load() -> None:
@@ -120,4 +125,4 @@ def test_a_unit_has_a_band_that_holds_a_finer_mesh_whatever_its_joint(joint: str
     stiffness, band = banded_unit(scene, "main_bearing")
     finer = scene.model_copy(update={"mesh": scene.mesh.scaled(0.5, 20)})
     error = largest_difference(stiffness, unit_stiffness(finer, "main_bearing", "rigid"))
-    assert 0 < error < band < 10 * error
+    assert 0 < error < band.largest < 10 * error

@@ -2,6 +2,7 @@
 
 import csv
 import os
+import pickle
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -11,10 +12,7 @@ import numpy as np
 import pytest
 from tiny_case import Result
 
-from fe_drivetrain.commands import life_digest
 from fe_drivetrain.commands.life import parse_lubricant
-from fe_drivetrain.commands.life_bearings import Choices, bearings_of, rollers_in_words
-from fe_drivetrain.commands.life_page import _scatter
 from fe_drivetrain.common.cache import CACHE_VARIABLE
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
@@ -23,6 +21,10 @@ from fe_drivetrain.life.load_series import years
 from fe_drivetrain.life.roller_damage import LifeRules, step_lives
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.scene.reading import library_scene
+from fe_drivetrain.studies import LifeOptions, life, life_digest
+from fe_drivetrain.studies.life_options import ASSUMED
+from fe_drivetrain.studies.life_sums import BearingSums, scatter
+from fe_drivetrain.studies.rolling_bearings import Choices, bearings_of, rollers_in_words
 
 REAL_FOLDER = Path(os.environ.get("FE_DRIVETRAIN_OPENFAST", "no folder is given"))
 SCENE = "main_bearing_bonded"
@@ -114,27 +116,81 @@ CHOICES_REST = (True, "rollers", "rigid", True)
 RINGS = ("inner", "outer")
 
 
+def test_study_and_command_give_the_same_numbers_with_the_same_defaults(
+    invoke: Callable[..., Result], histories: Path
+) -> None:
+    out, loads = histories.parent / "out", str(histories / "*.csv")
+    status, _, error = invoke(
+        *("life", SCENE, "--loads", loads, "--site", "class-II", "--out", str(out))
+    )
+    assert status == 0, error
+    shown = read_results(out / "results.json")
+    found = life(library_scene(SCENE), loads, site_of_class("II"))
+    plain = found.to_dict()
+    assert shown.summary == plain["answer"]
+    assert shown.notes == plain["notes"]
+    assert [one.model_dump(mode="json") for one in shown.answers] == plain["figures"]
+    assert [one.model_dump(mode="json") for one in shown.verdicts] == plain["checks"]
+    assert [one.model_dump(mode="json") for one in shown.assumptions] == plain["assumptions"]
+    assert [one.model_dump(mode="json") for one in shown.drivetrains] == plain["drivetrains"]
+    for name, table in found.tables.items():
+        assert shown.figures[name] == table, name
+    for name in ("files", "winds", "places", "laminae"):
+        written = [list(row.values()) for row in rows_of(out / f"{name}.csv")]
+        table = [
+            [f"{v:.9g}" if isinstance(v, float) else str(v) for v in row.values()]
+            for row in found.all_tables()[name]
+        ]
+        assert written == table, name
+
+
+def test_what_is_kept_of_each_file_is_small(histories: Path) -> None:
+    """Places, laminae and time are those of all files together: memory hardly grows."""
+    options = LifeOptions()
+    scene, rules, choices = library_scene(SCENE), options.rules, options.choices
+    (one,) = bearings_of(scene, choices)
+    digest = life_digest.digest(histories / "v8.csv", one, rules, options.reading, scene, choices)
+    sums = BearingSums(one, None)
+    for _ in range(100):
+        sums.add(histories / "v8.csv", digest)
+    found = sums.life(rules, choices)
+    of_digest = sum(array.nbytes for array in life_digest.as_arrays(digest).values())
+    assert of_digest > 50_000
+    assert all(not one.damage.basic and not one.damage.modified for one in found.files)
+    of_files = sum(len(pickle.dumps(one)) for one in found.files) / 100
+    assert of_files < 0.05 * of_digest
+    assert found.damage.of_bearing == pytest.approx(100 * digest.damage.of_bearing, rel=1e-12)
+    assert found.mean_load == pytest.approx(digest.mean_load, rel=1e-12)
+
+
 def of_rates(*rates_by_wind: tuple[float, ...]) -> Any:
     """A bearing with such rates of damage in the files of each wind, winds of equal time."""
     speeds = [8.0 + 2.0 * k for k in range(len(rates_by_wind))]
-    digests = [
-        SimpleNamespace(wind=speed, damage=SimpleNamespace(totals={"L10mr": 10 * r}, seconds=10.0))
+    files = [
+        SimpleNamespace(
+            wind=speed,
+            damage=SimpleNamespace(totals={"L10mr": 10 * r, "L10r": 5 * r**2}, seconds=10.0),
+        )
         for speed, rates in zip(speeds, rates_by_wind, strict=True)
         for r in rates
     ]
     shares = np.full(len(speeds), 1.0 / len(speeds))
-    site = SimpleNamespace(speeds=np.array(speeds), shares=shares, years={"L10mr": 50.0})
-    return SimpleNamespace(digests=digests, site=site)
+    site = SimpleNamespace(
+        speeds=np.array(speeds), shares=shares, years={"L10mr": 50.0, "L10r": 80.0}
+    )
+    return SimpleNamespace(files=files, site=site)
 
 
 def test_the_band_of_a_life_is_the_scatter_of_files_of_one_wind() -> None:
-    assert _scatter(of_rates((1.0, 1.0), (2.0, 2.0))) == 0.0
+    assert scatter(of_rates((1.0, 1.0), (2.0, 2.0))) == 0.0
     # a tenth up and down: the mean of the two has a standard error of a tenth
-    assert _scatter(of_rates((0.9, 1.1))) == pytest.approx(2 * 0.1 * 50.0)
-    both = _scatter(of_rates((0.9, 1.1), (0.9, 1.1)))
+    assert scatter(of_rates((0.9, 1.1))) == pytest.approx(2 * 0.1 * 50.0)
+    of_square = 0.5 * (1.1**2 - 0.9**2) / np.mean([1.1**2, 0.9**2])
+    assert scatter(of_rates((0.9, 1.1)), "L10r") == pytest.approx(2 * of_square * 80.0)
+    both = scatter(of_rates((0.9, 1.1), (0.9, 1.1)))
     assert both == pytest.approx(2 * 0.1 * 50.0 / np.sqrt(2))
-    assert _scatter(of_rates((0.9, 1.1), (1.0,))) is None
-    assert _scatter(SimpleNamespace(site=None)) is None  # type: ignore[arg-type]
+    assert scatter(of_rates((0.9, 1.1), (1.0,))) is None
+    assert scatter(SimpleNamespace(site=None)) is None  # type: ignore[arg-type]
 
 
 def test_a_stopped_run_goes_on(
@@ -235,6 +291,9 @@ def test_what_files_and_scenes_do_not_say_is_asked_for(
     assert status == 2
     assert "--bearing front=ENTRY" in error
     assert not (tmp_path / "out").exists()
+    status, _, error = invoke("life", "stepped_shaft", "--loads", str(tmp_path / "a.csv"))
+    assert "--bearing front=ENTRY" in error
+    assert not (tmp_path / "reports").exists()
 
 
 @pytest.mark.skipif(
@@ -304,8 +363,35 @@ def test_ends_of_rollers_are_stated_with_profile_and_riser() -> None:
 
 
 def test_lubricants_are_grades_or_two_viscosities() -> None:
-    assert parse_lubricant("460,30.5", 50, "grease", None) == parse_lubricant(
-        "VG 460", 50, "grease", "normal"
-    )
+    assert parse_lubricant("460,30.5") == (460.0, 30.5)
+    oil = LifeOptions(lubricant=(460.0, 30.5)).rules.lubricant
+    assert oil == LifeOptions(lubricant=parse_lubricant("VG 460")).rules.lubricant
+    assert oil == LifeOptions(cleanliness="normal").rules.lubricant
     with pytest.raises(InputError, match="40 and"):
-        parse_lubricant("460", 50, "grease", None)
+        LifeOptions(lubricant=parse_lubricant("460"))
+
+
+def test_defaults_are_assumed_and_other_values_are_not() -> None:
+    assert LifeOptions().assumed == ASSUMED
+    some = LifeOptions(temperature=60.0, riser=False, stated=("turning",))
+    assert some.assumed == ("lubricant", "cleanliness", "profile")
+    assert some.choices.assumed == some.assumed
+    assert LifeOptions(stated=ASSUMED).assumed == ()
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"every": 0}, "whole number of samples"),
+        ({"skip": -1.0}, "skip is -1 s"),
+        ({"rotor_speed_rpm": float("inf")}, "rotor_speed_rpm is inf 1/min"),
+        ({"stated": ("speed",)}, "an option that is stated is 'speed': choose 'lubricant'"),
+        ({"reliability_percent": 91.0}, "99.9 %"),
+        ({"lubricant": (30.0, 460.0)}, "460"),
+        ({"turning": "both"}, "'inner' or 'outer'"),
+    ],
+)
+def test_options_out_of_their_range_are_refused(options: dict[str, Any], words: str) -> None:
+    with pytest.raises(InputError) as error:
+        LifeOptions(**options)
+    assert words in str(error.value)

@@ -17,6 +17,7 @@ from fe_drivetrain import export
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
+from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.export.calculix_results import ROUNDING, read_dat
 from fe_drivetrain.export.formats import nastran
 from fe_drivetrain.export.formats.calculix_springs import model_lines, squares
@@ -67,7 +68,7 @@ def written(path: Path, element: Superelement, format: str) -> Path:
 
 @pytest.mark.parametrize("format", TEXTS)
 def test_a_text_says_what_it_is(tmp_path: Path, format: str, shaft: Superelement) -> None:
-    element = replace(shaft, band=0.02)
+    element = replace(shaft, band=StiffnessBands(0.02, 0.001, 0.03))
     lines = written(tmp_path, element, format).read_text().splitlines()
     if format == "csv":
         said = {row[0]: row[1] for row in csv.reader(lines) if len(row) == 2}
@@ -79,7 +80,7 @@ def test_a_text_says_what_it_is(tmp_path: Path, format: str, shaft: Superelement
     assert said["scene hash"] == shaft.origin.scene_hash
     assert said["scene"] == shaft.origin.scene
     assert said["level"] == "2 meridian in harmonics"
-    assert said["band"].startswith("0.02")
+    assert said["band"] == "axial 0.02, torsion 0.001, bending 0.03 of the stiffness"
     assert said["supports"] == "none: the body is free"
     assert said["point 2"] == "main_bearing at 0.0 0.0 0.0 m"
     assert float(said["check, force against rigid motions"].split()[0]) < 1e-12

@@ -11,6 +11,7 @@ from coarse_scenes import coarse_scene
 
 from fe_drivetrain import export
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.export.formats import rexs, simpack, windio
 from fe_drivetrain.export.formats.elastodyn import Torsion
 from fe_drivetrain.export.from_scene import unit_superelement
@@ -50,7 +51,7 @@ def two_seats(mass: bool = False) -> Superelement:
         0.5 * (K + K.T),
         M,
         supported=True,
-        band=0.04,
+        band=StiffnessBands(0.04, 0.001, 0.05),
         origin=Origin("a -- scene <&>", "00ff", "4 solid", "0.1 m", "fe-drivetrain 1.2"),
     )
 

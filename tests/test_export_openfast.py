@@ -12,6 +12,7 @@ from scipy.linalg import eigh
 
 from fe_drivetrain import export
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.export.formats import extptfm, subdyn
 from fe_drivetrain.export.formats.elastodyn import (
     Torsion,
@@ -31,6 +32,7 @@ from fe_drivetrain.validation.sample_elastodyn import (
 )
 
 NEW = Torsion(87876717.58333518, 123456.78901234567)
+BANDS = StiffnessBands(0.02, 0.001, 0.03)
 
 
 @pytest.fixture
@@ -396,12 +398,12 @@ def test_openfast_files_state_their_origin(
 ) -> None:
     path = tmp_path / "file.dat"
     element = shaft if format == "extptfm" else cantilever()
-    element = replace(element, origin=Origin("my scene", "abc123"), band=0.02)
+    element = replace(element, origin=Origin("my scene", "abc123"), band=BANDS)
     export.write(path, element, format)
     said = commented(path.read_text().splitlines(), "!")
     assert said["scene"] == "my scene"
     assert said["scene hash"] == "abc123"
-    assert said["band"].startswith("0.02")
+    assert said["band"] == "axial 0.02, torsion 0.001, bending 0.03 of the stiffness"
     assert "x downwind" in said["frame"]
     assert f"point {len(element.points)}" in said
 

@@ -2,11 +2,16 @@
 
 import numpy as np
 import pytest
+import yaml
 
-from fe_drivetrain.fidelity.adviser import advise
+from fe_drivetrain.commands.settings import parse_tolerance
+from fe_drivetrain.fidelity.adviser import Advice, LevelResult, advise
+from fe_drivetrain.fidelity.assembly_bands import finer_mesh
 from fe_drivetrain.fidelity.judgement import Judged, judge_levels
+from fe_drivetrain.fidelity.ladder import Cost, LevelModel
 from fe_drivetrain.fidelity.quantity import Quantity
-from fe_drivetrain.scene.reading import library_scene
+from fe_drivetrain.geometry import MeshSizes
+from fe_drivetrain.scene.reading import change_scene, library_scene
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.studies.level_errors import enough
 
@@ -84,3 +89,33 @@ def test_the_adviser_says_of_a_slight_reaction_what_a_study_makes_of_it() -> Non
     sizes = [np.linalg.norm(m[c, :6] * scale) for m in R.values() for c in range(3)]
     own = np.linalg.norm(R["gearbox"][2, :6] * scale)
     assert slight.share == pytest.approx(own / max(sizes), rel=1e-12)
+
+
+def test_an_assembly_that_is_too_coarse_is_told_with_the_sizes_to_set() -> None:
+    scene = library_scene("main_bearing_spherical")
+    nan = float("nan")
+    model = LevelModel(4, "assembly of solids", (), Cost(1.0, 1), {})
+    results = [LevelResult(model, np.ones(1), 1.0, 0.0312, error=nan)]
+    sizes = scene.mesh
+    said = Advice(Quantity("gearbox.Fz"), 0.01, results, None, sizes=sizes).sentence()
+    assert (
+        "has a band of 3.1 %, and 1 % or less is asked: make the element sizes under mesh" in said
+    )
+    assert said.endswith("or ask for --tolerance 3.2%.")
+    words = [word for word in said.split() if word.startswith("mesh.")]
+    halves = change_scene(
+        scene, dict(yaml.safe_load(w.replace("=", ": ")).popitem() for w in words)
+    )
+    for key in ("shaft", "bearing", "bearing_edge", "housing"):
+        assert getattr(halves.mesh, key) == pytest.approx(0.5 * getattr(sizes, key), rel=5e-3)
+    assert halves.mesh.elements_per_turn == 2 * sizes.elements_per_turn
+    # the wider tolerance is one that the finest result meets
+    assert parse_tolerance("3.2%") >= 0.0312
+
+
+def test_sizes_and_tolerances_that_are_named_can_be_given() -> None:
+    most = MeshSizes(elements_per_turn=300)
+    assert "--set mesh.elements_per_turn=360 " in finer_mesh(most, 0.02)
+    assert finer_mesh(most, 0.02).endswith("or ask for --tolerance 2%")
+    assert "--tolerance" not in finer_mesh(most, 1.2)  # it must be below 100 %
+    assert finer_mesh(None, 0.101) == "ask for --tolerance 11%"

@@ -10,8 +10,6 @@ import yaml
 from tiny_case import Result
 
 from fe_drivetrain.bearing.catalogue import catalogue_entry
-from fe_drivetrain.commands.life_assumed import in_words, sampled, what_ifs
-from fe_drivetrain.commands.life_bearings import Choices, bearings_of
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.life.lubricants import GRADES, Lubricant
@@ -19,6 +17,8 @@ from fe_drivetrain.life.modified_life import viscosity
 from fe_drivetrain.life.roller_damage import LifeRules
 from fe_drivetrain.report.results import Results, read_results
 from fe_drivetrain.scene.reading import library_scene
+from fe_drivetrain.studies.life_assumptions import Assumption, in_words, sampled, what_ifs
+from fe_drivetrain.studies.rolling_bearings import Choices, bearings_of
 
 SCENE = "main_bearing_spherical"
 STATED = (
@@ -106,12 +106,15 @@ def test_assumptions_come_the_most_severe_first_and_small_ones_not_at_all() -> N
     made = bearings_of(library_scene(SCENE), Choices({}, (), True, "rollers", "rigid", True))
     (one,) = pickle.loads(pickle.dumps(made))  # as for many files
     first, second = what_ifs(one, LifeRules(), Choices({}, (), True, "rollers", "rigid", True))
-    changed = [(first, "9 years", 0.9), (second, "4 years", 0.4), (first, "9.6 years", 0.96)]
-    words = in_words("b", "10 years", changed)
+    lives = ((first, 9.0), (second, 4.0), (first, 9.6))
+    changed = [Assumption(other.assumed, other.instead, years) for other, years in lives]
+    words = in_words("b", 10.0, changed)
     assert words is not None
+    assert "its L10mr of 10 years" in words
     assert words.index("4 years)") < words.index("9 years)")
     assert "9.6" not in words
-    assert in_words("b", "10 years", changed[2:]) is None
+    assert in_words("b", 10.0, changed[2:]) is None
+    assert in_words("b", float("inf"), changed) is None
 
 
 def test_profile_and_preload_are_assumed_of_tapered_rollers_alone() -> None:
@@ -129,6 +132,20 @@ def test_profile_and_preload_are_assumed_of_tapered_rollers_alone() -> None:
     assert not any(row.crown for row in straight.rated.bearing.rows)
     assert "50 degC" not in found  # without a lubricant
     assert "ratings of assumed rolling elements" not in found  # they are printed
+
+
+@pytest.mark.parametrize(("element", "pitch", "play"), [(90.0, 4000.0, 0.9), (85.0, 3900.0, 0.85)])
+def test_no_clearance_is_compared_that_a_bearing_cannot_have(
+    tmp_path: Path, element: float, pitch: float, play: float
+) -> None:
+    """1/4000 of the pitch diameter, 1 mm, is more than 1 % of the rollers' diameter."""
+    sizes = {"pitch_diameter": 1e-3 * pitch, "element_diameter": 1e-3 * element}
+    _, file, *_ = own_entry(tmp_path, **sizes, bore=1.2, elements=60)
+    choices = Choices({"main_bearing": "own"}, (Path(file),), True, "rollers", "rigid", True)
+    (one,) = bearings_of(library_scene(SCENE), choices)
+    (found,) = [f for f in what_ifs(one, LifeRules(), choices) if f.assumed == "clearance 0"]
+    assert found.instead == f"{play:g} mm along the contact normal"
+    assert [row.clearance for row in found.rated.bearing.rows] == pytest.approx(2 * [1e-3 * play])
 
 
 def test_a_sample_sums_to_the_whole() -> None:

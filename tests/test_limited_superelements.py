@@ -12,6 +12,7 @@ from tiny_case import Result
 
 from fe_drivetrain import export
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.export.formats.superelement_json import read
 from fe_drivetrain.export.limited_reading import read_limited
 from fe_drivetrain.export.superelement import Superelement
@@ -80,14 +81,19 @@ def scaled(factor: float) -> Callable[[list[list[float]]], list[list[float]]]:
         (changed("positions", to=scaled(25.4)), "resists a rigid motion .* are in metres"),
         (changed("positions", to=lambda p: p[:1]), r"positions of shape \(1, 3\) for the points"),
         (changed("points", to=["bore", "bore"]), "give each point once"),
-        (changed("band", to=-1), "its band is -1 but must be from 0 on"),
+        (changed("band", to=-1), "its band is axial -1.0, .* must be from 0 on"),
         (changed("band", to=float("nan")), "band is nan but must be a finite number"),
         (changed("band", to=True), "band is True but must be a number"),
+        (changed("band", to={"axial": 0.1, "bending": 0.1}), "band.torsion .* is missing: add it"),
+        (
+            changed("band", to={"axial": 0.1, "torsion": True, "bending": 0.1}),
+            "band.torsion is True but must be a number",
+        ),
         (changed("units", to="N/mm; t; mm"), "units is .*N/mm; t; mm.* but must be"),
         (changed("frame", to="z up"), "frame is .*z up.* but must be"),
         (changed("degrees_of_freedom", to=lambda f: f[::-1]), "degrees_of_freedom is"),
         (changed("supported", to="maybe"), "supported"),
-        (changed("schema_version", to=2), "schema_version is 2 but must be 1"),
+        (changed("schema_version", to=3), "schema_version is 3 but must be 1 or 2"),
         (changed("stiff", to=1), "unknown key 'stiff'"),
         (lambda content: content.pop("stiffness"), "stiffness is missing: add it"),
     ],
@@ -116,7 +122,7 @@ def test_what_is_no_json_of_ours_is_one_sentence(tmp_path: Path, text: str) -> N
 
 
 def test_the_limited_process_hands_back_the_superelement_to_the_last_bit(tmp_path: Path) -> None:
-    element = replace(strut(), mass=np.eye(12), band=0.1)
+    element = replace(strut(), mass=np.eye(12), band=StiffnessBands(0.1, 0.02, 0.3))
     export.write(tmp_path / "one.json", element, "json")
     found = read_limited(tmp_path / "one.json", "json")
     assert found.stiffness.tobytes() == element.stiffness.tobytes()

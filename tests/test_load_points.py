@@ -27,7 +27,8 @@ from fe_drivetrain.response.entering import entering
 from fe_drivetrain.response.model import Model, build_model, mesh_scene, scene_loads
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
 from fe_drivetrain.scene.scene import Scene
-from fe_drivetrain.studies.study_loads import own_loads, weightless
+from fe_drivetrain.scene.without_weight import weightless
+from fe_drivetrain.studies.study_loads import own_loads
 
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
 

@@ -18,6 +18,7 @@ from fe_drivetrain.hub_loads.surrogate import Condition
 from fe_drivetrain.report.pictures.off_screen import can_draw
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.suite.case import all_cases, find_cases
+from fe_drivetrain.suite.findings import OF_NONE
 from fe_drivetrain.suite.suite import run_cases
 
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
@@ -80,6 +81,18 @@ def test_results_are_valid_and_physics_holds(reports, name):
     assert [q for q in failed if not any(text in q for text in NEEDS_REAL_SCENE)] == []
     page = (reports / name / "report.html").read_text()
     assert typeset(results.title) in html.unescape(page)
+
+
+@pytest.mark.parametrize("name", ["rmse", "shaft_thickness"])
+def test_checks_of_two_bearings_are_each_of_their_own_scene(reports, name):
+    results = read_results(reports / name / "results.json")
+    titles = {record.hash: record.title for record in results.drivetrains}
+    kinds = set()
+    for verdict in (v for v in results.verdicts if v.of != OF_NONE):
+        spherical = "spherical" in verdict.quantity or "DSRB" in verdict.quantity
+        kinds.add(spherical)
+        assert ("spherical" in titles[verdict.of]) == spherical, verdict.quantity
+    assert kinds == {True, False}
 
 
 @pytest.mark.parametrize("name", ["bonded", "spherical", "rmse"])

@@ -30,9 +30,6 @@ from fe_drivetrain.hub_loads.controller import (
     steady_operation,
 )
 from fe_drivetrain.hub_loads.moving_turbine import (
-    Inflow,
-    _parts,
-    even_inflow,
     simulate,
     turbine_histories,
     turbine_history,
@@ -52,6 +49,7 @@ from fe_drivetrain.hub_loads.turbine import (
     natural_frequencies,
     similar_turbine,
 )
+from fe_drivetrain.hub_loads.turbine_parts import Inflow, even_inflow, kernel_parts
 from fe_drivetrain.hub_loads.wind import at_azimuth
 
 FX, FY, FZ, MX, MY, MZ = range(6)
@@ -84,7 +82,7 @@ def waves(signal: Floats, azimuth: Floats, orders: int = 9) -> Floats:
 
 
 def test_compiled_aerofoil_is_that_of_the_rotor() -> None:
-    parts = _parts(LEVEL, RIGID, even_inflow(LEVEL, 10.0, [0.0], 10.0))
+    parts = kernel_parts(LEVEL, RIGID, even_inflow(LEVEL, 10.0, [0.0], 10.0))
     attack = np.linspace(-1.0, 1.5, 101)
     found = np.array([air.coefficients(parts, a) for a in attack]).T
     np.testing.assert_allclose(found, polar(LEVEL.rotor, attack), rtol=1e-12, atol=1e-14)
@@ -262,7 +260,7 @@ def jacobian(turbine: Turbine, physics: Physics, speed: float) -> Floats:
     rotor = replace(turbine.rotor, gravity=1e-30)
     bare = replace(turbine, rotor=rotor, blade_damping=1e-30, tower_damping=1e-30)
     bare = replace(bare, shaft_damping=1e-30, cone=0.0)
-    parts = _parts(bare, physics, even_inflow(bare, 10.0, [0.0], 10.0))
+    parts = kernel_parts(bare, physics, even_inflow(bare, 10.0, [0.0], 10.0))
     state = np.zeros(air.STATES)
     state[air.SPEED] = state[air.GENERATOR] = speed
     found = np.zeros((air.STATES, air.STATES))
@@ -320,7 +318,7 @@ def test_tower_slows_the_wind_as_a_cylinder_does_and_shakes_at_3p_alone(
     calm: tuple[Floats, Floats],
 ) -> None:
     physics = replace(FROZEN, shadow=True)
-    parts = _parts(LEVEL, physics, STEADY)
+    parts = kernel_parts(LEVEL, physics, STEADY)
     radius = 30.0
     height = LEVEL.rotor.hub_height - radius
     size = LEVEL.tower_foot + (LEVEL.tower_head - LEVEL.tower_foot) * height / LEVEL.tower_height
@@ -458,7 +456,7 @@ def test_force_on_the_shaft_is_the_weight_less_the_momentum_that_the_rotor_takes
 ) -> None:
     """In still air, all moving: hub, blades that bend, and a surplus of mass on one of them."""
     turbine = replace(LEVEL, mass_imbalance=4e4)
-    parts = _parts(turbine, Physics(), even_inflow(turbine, 10.0, [0.0], 10.0))
+    parts = kernel_parts(turbine, Physics(), even_inflow(turbine, 10.0, [0.0], 10.0))
     state = np.zeros(air.STATES)
     state[[air.PSI, air.SPEED, air.TWIST, air.GENERATOR]] = azimuth, 1.3, 0.01, 1.2
     at = air.RATES + np.array([[6 * a + i for a in range(2)] for i in range(3)])

@@ -3,13 +3,17 @@
 import csv
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from test_procedure_interfaces import PLACES
 
+from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.dynamics.superposition import exact_steps
 from fe_drivetrain.fidelity.ladder import shaft_level, statics_level
+from fe_drivetrain.procedure import moving
 from fe_drivetrain.procedure.interface_loads import (
     LoadTable,
     analysed,
@@ -19,7 +23,7 @@ from fe_drivetrain.procedure.interface_loads import (
     write_load_json,
 )
 from fe_drivetrain.procedure.levels import level_loads
-from fe_drivetrain.procedure.moving import Mounts, moving_three_points
+from fe_drivetrain.procedure.moving import Mounts, moving_energy_error, moving_three_points
 from fe_drivetrain.procedure.three_points import three_point_loads
 from fe_drivetrain.scene.reading import library_scene
 
@@ -141,6 +145,27 @@ def test_a_level_is_in_equilibrium_and_moves_as_its_compliance_says() -> None:
     assert {i.name for i in found.interfaces} == {"hub", "main bearing", "gearbox entrance"}
     with pytest.raises(InputError, match="no displacements"):
         level_loads(scene, statics_level(scene), time, hub)
+
+
+def waves(step: float) -> tuple[Floats, Floats]:
+    time = np.arange(round(1.0 / step) + 1) * step
+    return time, MEAN * (1.0 + np.sin(2.0 * np.pi * time)[:, None] * [0.1, -0.5, 0.2, 0.3, 1, -0.7])
+
+
+def test_energy_of_the_motion_is_the_work_of_hub_and_weights(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    errors = [moving_energy_error(PLACES, MOUNTS, *waves(step)) for step in (4e-3, 2e-3, 1e-3)]
+    assert errors[2] < 1e-6
+    assert errors[0] / errors[1] > 8.0
+    assert errors[1] / errors[2] > 8.0
+
+    def slower(*given: Any) -> tuple[Floats, Floats, Floats]:
+        t, q, v = exact_steps(*given)
+        return t, q, 0.99 * v
+
+    monkeypatch.setattr(moving, "exact_steps", slower)
+    assert moving_energy_error(PLACES, MOUNTS, *waves(1e-3)) > 100.0 * errors[2]
 
 
 def test_what_cannot_move_is_refused() -> None:

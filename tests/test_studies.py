@@ -11,20 +11,24 @@ from typing import Any
 import numpy as np
 import pytest
 from coarse_scenes import coarse_scene
+from test_commands_life import write_history
 
 from fe_drivetrain.commands.study_files import write_reactions
 from fe_drivetrain.common import GRAVITY, InputError
 from fe_drivetrain.compare import statistics
 from fe_drivetrain.fidelity import statics_level
+from fe_drivetrain.histories import Site
 from fe_drivetrain.hub_loads import LoadHistory, PointLoads
-from fe_drivetrain.scene import Scene, change_scene
+from fe_drivetrain.scene import Scene, change_scene, library_scene
 from fe_drivetrain.studies import (
     CheckResult,
     CompareResult,
+    LifeResult,
     Result,
     StudyResult,
     check,
     compare,
+    life,
     study,
 )
 from fe_drivetrain.studies.design_comparison import Varied
@@ -58,7 +62,15 @@ def studied() -> StudyResult:
     return study(coarse_scene("bonded"), HISTORIES, slopes=(4.0,))
 
 
-@pytest.fixture(params=["checked", "compared", "studied"])
+@pytest.fixture(scope="module")
+def lived(tmp_path_factory: pytest.TempPathFactory) -> LifeResult:
+    folder = tmp_path_factory.mktemp("histories")
+    for wind in (8.0, 14.0):
+        write_history(folder / f"v{wind:g}.csv", wind)
+    return life(library_scene("main_bearing_spherical"), folder / "*.csv", Site(8.5))
+
+
+@pytest.fixture(params=["checked", "compared", "lived", "studied"])
 def result(request: pytest.FixtureRequest) -> Result:
     found: Result = request.getfixturevalue(request.param)
     return found
@@ -73,7 +85,7 @@ def test_the_json_of_a_result_is_strict_and_names_its_schema(result: Result) -> 
     assert [one["hash"] for one in found["drivetrains"]] == [d.hash for d in result.drivetrains]
     assert found["answer"] == list(result.answer)
     assert len(found["checks"]) == len(result.checks)
-    assert found["tables"].keys() == result.tables.keys()
+    assert found["tables"].keys() == result.all_tables().keys() >= result.tables.keys()
 
 
 def test_a_result_cannot_be_changed_and_prints_in_one_line(result: Result) -> None:
@@ -275,3 +287,28 @@ def test_histories_without_loads_are_refused_before_any_work() -> None:
             study(coarse_scene("bonded"), histories)
     with pytest.raises(InputError, match="slope"):
         study(coarse_scene("bonded"), HISTORIES, slopes=(-1.0,))
+
+
+def test_a_life_is_a_number_with_what_takes_it(lived: LifeResult) -> None:
+    (one,) = lived.bearings.values()
+    years = one.years["L10mr"]
+    assert lived["L10mr of bearing main_bearing"].computed == years
+    assert one.site is not None
+    turns = one.million_revolutions["L10mr"] / one.damage.turns * 1e6  # in a year at the site
+    assert turns == pytest.approx(years, rel=1e-12)
+    assert one.damage.of_rows(True).sum() == pytest.approx(1.0 / years, rel=1e-9)
+    assert one.site.of_winds("L10mr").sum() == pytest.approx(1.0)
+    whole = sum(f.damage.seconds for f in one.files)
+    mean = one.mean_load.mean(axis=1)
+    assert whole == pytest.approx(20.0)
+    assert (one.peak_load.max(axis=1) >= mean).all()
+
+
+def test_tables_of_lives_by_file_and_place_are_frames(lived: LifeResult) -> None:
+    pytest.importorskip("pandas")
+    assert list(lived.to_frame("files")["file"]) == ["v14.csv", "v8.csv"]
+    places, rings = lived.to_frame("places"), lived.to_frame("main_bearing: rows and rings")
+    (one,) = lived.bearings.values()
+    by_place = places["outer ring, damage by L10mr"].sum()
+    outer = rings[rings["ring"] == "outer"]["share of L10mr's damage [%]"].sum()
+    assert by_place * one.years["L10mr"] == pytest.approx(0.01 * outer, rel=1e-9)

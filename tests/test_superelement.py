@@ -9,6 +9,7 @@ from coarse_scenes import coarse_scene
 from fe_drivetrain import export
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import largest_difference
+from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.export.from_component import component_superelement
 from fe_drivetrain.export.from_scene import (
     shaft_superelement,
@@ -50,7 +51,7 @@ def random_element(seed: int, mass: bool = True, free: bool = False) -> Superele
         K,
         0.5 * (M + M.T) if mass else None,
         supported=True,
-        band=0.03,
+        band=StiffnessBands(0.01, 0.002, 0.03),
         origin=Origin("a scene", "00ff", "2 meridian", "0.1 m", "fe-drivetrain"),
     )
 
@@ -155,12 +156,16 @@ def test_bands_hold_what_the_next_level_says() -> None:
     beam, meridian = (shaft_superelement(scene, level, ["hub", "gearbox"]) for level in (1, 2))
     assert beam.band is not None
     assert meridian.band is not None
-    assert 0 < meridian.band < 2e-3 < 0.05 < beam.band
+    for of_meridian, of_beam in zip(meridian.band, beam.band, strict=True):
+        assert 0 < of_meridian < 2e-3 < of_beam
+    assert beam.band.largest > 0.05
     finer = keep_points(meridian_shaft(scene, 0.25, 5), ["hub", "gearbox"])
-    assert largest_difference(finer.stiffness, meridian.stiffness) < 3 * meridian.band
+    apart = StiffnessBands.of_difference(finer.stiffness, meridian.stiffness)
+    for change, half_width in zip(apart, meridian.band, strict=True):
+        assert change < half_width
     unit = unit_superelement(coarse_scene("bonded"), "main_bearing")
     assert unit.band is not None
-    assert 0 < unit.band < 1
+    assert all(0 < half_width < 1 for half_width in unit.band)
 
 
 def test_a_beam_of_a_thousand_sections_has_no_band_and_says_why() -> None:
@@ -191,7 +196,7 @@ def test_torsion_of_the_free_shaft_is_g_j_over_l() -> None:
 def test_supported_drivetrain_and_bearing_unit() -> None:
     scene = coarse_scene("bonded")
     model = shaft_level(scene, 1)
-    element = supported_superelement(scene, model, ["hub"], band=0.01)
+    element = supported_superelement(scene, model, ["hub"], StiffnessBands.alike(0.01))
     np.testing.assert_allclose(element.stiffness, model.stiffness(["hub"]))
     assert element.supported
     unit = unit_superelement(scene, "main_bearing")

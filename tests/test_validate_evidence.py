@@ -39,7 +39,7 @@ from fe_drivetrain.procedure.failure_modes import (
     protest_catalogue,
 )
 from fe_drivetrain.procedure.project import EvidenceLink, Project
-from fe_drivetrain.procedure.tolerances import WIDEST, is_guess, is_vacuous, why_no_limit
+from fe_drivetrain.procedure.tolerances import EXAMPLE, WIDEST, is_guess, is_vacuous, why_no_limit
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.report.seal import drivetrain_hash, drivetrain_record, results_digest
 from fe_drivetrain.scene.reading import change_scene, library_scene
@@ -236,6 +236,29 @@ def test_a_tolerance_whose_ends_are_a_factor_of_two_apart_is_vacuous() -> None:
         assert not is_vacuous(share)
     for share in (WIDEST + 1e-9, 0.5, 1.0, 2.0, np.nan, np.inf):
         assert is_vacuous(share)
+
+
+@pytest.mark.parametrize(
+    ("key", "step", "words"),
+    [
+        ("model.needs.0.tolerance", 2, "under model.needs set tolerance"),
+        ("inputs.values.0.band", 4, "under inputs.values set band"),
+        ("campaign.signals.0.accuracy", 5, "under campaign.signals set accuracy"),
+        ("comparison.quantities.0.tolerance", 6, "under comparison.quantities set tolerance"),
+    ],
+)
+def test_a_vacuous_tolerance_is_told_with_its_range_and_the_key_to_set(
+    key: str, step: int, words: str, small: Content, tmp_path: Path
+) -> None:
+    said = "of 40 % says nothing, since 60 to 140 % of the right value would pass: it must be "
+    said += "above 0 and below 33.3 %: " + words + " to less than 0.333, for instance "
+    said += words.rpartition(" ")[2] + ": 0.05"
+    change(small, key, 0.4)
+    found = standing_of(Project.model_validate(small), tmp_path)
+    assert said in "\n".join(found.states[step - 1].lacks)
+    change(small, key, EXAMPLE)
+    found = standing_of(Project.model_validate(small), tmp_path)
+    assert "says nothing" not in "\n".join(found.states[step - 1].lacks)
 
 
 def test_sources_that_are_guesses_are_told() -> None:

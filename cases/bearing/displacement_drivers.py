@@ -92,7 +92,7 @@ def run(run: Run, page: Page) -> None:
 
 
 def correlation(a: Floats, b: Floats) -> float:
-    """Of two series; NaN of fewer than three steps."""
+    """Correlation of two series; NaN of fewer than three steps."""
     return float(np.corrcoef(a, b)[0, 1]) if len(a) > 2 else float("nan")
 
 
@@ -114,12 +114,12 @@ def drivers(axial: Floats, loads: Floats) -> Record:
 
 
 def share(what: Bools, among: Bools) -> float:
-    """Of steps among others [%]; NaN where there are none."""
+    """Share of steps among others [%]; NaN where there are none."""
     return 100.0 * float(what[among].mean()) if among.any() else float("nan")
 
 
 def charts(page: Page, axial: Floats, loads: Floats) -> None:
-    """As the thesis's figure 4.12."""
+    """Draw what the thesis's figure 4.12 shows."""
     page.section("Axial displacement at 12 m/s")
     um = 1e6 * axial
     for name, unit, values in (

@@ -55,7 +55,7 @@ SMALL = 0.05
 
 @dataclass(frozen=True)
 class Answer:
-    """Of one model: loads (n, 5) on the bearing, (n, total) of rollers, share of steps settled."""
+    """One model: bearing loads (n, 5), roller loads (n, total), and share of settled steps."""
 
     loads: Floats
     rollers: Floats
@@ -378,7 +378,7 @@ def peak_ratios(files: dict[str, list[Answer]], constant: str, rollers: int | sl
 
 
 def largest_change(ratios: list[float]) -> float:
-    """Of ratios, up or down [%]."""
+    """Largest change among ratios, up or down [%]."""
     return 100.0 * (max(*ratios, *(1.0 / ratio for ratio in ratios)) - 1.0)
 
 

@@ -201,7 +201,7 @@ def end_difference(row: RollerRow, displacements: Floats) -> tuple[Floats, Float
 
 
 def zones_and_edges(page: Page, bearing: Bearing, loads: Floats, every: int) -> None:
-    """Of whole wind files: load zones, peak rollers with the moment, and edge loading."""
+    """Show load zones of whole wind files, peak rollers with the moment, and edge loading."""
     rows: list[Record] = []
     for speed, one in zip(WIND_SPEEDS, loads, strict=True):
         some = one[::every]
@@ -315,7 +315,7 @@ def in_window(bearing: Bearing, time: Floats, loads: Floats, rotor_speed: float)
 
 
 def draw(page: Page, speed: float, example: Example) -> None:
-    """As figures 4.15 and 4.16."""
+    """Draw what figures 4.15 and 4.16 show."""
     right, up = -example.moment[:, 0], example.moment[:, 1]
     page.chart(
         f"Moment at {speed:g} m/s, looking downwind: right is that of the rotor's weight",

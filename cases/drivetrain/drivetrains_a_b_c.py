@@ -88,10 +88,12 @@ def run(run: Run, page: Page) -> None:
     for letter in published.OTHERS:
         with run.step(f"drivetrain {letter}"):
             found[letter] = by_tables(letter)
+            page.about(found[letter].table, f"drivetrain {letter}")
             check_tables(page, found[letter])
             if letter in RESTORED:
                 others[letter] = restored(found[letter])
-                check_restored(page, found[letter], others[letter])
+                with page.of(None):
+                    check_restored(page, found[letter], others[letter])
     show_all(page, found)
     for letter, one in found.items():
         page.section(f"Drivetrain {letter}")
@@ -291,7 +293,7 @@ def needed(other: Restored, part: str, tabled: float, target: float) -> float:
 
 
 def caption(one: ByTables) -> str:
-    """Of a drivetrain's table of frequencies."""
+    """Caption of a drivetrain's table of frequencies."""
     return f"Drivetrain {one.letter}: {one.table.title.partition(', ')[2]}; generator free"
 
 

@@ -84,6 +84,7 @@ class Restored(NamedTuple):
 )
 def run(run: Run, page: Page) -> None:
     """Frequencies against Table 6.1, the axes that meshes are about, and what restores the rest."""
+    page.about(TABLE)
     found = {state: natural_modes(system) for state, system in SYSTEMS.items()}
     shown = {state: published.observable(modes) for state, modes in found.items()}
     f = {state: modes.frequencies for state, modes in found.items()}
@@ -95,13 +96,15 @@ def run(run: Run, page: Page) -> None:
         ]
         pair = check_planets(page, f["fixed"], shown["fixed"])
         stiffness = check_statics(page)
-        check_rigid_meshes(page)
+        with page.of(None):
+            check_rigid_meshes(page)
     with run.step("axes that the meshes are about"):
         axes = readings()
     with run.step("inputs that restore the table"):
         other = restored()
-        check_restored(page, other)
-        fitted = check_stage(page, other)
+        with page.of(None):
+            check_restored(page, other)
+            fitted = check_stage(page, other)
     with run.step("mesh stiffness"):
         factors = np.geomspace(0.01, 1e4, QUICK_FACTORS if run.quick else FACTORS)
         swept = np.array([with_meshes(float(x)) for x in factors])

@@ -112,6 +112,7 @@ def run(run: Run, page: Page) -> None:
         band=solid.series.uncertainty,
     )
     taken = taken_over(meridian, solid)
+    page.about(with_shaft(taken.value))
     with run.step("frequencies"):
         rows = [
             check_frequency(page, name, state, mode, taken)
@@ -201,16 +202,19 @@ def taken_over(meridian: Stiffness, solid: Solid) -> Stiffness:
     return Stiffness((low + high) / 2, (high - low) / 2)
 
 
+def with_shaft(K: float) -> Drivetrain:
+    """The table with a low-speed shaft of another stiffness [N m/rad]."""
+    return published.with_values(TABLE, {"shafts.0.stiffness": K})
+
+
 def frequency(name: str, state: GeneratorState, mode: int, K: float) -> float:
-    """Of a model with another low-speed shaft [Hz]."""
-    other = published.with_values(TABLE, {"shafts.0.stiffness": K})
-    return float(natural_modes(MAKERS[name](other, state)).frequencies[mode])
+    """Frequency of a model with another low-speed shaft [Hz]."""
+    return float(natural_modes(MAKERS[name](with_shaft(K), state)).frequencies[mode])
 
 
 def first_order(name: str, state: GeneratorState, mode: int, K: Stiffness) -> float:
     """Half width [Hz] for a stiffness with a band, by the share of energy."""
-    other = published.with_values(TABLE, {"shafts.0.stiffness": K.value})
-    system = MAKERS[name](other, state)
+    system = MAKERS[name](with_shaft(K.value), state)
     # the one spring of two masses is all shafts in series: K has so much of its compliance
     two = name == "2 masses"
     spring, part = ("shafts", system.k[0] / K.value) if two else (TABLE.shafts[0].name, 1.0)

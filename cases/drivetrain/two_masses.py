@@ -59,6 +59,7 @@ class Restored(NamedTuple):
 )
 def run(run: Run, page: Page) -> None:
     """Frequencies with the generator fixed and free, against the quadratic and the tables."""
+    page.about(TABLE)
     with run.step("frequencies"):
         found = {state: natural_modes(system) for state, system in SYSTEMS.items()}
         bands = {
@@ -79,7 +80,8 @@ def run(run: Run, page: Page) -> None:
     )
     f = {state: modes.frequencies for state, modes in found.items()}
     other = restored()
-    check_restored(page, other, bands["free"][1] / f["free"][1])
+    with page.of(None):
+        check_restored(page, other, bands["free"][1] / f["free"][1])
     measured = [against_measured(state, f[state]) for state in published.STATES]
     shafts = [row["shafts that it needs, over those of Table 4.2"] for row in measured]
     lss = TABLE.shafts[0].stiffness
@@ -184,7 +186,7 @@ def check_restored(page: Page, other: Restored, rounding: float) -> None:
 
 
 def frequency(state: GeneratorState, mode: int, shafts: float) -> float:
-    """Of a mode (from 0) with other shafts [N m/rad]."""
+    """Frequency of a mode, counted from 0, with other shafts [N m/rad]."""
     return float(natural_modes(changed(SYSTEMS[state], {"shafts": shafts})).frequencies[mode])
 
 

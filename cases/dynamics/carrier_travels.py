@@ -47,6 +47,7 @@ PIN = "stage 1 pin 1 upwind"
 def run(run: Run, page: Page) -> None:
     """A turn in time against statics at each azimuth; lines of the ring beside the mesh."""
     machine = library_machine(NAME)
+    page.about(machine)
     count = 12 if run.quick else 36
     with run.step("a turn in time and at rest"):
         still = at_rest(machine, count)

@@ -7,6 +7,7 @@ from fe_drivetrain.common import Floats
 from fe_drivetrain.dynamics import (
     Flexible,
     Level,
+    Machine,
     System,
     azimuths,
     library_machine,
@@ -34,6 +35,7 @@ RADIUS = 0.308  # m, of the planets' centres
 def run(run: Run, page: Page) -> None:
     """Statics at each azimuth; balance, shifts by a third of a turn, harmonics of the rotor."""
     machine = library_machine(NAME)
+    page.about(machine, NAME)
     count = 12 if run.quick else 36
     angles = azimuths(count)
 
@@ -57,8 +59,10 @@ def run(run: Run, page: Page) -> None:
     rows: list[Record] = []
     for name, one in found.items():
         rows += rows_of(f"{NAME}, {name}", one)
+    five = library_machine("nrel_5mw")
+    page.concerns(five, "nrel_5mw")
     with run.step("5 MW, flexible carrier"):
-        rows += five_megawatt(count)
+        rows += five_megawatt(five, count)
     means = [float(str(row["mean [kN]"])) for row in rows]
     ratios = [up / down for up, down in zip(means[::2], means[1::2], strict=True)]
     page.section("Over a turn")
@@ -109,9 +113,8 @@ def rows_of(name: str, one: Turn) -> list[Record]:
     return rows
 
 
-def five_megawatt(count: int) -> list[Record]:
+def five_megawatt(machine: Machine, count: int) -> list[Record]:
     """The 5 MW gearbox at rated torque, with a carrier of beams and with a rigid one."""
-    machine = library_machine("nrel_5mw")
     component = library_component("planet_carrier")
     assert isinstance(component, CarrierComponent)
     body = carrier_frame(component)

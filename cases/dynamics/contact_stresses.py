@@ -37,6 +37,7 @@ def run(run: Run, page: Page) -> None:
             rows += rows_of(name, torque)
     two = {str(row["mesh"]): row for row in rows if row["machine"] == "synthetic_2mw"}
     pressures = {key: float(str(two[mesh_of(key)]["pressure [MPa]"])) for key in DERIVED}
+    page.about(library_machine("synthetic_2mw"), "synthetic_2mw")
     for key, expected in DERIVED.items():
         page.equals(
             f"2 MW, {mesh_of(key)}: pressure [MPa]",
@@ -54,6 +55,7 @@ def run(run: Run, page: Page) -> None:
         why="round-off of the forces",
         source="Hertz: root of 5 for 29, 58 and 145 teeth",
     )
+    page.about(library_machine("nrel_5mw"), "nrel_5mw")
     for row in rows:
         if str(row["machine"]) == "nrel_5mw":
             page.equals(

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.common import InputError
 from fe_drivetrain.dynamics import (
     QUESTIONS,
     RUNGS,
@@ -136,12 +137,16 @@ def run(run: Run, page: Page) -> None:
 
 def operations(run: Run) -> dict[str, Operation]:
     """Machines and their loads: those of the case, or the one that the user names."""
-    if "machine" not in run.settings:
-        return OPERATIONS
-    name = str(run.settings["machine"])
-    if name in OPERATIONS:
-        return {name: OPERATIONS[name]}
-    return {name: Operation(1e3 * run.positive("torque"), 1e3 * run.positive("moment"))}
+    name = str(run.settings.get("machine", ""))
+    if name and name not in OPERATIONS:
+        return {name: Operation(1e3 * run.positive("torque"), 1e3 * run.positive("moment"))}
+    for key in ("torque", "moment", "speed"):
+        if key in run.settings:
+            raise InputError(
+                f"{key} = {run.settings[key]} is not used: {', '.join(OPERATIONS)} have an "
+                f"operation of their own: leave {key} out, or name your own machine under machine"
+            )
+    return {name: OPERATIONS[name]} if name else OPERATIONS
 
 
 def error_curves(answers: Sequence[Answer]) -> list[dict[str, Any]]:

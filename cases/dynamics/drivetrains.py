@@ -30,12 +30,12 @@ class Rated(NamedTuple):
 
     @property
     def speed(self) -> float:
-        """Of the rotor [rad/s]."""
+        """Speed of the rotor [rad/s]."""
         return self.per_minute * np.pi / 30.0
 
     @property
     def torque(self) -> float:
-        """Of the rotor [N m]."""
+        """Torque of the rotor [N m]."""
         return self.power / self.speed
 
 

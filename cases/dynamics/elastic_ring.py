@@ -38,7 +38,7 @@ def rim(thickness: float, stiffer: float = 1.0) -> Rim:
 
 
 def frequencies(thickness: float, highest: int, stiffer: float = 1.0) -> Floats:
-    """Of the stage with harmonics up to the highest [Hz]."""
+    """Frequencies of the stage with harmonics up to the highest [Hz]."""
     stage = plane_stage(LIN_PARKER_STAGE, PLANETS)
     harmonics = range(2, highest + 1)
     coordinates, springs = with_rim(stage, springs_of(stage), rim(thickness, stiffer), harmonics)

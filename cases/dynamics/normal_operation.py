@@ -169,7 +169,7 @@ def unit(system: Torsional, name: str) -> Floats:
 
 
 def steepness(one: Rated, generator: float) -> float:
-    """Of the generator's line [N m s/rad]."""
+    """Steepness of the generator's line [N m s/rad]."""
     return one.torque / (SLIP * one.speed * generator**2)
 
 
@@ -185,7 +185,7 @@ def amplified(system: Torsional, one: Rated, generator: float, w: float) -> Floa
 
 
 def mean_torques(system: Torsional, generator: float) -> Floats:
-    """Of each element at a torque of 1 on the rotor [N m]."""
+    """Mean torque of each element at a torque of 1 on the rotor [N m]."""
     load = unit(system, "rotor") - unit(system, "generator") / generator
     return np.asarray(system.k * (system.B @ wind_up(torsional_equations(system), load).q))
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.dynamics.park_models import SPEED, turning_inertia
-from fe_drivetrain.common import InputError
+from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.compare import as_printed, round_off
 from fe_drivetrain.dynamics import (
     Level,
@@ -39,16 +39,18 @@ def run(run: Run, page: Page) -> None:
     """Nullity, spectra, loads of a bending moment, torque balance; as printed and corrected."""
     printed = park.printed_model(1e9, both=True)
     machine = library_machine("park_2021")
+    page.about(machine)
     with run.step("corrected model"):
         corrected = machine_system(machine, Level.RIGID)
     check_ratios(page, machine)
     loose = park.nullity(printed)
-    page.holds(
-        "as printed: 36 degrees of freedom, 7 motions that no spring feels",
-        (len(printed.names), loose) == (36, 7),
-        why="the machine turns freely; six more are tilts of whole shafts, which nothing holds",
-        source="Eq 17-25: no bearing holds tilts, and nothing couples them to translations",
-    )
+    with page.of(None):
+        page.holds(
+            "as printed: 36 degrees of freedom, 7 motions that no spring feels",
+            (len(printed.names), loose) == (36, 7),
+            why="the machine turns freely; six more are tilts of whole shafts, which nothing holds",
+            source="Eq 17-25: no bearing holds tilts, and nothing couples them to translations",
+        )
     page.holds(
         "with hinges between bodies: one motion that no spring feels",
         park.nullity(corrected) == 1,
@@ -56,7 +58,8 @@ def run(run: Run, page: Page) -> None:
         source="a hinge moves with the bodies' tilts: x_a + l_a psi_a = x_b - l_b psi_b",
     )
     forces = moments(page, machine)
-    spectra(run, page)
+    with page.of(None):
+        spectra(run, page)
     show_modes(page, corrected)
     printed_reading, balance, _ = paradox(page)
     page.answer(
@@ -101,6 +104,27 @@ def check_ratios(page: Page, machine: Machine) -> None:
 def moments(page: Page, machine: Machine) -> float:
     """Mesh forces [kN] of a bending moment of 100 kN m on the rotor, in either model."""
     load = np.array([0.0, 0.0, 0.0, 0.0, 1e5, 0.0])
+    with page.of(None):
+        refused = moment_as_printed(page, load)
+    system = machine_system(machine, Level.RIGID, held_generator=True)
+    found = static(system, system.load_on("rotor", load))
+    springs = [n for n in system.spring_names if "planet" in n or "mesh" in n]
+    meshes_of = sorted(springs)
+    rows: list[Record] = [
+        {
+            "mesh": n,
+            "force with hinges [kN]": found.force(n) / 1e3,
+            "force as printed [kN]": "no equilibrium" if refused else "an equilibrium",
+        }
+        for n in meshes_of
+    ]
+    page.section("A bending moment of 100 kN m on the rotor")
+    page.table("Static mesh forces along the lines of action", rows)
+    return max(abs(found.force(n)) for n in meshes_of) / 1e3
+
+
+def moment_as_printed(page: Page, load: Floats) -> bool:
+    """What the printed model feels of a moment on the rotor; whether it has no equilibrium."""
     printed = park.printed_model(1e9, both=True)
     row = printed.load_on("rotor", load)
     # in what the springs of the meshes feel there is nothing of it, whatever holds the tilts
@@ -127,21 +151,7 @@ def moments(page: Page, machine: Machine) -> float:
         why="nothing holds the shaft against tilt",
         source="Eq 25",
     )
-    system = machine_system(machine, Level.RIGID, held_generator=True)
-    found = static(system, system.load_on("rotor", load))
-    springs = [n for n in system.spring_names if "planet" in n or "mesh" in n]
-    meshes_of = sorted(springs)
-    rows: list[Record] = [
-        {
-            "mesh": n,
-            "force with hinges [kN]": found.force(n) / 1e3,
-            "force as printed [kN]": "no equilibrium" if refused else "an equilibrium",
-        }
-        for n in meshes_of
-    ]
-    page.section("A bending moment of 100 kN m on the rotor")
-    page.table("Static mesh forces along the lines of action", rows)
-    return max(abs(found.force(n)) for n in meshes_of) / 1e3
+    return refused
 
 
 def spectra(run: Run, page: Page) -> None:

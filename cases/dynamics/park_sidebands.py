@@ -65,6 +65,7 @@ def run(run: Run, page: Page) -> None:
     """Distance of sidebands from the mesh line after a torque step, and with an eccentric gear."""
     dt, duration = (5e-4, 8.0) if run.quick else (1.25e-4, 16.0)
     machine = library_machine("park_2021")
+    page.about(machine)
     rows: list[Record] = []
     traces = []
     apart = {}

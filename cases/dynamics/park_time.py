@@ -85,11 +85,13 @@ class Range(NamedTuple):
 def run(run: Run, page: Page) -> None:
     """Each study of the source with its torque balanced, printed words beside figures."""
     machine = library_machine("park_2021")
+    page.about(machine)
     space = machine_system(machine, Level.RIGID)
     flat = machine_system(machine, Level.TORSIONAL)
     harmonics = 8 if run.quick else 16
     with run.step("torque step"):
-        steps = torque_step(page)
+        with page.of(None):  # the printed model, of which the machine is a correction
+            steps = torque_step(page)
         least = step_in_space(page, flat, space, 1.25e-4 if run.quick else 3.125e-5, harmonics)
     with run.step("readings of the torque"):
         readings(page, flat)

@@ -60,6 +60,7 @@ class Turned:
 def run(run: Run, page: Page) -> None:
     """Equilibria over a turn; balance, symmetry; ratios, rollers, pressures beside the thesis."""
     machine, angles = linearised(library_machine("nrel_750kw")), azimuths(6 if run.quick else 24)
+    page.about(machine)
     carrier = own_carrier()
     models = [
         Model("linear bearings, rigid carrier", None, None),

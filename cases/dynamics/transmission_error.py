@@ -129,7 +129,7 @@ def check_one_mass(page: Page) -> None:
 
 
 def error_of_teeth(relief: float) -> TransmissionError:
-    """Of 25 and 50 teeth of 6 mm, spur, under load."""
+    """Transmission error of 25 and 50 teeth of 6 mm, spur, under load."""
     pair = meshing_without_backlash(Gear(25, 6e-3, 0.06), Gear(50, 6e-3, 0.06))
     shape = Modifications((relief, relief), (12e-3, 12e-3))
     mesh = SlicedMesh(pair, parabolic_law(pair, 0.8), shape, slices=1, backlash=0.0)
@@ -184,7 +184,7 @@ def steady_mesh(found: TransmissionError, ratio: float, steps: int) -> Motion:
 
 
 def linear_ripple(found: TransmissionError, at: Floats) -> Floats:
-    """Of the linear response to the static error under load, all harmonics [m]."""
+    """Ripple of the linear response to the static error under load, all harmonics [m]."""
     E = np.fft.rfft(found.static - found.static.mean())
     order = np.arange(len(E))
     ripple = []
@@ -198,7 +198,7 @@ def linear_ripple(found: TransmissionError, at: Floats) -> Floats:
 
 
 def balanced_ripple(found: TransmissionError, ratio: float, orders: int = 60) -> float:
-    """Of the periodic m x'' + c (x' - e') + k (x - e) = F, by balance of harmonics [m]."""
+    """Ripple of the periodic m x'' + c (x' - e') + k (x - e) = F, by balance of harmonics [m]."""
     factor, error = wave_of(found.stiffness)[:, 0], error_of_slices(found, loaded=False).table[:, 0]
     k = found.stiffness.mean * factor
     w = ratio * np.sqrt(found.stiffness.mean / MASS) * np.arange(-orders, orders + 1)

@@ -65,6 +65,7 @@ def run(run: Run, page: Page) -> None:
                 "shaft.sections.0.inner_diameter": INNER,
             },
         )
+        page.about(scene)
         shaft = shaft_superelement(scene, 2, ["hub", "gearbox"])
     spring = torsional_stiffness(shaft, "hub", "gearbox")
     # beside the main shaft, a hub as stiff as five of them and a generator rotor as three

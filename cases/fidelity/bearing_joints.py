@@ -85,7 +85,7 @@ class Sweep:
 
     @property
     def solid_moments(self) -> Floats:
-        """Of the assemblies."""
+        """Moments of the assemblies."""
         return np.array([one.tilt_moment for one in self.solved])
 
     def order(self, limit: Solved, ends: slice) -> float:

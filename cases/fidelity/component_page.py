@@ -318,10 +318,10 @@ def show_files(run: Run, page: Page, element: Superelement) -> None:
         why="the format with the fewest digits keeps 10",
         source="the superelement that was written",
     )
-    band = "not known" if element.band is None else f"{100 * element.band:.2g} %"
+    band = "not known" if element.band is None else element.band.in_percent
     page.section("Exported")
     page.text(
-        f"Free at its points, with mass; band of the stiffness {band} of the diagonal, from a "
+        f"Free at its points, with mass; band of the stiffness: {band} of the diagonal, from a "
         f"coarser mesh. `fe-drivetrain export {element.name} --format json --out FILE` writes the "
         "same."
     )

@@ -78,7 +78,7 @@ def on_springs(scene: Scene, housing: Floats, shaft: Condensed) -> Floats:
 
 
 def difference(one: Floats, other: Floats) -> float:
-    """Of two compliances (6, 6), relative to the other's diagonal."""
+    """Difference of two compliances (6, 6), relative to the other's diagonal."""
     size = np.sqrt(other.diagonal())
     return float((np.abs(one - other) / np.outer(size, size)).max())
 

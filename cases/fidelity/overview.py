@@ -39,7 +39,9 @@ def run(run: Run, page: Page) -> None:
         with run.step(name):
             scene = library_scene(name)
             mesh = scene.mesh.scaled(QUICK if run.quick else COARSER)
-            one = compared(name, scene.model_copy(update={"mesh": mesh}))
+            scene = scene.model_copy(update={"mesh": mesh})
+            page.about(scene, name)
+            one = compared(name, scene)
         found.append(one)
         page.at_most(
             f"{name}: hub stiffer on softer supports, relative",

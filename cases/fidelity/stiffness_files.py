@@ -106,12 +106,13 @@ def stiffness_files(page: Page, folder: Path, scene: Scene, quantity: Quantity) 
         "writes them in further formats, and with fixed-interface modes."
     )
     page.table(
-        "Stiffness for other models; bands are of any entry, relative to the diagonal "
-        "entries of its row and column: of the shaft, what elements of one order more change, "
-        "continued as at a crack; of bearings, the difference between a face held in shape and one "
-        "that moves on average, and what recovered stresses say of the mesh",
+        "Stiffness for other models; bands are of each kind of motion, relative to the diagonal "
+        "entries of row and column: of the shaft, what elements of one order more change, "
+        "continued as at a crack or at half the rate that is seen; of bearings, the difference "
+        "between a face held in shape and one that moves on average, and what recovered stresses "
+        "say of the mesh",
         rows,
-        ["files", "points", "level", "mesh", "band ± [%]", "mass [kg]"],
+        ["files", "points", "level", "mesh", "band ±", "mass [kg]"],
     )
     page.table(
         "Some of its numbers; other motions of the same bearing held",
@@ -127,7 +128,7 @@ def _row(names: list[str], element: Superelement) -> list[Cell]:
         ", ".join(element.points),
         element.origin.level,
         element.origin.mesh,
-        None if element.band is None else 100 * element.band,
+        "not known" if element.band is None else element.band.in_percent,
         None if inertia is None else float(inertia[0, 0]),
     ]
 

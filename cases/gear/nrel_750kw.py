@@ -2,6 +2,7 @@
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.gear.rows import mesh_row, stiffness_row
+from fe_drivetrain.dynamics import library_machine
 from fe_drivetrain.gear import iso_stiffness, parabolic_mean, rack_factor
 from fe_drivetrain.report import gear_pair
 from fe_drivetrain.suite import Page, Record, Run, Target
@@ -29,6 +30,7 @@ SHIFTS = Target(
 def run(run: Run, page: Page) -> None:
     """Check root circles and shifts; show ISO 6336-1 beside 14 N/(mm µm) and Table 6.3."""
     pairs = published.nrel_750kw()
+    page.about(library_machine("nrel_750kw"))
     rows: list[Record] = []
     stiffness = {}
     for name, pair in pairs.items():

@@ -5,12 +5,22 @@ from dataclasses import replace
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.compare import InTime, converge_in_time, peak_between
+from fe_drivetrain.dynamics import energy_error, equations_of_motion, spring_laws, varying
 from fe_drivetrain.histories import rainflow_cycles
-from fe_drivetrain.hub_loads import Event, Rotor, grid_loss, made_event, similar_turbine
+from fe_drivetrain.hub_loads import (
+    Event,
+    Rotor,
+    grid_loss,
+    grid_loss_twist,
+    made_event,
+    similar_turbine,
+)
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.suite import Page, Record, Run, check_in_time
 
 SOURCE = "Al-Hamadani 2018, chapter 3"
+SHOWN = 0.84e6  # N m, torque before the grid loss that is shown
 #: What the emergency stop is compared with: median range, median mean (normal operation over it),
 #: negative mean, equivalent load; the thesis gives equivalent loads of the fast shaft.
 STATED: dict[str, dict[str, tuple[float | None, ...]]] = {
@@ -48,6 +58,7 @@ def run(run: Run, page: Page) -> None:
         table(page, shaft, found)
     draw(page)
     check_grid_loss(page)
+    check_energy(page)
     page.answer(
         f"Of all {len(seeds)} seeds the events have every ratio that the thesis states, to its "
         "last digit: medians of ranges and means, negative means, and damage-equivalent loads.",
@@ -112,7 +123,7 @@ def draw(page: Page) -> None:
     """Torque and thrust of each."""
     page.section("Histories")
     events = [made_event(s, "slow", 0) for s in ("start-up", "normal stop", "emergency stop")]
-    events.append(grid_loss(similar_turbine(Rotor()), 0.84e6))
+    events.append(grid_loss(similar_turbine(Rotor()), SHOWN))
     page.chart(
         "Torque of the slow shaft",
         [trace(e.name, e.time, e.torque / 1e3) for e in events],
@@ -143,4 +154,34 @@ def check_grid_loss(page: Page) -> None:
         within=0.005,
         why="thrust has fallen by 1 % after 0.2 s, of which the generator's inertia takes a share",
         source="two masses on a spring, closed form",
+    )
+
+
+def check_energy(page: Page) -> None:
+    """Energy of the grid loss that is shown, in the motion of rotor against generator."""
+    turbine = similar_turbine(Rotor())
+    k, c = turbine.shaft_stiffness, turbine.shaft_damping
+    whole = turbine.rotor_inertia + turbine.generator_inertia
+    share = turbine.generator_inertia / whole
+    equations = equations_of_motion([share * turbine.rotor_inertia], spring_laws([[1.0]], k, c))
+
+    def run(step: float, _: int) -> InTime:
+        twist = grid_loss_twist(turbine, SHOWN, rate=1.0 / step)
+        torque = (k * twist.angle + c * twist.speed) / SHOWN
+        values = {
+            "least torque over that before": -peak_between(-torque),
+            "largest torque after it over that before": peak_between(torque[torque.argmin() :]),
+        }
+        loads = varying([share * SHOWN], twist.time, twist.thrust)
+        moved = twist.angle[:, None], twist.speed[:, None]
+        return InTime(values, energy_error(equations, loads, twist.time, *moved))
+
+    found = converge_in_time(run, 2.5e-3)
+    check_in_time(
+        page,
+        "grid loss",
+        found,
+        dict.fromkeys(found.finest.values, 0.005),
+        energy=1e-6,
+        why="integrals of the fourth order of the step, over what the shaft holds",
     )

@@ -72,7 +72,7 @@ def run(run: Run, page: Page) -> None:
 
 
 def mean_of(values: list[Floats]) -> Floats:
-    """Of arrays."""
+    """Mean of arrays."""
     return np.asarray(np.mean(values, axis=0))
 
 

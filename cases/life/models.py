@@ -98,7 +98,7 @@ class World:
 
 
 def factors(hub: Floats) -> Floats:
-    """Of hub loads (n, 6)."""
+    """Factors of hub loads (n, 6)."""
     return factors_of(hub, BEAM.gearbox_weight)
 
 
@@ -118,7 +118,7 @@ def pinned(world: World, hub: Floats) -> Laminae:
 
 
 def spring_loads(stiffness: Floats, hub: Floats) -> Floats:
-    """Of the beam on K_R about y and z [N m/rad]."""
+    """Bearing loads of the beam on K_R about y and z [N m/rad]."""
     beam = replace(BEAM, tilt_stiffness=float(stiffness[0]), yaw_stiffness=float(stiffness[1]))
     return torsional_spring_model(hub, beam)
 

@@ -62,7 +62,7 @@ class Used:
         return Used(outer, inner, np.array([weights @ self.steps]))
 
     def risks(self) -> tuple[Floats, Floats]:
-        """Of each place (winds, rows, places, laminae) and of the rings that turn."""
+        """Risk of each place (winds, rows, places, laminae) and of the rings that turn."""
         return self.outer**SLOPE, self.inner**SLOPE
 
     def life(self) -> Floats:
@@ -125,7 +125,7 @@ def run(run: Run, page: Page) -> None:
 
 
 def damage(setup: Setup, deflections: Floats) -> Used:
-    """Of all parts at each wind speed."""
+    """Damage of all parts at each wind speed."""
     riser = stress_riser(30) if setup.riser is None else setup.riser
     outer, inner, lives = [], [], []
     for u in deflections:
@@ -200,7 +200,7 @@ def turned(page: Page, setup: Setup, deflections: Floats) -> None:
 
 
 def summary(setup: Setup, words: str, used: Used) -> Record:
-    """Of a site: rows, rings, centres of damage, and the life of both sums."""
+    """Summary of a site: rows, rings, centres of damage, and the life of both sums."""
     site = used.at(MEAN_WIND)
     outer, inner = (risk[0] for risk in site.risks())
     total = outer.sum() + inner.sum()

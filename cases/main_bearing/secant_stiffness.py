@@ -141,14 +141,15 @@ def secant_traces(key: str, unit: Reacted) -> list[Any]:
 )
 def run(run: Run, page: Page) -> None:
     """Secants of three bearings and of made-up springs, and the beams that follow from them."""
-    bonded = study.scene_of(run, page, "bonded", coarsen=False)
     spherical = study.scene_of(run, page, "spherical", coarsen=False)
+    bonded = study.scene_of(run, page, "bonded", coarsen=False)
+    tall_scene = secants.tall(bonded, TALL)
     cases = secants.hub_loads(run, EVERY, bonded)
     hub = cases.hub.values
     factors = QUICK_FACTORS if run.quick else FACTORS
     units = {
         "library": secants.series(run, bonded, factors["library"], cases),
-        "tall": secants.series(run, secants.tall(bonded, TALL), factors["tall"], cases),
+        "tall": secants.series(run, tall_scene, factors["tall"], cases),
     }
     with run.step("spherical"):
         free_loads, _, _ = secants.reacted(run, spherical, factors["tall"][-1], cases.hub)
@@ -176,9 +177,11 @@ def run(run: Run, page: Page) -> None:
         }
     improvement = {key: secants.beam_errors(unit, hub) for key, unit in finest.items()}
 
-    check_springs(page, made, coupled)
+    with page.of(None):
+        check_springs(page, made, coupled)
     for key, meshes in units.items():
-        check_scatter(page, key, meshes, parts[key, 4].shares)
+        with page.of(tall_scene if key == "tall" else bonded):
+            check_scatter(page, key, meshes, parts[key, 4].shares)
     library, tall = improvement["library"], improvement["tall"]
     # with loads of little thrust the beam's own error would be all that there is to see
     if tall[SINGLE][OF_FORM] > 2.0 * tall[FULL]["My"]:
@@ -187,25 +190,28 @@ def run(run: Run, page: Page) -> None:
             errors = secants.beam_errors(unit, hub)
             return errors[LEAN]["My"] / errors[SINGLE]["My"]
 
-        page.at_most(
-            f"{TITLES['tall']}: error of the beam's My with the coupling over that with a single "
-            "spring",
-            tall[LEAN]["My"] / tall[SINGLE]["My"],
-            0.5,
-            why="more than half of the error is due to the spring's form, or naming it was idle",
-            source="what the secant's scatter is due to is put back",
-            measure="reaction",
-            band=band_of(units["tall"], remaining),
-        )
+        with page.of(tall_scene):
+            page.at_most(
+                f"{TITLES['tall']}: error of the beam's My with the coupling over that with a "
+                "single spring",
+                tall[LEAN]["My"] / tall[SINGLE]["My"],
+                0.5,
+                why="more than half of the error is due to the spring's form, or naming it was "
+                "idle",
+                source="what the secant's scatter is due to is put back",
+                measure="reaction",
+                band=band_of(units["tall"], remaining),
+            )
     moments = np.abs(free_loads[:, 3:]).max()
-    page.vanishes(
-        "spherical bearing: largest moment over the largest at the hub",
-        float(moments / np.abs(hub[:, 3:]).max()),
-        within=1e-6,
-        why="accuracy of the solution; the nodal normals of the raceway meet at its centre to the "
-        "curved mesh's order",
-        source="a sphere that slides carries no moment: K_R is zero in all load cases",
-    )
+    with page.of(spherical):
+        page.vanishes(
+            "spherical bearing: largest moment over the largest at the hub",
+            float(moments / np.abs(hub[:, 3:]).max()),
+            within=1e-6,
+            why="accuracy of the solution; the nodal normals of the raceway meet at its centre to "
+            "the curved mesh's order",
+            source="a sphere that slides carries no moment: K_R is zero in all load cases",
+        )
 
     centre = {key: secant_stiffness.elastic_centre(u.stiffness) for key, u in finest.items()}
     page.answer(

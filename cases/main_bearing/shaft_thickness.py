@@ -127,7 +127,8 @@ def run(run: Run, page: Page) -> None:
         )
 
     for name, series in series_of.items():
-        shown.check_series(page, series, name)
+        with page.of(scenes[name]):
+            shown.check_series(page, series, name)
     rows: list[Record] = []
     traces = []
     for label, whole in whole_of.items():
@@ -159,16 +160,17 @@ def run(run: Run, page: Page) -> None:
             }
             if wall != walls[0]:  # which is the reference itself
                 within, why = TOLERANCE[label]
-                page.equals(
-                    f"{name}: mean change of the radial reaction, FE against beam [%]",
-                    row[CHANGE],
-                    predicted,
-                    within=within,
-                    relative=False,
-                    why=why,
-                    source="Stirling 2023, Eq 3.1 (DSRB), Eq 3.18-3.19 with bored EI (DTRB)",
-                    band=row["± change [%]"],
-                )
+                with page.of(scene):
+                    page.equals(
+                        f"{name}: mean change of the radial reaction, FE against beam [%]",
+                        row[CHANGE],
+                        predicted,
+                        within=within,
+                        relative=False,
+                        why=why,
+                        source="Stirling 2023, Eq 3.1 (DSRB), Eq 3.18-3.19 with bored EI (DTRB)",
+                        band=row["± change [%]"],
+                    )
             rows.append(row)
             traces.append((label, trace(f"{wall} % wall", history.time, force / 1e3)))
 

@@ -34,20 +34,22 @@ _OTHER_HOUSING = "The thesis's values belong to its own housing, whose dimension
 
 def check_solution(page: Page, solved: Solved, label: str) -> None:
     """The two independent checks that every solution carries."""
-    page.vanishes(
-        f"{label}: total equilibrium, applied less reacted",
-        solved.response.equilibrium_error,
-        within=1e-8,
-        why="reactions come from the residual on constrained degrees of freedom: solver accuracy",
-        source="exact",
-    )
-    page.vanishes(
-        f"{label}: linearity, a random load solved directly against superposed",
-        solved.response.superposition_error,
-        within=1e-8,
-        why="the scene is linear: solver accuracy",
-        source="exact",
-    )
+    with page.of(solved.scene):
+        page.vanishes(
+            f"{label}: total equilibrium, applied less reacted",
+            solved.response.equilibrium_error,
+            within=1e-8,
+            why="reactions come from the residual on constrained degrees of freedom: solver "
+            "accuracy",
+            source="exact",
+        )
+        page.vanishes(
+            f"{label}: linearity, a random load solved directly against superposed",
+            solved.response.superposition_error,
+            within=1e-8,
+            why="the scene is linear: solver accuracy",
+            source="exact",
+        )
 
 
 def check_series(page: Page, series: Series, label: str) -> None:

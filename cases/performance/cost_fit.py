@@ -16,15 +16,15 @@ class Timing(Protocol):
 
     @property
     def setup(self) -> float:
-        """Of the set-up [s]."""
+        """Time of the set-up [s]."""
 
     @property
     def bytes(self) -> int:
-        """Of the factor or the hierarchy."""
+        """Bytes of the factor or the hierarchy."""
 
     @property
     def iterations(self) -> int:
-        """Of multigrid; 0 for a direct solver."""
+        """Iterations of multigrid; 0 for a direct solver."""
 
     def total(self, n_rhs: int) -> float:
         """Set-up and solution [s]."""

@@ -163,7 +163,7 @@ def level_bytes(level: multigrid.Level) -> float:
 
 
 def set_up_bytes(hierarchy: multigrid.Hierarchy) -> float:
-    """Of each level: one copy, the passes of Lanczos, one product for the next level."""
+    """Bytes of each level: one copy, the passes of Lanczos, one product for the next level."""
     total = 0.0
     for number, level in enumerate(hierarchy.levels):
         blocks = len(level.K.indices)

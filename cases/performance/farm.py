@@ -41,7 +41,7 @@ def made(turbine: int, number: int, size: int) -> Floats:
 
 
 def sizes(samples: int) -> list[int]:
-    """Of the pieces of a turbine."""
+    """Sizes of the pieces of a turbine."""
     return [min(PIECE, samples - start) for start in range(0, samples, PIECE)]
 
 

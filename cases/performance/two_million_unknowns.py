@@ -164,7 +164,7 @@ def goal(title: str, row: Row) -> Record:
 
 
 def exponents(title: str, time: PowerLaw, memory: PowerLaw) -> Record:
-    """Of time and memory, with their bands."""
+    """Exponents of time and memory, with their bands."""
     return {
         "body": title,
         "from unknowns": int(time.x.min()),

@@ -80,13 +80,13 @@ def run(run: Run, page: Page) -> None:
             for load in catalogue.uncovered
         ],
     )
-    with run.step("resonance"):
+    with run.step("resonance"), page.of(TABLE):
         resonance(page)
-    with run.step("misalignment"):
+    with run.step("misalignment"), page.of(None):
         misalignment(page)
-    with run.step("voltage dips"):
+    with run.step("voltage dips"), page.of(TABLE):
         dips(page)
-    with run.step("interfaces"):
+    with run.step("interfaces"), page.of(None):
         interfaces(run, page)
 
 

@@ -4,7 +4,13 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats, InputError
-from fe_drivetrain.compare import round_off
+from fe_drivetrain.compare import (
+    ConvergenceInTime,
+    InTime,
+    converge_in_time,
+    peak_between,
+    round_off,
+)
 from fe_drivetrain.dynamics import (
     Level,
     Machine,
@@ -26,10 +32,11 @@ from fe_drivetrain.procedure import (
     drivetrain_excitations,
     element_torques,
     machine_misalignment,
+    motions_energy_error,
     resonances,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.suite import Page, Record, Run, check_in_time
 from fe_drivetrain.torsion import GENERATOR, ROTOR, Torsional, natural_modes
 
 DEFAULT = "nrel_750kw"
@@ -183,27 +190,26 @@ def dips(page: Page, machine: Machine, torque: float) -> None:
     """Torque of the main shaft while the generator's dips, over depth and duration."""
     system = off_grid(machine)
     frequency = float(natural_modes(system).frequencies[1])
-    step = 1.0 / (200.0 * frequency)
-    shaft = machine.shafts[0].name
-    rows: list[Record] = []
-    shown = []
-    for depth in DEPTHS:
-        for seconds in SECONDS:
-            dip = Dip(0.2, depth, seconds)
-            fine, coarse = (torque_of(system, machine, dip, s, shaft) for s in (step, 2.0 * step))
-            rows.append(
-                {
-                    "depth": depth,
-                    "duration [s]": seconds,
-                    "largest [kN m]": torque * float(fine.max()) / 1e3,
-                    "least [kN m]": torque * float(fine.min()) / 1e3,
-                    "change by half the step": float(np.abs(fine[::2] - coarse).max()),
-                }
-            )
-            if seconds == SECONDS[1]:
-                time = step * np.arange(len(fine))
-                shown.append(trace(f"depth {depth:g}", time[::4], torque * fine[::4] / 1e3))
-    band = torque / 1e3 * max(row["change by half the step"] for row in rows)
+    shown: dict[str, Floats] = {}
+
+    def run(step: float, _: int) -> InTime:
+        one, curves = dips_of(system, machine, step)
+        shown.update(curves)  # the shortest step is the last
+        return one
+
+    found = converge_in_time(run, 1.0 / (200.0 * frequency))
+    page.section("Voltage dips")
+    check_in_time(
+        page,
+        "dips",
+        found,
+        dict.fromkeys(found.finest.values, 0.02),
+        energy=1e-4,
+        why="integrals of the fourth order of the step, over what the shaft takes up",
+        scale=dict.fromkeys(found.finest.values, 1.0),
+    )
+    rows = dip_rows(found, torque)
+    band = torque / 1e3 * max(found.band(key) for key in found.finest.values)
     front = machine.rotor.inertia
     rear = machine.speeds[-1] ** 2 * machine.generator.inertia
     most = max(row["largest [kN m]"] for row in rows)
@@ -219,8 +225,11 @@ def dips(page: Page, machine: Machine, torque: float) -> None:
     page.found(f"{MOST} [kN m]", most, band, (DIPS,))
     least = min(row["least [kN m]"] for row in rows)
     page.found(f"{LEAST} [kN m]", least, band, (REVERSALS,))
-    page.section("Voltage dips")
-    page.chart("Torque of the main shaft", shown, "time [s]", "torque [kN m]")
+    curves = [
+        trace(name, found.steps[-1] * np.arange(len(q))[::4], torque * q[::4] / 1e3)
+        for name, q in shown.items()
+    ]
+    page.chart("Torque of the main shaft", curves, "time [s]", "torque [kN m]")
     page.table(f"By depth and duration; first frequency {frequency:.3g} Hz", rows)
     page.answer(
         f"A dip of the generator's torque leaves {least:.4g} to {most:.4g} kN m in the main shaft, "
@@ -236,12 +245,43 @@ def off_grid(machine: Machine) -> Torsional:
     return damped_by_ratio(system, {element.name: RATIO for element in system.elements})
 
 
-def torque_of(system: Torsional, machine: Machine, dip: Dip, step: float, shaft: str) -> Floats:
-    """(n,) torque in a shaft over that of the rotor, in four seconds."""
+def name_of(depth: float, seconds: float, end: str) -> str:
+    """Key of an end of the torque in a dip, over that before."""
+    return f"{depth:g} for {seconds:g} s: {end} torque / before"
+
+
+def dips_of(system: Torsional, machine: Machine, step: float) -> tuple[InTime, dict[str, Floats]]:
+    """Ends of the torque in the main shaft over that before, of each dip, and what is shown."""
+    values, lost, shown = {}, 0.0, {}
+    for depth in DEPTHS:
+        for seconds in SECONDS:
+            found, error = torque_of(system, machine, Dip(0.2, depth, seconds), step)
+            lost = max(lost, error)
+            values[name_of(depth, seconds, "largest")] = peak_between(found)
+            values[name_of(depth, seconds, "least")] = -peak_between(-found)
+            if seconds == SECONDS[1]:
+                shown[f"depth {depth:g}"] = found
+    return InTime(values, lost), shown
+
+
+def dip_rows(found: ConvergenceInTime, torque: float) -> list[Record]:
+    """Ends of the torque of each dip, of the shortest step."""
+    ends = ("largest", "least")
+    return [
+        {"depth": depth, "duration [s]": seconds}
+        | {f"{e} [kN m]": torque * found.value(name_of(depth, seconds, e)) / 1e3 for e in ends}
+        for depth in DEPTHS
+        for seconds in SECONDS
+    ]
+
+
+def torque_of(system: Torsional, machine: Machine, dip: Dip, step: float) -> tuple[Floats, float]:
+    """(n,) torque in the main shaft over that before, in four seconds; and its energy's error."""
     time = np.arange(0.0, 4.0, step)
     torques = np.zeros((len(system.names), len(time)))
     torques[system.place(ROTOR)] = 1.0
     torques[system.place(GENERATOR)] = -dip.shares(time) / machine.speeds[-1]
     motions = driven_motions(system, torques, step)
-    row = [element.name for element in system.elements].index(shaft)
-    return np.asarray(element_torques(system, motions)[row])
+    row = [element.name for element in system.elements].index(machine.shafts[0].name)
+    found = np.asarray(element_torques(system, motions)[row])
+    return found, motions_energy_error(system, torques, motions)

@@ -49,6 +49,7 @@ THRESHOLDS = tuple(10.0**exponent for exponent in np.arange(-6.0, 0.1, 0.5))
 def run(run: Run, page: Page) -> None:
     """A generator's torque dips by its whole size; what of the model does the main shaft need?"""
     machine = library_machine(MACHINE)
+    page.about(machine, MACHINE)
     levels(run, page, machine)
     system = damped(machine_system(machine, Level.RIGID))
     signal = dip_torque(machine, system, SECONDS[run.quick])

@@ -51,6 +51,7 @@ HIGHEST = 90.0  # Hz, of what is drawn
 )
 def run(run: Run, page: Page) -> None:
     """Register against modes; a run-up by the whole matrices, against exact modes."""
+    page.about(MACHINE)
     system = with_proportional_damping(machine_system(MACHINE), RATIO / (np.pi * AT))
     modes = system_modes(system)
     with run.step("register"):

@@ -56,12 +56,12 @@ class Map:
 
     @property
     def error(self) -> Floats:
-        """Of the beam [%]."""
+        """Error of the beam [%]."""
         return np.asarray(100 * (self.beam / self.exact - 1))
 
     @property
     def with_plate(self) -> Floats:
-        """Of beam and plate [%]."""
+        """Error of beam and plate [%]."""
         return np.asarray(100 * ((self.beam + self.plate) / self.exact - 1))
 
     @property

@@ -95,7 +95,7 @@ class Map:
 
 
 def flexibility(length: float, bore: float, finer: bool = False) -> Floats:
-    """Of a shaft of 1 m diameter between rigid ends, by harmonics in the meridian."""
+    """Flexibility of a shaft of 1 m diameter between rigid ends, by harmonics in the meridian."""
     shaft = shafts.uniform(length, bore)
     size = 0.34 if length < 5 else 0.5
     return shafts.by_elements(shaft, size * 0.7, 8, 5) if finer else shafts.by_elements(shaft, size)

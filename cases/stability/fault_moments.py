@@ -175,12 +175,12 @@ def ended(pid: int, read: int) -> tuple[int, str]:
 
 
 def run_new(out: Path) -> int:
-    """As the command line does it."""
+    """Run a case as the command line does."""
     return run_and_print(lambda: [CASE_KILLED], out, [f"mark={NEW}"])
 
 
 def run_in_place(out: Path) -> int:
-    """As a program without protection does it: it empties the folder and writes into it."""
+    """Run a case as a program without protection would: empty the folder and write into it."""
     shutil.rmtree(out)
     out.mkdir()
     with show_steps() as report:

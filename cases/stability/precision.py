@@ -24,7 +24,7 @@ PROGRAM = "the program"
 
 
 def key(load: str, precision: str) -> str:
-    """Of a record: the relative error of a stiffness."""
+    """Key of a record: the relative error of a stiffness."""
     return f"{load}, {precision}"
 
 

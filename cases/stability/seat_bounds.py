@@ -73,7 +73,7 @@ class Found:
 
     @property
     def everywhere(self) -> list[Tilts]:
-        """Of all widths and meshes."""
+        """Values of all widths and meshes."""
         return [*self.swept, *self.coarser, *self.fine, *self.plain]
 
     @property

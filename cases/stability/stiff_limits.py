@@ -96,7 +96,7 @@ def sweep(page: Page, name: str, factors: Floats) -> None:
 
 
 def largest_error(system: System, factor: float, way: str, exact: Floats) -> float:
-    """Of the nearest frequency to each; other modes go up and away."""
+    """Largest error of the nearest frequency to each; other modes go up and away."""
     found = frequencies(system, factor, way)
     nearest = np.array([found[np.abs(found / f - 1.0).argmin()] for f in exact])
     return float(np.abs(nearest / exact - 1.0).max())

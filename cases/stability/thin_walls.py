@@ -31,7 +31,7 @@ def tube(thinness: float, turn: int, along: int) -> bodies.Problem:
 
 
 def compliances(problem: bodies.Problem) -> tuple[Floats, float]:
-    """Of torsion and of the oval, and how much direct solvers differ in the oval, relatively."""
+    """Compliances of torsion and oval, and the relative scatter of direct solvers in the oval."""
     # the oval has no closed form on a mesh: the mean of the refined factors of all solvers
     oval = [
         trials.factored(problem.system, problem.F, method).refined[1]

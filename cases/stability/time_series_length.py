@@ -54,7 +54,7 @@ def variance_errors() -> dict[str, Floats]:
 
 
 def exact_variance(x: Floats) -> float:
-    """Of samples near zero, summed without rounding."""
+    """Variance of samples near zero, summed without rounding."""
     mean = math.fsum(x) / len(x)
     return math.fsum((x - mean) ** 2) / len(x)
 

@@ -182,7 +182,7 @@ def judged(run: Run, seed: int, scene: Scene, with_changes: bool) -> list[Record
 
 
 def kept(run: Run, seed: int, with_changes: bool) -> list[Record]:
-    """As `judged`, or what an earlier run found."""
+    """Bands as of `judged`, or what an earlier run found."""
     scene = random_scene(seed)
     content = {
         "case": "band_coverage_scenes",

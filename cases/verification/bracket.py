@@ -22,7 +22,7 @@ PLANE = "the same bracket in plane strain by scikit-fem: quartic triangles, own 
 
 
 def stiffness(energy: float) -> float:
-    """Of an energy per width [GN/m/m]."""
+    """Stiffness of an energy per width [GN/m/m]."""
     return 0.5e-9 * FORCE**2 / energy
 
 

@@ -223,7 +223,7 @@ def _relative(ours: Floats, theirs: Floats, least: Floats | None = None) -> Floa
 
 
 def ccx_version() -> str:
-    """As ccx prints it."""
+    """Version that ccx prints."""
     printed = subprocess.run([find_calculix(), "-v"], capture_output=True, text=True, check=False)
     return printed.stdout.strip().removeprefix("This is Version").strip()
 
@@ -241,6 +241,7 @@ def run(run: Run, page: Page, row: Mapping[str, Any]) -> None:
         work = [jobs.start(compare, changed, form, mesh) for form, changed in forms.items()]
         found = [job.result() for job in work]
     for one in found:
+        page.about(forms[one.label], one.label)
         for quantity, values in one.differences.items():
             page.vanishes(
                 f"{one.label}: {quantity}, largest difference of all unit loads",

@@ -27,7 +27,7 @@ def shaft(turn: int, quick: bool) -> Condensed:
 
 
 def eigenvalues(S: Floats) -> Floats:
-    """Of the symmetric part, ascending."""
+    """Eigenvalues of the symmetric part, ascending."""
     return np.asarray(np.linalg.eigvalsh(0.5 * (S + S.T)), dtype=float)
 
 

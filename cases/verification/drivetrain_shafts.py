@@ -17,7 +17,7 @@ STRESS = "rated shear stress at 1 m [MPa]"
 
 
 def solids(letter: str) -> dict[str, Record]:
-    """Of each shaft of a drivetrain the solid ones of its stiffness, and stress at rated torque."""
+    """Solid shafts with the stiffness of each shaft of a drivetrain, and stress at rated torque."""
     return {
         name: {
             "drivetrain": f"{letter}, {published.RATED[letter][1] / 1e6:g} MW",

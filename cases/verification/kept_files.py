@@ -15,9 +15,6 @@ from typing import Any, get_args
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.commands.life_bearings import Choices, bearings_of
-from fe_drivetrain.commands.life_digest import Reading
-from fe_drivetrain.commands.life_digest import kept_digest as life_digest
 from fe_drivetrain.commands.loads_digest import Options
 from fe_drivetrain.commands.loads_page import kept_digest as loads_digest
 from fe_drivetrain.common import CACHE_VARIABLE, Floats, silent
@@ -29,6 +26,9 @@ from fe_drivetrain.hub_loads.recorded import OWN_NAMES
 from fe_drivetrain.life import LifeRules
 from fe_drivetrain.mesh import cached_mesh
 from fe_drivetrain.scene import library_scene
+from fe_drivetrain.studies.life_digest import Reading
+from fe_drivetrain.studies.life_digest import kept_digest as life_digest
+from fe_drivetrain.studies.rolling_bearings import Choices, bearings_of
 from fe_drivetrain.suite import Page, Record, Run, column
 from fe_drivetrain.uncertainty.kept_rows import evaluated_rows
 

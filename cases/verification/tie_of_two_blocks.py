@@ -55,7 +55,7 @@ class Found:
 
     @property
     def labels(self) -> list[str]:
-        """Of the ratios."""
+        """Labels of the ratios."""
         return [f"{own} on {other}" for own, other in self.ratios]
 
     @property

@@ -49,7 +49,7 @@ class CrossSection:
 
 
 def round_section(outer: float, poisson_ratio: float, inner: float = 0.0) -> CrossSection:
-    """Of a solid or hollow round bar.
+    """Section of a solid or hollow round bar.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def round_section(outer: float, poisson_ratio: float, inner: float = 0.0) -> Cro
 
 
 def rectangle(first: float, second: float, poisson_ratio: float) -> CrossSection:
-    """Of a rectangular bar, its sides along the first and the second axis [m].
+    """Section of a rectangular bar, its sides along the first and the second axis [m].
 
     Shear coefficient 10 (1 + nu) / (12 + 11 nu) (Cowper 1966); torsion constant by Saint-Venant's
     series (Timoshenko and Goodier 1970, art. 109).
@@ -81,7 +81,7 @@ def rectangle(first: float, second: float, poisson_ratio: float) -> CrossSection
 
 
 def annular_sector(inner: float, outer: float, angle: float, poisson_ratio: float) -> CrossSection:
-    """Of a bar whose section is a sector of an annulus; the first axis is radial in its middle.
+    """Section that is a sector of an annulus; the first axis is radial in its middle.
 
     Shear areas and torsion constant are those of the rectangle that is as high, and as wide along
     the mean circle: for angles of up to a right one, some per cent.

@@ -204,8 +204,29 @@ def read_catalogue(*more: str | Path) -> dict[str, Entry]:
     """
     entries = dict(_own())
     for path in more:
-        entries |= _parsed(read_text(path, "bearing catalogue"), str(path))
+        entries |= read_entries(path)
     return entries
+
+
+def read_entries(path: str | Path) -> dict[str, Entry]:
+    """All bearings of one file by name, without those of the package.
+
+    Parameters
+    ----------
+    path : str or Path
+        The catalogue file.
+
+    Returns
+    -------
+    entries : dict
+        Entries by name.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or an entry is wrong.
+    """
+    return _parsed(read_text(path, "bearing catalogue"), str(path))
 
 
 def catalogue_bearing(name: str, *more: str | Path, **changes: Any) -> Bearing:

@@ -327,6 +327,11 @@ def _write_summary(scene: Scene, wanted: Export) -> str:
 
     if wanted.format != "json":
         raise InputError(f"--what summary is json, not {wanted.format}: give --format json")
+    if wanted.at is not None:
+        raise InputError(
+            f"--at {wanted.at} is not used by --what summary, which has all points of the scene: "
+            "leave --at out"
+        )
     level = wanted.level_number(2, "1234", "a summary")
     with show_steps() as report:
         report("condense")

@@ -18,21 +18,21 @@ from fe_drivetrain.commands.options import (
     SceneName,
     Scheduler,
     Skip,
+    left_out,
 )
 from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.run import results_text
 from fe_drivetrain.commands.scenes import named_scene
 from fe_drivetrain.commands.settings import SceneSettings, parse_settings, refuse_again
+from fe_drivetrain.commands.showing import shown
 from fe_drivetrain.commands.terminal import FAILED, PASSED, as_typed, guarded, write
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
+from fe_drivetrain.studies.life_options import ASSUMED, LifeOptions
 
 if TYPE_CHECKING:
-    from fe_drivetrain.life.lubricants import Lubricant
-
-_ASSUMED = ("lubricant", "temperature", "cleanliness", "profile", "riser", "turning")
-"""Options whose defaults change lives, though the user may never have thought of them."""
+    from fe_drivetrain.hub_loads.channel_map import ChannelMap
 
 _KEPT = "files that are done are kept: run again with --resume"
 
@@ -80,13 +80,13 @@ def life_command(
             help="A grade (VG 460, VG 320, VG 220, LGWM 1, LGWM 2), or viscosity at 40 and at "
             "100 degC in mm2/s, as in 460,30.5.",
         ),
-    ] = "VG 460",
+    ] = str(LifeOptions.lubricant),
     temperature: Annotated[
         float, typer.Option("--temperature", metavar="DEGC", help="Of the bearing in operation.")
-    ] = 50.0,
+    ] = LifeOptions.temperature,
     supply: Annotated[
         str, typer.Option("--supply", metavar="KIND", help="grease, 'filtered oil' or 'oil bath'.")
-    ] = "grease",
+    ] = LifeOptions.supply,
     cleanliness: Annotated[
         str | None,
         typer.Option(
@@ -103,19 +103,19 @@ def life_command(
             help="Whether rollers have the standard's logarithmic profile where their entry has "
             "none.",
         ),
-    ] = True,
+    ] = LifeOptions.profile,
     riser: Annotated[
         bool,
         typer.Option(
             "--riser/--no-riser", help="Whether the stress riser of ISO/TS 16281 is applied."
         ),
-    ] = True,
+    ] = LifeOptions.riser,
     turning: Annotated[
         str,
         typer.Option(
             "--turning", metavar="RING", help="The ring that turns against the load: inner, outer."
         ),
-    ] = "inner",
+    ] = LifeOptions.turning,
     support: Annotated[
         str,
         typer.Option(
@@ -124,7 +124,7 @@ def life_command(
             help="The shaft on its bearings: rollers (in equilibrium with it), pinned, or K_R in "
             "N m/rad.",
         ),
-    ] = "rollers",
+    ] = str(LifeOptions.support),
     rings: Annotated[
         str,
         typer.Option(
@@ -133,24 +133,24 @@ def life_command(
             help="The bearing's rings: rigid, three-degree, or housing (the raceway gives way with "
             "the scene's housing, whose bore it has to be).",
         ),
-    ] = "rigid",
+    ] = LifeOptions.rings,
     reliability: Annotated[
         float,
         typer.Option(
             "--reliability", metavar="PERCENT", help="Of modified lives: 90, 95 to 99, 99.5, 99.9."
         ),
-    ] = 90.0,
+    ] = LifeOptions.reliability_percent,
     channel: Channels = None,
     mapping: Mapping = None,
     rotor_speed: RotorSpeed = None,
-    skip: Skip = 0.0,
+    skip: Skip = LifeOptions.skip,
     every: Annotated[
         int, typer.Option("--every", metavar="COUNT", min=1, help="Take one sample of so many.")
-    ] = 1,
+    ] = LifeOptions.every,
     weight: Annotated[
         bool,
         typer.Option("--weight/--no-weight", help="Whether gearbox and shaft have their weight."),
-    ] = True,
+    ] = LifeOptions.weight,
     resume: Resume = False,
     scheduler: Scheduler = None,
     out: Annotated[
@@ -176,51 +176,52 @@ def life_command(
         target = out or Path("reports") / "life" / name
         check_result_folder(target)
         found = named_scene(scene, parse_settings(set_ or ()))
-        from fe_drivetrain.commands.life_bearings import Choices, bearings_of
-        from fe_drivetrain.commands.life_digest import Reading
-        from fe_drivetrain.commands.life_page import lived
-        from fe_drivetrain.commands.loads_words import parse_channels, parse_site
-        from fe_drivetrain.hub_loads.channel_map import read_channel_map
-        from fe_drivetrain.hub_loads.recorded import OWN_NAMES, recorded_files
-        from fe_drivetrain.life.roller_damage import LifeRules
-        from fe_drivetrain.studies.study_loads import weightless
+        from fe_drivetrain.commands.life_page import show_life
+        from fe_drivetrain.commands.loads_words import parse_site
+        from fe_drivetrain.hub_loads.recorded import recorded_files
+        from fe_drivetrain.studies.bearing_lives import DrivetrainBearings, lives_under
         from fe_drivetrain.suite.case import Case
         from fe_drivetrain.suite.result_folders import run_case
 
-        found = found if weight else weightless(found)
-        rules = LifeRules(
-            parse_lubricant(lubricant, temperature, supply, cleanliness),
-            "standard" if riser else "none",
+        options = LifeOptions(
+            bearings=_pairs(bearing or ()),
+            only=only,
+            catalogues=tuple(catalogue or ()),
+            lubricant=parse_lubricant(lubricant),
+            temperature=temperature,
+            supply=supply,  # type: ignore[arg-type]
+            cleanliness=cleanliness,
+            profile=profile,
+            riser=riser,
             turning=turning,  # type: ignore[arg-type]
-            reliability=_a_1(reliability),
-        )
-        names = OWN_NAMES if mapping is None else read_channel_map(mapping)
-        names = names.with_columns(parse_channels(channel or ()))
-        reading = Reading(names, skip, every, rotor_speed)
-        choices = Choices(
-            _pairs(bearing or ()),
-            tuple(catalogue or ()),
-            profile,
-            support,
-            rings,
-            weight,
-            only,
-            tuple(name for name in _ASSUMED if _left_out(context, name)),
+            support=support,
+            rings=rings,
+            reliability_percent=reliability,
+            channels=parse_mapping(mapping, channel or ()),
+            rotor_speed_rpm=rotor_speed,
+            skip=skip,
+            every=every,
+            weight=weight,
+            stated=tuple(name for name in ASSUMED if not left_out(context, name)),
         )
         place = None if site is None else parse_site(site)
         files = recorded_files(loads)
-        case = Case(
-            f"life/{name}",
-            f"{found.title}: rating life of its bearings",
-            "the user's scene and files",
-            lambda run, page: lived(
-                run, page, found, bearings, files, rules, reading, place, choices, resume
-            ),
-            command=as_typed(),
-        )
         with show_steps() as report, scheduled_by(scheduler):
+            # before the run: a mistake leaves no trace in a folder of reports
             report("bearings")
-            bearings = bearings_of(found, choices)
+            drivetrain = DrivetrainBearings(found, options)
+            case = Case(
+                f"life/{name}",
+                f"{drivetrain.scene.title}: rating life of its bearings",
+                "the user's scene and files",
+                shown(
+                    lambda run: lives_under(
+                        drivetrain, files, place, resume=resume, report=run.report
+                    ),
+                    show_life,
+                ),
+                command=as_typed(),
+            )
             results = run_case(case, target.resolve(), report=report)
         write(sys.stdout, results_text(results, target / "report.html"))
         return PASSED if results.passed else FAILED
@@ -228,62 +229,42 @@ def life_command(
     raise typer.Exit(guarded(work, _KEPT))
 
 
-def parse_lubricant(
-    grade: str, temperature: float, supply: str, cleanliness: str | None
-) -> Lubricant:
-    """The lubricant of the options.
+def parse_lubricant(text: str) -> str | tuple[float, float]:
+    """The grade of ``--lubricant``, or its viscosities at 40 and at 100 degC [mm2/s].
 
     Parameters
     ----------
-    grade : str
+    text : str
         A grade, or two viscosities with a comma between them.
-    temperature : float
-        [degC].
-    supply : str
-        How it comes to the rollers.
-    cleanliness : str or None
-        Its class; a usual one if not given.
+    """
+    try:
+        at_40, at_100 = (float(part) for part in text.split(","))
+    except ValueError:
+        return text  # a grade, or refused with those that there are
+    return at_40, at_100
 
-    Returns
-    -------
-    lubricant : Lubricant
-        Checked.
+
+def parse_mapping(file: Path | None, channels: Iterable[str]) -> ChannelMap:
+    """How files call their channels, by ``--mapping`` and ``--channel``.
+
+    Parameters
+    ----------
+    file : Path or None
+        Of ``--mapping``.
+    channels : iterable of str
+        Of ``--channel``, which goes before the mapping.
 
     Raises
     ------
     InputError
-        There is no such grade, supply or class.
+        The mapping cannot be read, or an option has another form.
     """
-    from fe_drivetrain.life.lubricants import GRADES, Lubricant
+    from fe_drivetrain.commands.loads_words import parse_channels
+    from fe_drivetrain.hub_loads.channel_map import read_channel_map
+    from fe_drivetrain.hub_loads.recorded import OWN_NAMES
 
-    if grade in GRADES:
-        at_40, at_100 = GRADES[grade]
-    else:
-        try:
-            at_40, at_100 = (float(part) for part in grade.split(","))
-        except ValueError as error:
-            raise InputError(
-                f"--lubricant {grade}: choose {', '.join(GRADES)}, or give the viscosity at 40 and "
-                "at 100 degC in mm2/s, as 460,30.5"
-            ) from error
-    usual = "normal" if supply == "grease" else "-/15/12"
-    return Lubricant(at_40, at_100, temperature, supply, cleanliness or usual)  # type: ignore[arg-type]
-
-
-def _left_out(context: typer.Context, option: str) -> bool:
-    """Whether an option stands at its default."""
-    source = context.get_parameter_source(option)
-    return source is not None and source.name == "DEFAULT"
-
-
-def _a_1(percent: float) -> float:
-    """a_1 of a reliability."""
-    from fe_drivetrain.life.roller_damage import RELIABILITY
-
-    if percent not in RELIABILITY:
-        known = ", ".join(f"{value:g}" for value in RELIABILITY)
-        raise InputError(f"--reliability {percent:g}: choose one of {known} %")
-    return RELIABILITY[percent]
+    names = OWN_NAMES if file is None else read_channel_map(file)
+    return names.with_columns(parse_channels(channels))
 
 
 def _pairs(texts: Iterable[str]) -> dict[str, str]:

@@ -11,11 +11,7 @@ from fe_drivetrain.bearing.geometry import RollerRow, Row, angles
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.report.charts import chart, heat_map, rounded, trace
 from fe_drivetrain.report.results import Chart
-
-
-def row_names(count: int) -> list[str]:
-    """What rows are called, upwind first."""
-    return ["row"] if count == 1 else ["upwind row", "downwind row"][:count]
+from fe_drivetrain.studies.life_sums import row_names
 
 
 def load_zone(name: str, rows: Sequence[Row], mean: Floats, peak: Floats) -> Chart:
@@ -88,27 +84,26 @@ def damage_map(caption: str, across: Floats, across_title: str, row: Row, values
     return heat_map(caption, across, places, shares, titles, xaxis=categories, yaxis=down)
 
 
-def along_rollers(name: str, rows: Sequence[Row], worst: Floats) -> Chart | None:
-    """Pressure along the roller that has the most of it; nothing of balls.
+def along_rollers(name: str, rows: Sequence[Row], worst: Floats) -> Chart:
+    """Pressure along the roller that has the most of it.
 
     Parameters
     ----------
     name : str
         Of the bearing.
     rows : sequence of Row
-        Of the bearing.
+        Rows of rollers.
     worst : Floats
         (rows, 2, laminae) on both races [Pa].
 
     Returns
     -------
-    chart : Chart or None
+    chart : Chart
         Against the place along the roller.
     """
     traces = []
     for r, (row, word) in enumerate(zip(rows, row_names(len(rows)), strict=True)):
-        if not isinstance(row, RollerRow):
-            return None
+        assert isinstance(row, RollerRow)
         for ring, (race, dash) in enumerate((("inner", "solid"), ("outer", "dot"))):
             traces.append(
                 trace(

@@ -17,6 +17,7 @@ from fe_drivetrain.commands.options import (
     Scheduler,
     Skip,
     Slopes,
+    require_beside,
 )
 from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.run import results_text
@@ -29,6 +30,7 @@ _KEPT = "files that are done are kept: run again with --resume"
 
 
 def loads_command(
+    context: typer.Context,
     files: Annotated[
         list[str],
         typer.Argument(
@@ -215,13 +217,22 @@ def loads_command(
         )
         wanted = parse_winds(winds, target)
         place = None if site is None else parse_site(site, shape, years)
+        if place is None:
+            require_beside(
+                context,
+                {"shape": "--shape", "years": "--years"},
+                "--site",
+                "says how the winds of a site are weighted",
+            )
         if transient and place is None:
             raise InputError("--transient counts events of a lifetime: give --site, too")
         events = parse_transients(transient or ())
         if level not in ("1", "4"):
             raise InputError(f"--level {level}: choose 1, a beam, or 4, the assembly of solids")
         reactions = None
-        if scene is not None:
+        if scene is None:
+            require_beside(context, {"level": "--level"}, "--scene", "is the model of a scene")
+        else:
             reactions = scene_reactions(named_scene(scene, {}), int(level))
         writer = parquet_writer() if parquet else None
         found = recorded_files(files)

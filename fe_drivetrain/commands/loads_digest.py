@@ -32,6 +32,7 @@ from fe_drivetrain.histories.windows import window_statistics
 from fe_drivetrain.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.hub_loads.loops import find_loops, loop_statistics, time_on_loops
 from fe_drivetrain.hub_loads.recorded import OWN_NAMES, Recorded
+from fe_drivetrain.studies.unused import own_speeds
 
 LOADS = (*FORCES, "radial force", "bending moment")
 """Channels that are counted; the last two are sizes across the shaft."""
@@ -40,16 +41,16 @@ CHANNELS = (*LOADS, "rotor speed", "wind speed")
 UNITS = (*3 * ("N",), *3 * ("N m",), "N", "N m", "rad/s", "m/s")
 
 HIGHEST = 10.0
-"""Of spectra on the page [Hz]."""
+"""Highest frequency of spectra on the page [Hz]."""
 
 SPEED_STEP = 0.05
-"""Of the Campbell diagram [rad/s]."""
+"""Width of the classes of rotor speed in the Campbell diagram [rad/s]."""
 
 PLANES = (("force", 1), ("moment", 4))
 """Names, and where the component along y stands among the six."""
 
 SECTORS = 36
-"""Of directions across the shaft; the first is about 0 deg, which is right."""
+"""Number of directions across the shaft; the first is about 0 deg, which is right."""
 
 POWER = 10.0 / 3.0
 """Exponent of the life of roller bearings (ISO 281)."""
@@ -139,7 +140,7 @@ def digest(found: Recorded, options: Options) -> Digest:
     """
     history = found.history
     step, count = history.step, len(history)
-    speed = found.rotor_speed
+    speed = speed_of_file = found.rotor_speed
     if speed is None and options.rotor_speed is not None:
         speed = np.full(count, options.rotor_speed)
     loads = _all_loads(history.loads)
@@ -152,6 +153,7 @@ def digest(found: Recorded, options: Options) -> Digest:
         "window start": windows.start,
         "window seconds": windows.seconds,
         "window values": windows.values,
+        "own speeds": own_speeds(speed_of_file),
     }
     seconds = np.full(count, step)
     turns = None if speed is None else np.abs(speed) * step / (2.0 * np.pi)

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from fe_drivetrain.commands.loads_digest import LOADS, UNITS, Digest, Options, classes_of
-from fe_drivetrain.commands.loads_together import Together, rounded_wind
+from fe_drivetrain.commands.loads_together import Together
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.histories.classes import Classes, added
 from fe_drivetrain.histories.sites import (
@@ -18,6 +18,7 @@ from fe_drivetrain.histories.sites import (
     Transient,
     lifetime_damage,
     midpoint_edges,
+    rounded_wind,
     time_factors,
 )
 from fe_drivetrain.report.charts import trace
@@ -25,7 +26,7 @@ from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
 
 CYCLES = 1e7
-"""Of the equivalent load of a lifetime."""
+"""Number of cycles of the equivalent load of a lifetime."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ class Event:
 
     @property
     def name(self) -> str:
-        """Of its files."""
+        """Name of the first of its files, and how many more there are."""
         first = self.files[0].stem
         return first if len(self.files) == 1 else f"{first} and {len(self.files) - 1} more"
 

@@ -25,18 +25,19 @@ from fe_drivetrain.commands.loads_reactions import (
 )
 from fe_drivetrain.commands.loads_shape import shape
 from fe_drivetrain.commands.loads_tables import write_tables
-from fe_drivetrain.commands.loads_together import WIND_BIN, Together, require_winds, windows_table
+from fe_drivetrain.commands.loads_together import Together, windows_table
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.histories.cycles import Cycles
-from fe_drivetrain.histories.sites import Site
+from fe_drivetrain.histories.sites import WIND_BIN, Site, require_winds
 from fe_drivetrain.histories.windows import COLUMNS, CaptureMatrix, capture_matrix
 from fe_drivetrain.hub_loads.recorded import read_recorded
 from fe_drivetrain.report.charts import trace
 from fe_drivetrain.response.stated import Stated, stated_hub_loads
+from fe_drivetrain.studies.unused import RPM, speed_not_used
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
 from fe_drivetrain.suite.run import Run
@@ -153,6 +154,7 @@ def loaded(
         tables |= reactions_section(page, of_scene, options, reactions, rule)
     others = {name: one for name, one in every.items() if name.startswith(OTHER)}
     tables |= others_section(page, others, options, rule)
+    speeds = [*found.own_speeds]
     if site is not None:
         with run.step("transients"):
             events = [
@@ -160,10 +162,16 @@ def loaded(
                 for a_year, of in transients
             ]
         tables |= lifetime(page, found, options, site, events)
+        speeds += [one["own speeds"] for event in events for one in event.digests]
     if against:
         with run.step("the others"):
             made = _digests(run, against, options, resume, "the others", reactions)
-            tables["beside"] = beside(page, own, [d for _, d in made], options)
+            theirs = [d for _, d in made]
+            tables["beside"] = beside(page, own, theirs, options)
+            speeds += [one["own speeds"] for one in theirs]
+    given = None if options.rotor_speed is None else options.rotor_speed * RPM
+    if unused := speed_not_used(given, speeds):
+        page.note(unused)
     _checks(page, found)
     facts = {
         "units": "N, N m, s, Hz, rad/s, m/s",
@@ -377,6 +385,11 @@ def _capture(page: Page, found: Together, target: Target) -> list[Record]:
     known = ~np.isnan(wind).any(axis=1)
     if not known.any():
         page.text("No file has a wind speed, so that windows cannot be sorted by it.")
+        if target.low is not None:
+            page.note(
+                f"--winds {target.low:g}:{target.high:g} m/s is not used: no file has a wind "
+                "speed. Name its channel, as in --channel 'wind speed=Vhub'."
+            )
         return []
     mean, deviation = wind[known, 1], wind[known, 3]
     least = min(float(mean.min()), np.inf if target.low is None else target.low)

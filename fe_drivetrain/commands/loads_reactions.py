@@ -63,7 +63,7 @@ class SceneReactions:
 
     @property
     def names(self) -> list[str]:
-        """Of bearings, and "gearbox"; without those that hold nothing."""
+        """Names of bearings, and "gearbox"; without those that hold nothing."""
         return [name for name, R in self.model.reaction_matrices.items() if np.nan_to_num(R).any()]
 
     @property

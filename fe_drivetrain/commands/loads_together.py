@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
 
 from fe_drivetrain.commands.loads_digest import CHANNELS, LOADS, Digest, classes_of
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.histories.classes import Classes, added
+from fe_drivetrain.histories.sites import rounded_wind
 from fe_drivetrain.histories.windows import COLUMNS
 from fe_drivetrain.suite.records import Record
-
-WIND_BIN = 1.0
-"""Histories whose mean winds round to the same multiple are of one condition [m/s]."""
 
 
 @dataclass
@@ -89,6 +85,7 @@ class Together:
     read: dict[str, int] = field(default_factory=dict)
     vertical: dict[str, tuple[float, float]] = field(default_factory=dict)
     windows: list[Record] = field(default_factory=list)
+    own_speeds: list[Floats] = field(default_factory=list)
     files: list[Record] = field(default_factory=list)
     damages: list[Floats] = field(default_factory=list)
     spectra: dict[int, tuple[Floats, float]] = field(default_factory=dict)
@@ -104,6 +101,7 @@ class Together:
         start, end, step, count = found["time"].tolist()
         seconds = count * step
         self.names.append(name)
+        self.own_speeds.append(found["own speeds"])
         self.seconds += seconds
         self.samples += int(count)
         damage, cycles = found["damage"], found["cycles"]
@@ -226,40 +224,6 @@ class Together:
             result = np.full(table.shape[1:], np.nan)
             result[known] = np.nanmedian(table[:, known], axis=0)
         return result
-
-
-def rounded_wind(wind: float) -> float:
-    """Mean wind speed for which a file stands: histories of one round to one [m/s]."""
-    return float(WIND_BIN * np.round(wind / WIND_BIN))
-
-
-def require_winds(files: Sequence[Path], winds: Sequence[float]) -> None:
-    """Refuse files that a site's winds cannot weight.
-
-    Parameters
-    ----------
-    files : sequence of Path
-        The histories.
-    winds : sequence of float
-        Mean wind speed of each [m/s]; NaN where it has none.
-
-    Raises
-    ------
-    InputError
-        A file has no wind speed, or all stand for one wind.
-    """
-    for file, wind in zip(files, winds, strict=True):
-        if np.isnan(wind):
-            raise InputError(
-                f"hub loads '{file}': there is no wind speed, by which --site weights files: name "
-                "its channel, as in --channel 'wind speed=Vhub', or leave --site out"
-            )
-    if len({rounded_wind(wind) for wind in winds}) < 2:
-        count = f"all {len(files)} files have" if len(files) > 1 else "the one file has"
-        raise InputError(
-            f"--site weights winds, and {count} a mean wind of {rounded_wind(winds[0]):g} m/s: "
-            "give files of two winds or more, or leave --site out"
-        )
 
 
 def windows_table(found: Together, units: Mapping[str, str]) -> list[Record]:

@@ -13,7 +13,7 @@ from fe_drivetrain.commands.terminal import PASSED, guarded, write
 from fe_drivetrain.common.errors import InputError
 
 SUFFIXES = (".yaml", ".yml")
-"""Of files that a user edits."""
+"""Endings of files that a user edits."""
 
 
 def new_command(

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping as Pairs
 from pathlib import Path
 from typing import Annotated
 
 import typer
+
+from fe_drivetrain.common.errors import InputError
 
 SceneName = Annotated[
     str,
@@ -78,3 +81,44 @@ Scheduler = Annotated[
         "(docs/clusters.md). Default: processes of this machine.",
     ),
 ]
+
+
+def require_beside(context: typer.Context, options: Pairs[str, str], beside: str, why: str) -> None:
+    """Refuse options that say nothing where another one is not given.
+
+    Parameters
+    ----------
+    context : typer.Context
+        Knows which options were typed.
+    options : Mapping
+        Options by the names of their parameters.
+    beside : str
+        The option that they need.
+    why : str
+        What they are of, as in "weights the winds of a site".
+
+    Raises
+    ------
+    InputError
+        One of them was typed.
+    """
+    for parameter, option in options.items():
+        if not left_out(context, parameter):
+            raise InputError(
+                f"{option} {context.params[parameter]} {why}: give {beside}, too, or leave "
+                f"{option} out"
+            )
+
+
+def left_out(context: typer.Context, parameter: str) -> bool:
+    """Whether an option stands at its default.
+
+    Parameters
+    ----------
+    context : typer.Context
+        Of the command.
+    parameter : str
+        By its name in Python.
+    """
+    source = context.get_parameter_source(parameter)
+    return source is not None and source.name == "DEFAULT"

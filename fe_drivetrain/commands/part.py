@@ -48,6 +48,7 @@ def part_command(
     """
 
     def work() -> int:
+        _check_options(file, bore, held, picture, overwrite)
         if file.suffix.lower() in _SUPERELEMENTS:
             write(sys.stdout, _superelement(file, bore, [p for p in held.split(",") if p]))
             return PASSED
@@ -62,6 +63,25 @@ def part_command(
         return PASSED
 
     raise typer.Exit(guarded(work, "nothing is changed"))
+
+
+def _check_options(file: Path, bore: str, held: str, picture: Path | None, overwrite: bool) -> None:
+    """Refuse options that say nothing of a file of this kind."""
+    if file.suffix.lower() in _SUPERELEMENTS:
+        if picture is not None:
+            raise InputError(
+                f"--picture {picture} is of a STEP or mesh file, and {file} is a superelement, "
+                "which has no faces: leave --picture out"
+            )
+    else:
+        for option, value in (("--bore", bore), ("--held", held)):
+            if value:
+                raise InputError(
+                    f"{option} {value} names points of a superelement, and {file} is none: leave "
+                    f"{option} out, or give a file that ends in {', '.join(_SUPERELEMENTS)}"
+                )
+    if overwrite and picture is None:
+        raise InputError("--overwrite is for the file of --picture: give --picture PNG, too")
 
 
 def _check_picture(picture: Path, overwrite: bool) -> None:

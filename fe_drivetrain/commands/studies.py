@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fe_drivetrain.commands.options import Catalogues, Mapping, SceneName, Scheduler, Skip, Slopes
+from fe_drivetrain.commands.options import (
+    Catalogues,
+    Mapping,
+    SceneName,
+    Scheduler,
+    Skip,
+    Slopes,
+    left_out,
+)
 from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.run import Quick, results_text, tables_text
 from fe_drivetrain.commands.scenes import named_scene
@@ -206,6 +214,7 @@ def advise_command(
 
 
 def uncertainty_command(
+    context: typer.Context,
     scene: SceneName,
     quantity: Annotated[
         list[str] | None,
@@ -271,6 +280,11 @@ def uncertainty_command(
 
         factors = parse_loads(load or (), scene_loads(found))
         share = parse_tolerance(tolerance)
+        if level is not None and not left_out(context, "tolerance"):
+            raise InputError(
+                f"--tolerance {tolerance} is for the adviser, which --level {level} leaves out: "
+                "give one of the two"
+            )
         sobol_samples = 2 ** (samples.bit_length() - 1) if sobol else 0
         return run_on_scene(
             "uncertainty",

@@ -40,6 +40,7 @@ from .spatial import resultant as resultant
 from .spatial import rigid_motions as rigid_motions
 from .spatial import stiffness_transport as stiffness_transport
 from .spatial import wrench_transport as wrench_transport
+from .stiffness_bands import StiffnessBands as StiffnessBands
 from .stopped import until_stopped as until_stopped
 from .threads import CORES_VARIABLE as CORES_VARIABLE
 from .threads import cores as cores

@@ -76,7 +76,7 @@ def take_back(made: Sequence[Path]) -> None:
 
 
 def _carry_below(old: Path, new: Path, own: Manifest, below: str, made: list[Path]) -> None:
-    """As `carry_over`, for a folder whose path below the whole is given."""
+    """Carry over, as `carry_over`, for a folder whose path below the whole is given."""
     with os.scandir(old) as entries:
         found = sorted(entries, key=lambda entry: entry.name)
     for entry in found:

@@ -182,7 +182,7 @@ def scratch_folder(parent: Path | None = None) -> Iterator[Path]:
 
 
 def lasting_scratch_folder(parent: Path | None = None) -> tuple[Path, Callable[[], None]]:
-    """As `scratch_folder`, with the function that ends it."""
+    """A scratch folder as of `scratch_folder`, with the function that ends it."""
     where = Path(tempfile.gettempdir()) if parent is None else parent
     remove_abandoned(where, rf"{re.escape(_SCRATCH)}[a-z0-9_]{{8}}")
     for _ in range(TRIES):

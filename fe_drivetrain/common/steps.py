@@ -54,7 +54,7 @@ class Clock:
     def clocked(
         self, name: str, function: Callable[_P, _T], *args: _P.args, **kwargs: _P.kwargs
     ) -> _T:
-        """As `timed`, but not shown: part of a step that counts, as "shafts (3 of 200)"."""
+        """The same as `timed`, not shown: part of a step that counts, as "shafts (3 of 200)"."""
         start = time.perf_counter()
         found = function(*args, **kwargs)
         self.add_time(name, time.perf_counter() - start)

@@ -294,6 +294,21 @@ def observed_order(sizes: ArrayLike, values: ArrayLike) -> float:
     return float(brentq(excess, *ORDERS))
 
 
+def clipped_order(sizes: ArrayLike, values: ArrayLike) -> float:
+    """`observed_order` of values that go one way; beyond `ORDERS`, the nearer end of these.
+
+    Parameters
+    ----------
+    sizes, values : ArrayLike
+        (3,), coarse first.
+    """
+    found = observed_order(sizes, values)
+    if not np.isnan(found):
+        return found
+    h, v = np.asarray(sizes, dtype=float), np.asarray(values, dtype=float)
+    return ORDERS[0] if _stands_still(h, v) else ORDERS[1]
+
+
 def _stands_still(h: Floats, v: Floats) -> bool:
     """Whether three values go one way, and the differences do not shrink as the sizes do."""
     first, second = v[0] - v[1], v[1] - v[2]

@@ -64,7 +64,7 @@ class PowerLaw:
 
     @property
     def _variance(self) -> float:
-        """Of the points about the line, in logarithms."""
+        """Variance of the points about the line, in logarithms."""
         left = [np.log(y / self(at)) for at, y in zip(self.x, self.y, strict=True)]
         return float(np.sum(np.square(left))) / (len(self.x) - 2)
 

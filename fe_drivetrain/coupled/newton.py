@@ -191,7 +191,7 @@ class _Problem:
     scale: Floats
 
     def forces(self, w: Floats) -> tuple[Floats, Floats]:
-        """Of the bearings, (n, 5 k), and their tangents (n, 5 k, 5 k)."""
+        """Forces of the bearings, (n, 5 k), and their tangents (n, 5 k, 5 k)."""
         n, size = w.shape
         u = w * self.scale
         f, K = np.empty((n, size)), np.zeros((n, size, size))

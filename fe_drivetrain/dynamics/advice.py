@@ -112,7 +112,7 @@ Question = Callable[[Asked], float | None]
 
 
 def torsional_frequency(number: int) -> Question:
-    """Of the torsional mode of that number above zero, and of the mode most like it [Hz].
+    """Frequency of a torsional mode, counted above zero, and of the mode most like it [Hz].
 
     None where no mode has half of it: the mode has become several.
     """

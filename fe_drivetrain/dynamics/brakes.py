@@ -312,7 +312,7 @@ def _never(state: State) -> Stop:
 
 
 def _friction(brake: Brake, side: float, begin: float, end: float) -> Loads:
-    """Of a disc that turns to one side."""
+    """Friction of a disc that turns to one side."""
     full = brake.start + brake.rise
     times = np.unique([begin, *([full] if begin < full < end else []), end])
     return varying(brake.row, times, [-side * brake.size(t) for t in times])
@@ -363,7 +363,7 @@ def _holdings(equations: Equations, loads: Loads, brake: Brake, motion: Motion) 
 
 
 def _standing(equations: Equations, fixed: Floats) -> Equations:
-    """Of what moves beside a displacement that stays; a dense stiffness becomes springs."""
+    """Equations beside a displacement that stays; a dense stiffness becomes springs."""
     s = equations.springs
     if equations.extra.any():
         values, vectors = linalg.eigh(equations.extra)

@@ -51,18 +51,18 @@ class Rim:
     tangential: float = 0.0
 
     def stiffness(self, n: int) -> float:
-        """Of harmonic n for a unit radial amplitude [N/m]."""
+        """Stiffness of harmonic n for a unit radial amplitude [N/m]."""
         inertia = self.width * self.thickness**3 / 12
         bent = self.material.youngs_modulus * inertia * (n * n - 1) ** 2 / self.radius**3
         return pi * (bent + self.radius * (self.radial + self.tangential / n**2))
 
     def mass(self, n: int) -> float:
-        """Of harmonic n for a unit radial amplitude [kg]."""
+        """Mass of harmonic n for a unit radial amplitude [kg]."""
         area = self.width * self.thickness
         return pi * self.material.density * area * self.radius * (1 + 1 / n**2)
 
     def frequency(self, n: int) -> float:
-        """Of the rim alone on its foundation [Hz]."""
+        """Frequency of the rim alone on its foundation [Hz]."""
         return float(np.sqrt(self.stiffness(n) / self.mass(n)) / (2 * pi))
 
     def motion(self, n: int, psi: float, radius: float) -> Floats:

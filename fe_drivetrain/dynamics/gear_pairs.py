@@ -246,6 +246,6 @@ def pitch_contacts(machine: Machine) -> dict[str, PitchContact]:
 
 
 def _at_pitch(mesh: Mesh, one: float, two: float) -> PitchContact:
-    """Of working pitch radii [m], negative of a ring."""
+    """The pair at its working pitch radii [m], negative for a ring."""
     curvature = (1 / one + 1 / two) * cos(mesh.base_helix) / sin(mesh.pressure_angle)
     return PitchContact(mesh, 1 / curvature)

@@ -247,7 +247,7 @@ AXIAL, TORSIONAL, LATERAL, MIXED = "axial", "torsional", "lateral", "mixed"
 
 
 def direction_kinds(system: System, modes: SystemModes, most: float = 0.9) -> list[str]:
-    """Of each mode, which direction has most of its kinetic energy.
+    """For each mode, the direction that has most of its kinetic energy.
 
     "torsional" of turning about x, "axial" along it, "lateral" of moving and tilting across; those
     with less than ``most`` in any of them are "mixed". Shares are those of energy; a geared
@@ -276,7 +276,7 @@ ROTATIONAL, TRANSLATIONAL, PLANET, OTHER = "rotational", "translational", "plane
 def planetary_kinds(
     system: System, modes: SystemModes, central: Sequence[str], within: float = 1e-6
 ) -> list[str]:
-    """Of each mode, how the central bodies of one planetary stage move in it (Lin and Parker 1999).
+    """Motion of a planetary stage's central bodies in each mode (Lin and Parker 1999).
 
     In "rotational" ones (rotational-axial in three dimensions) they turn about x and move along it
     only; in "translational" ones (translational-tilting) they move and tilt across only; in

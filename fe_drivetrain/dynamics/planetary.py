@@ -170,7 +170,7 @@ class PlanetarySet:
         return tuple(self.full_name(f"planet {k + 1}") for k in range(len(self.angles)))
 
     def centre(self, k: int | None = None) -> tuple[float, float, float]:
-        """Of planet k from 0, or of the other bodies [m]."""
+        """Centre of planet k, counted from 0, or of the other bodies [m]."""
         if k is None:
             return self.position
         a, psi = self.centre_distance, self.angles[k]
@@ -179,7 +179,7 @@ class PlanetarySet:
 
 
 def equal_angles(planets: int, first: float = 0.0) -> tuple[float, ...]:
-    """Of equally spaced planets [rad]."""
+    """Angles of equally spaced planets [rad]."""
     return tuple(first + 2 * pi * k / planets for k in range(planets))
 
 

@@ -36,7 +36,7 @@ class Static:
     closed: Bools
 
     def force(self, name: str) -> float:
-        """Of a spring, or of all slices of a mesh.
+        """Force of a spring, or of all slices of a mesh.
 
         Raises
         ------
@@ -158,7 +158,7 @@ class Turn:
         return np.hypot(self.of(f"{name} uy"), self.of(f"{name} uz"))
 
     def amplitudes(self, values: Floats) -> Floats:
-        """Of the orders 0P, 1P and so on, of values at equal steps of one turn."""
+        """Amplitudes of the orders 0P, 1P and so on, of values at equal steps of one turn."""
         found = np.abs(np.fft.rfft(values)) / len(values)
         found[1:] *= 2
         return np.asarray(found)

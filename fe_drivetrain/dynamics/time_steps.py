@@ -53,7 +53,7 @@ class Laws(NamedTuple):
 
 
 class Matrices(NamedTuple):
-    """Of one scheme and one length of step.
+    """Matrices of one scheme and one length of step.
 
     ``coefficients``: those of `Scheme.coefficients`; ``inverse`` (n, n) of A; ``columns`` (n, r)
     A^-1 R^T; ``compliance`` (r, r) R A^-1 R^T.

@@ -7,7 +7,7 @@ from dataclasses import replace
 from importlib.metadata import version
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.scaling import largest_difference
+from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.export.superelement import Origin, Superelement, refuse_one_point
 from fe_drivetrain.fidelity.component_frames import carrier_frame, housing_frame
 from fe_drivetrain.fidelity.component_levels import motions_on_supports, stiffness_on_supports
@@ -94,8 +94,8 @@ def component_superelement(
         band = recovered_band(component, solids[0], motions, fine.stiffness)
         ratio = mean_size(solids[1].mesh) / mean_size(solids[0].mesh)
         if ratio > APART:  # else the coarser mesh had to be made finer
-            change = largest_difference(others[0].stiffness, fine.stiffness)
-            band = max(band, change / (ratio**ORDER - 1.0))
+            change = StiffnessBands.of_difference(others[0].stiffness, fine.stiffness)
+            band = band | change.each(lambda c: c / (ratio**ORDER - 1.0))
     program = f"fe-drivetrain {version('fe-drivetrain')}"
     origin = Origin(component.title, component_hash(component), level_title, mesh, program)
     return Superelement(

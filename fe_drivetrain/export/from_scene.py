@@ -9,7 +9,7 @@ from importlib.metadata import version
 import numpy as np
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.scaling import largest_difference
+from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.export.superelement import Origin, Superelement, refuse_one_point
 from fe_drivetrain.fidelity.bearing_units import banded_unit, unit_matrices
 from fe_drivetrain.fidelity.ladder import LevelModel
@@ -45,7 +45,7 @@ def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None
     """
     refuse_one_point("shaft", at or (), reference_points(scene)[0], "drivetrain")
     if level == 1:
-        band: float | None
+        band: StiffnessBands | None
         body = beam_shaft(scene)
         body = body if at is None else keep_points(body, at)
         band = _beam_band(scene, body, at)
@@ -77,16 +77,16 @@ def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None
     )
 
 
-def _beam_band(scene: Scene, body: Condensed, at: Sequence[str] | None) -> float | None:
+def _beam_band(scene: Scene, body: Condensed, at: Sequence[str] | None) -> StiffnessBands | None:
     """How far the beam is from its limit, relative; None where the meridian is too large."""
     if len(scene.shaft.pieces) > MOST_BANDED:
         return None
     meridian, band = banded_meridian(scene, at)
-    return band + largest_difference(meridian.stiffness, body.stiffness)
+    return band + StiffnessBands.of_difference(meridian.stiffness, body.stiffness)
 
 
 def supported_superelement(
-    scene: Scene, model: LevelModel, at: Sequence[str], band: float | None = None
+    scene: Scene, model: LevelModel, at: Sequence[str], band: StiffnessBands | None = None
 ) -> Superelement:
     """The drivetrain on its supports, at points of a solved level of the ladder.
 

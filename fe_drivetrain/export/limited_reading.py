@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.export.files import format_module, read
 from fe_drivetrain.export.superelement import Origin, Superelement
 from fe_drivetrain.foreign.reading import LIMITS, Limits, read_in_process
@@ -37,6 +38,7 @@ def read_limited(path: str | Path, format: str, limits: Limits = LIMITS) -> Supe
     action = f"{__name__}:arrays_of"
     found = read_in_process(action, path, {"format": format, "named": str(path)}, limits)
     stated: dict[str, Any] = json.loads(str(found["stated"]))
+    band = stated["band"]
     return Superelement(
         stated["name"],
         tuple(stated["points"]),
@@ -44,7 +46,7 @@ def read_limited(path: str | Path, format: str, limits: Limits = LIMITS) -> Supe
         found["stiffness"],
         found.get("mass"),
         stated["supported"],
-        stated["band"],
+        None if band is None else StiffnessBands(**band),
         Origin(**stated["origin"]),
     )
 
@@ -60,7 +62,7 @@ def arrays_of(request: dict[str, Any]) -> dict[str, Any]:
         "name": element.name,
         "points": element.points,
         "supported": element.supported,
-        "band": element.band,
+        "band": None if element.band is None else vars(element.band),
         "origin": vars(element.origin),
     }
     matrices = {key: getattr(element, key) for key in _MATRICES}

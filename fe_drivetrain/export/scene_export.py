@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.scaling import largest_difference
+from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.export.from_scene import (
     shaft_superelement,
     supported_superelement,
@@ -88,5 +88,5 @@ def _drivetrain(scene: Scene, at: Sequence[str], level: int) -> Superelement:
         shaft_level(scene, level, housing_springs(scene, coupling, level)[0], body)
         for coupling in ("rigid", "averaged")
     )
-    band = largest_difference(soft.stiffness(at), stiff.stiffness(at))
+    band = StiffnessBands.of_difference(soft.stiffness(at), stiff.stiffness(at))
     return supported_superelement(scene, stiff, at, band)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import operator
 from dataclasses import replace
+from functools import reduce
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -32,5 +34,5 @@ def seats_superelement(scene: Scene) -> Superelement:
         points=tuple(unit.points[0] for unit in units),
         positions=np.vstack([unit.positions for unit in units]),
         stiffness=block_diag(*(unit.stiffness for unit in units)),
-        band=max(unit.band or 0.0 for unit in units),
+        band=reduce(operator.or_, (unit.band for unit in units if unit.band is not None)),
     )

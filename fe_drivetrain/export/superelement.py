@@ -12,6 +12,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import least_eigenvalue, symmetry_error
 from fe_drivetrain.common.spatial import point_motions
+from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.plots.figures import stiffness_map
 
 FRAME = (
@@ -100,9 +101,9 @@ class Superelement:
         (6 n, 6 n), symmetric; None where there is none.
     supported : bool
         Whether the scene's supports are in it; else it is free, and has six rigid motions.
-    band : float or None
-        Half width of the uncertainty of the stiffness, of any entry relative to the diagonal
-        entries of its row and column; None where it is not known.
+    band : StiffnessBands or None
+        Half widths of the uncertainty of the stiffness, of each kind of motion by itself, relative;
+        None where it is not known. Of one number for all, `StiffnessBands.alike`.
     origin : Origin
         Where it comes from.
     """
@@ -113,7 +114,7 @@ class Superelement:
     stiffness: Floats
     mass: Floats | None = None
     supported: bool = False
-    band: float | None = None
+    band: StiffnessBands | None = None
     origin: Origin = field(default_factory=Origin)
 
     def __post_init__(self) -> None:
@@ -138,10 +139,10 @@ class Superelement:
                 f"the points {', '.join(self.points) or 'none'}: give each point once, with x, y, z"
             )
         self._check_positions()
-        if self.band is not None and not 0.0 <= self.band < np.inf:
+        if self.band is not None and not self.band.are_numbers:
             raise InputError(
-                f"superelement {self.name!r}: its band is {self.band:g} but must be from 0 on and "
-                "finite, relative to the stiffness: correct it, or leave it open"
+                f"superelement {self.name!r}: its band is {self.band}, of which each must be from "
+                "0 on and finite, relative to the stiffness: correct it, or leave it open"
             )
         for kind, matrix in (("stiffness", self.stiffness), ("mass", self.mass)):
             if matrix is None:

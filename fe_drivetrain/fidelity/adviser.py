@@ -22,6 +22,7 @@ from fe_drivetrain.common.progress import silent
 from fe_drivetrain.fidelity.assembly_bands import (
     COARSER,
     AssemblyBand,
+    finer_mesh,
     motion_error,
     reaction_error,
 )
@@ -38,6 +39,7 @@ from fe_drivetrain.fidelity.ladder import (
 )
 from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.fidelity.shafts import condensed_shaft
+from fe_drivetrain.geometry import MeshSizes
 from fe_drivetrain.mesh.measures import mean_size
 from fe_drivetrain.plots.figures import error_against_time
 from fe_drivetrain.response.model import Model
@@ -97,6 +99,8 @@ class Advice:
         Stiffness of the bearing units, faces held in shape, where the ladder went so far.
     share : float
         Size of a reaction over that of the largest of its kind (force or moment); 1 of a stiffness.
+    sizes : MeshSizes or None
+        Element sizes of the assembly.
     """
 
     quantity: Quantity
@@ -105,6 +109,7 @@ class Advice:
     chosen: int | None
     springs: Mapping[str, Floats] = field(default_factory=dict)
     share: float = 1.0
+    sizes: MeshSizes | None = None
 
     @property
     def top(self) -> LevelResult:
@@ -153,8 +158,9 @@ class Advice:
         if self.chosen is None:
             return (
                 f"{self.quantity.name}: no level is known to be within {share}; the finest, "
-                f"{self.top.model.title}, has a band of {100 * self.top.estimate:.2g} %: "
-                f"make its mesh finer{self._of_band()}"
+                f"{self.top.model.title}, has a band of {100 * self.top.estimate:.2g} %, and "
+                f"{share} or less is asked: {finer_mesh(self.sizes, self.top.estimate)}"
+                f"{self._of_band()}"
             )
         result = self.results[self.chosen]
         if self.chosen == len(self.results) - 1:
@@ -242,7 +248,7 @@ def advise(
         # its time is a result, so it is solved
         model, seconds, (band,) = banded_assembly(scene, [quantity], report, UNCACHED)
         add(model, seconds, band.half_width, band)
-    return _judged(quantity, tolerance, results, springs, length)
+    return _judged(quantity, tolerance, results, springs, scene)
 
 
 def _run_on_springs(
@@ -441,7 +447,7 @@ def _judged(
     tolerance: float,
     results: Sequence[LevelResult],
     springs: Mapping[str, Floats],
-    length: float,
+    scene: Scene,
 ) -> Advice:
     top = results[-1]
     if not np.linalg.norm(top.values) > 0:
@@ -460,7 +466,8 @@ def _judged(
         if known and np.isfinite(result.values).all():
             chosen = number
             break
-    return Advice(quantity, tolerance, judged, chosen, springs, _share(quantity, top.model, length))
+    share = _share(quantity, top.model, scene.shaft.length)
+    return Advice(quantity, tolerance, judged, chosen, springs, share, scene.mesh)
 
 
 def _share(quantity: Quantity, model: LevelModel, length: float) -> float:

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import ceil, floor, log10
 
 import numpy as np
 
@@ -26,6 +27,7 @@ from fe_drivetrain.common.cache import Cache, user_cache
 from fe_drivetrain.common.made_by import source_hash
 from fe_drivetrain.compare.convergence import DOUBTFUL, Behaviour, grid_convergence
 from fe_drivetrain.fidelity.shaft_bands import APART
+from fe_drivetrain.geometry import MOST_TURN, MeshSizes
 from fe_drivetrain.response.cached import solved_content
 from fe_drivetrain.response.influence_fields import (
     influences_of_all_reactions,
@@ -90,6 +92,31 @@ class AssemblyBand:
         """What the band rests on."""
         wider = "recovered stresses" if not self.series > self.recovered else "the series"
         return f"{self.words}; the band is that of {wider}, the wider one"
+
+
+def finer_mesh(sizes: MeshSizes | None, band: float) -> str:
+    """What to set where the band of an assembly is wider than asked, as the end of a sentence.
+
+    Parameters
+    ----------
+    sizes : MeshSizes or None
+        Element sizes of its scene, where they are known.
+    band : float
+        Half width over the value.
+    """
+    percent = 100.0 * band
+    digits = 10.0 ** (floor(log10(percent)) - 1) if percent > 0.0 else 1.0
+    enough = ceil(percent / digits) * digits
+    wider = f"ask for --tolerance {enough:g}%" if enough < 100.0 else ""
+    if sizes is None:
+        return wider or "make its mesh finer"
+    half = sizes.scaled(0.5, min(2 * sizes.elements_per_turn, MOST_TURN))
+    keys = ("shaft", "bearing", "bearing_edge", "housing", "elements_per_turn")
+    given = " ".join(f"--set mesh.{key}={getattr(half, key):.3g}" for key in keys)
+    return (
+        f"make the element sizes under mesh smaller, for instance half of those here, {given} (all "
+        f"in m but for the elements a turn){', or ' if wider else ''}{wider}"
+    )
 
 
 def assembly_band(

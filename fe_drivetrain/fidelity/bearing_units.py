@@ -15,8 +15,8 @@ from scipy import sparse
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.scaling import largest_difference
 from fe_drivetrain.common.spatial import rigid_motions, wrench_transport
+from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.fidelity.unit_faces import (
     attached,
     face_of,
@@ -223,7 +223,7 @@ def unit_matrices(
     return UnitMatrices(*_kept(scene, name, contents, cache, solved))
 
 
-def banded_unit(scene: Scene, name: str) -> tuple[Floats, float]:
+def banded_unit(scene: Scene, name: str) -> tuple[Floats, StiffnessBands]:
     """Stiffness of a bearing unit, its face held in shape, and its band.
 
     Two things are in the band. The face between shaft and housing keeps its shape, or moves on
@@ -241,11 +241,11 @@ def banded_unit(scene: Scene, name: str) -> tuple[Floats, float]:
     -------
     Floats
         (6, 6), see `unit_stiffness` [N/m, N, N m/rad].
-    float
-        Half width of the band of any entry, relative to the diagonal entries of its row and column.
+    StiffnessBands
+        Half widths, of each kind of motion by itself.
     """
     soft, stiff, mesh = unit_bounds(scene, name)
-    return stiff, largest_difference(soft, stiff) + mesh
+    return stiff, StiffnessBands.of_difference(soft, stiff) + mesh
 
 
 class UnitBounds(NamedTuple):
@@ -256,13 +256,13 @@ class UnitBounds(NamedTuple):
     soft, stiff : Floats
         (6, 6) with a face that moves on average, and one that keeps its shape; where the joint
         itself says how it moves, the same [N/m, N, N m/rad].
-    mesh : float
+    mesh : StiffnessBands
         Band of the mesh, relative: by it both may be too stiff.
     """
 
     soft: Floats
     stiff: Floats
-    mesh: float
+    mesh: StiffnessBands
 
 
 def unit_bounds(scene: Scene, name: str, cache: Cache | None = None) -> UnitBounds:
@@ -284,7 +284,7 @@ def unit_bounds(scene: Scene, name: str, cache: Cache | None = None) -> UnitBoun
     """
 
     if (given := _given(scene, name)) is not None:
-        return UnitBounds(given, given, 0.0)
+        return UnitBounds(given, given, StiffnessBands.alike(0.0))
 
     ways = [face_of(scene, name, True, coupling) for coupling in _COUPLINGS]
 
@@ -292,11 +292,11 @@ def unit_bounds(scene: Scene, name: str, cache: Cache | None = None) -> UnitBoun
         unit = _unit_solid(scene, name, ways[0][0])
         found = {way: _solved_unit(unit, way[1], "auto") for way in set(ways)}
         stiff, soft = (found[way] for way in ways)
-        return [stiff.stiffness, soft.stiffness, np.array(_mesh_band(scene, stiff))]
+        return [stiff.stiffness, soft.stiffness, _mesh_band(scene, stiff)]
 
     contents = [_content(name, *way, "auto") for way in ways]
     stiff, soft, mesh = _kept(scene, name, [*contents, {"mesh band of": name}], cache, solved)
-    return UnitBounds(soft, stiff, float(mesh))
+    return UnitBounds(soft, stiff, StiffnessBands.of_motions(mesh))
 
 
 def _given(scene: Scene, name: str) -> Floats | None:
@@ -360,14 +360,14 @@ def _unit_mass(of: UnitSolid, unit: _SolvedUnit) -> Floats:
     return 0.5 * (found + found.T)
 
 
-def _mesh_band(scene: Scene, unit: _SolvedUnit) -> float:
-    """Band of the mesh, relative: joint and bedplate in series only make its share less."""
+def _mesh_band(scene: Scene, unit: _SolvedUnit) -> Floats:
+    """(6,) bands of the mesh, relative: joint and bedplate in series only make its share less."""
     mesh = unit.solid.mesh
     parts = [(mesh.cells[mesh.part_cells(p)], scene.material_of(p).lame) for p in unit.parts]
     stiffness = np.linalg.inv(unit.compliance)
     motions = unit.displacements @ stiffness
     shares = error_energies(mesh.points, parts, motions) / (0.5 * stiffness.diagonal())
-    return SAFETY * float(shares.max())
+    return np.asarray(SAFETY * shares)
 
 
 def _unit_solid(scene: Scene, name: str, with_ring: bool) -> UnitSolid:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.geometry import BodySizes
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.mesh.symmetry import meshed, mirror, repeated, turns
@@ -79,7 +80,7 @@ def solid_component(component: Component, method: str = "auto") -> SolidComponen
 
 def recovered_band(
     component: Component, solid: SolidComponent, motions: Floats, stiffness: Floats
-) -> float:
+) -> StiffnessBands:
     """The band of a component's stiffness by recovered stresses of its one mesh.
 
     The error of a displacement model in given motions is one of energy, and positive semidefinite:
@@ -93,16 +94,16 @@ def recovered_band(
     solid : SolidComponent
         Its solid.
     motions : Floats
-        (6 n, m) of its n points, one column for each entry of the diagonal [m, rad].
+        (6 n, 6 m) of its n points, one column for each entry of the diagonal [m, rad].
     stiffness : Floats
-        (m, m) for these motions [N/m, N m/rad].
+        (6 m, 6 m) for these motions [N/m, N m/rad].
 
     Returns
     -------
-    float
-        Half width, relative.
+    StiffnessBands
+        Half widths, relative.
     """
     mesh, lame = solid.mesh, material_of(component).lame
     parts = [(mesh.cells[mesh.part_cells(p)], lame) for p in mesh.part_names]
     errors = error_energies(mesh.points, parts, solid.fields(motions))
-    return SAFETY * float(np.max(2.0 * errors / stiffness.diagonal()))
+    return StiffnessBands.of_motions(SAFETY * 2.0 * errors / stiffness.diagonal())

@@ -137,7 +137,7 @@ def levels_of(scene: Scene, response: Response, report: Progress = silent) -> Le
     found = response.diagnostics
     seconds = found.setup_seconds + found.solve_seconds
     models["assembly"] = level_of_response(scene, response, seconds)
-    unit_mesh = {name: found.mesh for name, found in bounds.items()}
+    unit_mesh = {name: found.mesh.largest for name, found in bounds.items()}
     return Levels(stiff, soft, models, unit_mesh, ratio, names)
 
 

@@ -90,6 +90,7 @@ def shaft_meridian(
     order: int | None = None,
     rings: bool = True,
     layers: int | None = None,
+    per_fillet: int = 6,
 ) -> tuple[Meridian, list[Ints]]:
     """The meridian of a scene's shaft, and its sides that each reference point moves with.
 
@@ -109,6 +110,7 @@ def shaft_meridian(
         widest if size is None else size,
         order=order,
         layers=layers,
+        per_fillet=per_fillet,
         corners=corners,
     )
     return mesh, _coupled_sides(mesh, shaft, spans)
@@ -120,6 +122,7 @@ def meridian_shaft(
     order: int | None = None,
     rings: bool = True,
     layers: int | None = None,
+    per_fillet: int = 6,
 ) -> Condensed:
     """The shaft in its meridian, exact elasticity of a body of revolution.
 
@@ -140,10 +143,12 @@ def meridian_shaft(
         Whether it has its rings, see `ringed_shaft`.
     layers : int or None
         Of ever smaller elements at corners; 4 where not given, of shafts with fillets 2.
+    per_fillet : int
+        See `fe_drivetrain.revolution.meridian_mesh.meridian`.
     """
     names, positions = reference_points(scene)
     material = scene.material_of("shaft")
-    mesh, sides = shaft_meridian(scene, size, order, rings, layers)
+    mesh, sides = shaft_meridian(scene, size, order, rings, layers, per_fillet)
     mass = harmonic_mass(mesh, material.density, 0)
     axial = _harmonic(mesh, material, 0, (0, 3), names, positions, sides, mass)
     mass = mass * (harmonics.turn(1) / harmonics.turn(0))
@@ -208,7 +213,7 @@ def condensed_shaft(scene: Scene, level: int) -> Condensed:
 
 
 def _radius(shaft: Shaft, span: Band) -> float:
-    """Of the face of a shaft that a bearing or a load is on."""
+    """Radius of the face of a shaft that a bearing or a load is on."""
     middle = (span.low + span.high) / 2
     return shaft.inner_radius(middle) if span.inside else shaft.outer_radius(middle)
 

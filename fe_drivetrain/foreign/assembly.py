@@ -170,7 +170,7 @@ def tied(units: Sequence[BearingUnit], mesh: Mesh, rings: Collection[str] | None
 
 
 def _along_normals(tie: Constraint, points: Floats, centre: Floats) -> Constraint:
-    """Of a tie with three rows a slave node one, along the direction from a centre."""
+    """One row for each slave node of a tie that has three, along the direction from a centre."""
     nodes = tie.pivots[::3] // 3
     normals = points[nodes] - centre
     normals /= np.linalg.norm(normals, axis=1)[:, None]

@@ -165,12 +165,12 @@ def _area(points: Floats, facets: Ints) -> float:
 
 
 def _outer_area(bearing: Bearing) -> float:
-    """Of a bearing's outer face: 2 pi r h holds of a cylinder, and of a zone of a sphere."""
+    """Area of a bearing's outer face: 2 pi r h holds of a cylinder, and of a zone of a sphere."""
     return math.pi * bearing.raceway_diameter * bearing.width
 
 
 def _middle_of_seat(points: Floats, bearing: Bearing, turned: Floats, scale: float) -> Floats:
-    """Of a seat of a mesh, in the file's frame and unit, from its nodes' extents."""
+    """Middle of a seat of a mesh, in the file's frame and unit, from its nodes' extents."""
     own = points @ turned.T
     middle = (own.min(axis=0) + own.max(axis=0)) / 2
     # fitted to all nodes: on circles or spheres, |p|^2 = 2 p.c + k

@@ -78,7 +78,7 @@ def recognised(tag: int, kind: str) -> dict[str, Any]:
 
 
 def _round(best: Fit, points: Floats, at: Floats, normals: Floats) -> dict[str, Any]:
-    """Of a cylinder or sphere as of one that is described as such."""
+    """The fit of a cylinder or sphere, as if the file had described it as such."""
     axis, centre = best.axis, best.centre
     out = at - centre
     out = out - (out @ axis)[:, None] * axis

@@ -323,7 +323,7 @@ def _check_seat(
 
 
 def _length(tags: Sequence[int], along: Any) -> float:
-    """Of faces along a direction, from points on their edges."""
+    """Length of faces along a direction, from points on their edges."""
     values: list[float] = []
     for _, edge in gmsh.model.getBoundary([(2, t) for t in tags], combined=False, oriented=False):
         low, high = (float(b[0]) for b in gmsh.model.getParametrizationBounds(1, edge))

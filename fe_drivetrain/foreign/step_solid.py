@@ -262,7 +262,7 @@ def picked(survey: dict[str, Any], pick: dict[str, Any], what: str) -> list[int]
 
 
 def distance(tag: int, point: Sequence[float]) -> float:
-    """Of a point from a face; its own middle counts where the projection is outside of it."""
+    """Distance of a point from a face, or from its middle where the projection is outside of it."""
     closest, at = gmsh.model.getClosestPoint(2, tag, list(point))
     if gmsh.model.isInside(2, tag, list(at), parametric=True):
         return math.dist(closest, point)

@@ -95,7 +95,7 @@ def unfolded(mesh: Mesh, floor: float = 0.1) -> Mesh:
 
 
 def _missing(points: Floats, cells: Ints, floor: float) -> Floats:
-    """Of each cell's scaled Jacobian to the floor."""
+    """What each cell's scaled Jacobian lacks to the floor."""
     return np.asarray(np.maximum(floor - scaled_jacobians(points, cells), 0.0))
 
 

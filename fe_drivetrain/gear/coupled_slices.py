@@ -37,7 +37,7 @@ def loaded_with_coupling(
     motion: ArrayLike | None = None,
     steps: int = 60,
 ) -> Loaded:
-    """As `loaded`, with slices of a pair of teeth that hold each other.
+    """The loaded mesh as of `loaded`, with slices of a pair of teeth that hold each other.
 
     The teeth are an elastic layer that resists being bent over the face: c w - c l^2 w'' = p with
     the load p per face width, free at the ends; the contact is a spring on it. Without a length,

@@ -157,15 +157,15 @@ class ToothDamage:
 
     @property
     def largest(self) -> float:
-        """Of the four."""
+        """The largest of the four."""
         return max(self.flank, self.back, self.root, self.root_back)
 
     def __add__(self, other: ToothDamage) -> ToothDamage:
-        """Of both, one after the other."""
+        """Damage of both, one after the other."""
         return ToothDamage(*(getattr(self, n) + getattr(other, n) for n in vars(self)))
 
     def times(self, count: float) -> ToothDamage:
-        """Of so many times the same.
+        """Damage of the same, that many times.
 
         Parameters
         ----------

@@ -81,7 +81,7 @@ class LineContact:
 
     @property
     def half_width(self) -> float:
-        """Of the strip, a = sqrt(4 q R / (pi E_R)) [m]."""
+        """Half width of the strip, a = sqrt(4 q R / (pi E_R)) [m]."""
         return float(half_width(self.load, self.radius, self.modulus))
 
     @property

@@ -48,12 +48,12 @@ class LoadFactors:
 
     @property
     def contact(self) -> float:
-        """Of all, on the load that presses the flanks."""
+        """All factors on the load that presses the flanks, multiplied."""
         return self.K_A * self.K_gamma * self.K_v * self.K_Hbeta * self.K_Halpha
 
     @property
     def root(self) -> float:
-        """Of all, on the load that bends the root."""
+        """All factors on the load that bends the root, multiplied."""
         return self.K_A * self.K_gamma * self.K_v * self.K_Fbeta * self.K_Falpha
 
 

@@ -255,7 +255,7 @@ def _count(cycles: Cycles, counting: Counting) -> Count:
 
 
 def _classes(values: Floats, weights: Floats, counting: Counting) -> Classes:
-    """As `in_classes`; of no values, none at all, not even that of zero."""
+    """Counts as of `in_classes`; without values no class at all, not even that of zero."""
     if not len(values):
         return Classes((counting.power,), (0,), np.zeros(0))
     return in_classes(values, weights=weights, power=counting.power)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import gamma
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,6 +20,9 @@ MEAN_WIND = {"I": 10.0, "II": 8.5, "III": 7.5}
 
 TURBULENCE = {"A+": 0.18, "A": 0.16, "B": 0.14, "C": 0.12}
 """Reference turbulence intensity of their categories (the same table)."""
+
+WIND_BIN = 1.0
+"""Histories whose mean winds round to the same multiple are of one condition [m/s]."""
 
 
 @dataclass(frozen=True)
@@ -123,6 +127,40 @@ def midpoint_edges(speeds: ArrayLike) -> Floats:
     inner = 0.5 * (middles[1:] + middles[:-1])
     first, last = 2.0 * middles[0] - inner[0], 2.0 * middles[-1] - inner[-1]
     return np.concatenate([[max(first, 0.0)], inner, [last]])
+
+
+def rounded_wind(wind: float) -> float:
+    """Mean wind speed for which a file stands: histories of one round to one [m/s]."""
+    return float(WIND_BIN * np.round(wind / WIND_BIN))
+
+
+def require_winds(files: Sequence[Path], winds: Sequence[float]) -> None:
+    """Refuse files that a site's winds cannot weight.
+
+    Parameters
+    ----------
+    files : sequence of Path
+        The histories.
+    winds : sequence of float
+        Mean wind speed of each [m/s]; NaN where it has none.
+
+    Raises
+    ------
+    InputError
+        A file has no wind speed, or all stand for one wind.
+    """
+    for file, wind in zip(files, winds, strict=True):
+        if np.isnan(wind):
+            raise InputError(
+                f"hub loads '{file}': there is no wind speed, by which --site weights files: name "
+                "its channel, as in --channel 'wind speed=Vhub', or leave --site out"
+            )
+    if len({rounded_wind(wind) for wind in winds}) < 2:
+        count = f"all {len(files)} files have" if len(files) > 1 else "the one file has"
+        raise InputError(
+            f"--site weights winds, and {count} a mean wind of {rounded_wind(winds[0]):g} m/s: "
+            "give files of two winds or more, or leave --site out"
+        )
 
 
 @dataclass(frozen=True)

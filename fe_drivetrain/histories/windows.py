@@ -106,7 +106,7 @@ class CaptureMatrix:
 
     @property
     def mean_turbulence(self) -> float:
-        """Of all windows inside, each with the middle of its row; NaN of none."""
+        """Mean turbulence of all windows inside, each with the middle of its row; NaN of none."""
         middles = 0.5 * (self.turbulence[1:] + self.turbulence[:-1])
         total = self.counts.sum()
         return float(middles @ self.counts.sum(axis=1) / total) if total else float("nan")

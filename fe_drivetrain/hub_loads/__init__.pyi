@@ -11,6 +11,7 @@ from .csv_table import write_csv as write_csv
 from .events import RATED as RATED
 from .events import Event as Event
 from .events import grid_loss as grid_loss
+from .events import grid_loss_twist as grid_loss_twist
 from .events import made_event as made_event
 from .files import hub_load_files as hub_load_files
 from .files import read_hub_load_files as read_hub_load_files
@@ -22,9 +23,10 @@ from .loops import Loops as Loops
 from .loops import find_loops as find_loops
 from .loops import loop_statistics as loop_statistics
 from .loops import time_on_loops as time_on_loops
-from .moving_turbine import Inflow as Inflow
+from .moving_turbine import LONGEST_STEP as LONGEST_STEP
 from .moving_turbine import TurbineHistory as TurbineHistory
-from .moving_turbine import even_inflow as even_inflow
+from .moving_turbine import accounted_history as accounted_history
+from .moving_turbine import energy_account as energy_account
 from .moving_turbine import simulate as simulate
 from .moving_turbine import turbine_histories as turbine_histories
 from .moving_turbine import turbine_history as turbine_history
@@ -46,6 +48,9 @@ from .turbine import Physics as Physics
 from .turbine import Turbine as Turbine
 from .turbine import natural_frequencies as natural_frequencies
 from .turbine import similar_turbine as similar_turbine
+from .turbine_account import EnergyAccount as EnergyAccount
+from .turbine_parts import Inflow as Inflow
+from .turbine_parts import even_inflow as even_inflow
 from .turbines import different_turbines as different_turbines
 from .turbines import vertical_forces as vertical_forces
 from .wind_boxes import WindBox as WindBox

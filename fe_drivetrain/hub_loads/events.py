@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq
@@ -302,6 +302,42 @@ def grid_loss(turbine: Turbine, torque: float, seconds: float = 20.0, rate: floa
     seconds, rate : float
         Length [s], samples per second [Hz].
     """
+    twist = grid_loss_twist(turbine, torque, seconds, rate)
+    spun = turbine.shaft_stiffness * twist.angle + turbine.shaft_damping * twist.speed
+    return Event("grid loss", twist.time, spun, twist.thrust)
+
+
+class Twist(NamedTuple):
+    """Motion of a rotor against its generator, each (n,).
+
+    Attributes
+    ----------
+    time : ndarray
+        Even steps [s].
+    thrust : ndarray
+        Over that of operation, as is the rotor's torque.
+    angle, speed : ndarray
+        Twist of the shaft [rad] and its rate [rad/s].
+    """
+
+    time: Floats
+    thrust: Floats
+    angle: Floats
+    speed: Floats
+
+
+def grid_loss_twist(
+    turbine: Turbine, torque: float, seconds: float = 20.0, rate: float = 100.0
+) -> Twist:
+    """Twist of the shaft in `grid_loss`, exact for a torque that is straight between samples.
+
+    Parameters
+    ----------
+    turbine, torque : Turbine, float
+        As there.
+    seconds, rate : float
+        As there.
+    """
     time = np.arange(round(seconds * rate)) / rate
     thrust = 0.5 + 0.5 * np.cos(np.pi * np.clip(time / 3.0, 0.0, 1.0))
     stiffness, damping = turbine.shaft_stiffness, turbine.shaft_damping
@@ -309,8 +345,8 @@ def grid_loss(turbine: Turbine, torque: float, seconds: float = 20.0, rate: floa
     motion = StateSpace(
         [[0.0, 1.0], [-stiffness * inverse, -damping * inverse]],
         [[0.0], [1.0 / turbine.rotor_inertia]],
-        [[stiffness, damping]],
-        [[0.0]],
+        np.eye(2),
+        np.zeros((2, 1)),
     )
     _, found, _ = lsim(motion, torque * thrust, time, [torque / stiffness, 0.0])
-    return Event("grid loss", time, np.asarray(found).ravel(), thrust)
+    return Twist(time, thrust, *np.asarray(found, dtype=np.float64).T)

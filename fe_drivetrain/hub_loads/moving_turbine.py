@@ -15,37 +15,32 @@ import math
 import os
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache, user_cache
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.hub_loads.controller import (
-    CUT_IN_SHARE,
-    FULL_SHARE,
-    LEAST_PITCH,
-    SLIP,
-    Controller,
-    designed_controller,
-    steady_operation,
-)
+from fe_drivetrain.hub_loads.aero_rotor import OperatingPoint
+from fe_drivetrain.hub_loads.controller import Controller, designed_controller, steady_operation
 from fe_drivetrain.hub_loads.csv_table import write_csv
 from fe_drivetrain.hub_loads.histories import MIN_SAMPLES, Attribute, LoadHistory
 from fe_drivetrain.hub_loads.recorded import Recorded
 from fe_drivetrain.hub_loads.surrogate import DURATION, RATE, Condition, made_by
-from fe_drivetrain.hub_loads.turbine import (
-    Physics,
-    Turbine,
-    blade_modes,
+from fe_drivetrain.hub_loads.turbine import Physics, Turbine
+from fe_drivetrain.hub_loads.turbine_account import STORED, EnergyAccount
+from fe_drivetrain.hub_loads.turbine_parts import (
+    Inflow,
+    even_inflow,
+    kernel_control,
+    kernel_parts,
+    mean_shear,
 )
 from fe_drivetrain.hub_loads.wind import (
     DiscTurbulence,
-    Singles,
     disc_turbulence,
     length_scales,
-    power_law,
     turbulence_sigma,
 )
 
@@ -56,29 +51,6 @@ LONGEST_STEP = 0.025
 """Of the integration [s]: 15 in a period of the fastest mode, which it damps by 2e-4 of it."""
 
 _KEPT = ("loads", "azimuth", "rotor_speed", "pitch", "generator_torque", "power", "wind_speed")
-
-
-@dataclass(frozen=True, eq=False)
-class Inflow:
-    """Wind that a rotor meets.
-
-    Attributes
-    ----------
-    speed : float
-        Mean at hub height [m/s].
-    shear : float
-        Power-law exponent of the mean.
-    harmonics : ndarray, (n, 2 M + 1, r)
-        What is added at each sample, in harmonics of azimuth on the rings of the blade elements
-        [m/s]: the mean around a ring, cosines, sines.
-    rate : float
-        Samples per second [Hz].
-    """
-
-    speed: float
-    shear: float
-    harmonics: Singles
-    rate: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,30 +111,6 @@ class TurbineHistory:
         write_csv(self.history, path, beside)
 
 
-def even_inflow(
-    turbine: Turbine, speed: float, gust: ArrayLike, rate: float, shear: float = 0.0
-) -> Inflow:
-    """A wind that is equal over the disc but for shear.
-
-    Parameters
-    ----------
-    turbine : Turbine
-        Gives the blade elements.
-    speed : float
-        Mean [m/s].
-    gust : array_like, (n,)
-        Added to it at each sample [m/s].
-    rate : float
-        Samples per second [Hz].
-    shear : float
-        Power-law exponent.
-    """
-    added = np.asarray(gust, dtype=np.float32)
-    rings = turbine.rotor.elements
-    harmonics = np.repeat(added[:, None, None], rings, axis=2)
-    return Inflow(speed, shear, harmonics, rate)
-
-
 def simulate(
     turbine: Turbine,
     controller: Controller,
@@ -172,6 +120,7 @@ def simulate(
     azimuth: float = 0.0,
     held: bool = False,
     start: tuple[float, float] | None = None,
+    longest_step: float = LONGEST_STEP,
 ) -> tuple[Floats, Floats]:
     """Let a turbine turn in a wind.
 
@@ -187,6 +136,8 @@ def simulate(
         Pitch and torque of the generator stay as they are at the beginning.
     start : tuple of float or None
         Speed [rad/s] and pitch [rad] at the beginning; those of the mean wind if not given.
+    longest_step : float
+        Of the integration [s]: steps are as many to a sample as it asks for, one at least.
 
     Returns
     -------
@@ -198,53 +149,40 @@ def simulate(
     Raises
     ------
     InputError
-        The rotor stops or runs away.
+        The rotor stops or runs away, or the step is not above zero.
     """
-    from fe_drivetrain.hub_loads import turbine_air as air
-    from fe_drivetrain.hub_loads.turbine_kernel import run_turbine
+    moves = physics or Physics()
+    return _run(turbine, controller, inflow, moves, azimuth, held, start, longest_step, False)[:2]
 
-    chosen = physics or Physics()
-    point = steady_operation(turbine, controller, inflow.speed)
-    speed, pitch = start or (point.rotor_speed, point.pitch)
-    parts = _parts(turbine, chosen, inflow)
-    wake = np.empty((4, point.radius.size))
-    wake[::2] = point.axial * inflow.speed * math.cos(turbine.rotor.shaft_tilt)
-    wake[1::2] = point.tangential * point.rotor_speed * point.radius
-    state = np.zeros(air.STATES)
-    state[[air.PSI, air.SPEED, air.GENERATOR]] = azimuth, speed, speed
-    torque = controller.torque(speed, pitch)
-    state[air.TWIST] = torque / turbine.shaft_stiffness if chosen.torsion else 0.0
-    # blades and tower begin bent as the mean thrust bends them
-    mean = even_inflow(turbine, inflow.speed, np.zeros(1), inflow.rate, inflow.shear)
-    sums = np.zeros((5, max(wake.shape[1], 6)))
-    wind = np.zeros((3, point.radius.size))
-    air.met_wind(parts, mean.harmonics[0].astype(float), azimuth, wind, np.zeros(1))
-    air.blade_sums(parts, state, pitch, wind, wake, sums)
-    if chosen.tower:
-        state[air.FORE] = sums[:3, 0].sum() / (turbine.top_mass * parts.tower_rate**2)
-    if chosen.blades:
-        stiffness = parts.stiffness[0] + speed**2 * parts.stiffening[0, 0]
-        own = sums[:3, 4] + turbine.cone * speed**2 * parts.moment[0, 0]
-        state[air.MODES : air.MODES + 3] = own.mean() / stiffness
-    steps = math.ceil(1.0 / (inflow.rate * LONGEST_STEP))
-    made, beside = run_turbine(
-        parts,
-        _control(controller, held),
-        np.ascontiguousarray(inflow.harmonics),
-        _mean_shear(turbine, inflow),
-        state,
-        pitch,
-        wake,
-        1.0 / inflow.rate,
-        steps,
-    )
-    if len(made) < len(inflow.harmonics):
-        raise InputError(
-            f"turbine at {inflow.speed:g} m/s: the rotor stopped or ran away after "
-            f"{len(made) / inflow.rate:g} s; choose a controller whose "
-            "frequency and damping suit it, or a higher wind"
-        )
-    return made, beside
+
+def energy_account(
+    turbine: Turbine,
+    controller: Controller,
+    inflow: Inflow,
+    physics: Physics | None = None,
+    *,
+    azimuth: float = 0.0,
+    held: bool = False,
+    start: tuple[float, float] | None = None,
+    longest_step: float = LONGEST_STEP,
+) -> EnergyAccount:
+    """Energies, and work of all that changes them, of the run that `simulate` makes.
+
+    Parameters
+    ----------
+    turbine, controller, inflow, physics : Turbine, Controller, Inflow, Physics or None
+        As for `simulate`.
+    azimuth, held, start, longest_step : float, bool, tuple of float or None, float
+        As there.
+
+    Raises
+    ------
+    InputError
+        As there.
+    """
+    moves = physics or Physics()
+    books = _run(turbine, controller, inflow, moves, azimuth, held, start, longest_step, True)[2]
+    return _account(books)
 
 
 def turbine_history(
@@ -277,7 +215,51 @@ def turbine_history(
     """
     field = _field(turbine, condition.wind_speed, duration, rate)
     chosen = controller or designed_controller(turbine)
-    return _turbine_history(condition, turbine, chosen, physics or Physics(), field)
+    return _turbine_history(condition, turbine, chosen, physics or Physics(), field)[0]
+
+
+def accounted_history(
+    condition: Condition,
+    turbine: Turbine,
+    controller: Controller | None = None,
+    physics: Physics | None = None,
+    duration: float = DURATION,
+    rate: float = RATE,
+    *,
+    longest_step: float = LONGEST_STEP,
+    harmonics: int | None = None,
+) -> tuple[TurbineHistory, EnergyAccount]:
+    """Make one history, with the account of its energy.
+
+    Parameters
+    ----------
+    condition, turbine : Condition, Turbine
+        The wind, the turbine.
+    controller, physics, duration, rate : Controller or None, Physics or None, float, float
+        As for `turbine_history`.
+    longest_step : float
+        Of the integration [s], as for `simulate`.
+    harmonics : int or None
+        Of azimuth in the wind, the first of those that are drawn for the rotor; all if not given.
+
+    Returns
+    -------
+    TurbineHistory
+        That of `turbine_history` with its step and all harmonics.
+    EnergyAccount
+        From the beginning, of `SETTLING` before the history, too.
+
+    Raises
+    ------
+    InputError
+        As there, or the step is not above zero.
+    """
+    field = _field(turbine, condition.wind_speed, duration, rate)
+    chosen, moves = controller or designed_controller(turbine), physics or Physics()
+    made, books = _turbine_history(
+        condition, turbine, chosen, moves, field, longest_step, harmonics, accounted=True
+    )
+    return made, _account(books)
 
 
 def turbine_histories(
@@ -334,7 +316,7 @@ def turbine_histories(
             if field is None or condition.wind_speed != of_speed:
                 field = _field(turbine, condition.wind_speed, duration, rate)
                 of_speed = condition.wind_speed
-            made = _turbine_history(condition, turbine, chosen, moves, field)
+            made = _turbine_history(condition, turbine, chosen, moves, field)[0]
             arrays = {name: getattr(made, name) for name in _KEPT[1:]}
             kept.keep("hub-loads", content, {"loads": made.history.loads, **arrays})
         if progress is not None:
@@ -343,6 +325,89 @@ def turbine_histories(
 
 
 # --- making --------------------------------------------------------------------------------------
+
+
+def _run(
+    turbine: Turbine,
+    controller: Controller,
+    inflow: Inflow,
+    physics: Physics,
+    azimuth: float,
+    held: bool,
+    start: tuple[float, float] | None,
+    longest_step: float,
+    accounted: bool,
+) -> tuple[Floats, Floats, Floats]:
+    """Loads and what is beside them, as of `simulate`, and the compiled account, if it is kept."""
+    from fe_drivetrain.hub_loads.turbine_kernel import run_turbine
+
+    if not longest_step > 0.0:
+        raise InputError(f"turbine: longest_step is {longest_step} s; it must be above zero")
+    point = steady_operation(turbine, controller, inflow.speed)
+    speed, pitch = start or (point.rotor_speed, point.pitch)
+    parts = kernel_parts(turbine, physics, inflow)
+    state, wake = _beginning(turbine, controller, inflow, point, parts, azimuth, speed, pitch)
+    # a step that divides a sample but for round-off divides it
+    steps = max(math.ceil(1.0 / (inflow.rate * longest_step) - 1e-9), 1)
+    made, beside, books = run_turbine(
+        parts,
+        kernel_control(controller, held),
+        np.ascontiguousarray(inflow.harmonics),
+        mean_shear(turbine, inflow),
+        state,
+        pitch,
+        wake,
+        1.0 / inflow.rate,
+        steps,
+        accounted,
+    )
+    if len(made) < len(inflow.harmonics):
+        raise InputError(
+            f"turbine at {inflow.speed:g} m/s: the rotor stopped or ran away after "
+            f"{len(made) / inflow.rate:g} s; choose a controller whose "
+            "frequency and damping suit it, or a higher wind"
+        )
+    return made, beside, books
+
+
+def _beginning(
+    turbine: Turbine,
+    controller: Controller,
+    inflow: Inflow,
+    point: OperatingPoint,
+    parts: Any,
+    azimuth: float,
+    speed: float,
+    pitch: float,
+) -> tuple[Floats, Floats]:
+    """State and wake; blades and tower begin bent as the mean thrust bends them."""
+    from fe_drivetrain.hub_loads import turbine_air as air
+
+    wake = np.empty((4, point.radius.size))
+    wake[::2] = point.axial * inflow.speed * math.cos(turbine.rotor.shaft_tilt)
+    wake[1::2] = point.tangential * point.rotor_speed * point.radius
+    state = np.zeros(air.STATES)
+    state[[air.PSI, air.SPEED, air.GENERATOR]] = azimuth, speed, speed
+    torque = controller.torque(speed, pitch)
+    state[air.TWIST] = torque / turbine.shaft_stiffness if parts.torsion else 0.0
+    mean = even_inflow(turbine, inflow.speed, np.zeros(1), inflow.rate, inflow.shear)
+    sums = np.zeros((5, max(wake.shape[1], 6)))
+    wind = np.zeros((3, point.radius.size))
+    air.met_wind(parts, mean.harmonics[0].astype(float), azimuth, wind, np.zeros(1))
+    air.blade_sums(parts, state, pitch, wind, wake, sums)
+    if parts.tower_moves:
+        state[air.FORE] = sums[:3, 0].sum() / (turbine.top_mass * parts.tower_rate**2)
+    if parts.blades_move:
+        stiffness = parts.stiffness[0] + speed**2 * parts.stiffening[0, 0]
+        own = sums[:3, 4] + turbine.cone * speed**2 * parts.moment[0, 0]
+        state[air.MODES : air.MODES + 3] = own.mean() / stiffness
+    return state, wake
+
+
+def _account(books: Floats) -> EnergyAccount:
+    """The compiled account; what is done before the first record is not in it."""
+    count = len(STORED)
+    return EnergyAccount(books[:, :count], books[:, count:] - books[0, count:])
 
 
 def _field(turbine: Turbine, wind_speed: float, duration: float, rate: float) -> DiscTurbulence:
@@ -363,7 +428,12 @@ def _turbine_history(
     controller: Controller,
     physics: Physics,
     field: DiscTurbulence,
-) -> TurbineHistory:
+    longest_step: float = LONGEST_STEP,
+    highest: int | None = None,
+    *,
+    accounted: bool = False,
+) -> tuple[TurbineHistory, Floats]:
+    """A history, and the compiled account, if it is kept."""
     generator = condition.generator()
     azimuth = generator.uniform(0.0, 2.0 * np.pi)
     sigma = turbulence_sigma(condition.wind_speed, condition.turbulence)
@@ -372,12 +442,14 @@ def _turbine_history(
         harmonics = np.ascontiguousarray(np.float32(sigma) * drawn)
     else:
         harmonics = np.zeros((field.samples, 1, field.radius.size), dtype=np.float32)
-    inflow = Inflow(condition.wind_speed, condition.shear, harmonics, field.rate)
-    loads, beside = simulate(turbine, controller, inflow, physics, azimuth=azimuth)
+    inflow = Inflow(condition.wind_speed, condition.shear, harmonics, field.rate).up_to(highest)
+    loads, beside, books = _run(
+        turbine, controller, inflow, physics, azimuth, False, None, longest_step, accounted
+    )
     after = round(SETTLING * field.rate)
     pitch, torque, power, wind, psi, speed = beside[after:, :6].T
     arrays = dict(zip(_KEPT, (loads[after:], psi, speed, pitch, torque, power, wind), strict=True))
-    return _history(condition, arrays, field.rate)
+    return _history(condition, arrays, field.rate), books
 
 
 def _history(condition: Condition, arrays: dict[str, Floats], rate: float) -> TurbineHistory:
@@ -397,100 +469,3 @@ def _load(
     if any(len(a) != len(arrays["loads"]) or not np.isfinite(a).all() for a in arrays.values()):
         return None
     return _history(condition, arrays, rate)
-
-
-def _mean_shear(turbine: Turbine, inflow: Inflow) -> Floats:
-    """Mean of the steady wind around each ring over that at the hub."""
-    rotor = turbine.rotor
-    angle = 2.0 * np.pi / 36.0 * np.arange(36)
-    above = np.outer(np.cos(angle), rotor.element_radius()[0]) * math.cos(rotor.shaft_tilt)
-    height = rotor.hub_height + above
-    return np.asarray(power_law(1.0, height, rotor.hub_height, inflow.shear).mean(axis=0))
-
-
-def _parts(turbine: Turbine, physics: Physics, inflow: Inflow):  # type: ignore[no-untyped-def]
-    """The turbine as the compiled equations take it (whose module is slow to import)."""
-    from fe_drivetrain.hub_loads.turbine_air import Parts
-
-    rotor = turbine.rotor
-    radius, weight = rotor.element_radius()
-    along = (radius - turbine.blade_root) / (rotor.radius - turbine.blade_root)
-
-    modes = blade_modes(turbine)
-    own = 2.0 * math.pi * np.array([turbine.flap_frequency, turbine.edge_frequency])
-    mass = np.diag(modes.mass)
-    shape = [[np.interp(along, modes.place, f) for f in mode] for mode in modes.shape]
-
-    return Parts(
-        radius=radius,
-        weight=weight,
-        chord=rotor.chord(radius),
-        twist=rotor.twist(radius),
-        shape=np.array(shape),
-        lift_slope=rotor.lift_slope,
-        zero_lift=rotor.zero_lift_angle,
-        stall=rotor.stall_angle,
-        stall_width=rotor.stall_width,
-        drag=rotor.least_drag,
-        density=rotor.air_density,
-        tip_radius=rotor.radius,
-        tilt=rotor.shaft_tilt,
-        cone=turbine.cone,
-        gravity=rotor.gravity,
-        rotor_mass=rotor.rotor_mass,
-        first_moment=modes.first_moment,
-        rotor_inertia=turbine.rotor_inertia,
-        generator_inertia=turbine.generator_inertia,
-        force=modes.force,
-        moment=modes.moment,
-        products=modes.products,
-        stiffening=modes.stiffening,
-        stiffness=mass * own**2,
-        damping=2.0 * turbine.blade_damping * mass * own,
-        shaft_stiffness=turbine.shaft_stiffness,
-        shaft_damping=turbine.shaft_damping,
-        top_mass=turbine.top_mass,
-        tower_rate=2.0 * math.pi * turbine.tower_frequency,
-        tower_damping=turbine.tower_damping,
-        imbalance=turbine.mass_imbalance,
-        pitch_errors=np.array(turbine.pitch_errors, dtype=float),
-        blades_move=physics.blades,
-        tower_moves=physics.tower,
-        torsion=physics.torsion,
-        frozen=physics.wake == "frozen",
-        wind_speed=float(inflow.speed),
-        hub_height=rotor.hub_height,
-        shear=float(inflow.shear),
-        shadow=physics.shadow,
-        overhang=turbine.overhang,
-        tower_height=turbine.tower_height,
-        tower_foot=turbine.tower_foot,
-        tower_head=turbine.tower_head,
-    )
-
-
-def _control(controller: Controller, held: bool):  # type: ignore[no-untyped-def]
-    from fe_drivetrain.hub_loads.turbine_kernel import Control
-
-    tuning = controller.tuning
-    return Control(
-        optimal=controller.optimal,
-        slope=controller.slope,
-        origin=controller.torque_speed / (1.0 + SLIP),
-        cut_in=CUT_IN_SHARE * controller.torque_speed,
-        full=FULL_SHARE * controller.torque_speed,
-        transition=controller.transition,
-        torque_speed=controller.torque_speed,
-        rated_speed=controller.rated_speed,
-        rated_torque=controller.rated_torque,
-        rated_power=controller.rated_power,
-        constant_power=tuning.constant_power,
-        least_pitch=LEAST_PITCH,
-        proportional=controller.proportional,
-        integral=controller.integral,
-        doubling=controller.doubling,
-        filter=tuning.filter,
-        pitch_rate=tuning.pitch_rate,
-        torque_rate=tuning.torque_rate * controller.rated_torque,
-        held=held,
-    )

@@ -137,6 +137,8 @@ def read_recorded(
         if is_table
         else openfast_channels(file, wanted | LOAD_CHANNELS)
     )
+    for name in mapping.units:
+        _named(file, channels, name, why="the mapping states its unit")
     units = {name.lower(): unit for name, unit in mapping.units.items()}
     channels = {n: replace(c, unit=units.get(n, c.unit)) for n, c in channels.items()}
     named = {name: _named(file, channels, *mapping.column(name)) for name in mapping.channels}
@@ -388,12 +390,19 @@ def _header(file: Path) -> tuple[int, list[str]]:
     return before, [cell_as_given(title.strip()) for title in next(csv.reader([titles]), [])]
 
 
-def _named(file: Path, channels: Mapping[str, Channel], column: str, sign: float = 1.0) -> Channel:
+def _named(
+    file: Path,
+    channels: Mapping[str, Channel],
+    column: str,
+    sign: float = 1.0,
+    why: str = "",
+) -> Channel:
     found = channels.get(column.lower())
     if found is None:
         names = ", ".join(channel.name for channel in list(channels.values())[:12])
+        though = f", though {why}" if why else ""
         raise InputError(
-            f"hub loads '{file}': there is no channel '{column}'; it has {names}"
+            f"hub loads '{file}': there is no channel '{column}'{though}; it has {names}"
             + (" and others" if len(channels) > 12 else "")
         )
     if sign > 0.0:

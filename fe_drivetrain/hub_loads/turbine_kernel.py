@@ -31,6 +31,7 @@ from fe_drivetrain.hub_loads.turbine_air import (
     met_wind,
     wake_answers,
 )
+from fe_drivetrain.hub_loads.turbine_energy import ENERGIES, OF_PITCHING, WORKS, powers, stored
 from fe_drivetrain.hub_loads.wind import Singles
 
 
@@ -78,6 +79,8 @@ def moving(
     + FT g cos t sin psi + b (W^2 RX - FX g cos t cos psi);
     hub: m x'' + S FX q'' = thrust - tower; m y'' - S FT cos psi q'' = side - tower;
     J W' + S RT q'' = torque of air and weights less that of the shaft.
+
+    What they leave out of Lagrange's equations is in `turbine_energy`.
     """
     cos_tilt, sin_tilt = math.cos(parts.tilt), math.sin(parts.tilt)
     g, speed = parts.gravity, state[SPEED]
@@ -244,7 +247,8 @@ def run_turbine(
     wake: Floats,
     sample: float,
     steps: int,
-) -> tuple[Floats, Floats]:
+    accounted: bool,
+) -> tuple[Floats, Floats, Floats]:
     """Integrate by Runge and Kutta's fourth-order method.
 
     Parameters
@@ -265,6 +269,8 @@ def run_turbine(
         Between two samples [s].
     steps : int
         Of the integration in each.
+    accounted : bool
+        Whether to keep an account of the energy, whose works are integrated as the state is.
 
     Returns
     -------
@@ -273,6 +279,9 @@ def run_turbine(
     ndarray, (n, 4 + 20)
         Pitch [rad], torque of the generator [N m], power of the air [W], mean wind over the disc
         [m/s], the state.
+    ndarray, (n, 8 + 7)
+        What `stored` gives [J], and since the beginning the integrals of `powers` [J]; no rows
+        without an account.
     """
     count, rows, rings = turbulence.shape
     step = sample / steps
@@ -284,6 +293,9 @@ def run_turbine(
     sums = np.zeros((5, max(rings, 6)))
     loads, rate = np.zeros(6), np.zeros((4, STATES))
     free = np.zeros(rings)
+    books = np.zeros((count if accounted else 0, ENERGIES + WORKS))
+    works, power = np.zeros(WORKS), np.zeros((4, WORKS))
+    energy, pitched = np.zeros(ENERGIES), np.zeros(ENERGIES)
     filtered = state[GENERATOR]
     torque = asked_torque(control, filtered, pitch)
     whole = pitch
@@ -294,6 +306,8 @@ def run_turbine(
     for n in range(count):
         after = min(n + 1, count - 1)
         for part in range(steps):
+            if accounted:
+                stored(parts, state, pitch, energy)
             if not control.held:
                 # each step of the integral is scaled by itself, so that its sum is a pitch
                 filtered += smoothing * (state[GENERATOR] - filtered)
@@ -308,6 +322,10 @@ def run_turbine(
                 change = control.torque_rate * step
                 goal = asked_torque(control, filtered, pitch)
                 torque += min(max(goal - torque, -change), change)
+            if accounted:
+                stored(parts, state, pitch, pitched)
+                for j in range(ENERGIES):
+                    works[OF_PITCHING] += pitched[j] - energy[j]
             for stage in range(4):
                 part_of = 0.0 if stage == 0 else (1.0 if stage == 3 else 0.5)
                 share = (part + part_of) / steps
@@ -322,6 +340,8 @@ def run_turbine(
                 met_wind(parts, now, at[PSI], wind, waves)
                 blade_sums(parts, at, pitch, wind, wake, sums)
                 moving(parts, at, sums, pitch, torque, rate[stage], loads)
+                if accounted:
+                    powers(parts, at, rate[stage], sums, pitch, torque, power[stage])
                 for i in range(rings):
                     free[i] = parts.wind_speed * mean_shear[i] + now[0, i]
                 if stage == 0 and part == 0:
@@ -334,11 +354,20 @@ def run_turbine(
                         beside[n, 3] += free[i] * parts.weight[i] * parts.radius[i] / area
                     for j in range(STATES):
                         beside[n, 4 + j] = state[j]
+                    if accounted:
+                        for j in range(ENERGIES):
+                            books[n, j] = pitched[j]
+                        for j in range(WORKS):
+                            books[n, ENERGIES + j] = works[j]
             if not parts.frozen:  # with the loading at the end of the step
                 wake_answers(parts, at, sums, free, wake, step)
             for j in range(STATES):
                 twice = 2.0 * (rate[1, j] + rate[2, j])
                 state[j] += step / 6.0 * (rate[0, j] + twice + rate[3, j])
+            if accounted:
+                for j in range(WORKS):
+                    twice = 2.0 * (power[1, j] + power[2, j])
+                    works[j] += step / 6.0 * (power[0, j] + twice + power[3, j])
             if not math.isfinite(state[SPEED]) or state[SPEED] < 0.0:
-                return made[: n + 1], beside[: n + 1]
-    return made, beside
+                return made[: n + 1], beside[: n + 1], books[: n + 1]
+    return made, beside, books

@@ -120,7 +120,7 @@ class RatedBearing:
 
     @property
     def exponent(self) -> float:
-        """Of load to life: 3 for balls, 10/3 for rollers."""
+        """Exponent from load to life: 3 for balls, 10/3 for rollers."""
         return 3.0 if self.balls else 10.0 / 3.0
 
     @property

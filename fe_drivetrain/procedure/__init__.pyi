@@ -92,6 +92,7 @@ from .motions import element_torques as element_torques
 from .motions import motions_energy_error as motions_energy_error
 from .motions import periodic_motions as periodic_motions
 from .moving import Mounts as Mounts
+from .moving import moving_energy_error as moving_energy_error
 from .moving import moving_three_points as moving_three_points
 from .project import EvidenceLink as EvidenceLink
 from .project import Project as Project

@@ -21,10 +21,15 @@ from fe_drivetrain.procedure.project import (
     Project,
 )
 from fe_drivetrain.procedure.sensors import sampling_rates
-from fe_drivetrain.procedure.tolerances import is_guess, why_vacuous
+from fe_drivetrain.procedure.tolerances import WIDEST, is_guess, why_vacuous
 from fe_drivetrain.report.results import DrivetrainRecord, Results, Verdict
 
 Evidence = Mapping[Claim, Found]
+
+_NEEDED = "model.needs: tolerance"
+_ACCURACY = "campaign.signals: accuracy"
+_COMPARED = "comparison.quantities: tolerance"
+_DETERMINED = "comparison.identified: tolerance"
 
 
 @dataclass(frozen=True)
@@ -198,7 +203,7 @@ def _model(project: Project, evidence: Evidence) -> list[str]:
     lacks = [] if step.needs else ["no quantity decides the level: name one under needs"]
     own = [f for link in step.evidence if (f := evidence[Claim(link)]).record is not None]
     for need in step.needs:
-        if why := why_vacuous(f"the tolerance of {need.quantity!r}", need.tolerance):
+        if why := why_vacuous(f"the tolerance of {need.quantity!r}", need.tolerance, _NEEDED):
             lacks.append(why)
         found = [
             needed
@@ -220,7 +225,11 @@ def _model(project: Project, evidence: Evidence) -> list[str]:
             names = ", ".join(name for _, name in levels)
             lacks.append(f"level {step.level!r} is not on the ladder: use one of {names}")
         elif least is None:
-            lacks.append(f"no level is known to give {wanted}: refine the model, or ask for less")
+            lacks.append(
+                f"no level is known to give {wanted}: run its evidence again with a finer mesh, "
+                f"or under model.needs set tolerance above {need.tolerance:g} and below "
+                f"{WIDEST:.3g}"
+            )
         elif chosen < least:
             lacks.append(f"level {step.level!r} is too simple: {wanted} needs {levels[least][1]!r}")
     return lacks
@@ -265,7 +274,7 @@ def needed_of(
 
 
 def _of_ladder(values: Sequence[float | None], tolerance: float) -> int | None:
-    """As `dynamics.needed_level`: all finer levels are good enough, too."""
+    """The least level from which on all are good enough, as of `dynamics.needed_level`."""
     finest, least = values[-1], None
     for k in range(len(values) - 1, -1, -1):
         value = values[k]
@@ -276,7 +285,7 @@ def _of_ladder(values: Sequence[float | None], tolerance: float) -> int | None:
 
 
 def _of_advice(rows: Sequence[Mapping[str, Any]], tolerance: float) -> int | None:
-    """As the adviser chooses: statics decides, or difference and band of the last are small."""
+    """Choice of the adviser: statics decides, or difference and band of the last are small."""
     top = rows[-1]["estimate"]
     for k, row in enumerate(rows):
         if row["estimate"] == 0.0:
@@ -331,7 +340,7 @@ def _campaign(project: Project, measured: Measured) -> list[str]:
                 f"{signal.name!r} is sampled at {signal.rate:g} Hz, but {signal.highest:g} Hz need "
                 f"{least:g} Hz or more"
             )
-        if why := why_vacuous(f"the accuracy of {signal.name!r}", signal.accuracy):
+        if why := why_vacuous(f"the accuracy of {signal.name!r}", signal.accuracy, _ACCURACY):
             lacks.append(why)
     if step.capture is None:
         lacks.append("there is no capture matrix: add capture")
@@ -350,9 +359,11 @@ def _comparison(project: Project, measured: Measured) -> list[str]:
     lacks = []
     if not (step.quantities or step.identified):
         lacks.append("nothing is compared: add quantities or identified")
-    wide = {f"{one.channel}: {one.statistic}": one.tolerance for one in step.quantities}
-    wide |= {f"what {one.torque!r} determines": one.tolerance for one in step.identified}
-    lacks += filter(None, (why_vacuous(f"the tolerance of {k!r}", t) for k, t in wide.items()))
+    compared = [(f"{one.channel}: {one.statistic}", one.tolerance) for one in step.quantities]
+    determined = [(f"what {one.torque!r} determines", one.tolerance) for one in step.identified]
+    for wide, key in ((compared, _COMPARED), (determined, _DETERMINED)):
+        whys = (why_vacuous(f"the tolerance of {what!r}", share, key) for what, share in wide)
+        lacks += filter(None, whys)
     for one in step.identified:
         lacks += _other_inputs(project, one)
     lacks += measured.faults

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from fe_drivetrain.procedure.project import Inputs, InputValue, Project
-from fe_drivetrain.procedure.tolerances import is_guess, is_vacuous, why_vacuous
+from fe_drivetrain.procedure.tolerances import is_guess, is_vacuous, must_be_below, why_vacuous
 
 TABLE_4_7 = (
     "mass of blades",
@@ -27,6 +27,8 @@ TABLE_4_7 = (
     "damping of meshes",
 )
 """Inputs of a drivetrain's model, as Table 4.7 has them."""
+
+_BAND = "inputs.values: band"
 
 _ITS_SYSTEMS = frozenset({"gearbox", "drivetrain"})
 
@@ -102,7 +104,7 @@ def _of_spread(
             "campaign: add it there"
         ]
     if value.band is not None:
-        why = why_vacuous(f"the band of {value.name!r}", value.band)
+        why = why_vacuous(f"the band of {value.name!r}", value.band, _BAND)
         return [why] if why else []
     if not value.measured_by:
         return [
@@ -118,7 +120,11 @@ def _of_spread(
             f"{value.name!r} has no band yet: {value.measured_by!r} is to measure it, and {why}"
         ]
     if is_vacuous(spread):
-        return [f"{value.name!r}: {why_vacuous('the band that signals determine', spread)}"]
+        return [
+            f"{value.name!r}: the band of {100 * spread:.3g} % that {value.measured_by!r} leaves "
+            "says nothing: record it for longer or more accurately, or state the band of a "
+            f"document: {must_be_below(_BAND)}"
+        ]
     return []
 
 

@@ -41,7 +41,7 @@ _UNITS: Mapping[str, tuple[float, str]] = {
     for unit, size in sizes.items()
 }
 _UNEVEN = 1e-3
-"""Of the step: by how much a sample may be late in a history that counts as even."""
+"""Share of the step by which a sample may be late in a history that counts as even."""
 
 
 class ChannelFile(BaseModel):

@@ -12,7 +12,7 @@ from fe_drivetrain.common.errors import InputError
 
 @dataclass(frozen=True)
 class Decay:
-    """Of a free decay.
+    """Logarithmic decrement and frequency of a free decay.
 
     Attributes
     ----------

@@ -121,7 +121,7 @@ class Found:
 
     @property
     def link(self) -> EvidenceLink:
-        """As the project has it."""
+        """The link as the project has it."""
         return self.claim.link
 
     @property
@@ -137,7 +137,7 @@ class Found:
 
     @property
     def version(self) -> str:
-        """Of the program that ran it, with the beginning of the hash of its sources."""
+        """Version of the program that ran it, with the beginning of the hash of its sources."""
         if self.results is None:
             return ""
         made = self.results.environment
@@ -145,7 +145,7 @@ class Found:
 
     @property
     def logged(self) -> Evidence:
-        """As the log of the procedure keeps it."""
+        """The evidence as the log of the procedure keeps it."""
         worst, answer = self.worst, self.answer
         if answer is not None:
             return Evidence(self.link.case, answer.quantity, self.counts, answer.band or None)

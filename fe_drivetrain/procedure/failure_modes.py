@@ -17,7 +17,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import parse_mapping, read_text, validated
 
 Kind = Literal["ultimate", "fatigue", "contact", "rating", "interference", "constraint", "wear"]
-"""Of a load: what it is checked for."""
+"""Kind of a design load: what it is checked for."""
 
 ROTOR_TORQUE = "rotor torque"
 REVERSALS = "torque reversals"

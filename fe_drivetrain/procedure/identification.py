@@ -84,7 +84,7 @@ class Solutions:
         return np.asarray((self.inertia > 0.0) & (self.damping > 0.0))
 
     def medians(self, plausible: bool = False) -> tuple[float, float]:
-        """Of inertia and damping, of all or of plausible answers; NaN of none.
+        """Medians of inertia and damping, of all or of plausible answers; NaN of none.
 
         Parameters
         ----------

@@ -28,7 +28,7 @@ Analysis = Literal["extreme", "mean", "durations", "cycles", "peak", "rms", "rms
 worst root mean square of ten minutes, time at level of root mean squares."""
 
 LEVELS = 20
-"""Of durations."""
+"""Number of levels at which time is counted."""
 
 _SECOND = 1.0  # of a root mean square of which durations are taken
 

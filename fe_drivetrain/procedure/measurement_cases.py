@@ -52,7 +52,7 @@ class MeasurementCase(_Row):
         return self.corners[-1][0]
 
     def speed(self, time: Floats) -> Floats:
-        """Of the generator [rad/s].
+        """Speed of the generator [rad/s].
 
         Parameters
         ----------
@@ -63,7 +63,7 @@ class MeasurementCase(_Row):
         return np.asarray(np.interp(time, times, speeds * _RPM))
 
     def torque(self, time: Floats) -> Floats:
-        """Of the generator against the rotation, over the rated one.
+        """Torque of the generator against the rotation, over the rated one.
 
         Parameters
         ----------

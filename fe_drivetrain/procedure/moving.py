@@ -18,11 +18,11 @@ from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.dynamics.bodies import Body, assemble
-from fe_drivetrain.dynamics.equations import equations_of, varying
+from fe_drivetrain.dynamics.equations import Loads, equations_of, varying
 from fe_drivetrain.dynamics.integration import State
 from fe_drivetrain.dynamics.springs import Place, Spring, bushing
-from fe_drivetrain.dynamics.superposition import exact_steps
-from fe_drivetrain.dynamics.system import with_proportional_damping
+from fe_drivetrain.dynamics.superposition import energy_error, exact_steps
+from fe_drivetrain.dynamics.system import System, with_proportional_damping
 from fe_drivetrain.procedure.interface_loads import Body as TableBody
 from fe_drivetrain.procedure.interface_loads import Interface, LoadTable
 from fe_drivetrain.procedure.three_points import ThreePoints
@@ -106,41 +106,14 @@ def moving_three_points(
     InputError
         A mass is not above zero.
     """
-    at = places.positions
-    masses = (places.shaft_mass, places.gearbox_mass, places.generator_mass)
-    if min(masses) <= 0.0:
-        raise InputError(f"masses are {masses} kg but must be above 0 in motion: state them")
-    centres = places.centres
-    inertias = (mounts.shaft, mounts.gearbox, mounts.generator)
-    bodies = [
-        Body(name, tuple(centre), mass, polar, across)
-        for (name, centre), mass, (polar, across) in zip(
-            centres.items(), masses, inertias, strict=True
-        )
-    ]
-    springs, parts = _springs(places, mounts)
-    system = with_proportional_damping(assemble(bodies, springs), mounts.seconds)
-    own = np.array([0.0, 0.0, -GRAVITY if weight else 0.0])
-    step = float(time[1] - time[0])
-    arm = wrench_transport(at["hub"] - centres["shaft"])
-    patterns = np.zeros((18, 7))
-    patterns[:6, :6] = arm
-    patterns[:, 6] = system.gravity(own)
-    history = np.column_stack([hub, np.ones(len(time))])
-    start = np.linalg.solve(system.K, patterns @ history[0])
-    begin = np.arange(len(time)) * step
-    _, q, v = exact_steps(
-        equations_of(system),
-        varying(patterns, begin, history),
-        (len(time) - 1) * step,
-        step,
-        State(start, np.zeros(18), np.zeros(18)),
-    )
-    force = history @ patterns.T
+    at, centres = places.positions, places.centres
+    driven = _driven(places, mounts, time, hub, weight)
+    system, q, v = driven.system, driven.q, driven.velocity
+    force = driven.history @ driven.patterns.T
     a = np.linalg.solve(system.mass, (force - q @ system.K - v @ system.C).T).T
     stretch = q @ system.rows.T * system.stiffness + v @ system.rows.T * system.damping
     loads = {"hub": np.asarray(hub, dtype=np.float64)}
-    for name, rows in parts.items():
+    for name, rows in driven.parts.items():
         loads[name] = np.zeros((len(time), 6))
         for spring, direction in rows:
             loads[name] += stretch[:, [system.spring(spring)]] * direction
@@ -160,7 +133,7 @@ def moving_three_points(
             )
         )
     inertia = -a @ system.mass
-    inertia += patterns[:, 6]
+    inertia += driven.patterns[:, 6]
     return LoadTable(
         np.asarray(time, dtype=np.float64),
         tuple(interfaces),
@@ -171,7 +144,85 @@ def moving_three_points(
     )
 
 
+def moving_energy_error(
+    places: ThreePoints, mounts: Mounts, time: Floats, hub: Floats, weight: bool = True
+) -> float:
+    """Energy that appears from nowhere in the motion of `moving_three_points`, over the largest.
+
+    Work and losses are integrals over the given times, which must resolve the motion: give loads
+    that are interpolated between their samples where these are far apart.
+
+    Parameters
+    ----------
+    places, mounts : ThreePoints, Mounts
+        As for `moving_three_points`.
+    time, hub, weight : ndarray, ndarray, bool
+        As there.
+
+    Returns
+    -------
+    float
+        As of `fe_drivetrain.dynamics.energy_error`.
+
+    Raises
+    ------
+    InputError
+        A mass is not above zero.
+    """
+    driven = _driven(places, mounts, time, hub, weight)
+    equations = equations_of(driven.system)
+    return energy_error(equations, driven.loads, driven.loads.times, driven.q, driven.velocity)
+
+
 _Parts = dict[str, list[tuple[str, Floats]]]
+
+
+@dataclass(frozen=True, eq=False)
+class _Driven:
+    """Bodies on springs, what loads them, and how they move."""
+
+    system: System
+    parts: _Parts
+    patterns: Floats  # (18, 7), of the hub's six loads and of the weights
+    history: Floats  # (n, 7)
+    loads: Loads
+    q: Floats
+    velocity: Floats
+
+
+def _driven(
+    places: ThreePoints, mounts: Mounts, time: Floats, hub: Floats, weight: bool
+) -> _Driven:
+    """Exact motion under loads that are straight between samples."""
+    masses = (places.shaft_mass, places.gearbox_mass, places.generator_mass)
+    if min(masses) <= 0.0:
+        raise InputError(f"masses are {masses} kg but must be above 0 in motion: state them")
+    centres = places.centres
+    inertias = (mounts.shaft, mounts.gearbox, mounts.generator)
+    bodies = [
+        Body(name, tuple(centre), mass, polar, across)
+        for (name, centre), mass, (polar, across) in zip(
+            centres.items(), masses, inertias, strict=True
+        )
+    ]
+    springs, parts = _springs(places, mounts)
+    system = with_proportional_damping(assemble(bodies, springs), mounts.seconds)
+    own = np.array([0.0, 0.0, -GRAVITY if weight else 0.0])
+    step = float(time[1] - time[0])
+    patterns = np.zeros((18, 7))
+    patterns[:6, :6] = wrench_transport(places.positions["hub"] - centres["shaft"])
+    patterns[:, 6] = system.gravity(own)
+    history = np.column_stack([hub, np.ones(len(time))])
+    loads = varying(patterns, np.arange(len(time)) * step, history)
+    start = np.linalg.solve(system.K, patterns @ history[0])
+    _, q, v = exact_steps(
+        equations_of(system),
+        loads,
+        (len(time) - 1) * step,
+        step,
+        State(start, np.zeros(18), np.zeros(18)),
+    )
+    return _Driven(system, parts, patterns, history, loads, q, v)
 
 
 def _springs(places: ThreePoints, mounts: Mounts) -> tuple[list[Spring], _Parts]:

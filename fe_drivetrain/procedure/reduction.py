@@ -27,7 +27,7 @@ from fe_drivetrain.dynamics.system import System
 _KINDS = {"ux": "axial", "uy": "across", "uz": "across", "rx": "torsion"}
 _KINDS |= {"ry": "bending", "rz": "bending"}
 _DEPENDENT = 1e-10
-"""Of the largest singular value: below it a locked elongation follows from the others."""
+"""Share of the largest singular value below which a locked elongation follows from the others."""
 
 Signal = Callable[[Floats], Floats]
 """Samples of a signal by the basis of what still moves."""

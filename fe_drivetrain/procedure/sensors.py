@@ -15,7 +15,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 
 CLOCK = 32e6
-"""Of the counter that times pulses [Hz] (PROTEST 2010, p. 63)."""
+"""Frequency of the counter that times pulses [Hz] (PROTEST 2010, p. 63)."""
 
 
 @dataclass(frozen=True)

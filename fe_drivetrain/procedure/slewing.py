@@ -59,7 +59,7 @@ class SlewingDrive:
 
     @property
     def inertia(self) -> float:
-        """Of the whole, seen from the part [kg m^2]."""
+        """Inertia of part and drive together, seen from the part [kg m^2]."""
         return self.part + self.ratio**2 * self.drive
 
     @property

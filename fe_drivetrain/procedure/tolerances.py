@@ -23,6 +23,9 @@ WIDEST = (APART - 1.0) / (APART + 1.0)
 FARTHEST = 100.0
 """Ratio of a limit to the value from which on it is none of that load."""
 
+EXAMPLE = 0.05
+"""A share that says something, for sentences."""
+
 _GUESS = re.compile(
     r"\b(guess\w*|assum\w*|estimat\w*|unknown|unclear|tbd|tbc|n/?a|none|rule of thumb|experience)\b"
     r"|^\W*$",
@@ -42,7 +45,7 @@ def is_vacuous(share: float) -> bool:
     return not (1.0 + share) < APART * (1.0 - share)
 
 
-def why_vacuous(what: str, share: float) -> str:
+def why_vacuous(what: str, share: float, key: str) -> str:
     """That a tolerance says nothing, in a sentence; empty where it says something.
 
     Parameters
@@ -50,14 +53,30 @@ def why_vacuous(what: str, share: float) -> str:
     what : str
         As "accuracy of 'torque'".
     share : float
-        Of the value.
+        Half width over the value.
+    key : str
+        Place of the share in the project, as in "campaign.signals: accuracy".
     """
     if not is_vacuous(share):
         return ""
     return (
-        f"{what} of {100 * share:g} % says nothing: its ends are a factor of {APART:g} or more "
-        f"apart, as the effects of a sudden and of a slow load are: state less than "
-        f"{100 * WIDEST:.3g} %"
+        f"{what} of {100 * share:g} % says nothing, since {100 * (1 - share):g} to "
+        f"{100 * (1 + share):g} % of the right value would pass: {must_be_below(key)}"
+    )
+
+
+def must_be_below(key: str) -> str:
+    """The range that is allowed, and the key to set, as the end of a sentence.
+
+    Parameters
+    ----------
+    key : str
+        Place of the share in the project, as in "campaign.signals: accuracy".
+    """
+    section, _, name = key.partition(": ")
+    return (
+        f"it must be above 0 and below {100 * WIDEST:.3g} %: under {section} set {name} to less "
+        f"than {WIDEST:.3g}, for instance {name}: {EXAMPLE:g}"
     )
 
 

@@ -44,7 +44,7 @@ def environment(
 
 @lru_cache(maxsize=1)
 def _versions() -> dict[str, str]:
-    """Of the packages that are installed, read once: their files do not change under a program."""
+    """Versions of the installed packages, read once: their files do not change meanwhile."""
     found = {}
     for name in _PACKAGES:
         try:

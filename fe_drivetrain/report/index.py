@@ -218,13 +218,13 @@ def _rows(folder: Path, problems: Mapping[str, Problem]) -> Sequence[Row]:
 
 @lru_cache(maxsize=1024)
 def _read(file: Path, *_state: int) -> Results:
-    """As `read_results`, read once: a run of many cases writes its index after each of them."""
+    """Results of a file, read once: a run of many cases writes its index after each of them."""
     return read_results(file)
 
 
 @lru_cache(maxsize=1024)
 def _checks(name: str, file: Path, *state: int) -> Sequence[tuple[Verdict, Markup]]:
-    """As of `Row`, printed once, for the same reason: of some thousand checks few are new."""
+    """Checks as `Row` has them, printed once: of some thousand checks few are new."""
     results = _read(file, *state)
     template, quick = _listings().get_template("check.html"), results.environment.quick
     return [

@@ -67,7 +67,10 @@ class Verdict(_Result):
         description="half width of the numerical uncertainty of computed, in its unit; computed "
         "itself, or absent",
     )
-    of: str = Field(default="", description="hash of the drivetrain, where results state one")
+    of: str = Field(
+        default="",
+        description="hash of the drivetrain, where results state one, or none",
+    )
     passed: bool
 
 
@@ -230,7 +233,10 @@ class Figure(_Result):
     band: float | None = Field(
         default=None, ge=0, description="half width of its numerical uncertainty, in its unit"
     )
-    of: str = Field(default="", description="hash of the drivetrain, where results state one")
+    of: str = Field(
+        default="",
+        description="hash of the drivetrain, where results state one, or none",
+    )
     loads: tuple[str, ...] = Field(
         default=(), description="design loads, as the catalogue calls them, that it is a value of"
     )

@@ -391,7 +391,7 @@ def _local(mesh: Meridian) -> Ints:
 
 
 def _factored(mesh: Meridian, material: Material, n: int, held: Ints) -> Callable[[Floats], Floats]:
-    """As `harmonic_solver`, in forces and displacements of what other degrees of freedom follow."""
+    """A solver as of `harmonic_solver`, in the degrees of freedom that others follow."""
     _check_order(n)
     _check_held(mesh, n, held)
     target, coefficient = on_axis(mesh, n)

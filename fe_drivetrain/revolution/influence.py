@@ -379,7 +379,7 @@ def _loose(mesh: Meridian, n: int, held: Ints) -> Floats:
 
 
 def _pins(motions: Floats) -> Ints:
-    """As many degrees of freedom as there are motions, which stop these."""
+    """Degrees of freedom that stop the motions, one for each."""
     count = motions.shape[1]
     if not count:
         return np.empty(0, dtype=np.int64)

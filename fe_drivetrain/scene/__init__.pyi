@@ -35,3 +35,4 @@ from .scene import Scene as Scene
 from .scene import Spread as Spread
 from .scene import coarser_scene as coarser_scene
 from .units import unit_of_key as unit_of_key
+from .without_weight import weightless as weightless

@@ -1,3 +1,5 @@
+from .bearing_lives import LifeResult as LifeResult
+from .bearing_lives import life as life
 from .closed_forms import ForceErrors as ForceErrors
 from .closed_forms import LinearModel as LinearModel
 from .closed_forms import closed_form_errors as closed_form_errors
@@ -5,6 +7,7 @@ from .design_comparison import CompareResult as CompareResult
 from .design_comparison import Varied as Varied
 from .design_comparison import compare as compare
 from .level_errors import LevelErrors as LevelErrors
+from .life_options import LifeOptions as LifeOptions
 from .load_facts import LoadFacts as LoadFacts
 from .load_facts import hub_load_rows as hub_load_rows
 from .reaction_statistics import ReactionStatistics as ReactionStatistics

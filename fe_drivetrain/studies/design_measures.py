@@ -206,7 +206,7 @@ def sentence(found: Mapping[str, str | None], failures: Mapping[str, str], withi
 
 
 def _larger(errors: Sequence[Mapping[str, float]]) -> dict[str, float]:
-    """Of several, the error of largest size of each measure; NaN only where all are."""
+    """The largest of several errors of each measure, by size; NaN only where all are."""
     names = dict.fromkeys(name for own in errors for name in own)
     found = {}
     for name in names:

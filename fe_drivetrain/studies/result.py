@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -63,7 +64,7 @@ class Result(Found):
             "skipped": list(self.skipped),
             "assumptions": [one.model_dump(mode="json") for one in self.assumptions],
             "limits": [one.model_dump(mode="json") for one in self.limits],
-            "tables": _plain(self.tables),
+            "tables": _plain(self.all_tables()),
             "seed": self.seed,
             "times": dict(self.times),
         }
@@ -78,7 +79,7 @@ class Result(Found):
         Parameters
         ----------
         table : str
-            A key of `tables` that holds records.
+            A name of `all_tables` that holds records.
 
         Raises
         ------
@@ -92,11 +93,16 @@ class Result(Found):
         if not table:
             columns = ["quantity", "computed", "band", "unit"]
             return pd.DataFrame([one.model_dump() for one in self.figures], columns=columns)
-        rows = self.tables.get(table)
+        tables = self.all_tables()
+        rows = tables.get(table)
         if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
-            known = [name for name, value in self.tables.items() if isinstance(value, list)]
+            known = [name for name, value in tables.items() if isinstance(value, list)]
             raise InputError(f"{table!r} is no table: choose of {', '.join(known) or 'none'}")
         return pd.DataFrame(rows)
+
+    def all_tables(self) -> Mapping[str, Any]:
+        """Tables by name: those of the page, and of some studies longer ones."""
+        return self.tables
 
     def chart(self) -> Chart:
         """The chart that shows the answer, as its page has it."""

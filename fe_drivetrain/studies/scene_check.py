@@ -18,6 +18,7 @@ from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.studies.named_bearings import named_bearings
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.scene_description import checked_model, description
+from fe_drivetrain.studies.unused import catalogues_not_used
 from fe_drivetrain.suite.findings import Findings
 from fe_drivetrain.suite.records import Record
 
@@ -80,7 +81,10 @@ def check(
         The scene cannot be built or is a mechanism, or a bearing that it names is in no catalogue.
     """
     found, steps = Findings(), Steps(report)
-    misfits = [one.misfit for one in named_bearings(scene, catalogues, {}).values()]
+    named = named_bearings(scene, catalogues, {})
+    misfits = [one.misfit for one in named.values()]
+    for unused in catalogues_not_used(catalogues, {name: one.name for name, one in named.items()}):
+        found.note(unused)
     model = checked_model(steps, scene)
     found.about(scene)
     found.assume_all(left_out(scene))

@@ -29,6 +29,7 @@ from fe_drivetrain.response.stated import Stated, stated_reactions
 from fe_drivetrain.response.unit_loads import Response
 from fe_drivetrain.scene.left_out import left_out
 from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.scene.without_weight import weightless
 from fe_drivetrain.studies.closed_forms import ForceErrors, closed_form_errors, closed_form_rows
 from fe_drivetrain.studies.design_measures import DesignMeasures, design_measures
 from fe_drivetrain.studies.level_errors import (
@@ -51,7 +52,6 @@ from fe_drivetrain.studies.study_loads import (
     StudyLoads,
     given_loads,
     surrogate_loads,
-    weightless,
 )
 from fe_drivetrain.studies.tilt_secants import TiltSecant, secant_rows, tilt_secants
 from fe_drivetrain.suite.findings import Findings

@@ -25,15 +25,6 @@ from fe_drivetrain.scene.scene import Scene
 _QUICK_SEEDS = 1
 
 
-def weightless(scene: Scene) -> Scene:
-    """The scene without the weights that it states; those of its parts come with gravity."""
-    change = {
-        "gearbox": scene.gearbox.model_copy(update={"weight": 0.0}),
-        "load_points": tuple(p.model_copy(update={"weight": 0.0}) for p in scene.load_points),
-    }
-    return scene.model_copy(update=change)
-
-
 @dataclass(frozen=True)
 class StudyLoads:
     """Hub-load histories, and what they are.

@@ -136,7 +136,7 @@ def all_cases() -> dict[str, Case]:
 
 @cache
 def _found() -> Mapping[str, Case]:
-    """As `all_cases`, read once: a run of many cases asks for them around each."""
+    """All cases, read once: a run of many cases asks for them around each."""
     package = "fe_drivetrain.cases"  # found by its name: the suite does not build on the cases
     spec = importlib.util.find_spec(package)
     places = list(spec.submodule_search_locations or ()) if spec else []

@@ -126,7 +126,7 @@ class Checks:
             self.meets(series.last[target.key], target, band, of)
 
     def settled(self, series: MeshSeries, *targets: Target, of: str = "") -> None:
-        """As `finest`, but the band is the change from the mesh before.
+        """Check the finest mesh as `finest` does, but the band is the change from the mesh before.
 
         For what has no steady order of convergence, as the largest error of a field.
         """

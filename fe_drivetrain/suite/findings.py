@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -21,6 +22,10 @@ from fe_drivetrain.suite.targets import split_unit
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.seal import Described
+
+
+OF_NONE = "none"
+"""Stands for the hash of a drivetrain where a check is of a model that no file describes."""
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -165,6 +170,24 @@ class Findings(Checks):
         self._of = self.concerns(drivetrain, name)
         if isinstance(drivetrain, Scene):
             self.scene = scene_text(drivetrain)
+
+    @contextmanager
+    def of(self, drivetrain: Described | None, name: str = "") -> Iterator[None]:
+        """Let checks and answers within be of another drivetrain than those around them.
+
+        Parameters
+        ----------
+        drivetrain : Described or None
+            As for `about`; None of a model that no file describes, as one that a source prints.
+        name : str
+            As the results call it, where they are of several.
+        """
+        outside = self._of
+        self._of = OF_NONE if drivetrain is None else self.concerns(drivetrain, name)
+        try:
+            yield
+        finally:
+            self._of = outside
 
     def concerns(self, drivetrain: Described, name: str = "") -> str:
         """State one of several drivetrains that the results compare; its hash.

@@ -190,7 +190,7 @@ class PlanetaryStage(_Stage):
 
     @property
     def windings(self) -> tuple[float, float]:
-        """Of a planet's meshes with ring and sun, about its axis, for each turn of the carrier.
+        """Windings of a planet's meshes with ring and sun about its axis, per turn of the carrier.
 
         The line of action moves by a cos(alpha_w), which is the difference of the base radii of
         ring and planet in the one mesh and the sum of those of planet and sun in the other,
@@ -201,7 +201,7 @@ class PlanetaryStage(_Stage):
 
     @property
     def planet_speed(self) -> float:
-        """Of a planet (in a frame that does not turn) to the carrier, negative."""
+        """Speed of a planet, in a frame that does not turn, over the carrier's; negative."""
         return -self.windings[0]
 
 
@@ -296,7 +296,7 @@ class Drivetrain(Part):
 
     @property
     def speeds(self) -> tuple[float, ...]:
-        """Of each shaft, over the rotor's."""
+        """Speed of each shaft over the rotor's."""
         speeds = [1.0]
         for stage in self.stages:
             speeds.append(speeds[-1] * stage.speed_ratio)

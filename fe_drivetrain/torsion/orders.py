@@ -22,7 +22,7 @@ class Geared(Protocol):
 
     @property
     def speed_ratio(self) -> float:
-        """Of the output over the input."""
+        """Speed of the output over that of the input."""
 
 
 @dataclass(frozen=True)

@@ -105,7 +105,7 @@ class Torsional:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the inertias, in their order."""
+        """Names of the inertias, in their order."""
         return tuple(part.name for part in self.inertias)
 
     @property

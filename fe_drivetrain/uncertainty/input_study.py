@@ -284,7 +284,7 @@ def _errors(
     soft: Mapping[str, Samples],
     advices: Sequence[Advice],
 ) -> dict[str, ModelError]:
-    """Of each number: distance to the top where that was run, else between bounds."""
+    """Error of each number: distance to the top where that was run, else between bounds."""
     if level == 1:
         other, named = condensed_shaft(scene, 2), "the change from beam to meridian"
     else:

@@ -15,6 +15,7 @@ from . import exact_shafts as exact_shafts
 from . import extreme_parts as extreme_parts
 from . import faulty_meshes as faulty_meshes
 from . import fillet_factors as fillet_factors
+from . import filleted_shafts as filleted_shafts
 from . import fingerprints as fingerprints
 from . import folded_meshes as folded_meshes
 from . import growing_shafts as growing_shafts

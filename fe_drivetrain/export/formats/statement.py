@@ -18,6 +18,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import unreadable
+from fe_drivetrain.common.stiffness_bands import KINDS, StiffnessBands
 from fe_drivetrain.export.superelement import FRAME, UNITS, Origin, Superelement
 
 _WIDTH = 78
@@ -38,7 +39,7 @@ def statement(element: Superelement) -> dict[str, str]:
         "units": UNITS,
         "degrees_of_freedom": f"{' '.join(MOTIONS)} of each point, in this order",
         "supports": "in the stiffness" if element.supported else "none: the body is free",
-        "band": "not known" if element.band is None else f"{element.band!r} of the stiffness",
+        "band": "not known" if element.band is None else f"{element.band} of the stiffness",
     }
     for number, (name, position) in enumerate(zip(element.points, element.positions, strict=True)):
         x, y, z = position.tolist()
@@ -92,7 +93,7 @@ def element_of(
     """
     try:
         points, positions = _points(entries)
-        band = None if entries["band"] == "not known" else float(entries["band"].split()[0])
+        band = _band(entries["band"])
         supported = {"in the stiffness": True, "none: the body is free": False}[entries["supports"]]
         keys = ("scene", "scene hash", "level", "mesh", "program")
         return Superelement(
@@ -113,6 +114,17 @@ def element_of(
         raise InputError(f"{path} is no superelement: {error}") from error
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
+
+
+def _band(stated: str) -> StiffnessBands | None:
+    """The band that is stated; earlier files have one number for all."""
+    if stated == "not known":
+        return None
+    words = stated.replace(",", "").split()
+    if words[0] not in KINDS:
+        return StiffnessBands.alike(float(words[0]))
+    found = dict(zip(words[::2], words[1::2], strict=False))
+    return StiffnessBands(*(float(found[kind]) for kind in KINDS))
 
 
 def _points(entries: Mapping[str, str]) -> tuple[tuple[str, ...], Floats]:

@@ -145,7 +145,7 @@ def read_summary(path: str | Path) -> SummaryFile:
 def _unit(bounds: UnitBounds) -> UnitFile:
     soft, stiff = unit_numbers(bounds.soft), unit_numbers(bounds.stiff)
     # a mesh makes the solid too stiff, never too soft
-    found = {name: (soft[name] / (1.0 + bounds.mesh), stiff[name]) for name in soft}
+    found = {name: (soft[name] / (1.0 + bounds.mesh.largest), stiff[name]) for name in soft}
     tilt, yaw = (pair if any(pair) else None for pair in (found.pop("tilt"), found.pop("yaw")))
     return UnitFile(tilt=tilt, yaw=yaw, **found)
 

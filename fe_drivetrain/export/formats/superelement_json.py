@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal, Self, TypeVar
+from typing import Annotated, Any, Literal, Self, TypeVar
 
 import numpy as np
 from pydantic import (
     AfterValidator,
     BaseModel,
     ConfigDict,
+    Discriminator,
     Field,
+    Tag,
     ValidationError,
     model_validator,
 )
@@ -20,6 +22,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import fault_sentence, unreadable
 from fe_drivetrain.common.regular_files import text_of
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
+from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.export.superelement import FRAME, UNITS, Origin, Superelement
 
@@ -59,11 +62,31 @@ class OriginFile(_File):
     program: str
 
 
+class BandFile(_File):
+    """Half widths of the bands of a stiffness, relative, by kind of motion."""
+
+    axial: Number = Field(description="along x")
+    torsion: Number = Field(description="about x")
+    bending: Number = Field(description="along and about y and z")
+
+
+def _form_of_band(stated: Any) -> str:
+    return "[by kind]" if isinstance(stated, dict | BandFile) else "float"
+
+
+# messages leave these marks out of keys, see `reading.fault_sentence`
+Band = Annotated[
+    Annotated[Number, Tag("float")] | Annotated[BandFile, Tag("[by kind]")],
+    Discriminator(_form_of_band),
+]
+"""By kind of motion, or of earlier files one number for all."""
+
+
 class SuperelementFile(_File):
     """The content of a superelement's JSON file."""
 
     kind: Literal["superelement"] = "superelement"
-    schema_version: Literal[1] = 1
+    schema_version: Literal[1, 2] = 2
     name: str
     frame: str = FRAME
     units: str = UNITS
@@ -80,7 +103,10 @@ class SuperelementFile(_File):
         default=None, description="motions for unit forces; null where something is free to move"
     )
     mass: Rows | None
-    band: Number | None = Field(description="uncertainty of the stiffness, relative")
+    band: Band | None = Field(
+        description="uncertainty of the stiffness, of an entry relative to the roots of the "
+        "diagonal entries of its row and column; version 1 has one number for all"
+    )
     checks: dict[str, float] = Field(description="of the stiffness, with a unit diagonal")
     origin: OriginFile
 
@@ -110,7 +136,7 @@ def content_of(element: Superelement) -> SuperelementFile:
         stiffness=element.stiffness.tolist(),
         compliance=_compliance(element),
         mass=None if element.mass is None else element.mass.tolist(),
-        band=element.band,
+        band=None if element.band is None else BandFile(**vars(element.band)),
         checks=element.checks(),
         origin=OriginFile(**vars(element.origin)),
     )
@@ -131,9 +157,15 @@ def element_of(content: SuperelementFile) -> Superelement:
         np.array(content.stiffness),
         None if content.mass is None else np.array(content.mass),
         content.supported,
-        content.band,
+        _band(content.band),
         Origin(**content.origin.model_dump()),
     )
+
+
+def _band(stated: float | BandFile | None) -> StiffnessBands | None:
+    if isinstance(stated, BandFile):
+        return StiffnessBands(**stated.model_dump())
+    return None if stated is None else StiffnessBands.alike(stated)
 
 
 def write(path: Path, element: Superelement) -> None:

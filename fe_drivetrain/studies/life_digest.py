@@ -1,4 +1,4 @@
-"""What the page of ``life`` needs of one bearing under one file, in little memory."""
+"""What a life needs of one bearing under one file, in little memory."""
 
 from __future__ import annotations
 
@@ -11,14 +11,13 @@ import numpy as np
 
 from fe_drivetrain.bearing.answers import race_pressures
 from fe_drivetrain.bearing.geometry import RollerRow
-from fe_drivetrain.commands.life_assumed import ratios, what_ifs
-from fe_drivetrain.commands.life_bearings import Choices, OneBearing
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.made_by import file_digest, program_hash
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.hub_loads.channel_map import ChannelMap
+from fe_drivetrain.hub_loads.histories import MIN_SAMPLES
 from fe_drivetrain.hub_loads.recorded import read_recorded
 from fe_drivetrain.hub_loads.turbines import vertical_forces
 from fe_drivetrain.life.limits import Limits, check_speed
@@ -27,9 +26,12 @@ from fe_drivetrain.life.steps import Steps
 from fe_drivetrain.response.cached import whole_content
 from fe_drivetrain.response.entering import entering
 from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.studies.life_assumptions import ratios, what_ifs
+from fe_drivetrain.studies.rolling_bearings import Choices, OneBearing
+from fe_drivetrain.studies.unused import RPM, own_speeds, require_samples
 
 WINDOWS = 60
-"""Of a file, over which the damage map follows the time."""
+"""Parts of a file, over which the damage map follows the time."""
 
 MOST = 512
 """Steps at a time, at most."""
@@ -80,8 +82,10 @@ class LifeDigest:
         outer race [Pa].
     vertical : tuple of float
         Mean and standard deviation of Fz at the hub [N].
+    own_speeds : Floats
+        (2,) least and largest rotor speed that the file states [1/min]; NaN where it has none.
     ratios : Floats
-        Damage with other values of what was assumed, see `fe_drivetrain.commands.life_assumed`.
+        Damage with other values of what was assumed, see `fe_drivetrain.studies.life_assumptions`.
     """
 
     damage: Damage
@@ -94,6 +98,7 @@ class LifeDigest:
     over_time: Floats
     worst: Floats
     vertical: tuple[float, float]
+    own_speeds: Floats
     ratios: Floats
 
 
@@ -172,12 +177,12 @@ def digest(
     Raises
     ------
     InputError
-        The file cannot be read, or has no rotor speed.
+        The file cannot be read, has no rotor speed, or too few samples are taken.
     """
     found = read_recorded(file, reading.names, reading.skip)
     history = found.history
     if found.rotor_speed is not None:
-        speed = found.rotor_speed * 30.0 / np.pi
+        speed = found.rotor_speed * RPM
     elif reading.rotor_speed is not None:
         speed = np.full(len(history), reading.rotor_speed)
     else:
@@ -185,6 +190,7 @@ def digest(
             f"hub loads '{file}': there is no rotor speed, by which lives count turns: give "
             "--rotor-speed in 1/min, or --channel 'rotor speed=COLUMN'"
         )
+    require_samples(file, len(history), reading.every, MIN_SAMPLES)
     loads, speed = entering(scene, history)[:: reading.every], speed[:: reading.every]
     check_speed(one.rated, speed)
     n = len(loads)
@@ -199,7 +205,12 @@ def digest(
     wind = np.nan if found.wind_speed is None else float(found.wind_speed.mean())
     made = sums.digest(wind, float(np.abs(speed).mean()), float(n))
     changed = ratios(one, rules, what_ifs(one, rules, choices), loads, speed, sums.weights)
-    return replace(made, vertical=vertical_forces([history])[history.name], ratios=changed)
+    return replace(
+        made,
+        vertical=vertical_forces([history])[history.name],
+        own_speeds=own_speeds(found.rotor_speed),
+        ratios=changed,
+    )
 
 
 def kept_digest(
@@ -212,7 +223,7 @@ def kept_digest(
     choices: Choices,
     resume: bool,
 ) -> LifeDigest:
-    """As `digest`, or what an earlier run kept where that is asked for.
+    """The digest of a bearing under a file, or what an earlier run kept where that is asked for.
 
     Parameters
     ----------
@@ -299,12 +310,13 @@ class _Sums:
             np.stack(self.windows),
             self.worst,
             (np.nan, np.nan),
+            own_speeds(None),
             np.zeros(0),
         )
 
 
 def worse(mine: Floats, its: Floats) -> Floats:
-    """Of each row the roller with the higher pressure, (rows, 2, laminae) [Pa]."""
+    """The roller of each row with the higher pressure, (rows, 2, laminae) [Pa]."""
     higher = its.max(axis=(1, 2)) > mine.max(axis=(1, 2))
     return np.where(higher[:, None, None], its, mine)
 
@@ -337,6 +349,7 @@ def as_arrays(found: LifeDigest) -> dict[str, Floats]:
         "over time": found.over_time,
         "worst": found.worst,
         "vertical": np.array(found.vertical),
+        "own speeds": found.own_speeds,
         "ratios": found.ratios,
     }
 
@@ -366,5 +379,6 @@ def from_arrays(kept: Mapping[str, Floats]) -> LifeDigest:
         kept["over time"],
         kept["worst"],
         (float(kept["vertical"][0]), float(kept["vertical"][1])),
+        kept["own speeds"],
         kept["ratios"],
     )

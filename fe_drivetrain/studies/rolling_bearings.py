@@ -48,8 +48,10 @@ class Choices:
         Catalogue files of the user.
     profiled : bool
         Rollers have the standard's profile where their entry has none.
-    support, rings : str
-        See `SUPPORTS` and `RINGS_OF`.
+    support : str or float
+        One of `SUPPORTS`, or K_R of springs [N m/rad].
+    rings : str
+        One of `RINGS_OF`.
     weight : bool
         Whether the weight of gearbox and shaft counts.
     only : str or None
@@ -61,7 +63,7 @@ class Choices:
     named: Mapping[str, str]
     catalogues: Sequence[Path]
     profiled: bool
-    support: str
+    support: str | float
     rings: str
     weight: bool
     only: str | None = None
@@ -223,7 +225,7 @@ def _profile(entry: Entry, profiled: bool) -> dict[str, Any]:
     return {"crown": PROFILE[entry.kind]}
 
 
-def _stiffness(support: str) -> float | None:
+def _stiffness(support: str | float) -> float | None:
     if support in SUPPORTS:
         return None if support == "rollers" else PINNED
     try:

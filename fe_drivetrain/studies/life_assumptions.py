@@ -13,14 +13,14 @@ from math import floor, log10
 
 import numpy as np
 
-from fe_drivetrain.bearing.geometry import Bearing
-from fe_drivetrain.commands.life_bearings import PROFILE, Choices, OneBearing
+from fe_drivetrain.bearing.geometry import Bearing, largest_clearance
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.hub_loads.point_loads import PointLoads
 from fe_drivetrain.life.lubricants import GRADES, SUPPLIES
 from fe_drivetrain.life.rated import RatedBearing
 from fe_drivetrain.life.roller_damage import LifeRules, damage_of_steps
 from fe_drivetrain.life.steps import Steps
+from fe_drivetrain.studies.rolling_bearings import PROFILE, Choices, OneBearing
 
 PLAYED = 1.0 / 4000.0
 """Clearance to compare with over the pitch diameter: 0.2 mm at 0.8 m. A size of what bearings have
@@ -60,6 +60,23 @@ class WhatIf:
     instead: str
     rated: RatedBearing
     rules: LifeRules
+
+
+@dataclass(frozen=True)
+class Assumption:
+    """Something that was not stated, and the life with another value of it.
+
+    Attributes
+    ----------
+    assumed, instead : str
+        What is taken though nobody stated it, and what it is compared with.
+    years : float
+        L10mr with that [years].
+    """
+
+    assumed: str
+    instead: str
+    years: float
 
 
 def what_ifs(one: OneBearing, rules: LifeRules, choices: Choices) -> tuple[WhatIf, ...]:
@@ -162,39 +179,54 @@ def sampled(weights: Floats) -> tuple[Ints, Floats]:
     return steps, drawn * whole[-1] / count / weights[steps]
 
 
-def in_words(name: str, life: str, changed: Sequence[tuple[WhatIf, str, float]]) -> str | None:
+def in_words(name: str, years: float, assumptions: Sequence[Assumption]) -> str | None:
     """The assumptions that matter for a life, the most severe first, as a sentence.
 
     Parameters
     ----------
-    name, life : str
-        Name of the bearing, and its L10mr in words.
-    changed : sequence of tuple
-        Assumption, the life that it is compared with in words, and its ratio to the life.
+    name : str
+        Name of the bearing.
+    years : float
+        Its L10mr [years].
+    assumptions : sequence of Assumption
+        What was not stated, with the life that it is compared with.
 
     Returns
     -------
     sentence : str or None
-        None where no change is more than 5 %.
+        None where no change is more than 5 %, or the life has no end.
     """
+    if np.isinf(years):
+        return None
     matter = sorted(
-        (one for one in changed if abs(one[2] - 1.0) > NEGLIGIBLE), key=lambda one: one[2]
+        (one for one in assumptions if abs(one.years / years - 1.0) > NEGLIGIBLE),
+        key=lambda one: one.years,
     )
     if not matter:
         return None
-    parts = [f"{one.assumed} ({one.instead}: {other})" for one, other, _ in matter]
+    parts = [
+        f"{one.assumed} ({one.instead}: {in_years(float(f'{one.years:.2g}'))})" for one in matter
+    ]
     return (
-        f"Bearing {name}: its L10mr of {life} holds for what was not stated and is taken as "
-        f"follows, in brackets what it would be with another value: {'; '.join(parts)}."
+        f"Bearing {name}: its L10mr of {in_years(years)} holds for what was not stated and is "
+        "taken as follows, in brackets what it would be with another value: "
+        f"{'; '.join(parts)}."
     )
+
+
+def in_years(value: float) -> str:
+    """A life [years] in words."""
+    if np.isinf(value):
+        return "without end"
+    return f"{value:,.0f} years" if value >= 1000.0 else f"{value:.3g} years"
 
 
 def _of_clearance(one: OneBearing, rules: LifeRules) -> Iterator[WhatIf]:
     if "clearance" in one.entry.model_fields_set:
         return
     bearing = one.rated.bearing
-    most = 0.01 * min(row.diameter for row in bearing.rows)
-    play = _rounded(min(PLAYED * one.rated.pitch_diameter, most))
+    most = min(largest_clearance(row) for row in bearing.rows)
+    play = min(_rounded(PLAYED * one.rated.pitch_diameter), most)
     yield _changed(
         one,
         rules,

@@ -1,0 +1,245 @@
+"""Rating lives of the rolling bearings of a scene under load histories: ISO 281 and ISO/TS 16281.
+
+Each load step is brought to equilibrium with shaft and rollers; damage adds up step by step and
+file by file, so that memory does not grow with the length of histories, and little with their
+number.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from itertools import islice
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+
+from fe_drivetrain.common.jobs import mapped
+from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.common.steps import Steps
+from fe_drivetrain.histories.sites import Site
+from fe_drivetrain.hub_loads.recorded import recorded_files
+from fe_drivetrain.life.roller_damage import KINDS, LifeRules
+from fe_drivetrain.report.charts import bars
+from fe_drivetrain.report.results import Chart
+from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.scene.without_weight import weightless
+from fe_drivetrain.studies.life_digest import kept_digest
+from fe_drivetrain.studies.life_findings import answers, assumptions, cautions, checks
+from fe_drivetrain.studies.life_options import LifeOptions
+from fe_drivetrain.studies.life_sums import BearingLife, BearingSums
+from fe_drivetrain.studies.life_tables import limit_rows, long_tables, result_tables
+from fe_drivetrain.studies.result import Result
+from fe_drivetrain.studies.rolling_bearings import bearings_of
+from fe_drivetrain.suite.findings import Findings
+
+_MANY = 8  # files, each of every bearing, for which it pays to start processes
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class LifeResult(Result):
+    """Lives of bearings, what takes them, and where the methods end.
+
+    ``result.bearings["front"].years["L10mr"]`` is a life. Tables by file, wind, place of the
+    rollers and lamina are those of `to_frame` with "files", "winds", "places" and "laminae"; they
+    are in the JSON, too.
+
+    Attributes
+    ----------
+    bearings : Mapping[str, BearingLife]
+        Life by bearing, in the scene's order.
+    site : Site or None
+        Whose winds are weighted; None where files follow each other for ever.
+    rules : LifeRules
+        Choices that change lives.
+    """
+
+    STUDY: ClassVar[str] = "life"
+
+    bearings: Mapping[str, BearingLife]
+    site: Site | None
+    rules: LifeRules
+
+    @property
+    def lives(self) -> tuple[BearingLife, ...]:
+        """Lives of all bearings."""
+        return tuple(self.bearings.values())
+
+    def all_tables(self) -> Mapping[str, Any]:
+        """Tables of the page, and those by file, wind, place of the rollers and lamina."""
+        return {**self.tables, **long_tables(self.lives)}
+
+    def chart(self) -> Chart:
+        """Lives of all bearings, of each kind; those without end are left out."""
+        ending = {
+            kind: [life for life in self.lives if np.isfinite(life.years[kind])] for kind in KINDS
+        }
+        groups = {
+            kind: {life.name: life.years[kind] for life in lives} for kind, lives in ending.items()
+        }
+        least = min((v for values in groups.values() for v in values.values()), default=1.0)
+        caption = "Lives of the bearings"
+        if any(life.bands["L10mr"] is not None for life in self.lives):
+            caption += ", ± two standard errors of files of the same wind"
+        found = bars(caption, groups, "life [years]", least=least)
+        for trace, (kind, lives) in zip(found.figure["data"], ending.items(), strict=True):
+            bands = [life.bands[kind] or 0.0 for life in lives]
+            trace["error_x"] = {"type": "data", "array": bands, "thickness": 1.2}
+        return found
+
+
+def life(
+    scene: Scene,
+    files: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
+    site: Site | None = None,
+    options: LifeOptions | None = None,
+    *,
+    resume: bool = False,
+    report: Progress = silent,
+) -> LifeResult:
+    """Rating lives of a scene's rolling bearings under hub loads.
+
+    Parameters
+    ----------
+    scene : Scene
+        The drivetrain.
+    files : str, path, or sequence of these
+        Hub loads: files (.out, .outb of OpenFAST, or .csv), folders, or patterns as
+        "outputs/*.outb".
+    site : Site or None
+        Whose winds weight the files; without one they follow each other for ever.
+    options : LifeOptions or None
+        Bearings, lubricant, models and how files are read; None takes all defaults.
+    resume : bool
+        Take what an earlier run of the same program has done with the same files and options.
+    report : Progress
+        Called with the name of each step as it begins.
+
+    Raises
+    ------
+    InputError
+        The scene has no rolling bearing or an unknown one, a file cannot be read, or a site is
+        given and files have no wind speed.
+    """
+    asked = LifeOptions() if options is None else options
+    patterns = [files] if isinstance(files, str | os.PathLike) else files
+    paths = recorded_files([os.fspath(pattern) for pattern in patterns])
+    report("bearings")
+    drivetrain = DrivetrainBearings(scene, asked)
+    return lives_under(drivetrain, paths, site, resume=resume, report=report)
+
+
+class DrivetrainBearings:
+    """A drivetrain whose rolling bearings are ready for lives.
+
+    Parameters
+    ----------
+    scene : Scene
+        The drivetrain.
+    options : LifeOptions
+        What is asked for.
+
+    Attributes
+    ----------
+    scene : Scene
+        The drivetrain, without its weight where that is asked for.
+    options : LifeOptions
+        What is asked for.
+    bearings : list of OneBearing
+        Its bearings, or the one that is asked for.
+
+    Raises
+    ------
+    InputError
+        The scene has no rolling bearing or an unknown one.
+    """
+
+    def __init__(self, scene: Scene, options: LifeOptions) -> None:
+        self.scene = scene if options.weight else weightless(scene)
+        self.options = options
+        self.bearings = bearings_of(self.scene, options.choices)
+
+
+def lives_under(
+    drivetrain: DrivetrainBearings,
+    files: Sequence[Path],
+    site: Site | None,
+    *,
+    resume: bool = False,
+    report: Progress = silent,
+) -> LifeResult:
+    """Rating lives of bearings that are ready, under hub loads; see `life`.
+
+    Parameters
+    ----------
+    drivetrain : DrivetrainBearings
+        The drivetrain.
+    files : sequence of Path
+        Hub loads, each of one file.
+    site : Site or None
+        Whose winds weight the files.
+    resume : bool
+        Take what an earlier run has done.
+    report : Progress
+        Called with the name of each step as it begins.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read, or a site is given and files have no wind speed.
+    """
+    found, steps = Findings(), Steps(report)
+    asked = drivetrain.options
+    found.seed = None
+    found.about(drivetrain.scene)
+    with steps.step("load steps"):
+        lives = list(_lives(drivetrain, files, site, resume, report))
+    answers(found, lives, asked.rules, site)
+    cautions(found, drivetrain.scene, lives, asked, limit_rows(lives))
+    assumptions(found, lives, asked)
+    checks(found, lives)
+    for name, table in result_tables(lives).items():
+        found.data(name, table)
+    return LifeResult(
+        bearings={one.name: one for one in lives},
+        site=site,
+        rules=asked.rules,
+        **found.frozen(steps.times, **_stated(files, site, asked)),
+    )
+
+
+def _lives(
+    drivetrain: DrivetrainBearings,
+    files: Sequence[Path],
+    site: Site | None,
+    resume: bool,
+    report: Progress,
+) -> Iterator[BearingLife]:
+    """Lives of bearings one after the other; digests of files are added up as they come."""
+    options, scene = drivetrain.options, drivetrain.scene
+    rules, choices, reading = options.rules, options.choices, options.reading
+    items = [
+        (file, one, rules, reading, scene, choices, resume)
+        for one in drivetrain.bearings
+        for file in files
+    ]
+    made = mapped(kept_digest, items, len(items) if len(items) >= _MANY else 1, report)
+    for one in drivetrain.bearings:
+        sums = BearingSums(one, site)
+        for file, digest in zip(files, islice(made, len(files)), strict=True):
+            sums.add(file, digest)
+        yield sums.life(rules, choices)
+
+
+def _stated(files: Sequence[Path], site: Site | None, options: LifeOptions) -> dict[str, Any]:
+    """What was asked for, as plain data."""
+    asked = {name: getattr(options, name) for name in vars(options)}
+    channels = options.channels
+    return asked | {
+        "catalogues": [Path(path).name for path in options.catalogues],
+        "channels": None if channels is None else channels.model_dump(mode="json"),
+        "files": [file.name for file in files],
+        "site": None if site is None else asdict(site),
+    }

@@ -1,0 +1,276 @@
+"""What lives say in sentences: answer, cautions, assumptions and checks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from fe_drivetrain.histories.sites import Site
+from fe_drivetrain.hub_loads.turbines import different_turbines
+from fe_drivetrain.life.limits import centrifugal_load
+from fe_drivetrain.life.reference_life import RINGS
+from fe_drivetrain.life.roller_damage import LifeRules
+from fe_drivetrain.procedure.failure_modes import TORQUE_AND_BENDING
+from fe_drivetrain.report.answer import value_with_band
+from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.studies.life_assumptions import in_words, in_years
+from fe_drivetrain.studies.life_options import LifeOptions
+from fe_drivetrain.studies.life_sums import BearingLife, row_names, scatter
+from fe_drivetrain.studies.rolling_bearings import rollers_in_words
+from fe_drivetrain.studies.unused import choices_not_used, speed_not_used
+from fe_drivetrain.suite.findings import Findings
+from fe_drivetrain.suite.records import Record
+
+PRESSED_OUT = 0.01
+"""Centrifugal load over the largest of a rolling element from which on it is spoken of."""
+
+UNVERIFIED = (
+    "No constant here was read in ISO 281, ISO 76 or ISO/TS 16281. Those of capacities, reference "
+    "lives, a_ISO, nu_1, and of X, Y and e of rollers agree with public code, reference lives of a "
+    "ball bearing with MASTA; those of contamination are from memory, with two numbers of MASTA "
+    "beside them."
+)
+
+
+def answers(
+    found: Findings, lives: Sequence[BearingLife], rules: LifeRules, site: Site | None
+) -> None:
+    """State the life of each bearing, and what takes most of it.
+
+    Parameters
+    ----------
+    found : Findings
+        Takes sentences and figures.
+    lives : sequence of BearingLife
+        The bearings.
+    rules : LifeRules
+        Choices that change lives.
+    site : Site or None
+        Whose winds are weighted.
+    """
+    for life in lives:
+        years, band = life.years, scatter(life)
+        words = f"Bearing {life.name} lives {in_years(years['L10mr'])} {_under(life, site)} (L10mr"
+        if np.isfinite(years["L10mr"]):
+            which = f"L10mr of bearing {life.name} [years]"
+            found.found(which, years["L10mr"], band, (TORQUE_AND_BENDING,))
+        if band is not None:
+            shown = value_with_band(found.answers[-1])
+            words = f"Bearing {life.name} lives {shown} {_under(life, site)} (L10mr, ± two "
+            words += "standard errors of files of the same wind"
+        words += f"; L10r {in_years(years['L10r'])}, L10 {in_years(years['L10'])})"
+        found.answer(f"{words}{_takes_most(life, rules)}{_overloaded(life)}.")
+
+
+def _under(life: BearingLife, site: Site | None) -> str:
+    """Under what the bearing lives."""
+    if site is None or life.site is None:
+        return "if these files followed each other for ever"
+    return (
+        f"at a mean wind of {site.mean_wind:g} m/s, where the winds of these files blow "
+        f"{100 * life.site.covered:.3g} % of the time and the rest is taken to do no damage"
+    )
+
+
+def _takes_most(life: BearingLife, rules: LifeRules) -> str:
+    """Ring and wind that take most of the life."""
+    parts = life.damage.of_rows(rules.lubricant is not None)
+    row, ring = np.unravel_index(int(np.argmax(parts)), parts.shape)
+    whole, words = parts.sum(), ""
+    if whole:
+        words = (
+            f"; the {RINGS[ring]} ring of the {row_names(len(parts))[row]} takes "
+            f"{100 * parts[row, ring] / whole:.0f} % of the damage"
+        )
+    if life.site is not None:
+        shares = life.site.of_winds("L10mr")
+        most = life.site.speeds[np.argmax(shares)]
+        words += f", winds about {most:g} m/s {100 * shares.max():.0f} %"
+        if whole:
+            always = in_years(life.years["L10mr"] * life.site.covered)
+            words += f"; if these winds blew all the time it would live {always}"
+    return words
+
+
+def _overloaded(life: BearingLife) -> str:
+    """What ends the answer of a bearing whose static safety is below 1; empty of others."""
+    of, rated = life.limits, life.bearing.rated
+    if of.static_safety >= 1.0:
+        return ""
+    if of.largest_pressure <= rated.static_pressure:
+        why = f"P0 of {1e-3 * of.largest_static:,.0f} kN, above C0 of {1e-3 * rated.static:,.0f} kN"
+    else:
+        why = (
+            f"{1e-6 * of.largest_pressure:,.0f} MPa contact pressure, above the "
+            f"{1e-6 * rated.static_pressure:,.0f} MPa limit"
+        )
+    return f"; not usable: static safety S0 is {of.static_safety:.2g}, {why}"
+
+
+def cautions(
+    found: Findings,
+    scene: Scene,
+    lives: Sequence[BearingLife],
+    options: LifeOptions,
+    limits: Sequence[Record],
+) -> None:
+    """State what must be known before the lives, most severe first.
+
+    Parameters
+    ----------
+    found : Findings
+        Takes the sentences.
+    scene : Scene
+        The drivetrain.
+    lives : sequence of BearingLife
+        The bearings.
+    options : LifeOptions
+        What was asked for.
+    limits : sequence of dict
+        Time beyond the limits of the methods, of each bearing.
+    """
+    for life in lives:
+        if life.bearing.misfit is not None:
+            found.note(life.bearing.misfit)
+    vertical = {one.file.stem: one.vertical for one in lives[0].files}
+    if unlike := different_turbines(vertical):
+        found.note(unlike)
+    own_speeds = [one.own_speeds for one in lives[0].files]
+    if unused := speed_not_used(options.rotor_speed_rpm, own_speeds):
+        found.note(unused)
+    for unused in choices_not_used(scene, options.choices, [life.bearing for life in lives]):
+        found.note(unused)
+    found.note(UNVERIFIED)
+    for life, row in zip(lives, limits, strict=True):
+        _beyond_limits(found, life, row)
+    oil = options.rules.lubricant
+    if oil is not None and oil.caution is not None:
+        found.note(oil.caution)
+    for life in lives:
+        if sentence := in_words(life.name, life.years["L10mr"], life.assumptions):
+            found.note(sentence)
+
+
+def _beyond_limits(found: Findings, life: BearingLife, row: Record) -> None:
+    of, name = life.limits, life.name
+    for key, words in (
+        (
+            "S0 below 1 [% of time]",
+            f"static safety is below 1, {of.static_safety:.2g} at least, with "
+            f"{1e-6 * of.largest_pressure:,.0f} MPa on a raceway",
+        ),
+        ("load above C/2 [% of time]", "the load is above C/2, beyond the range of ISO 281"),
+        (
+            "above the limiting speed [% of time]",
+            f"it turns faster than its limiting speed, {life.bearing.rated.limiting_speed_rpm} "
+            "1/min",
+        ),
+        ("kappa below 0.1 [% of time]", "the film is below kappa = 0.1: a_ISO is taken as 0.1"),
+        (
+            "kappa above 4 [% of time]",
+            "the film is above kappa = 4, a_ISO is taken as that of 4: a lubricant that thick may "
+            "not reach the contacts",
+        ),
+        ("standing [% of time]", "the bearing stands: no life is computed for that time"),
+    ):
+        share = row[key]
+        if isinstance(share, float) and share > 0.0:
+            found.note(f"Bearing {name}: in {share:.3g} % of the time {words}.")
+    pressed = centrifugal_load(life.bearing.rated.bearing, of.largest_speed_rpm)
+    if pressed > PRESSED_OUT * of.largest_roller:
+        found.note(
+            f"Bearing {name}: at {of.largest_speed_rpm:,.0f} 1/min a rolling element is pressed on "
+            f"the outer race by {1e-3 * pressed:.3g} kN of its own, beside a largest load of "
+            f"{1e-3 * of.largest_roller:.3g} kN: centrifugal loads are in no life here."
+        )
+    if of.reversals:
+        found.note(
+            f"Bearing {name} turns back {of.reversals:g} times: lives are of turning "
+            "one way, oscillation is not computed."
+        )
+
+
+def assumptions(found: Findings, lives: Sequence[BearingLife], options: LifeOptions) -> None:
+    """State the values that nobody stated, or that were chosen, and where they come from.
+
+    Parameters
+    ----------
+    found : Findings
+        Takes them.
+    lives : sequence of BearingLife
+        The bearings.
+    options : LifeOptions
+        What was asked for.
+    """
+    rules = options.rules
+    for life in lives:
+        _of_entry(found, life, rules)
+    oil = rules.lubricant
+    if oil is not None:
+        found.assume("temperature", oil.temperature, "degC", "--temperature")
+        found.assume("viscosity there", oil.viscosity, "mm2/s", "--lubricant, by ASTM D341")
+        found.assume("lubrication", oil.supply, "", "--supply")
+        found.assume("cleanliness", oil.cleanliness, "", "--cleanliness")
+    found.assume(
+        "lambda nu taken out of C", rules.reduction, "-", "0.83 with a stress riser, else 1"
+    )
+    found.assume("a_1", rules.reliability, "-", "--reliability, as public code has it")
+    share = "C_u over the number of rows" if rules.limit_per_row else "the whole C_u"
+    found.assume("fatigue limit of a row", share, "", "loads P_ks are those of a row")
+    found.assume("ring that turns against the load", rules.turning, "", "--turning")
+    words = {
+        "rollers": "bearings in equilibrium with the shaft, a beam",
+        "pinned": "pinned bearings: no moment on them",
+    }.get(str(options.support), f"springs with K_R of {options.support} N m/rad")
+    found.assume("shaft", words, "", "--support")
+    found.assume("rings", options.rings, "", "--rings; housings are rigid but for 'housing'")
+    files = len(lives[0].files)
+    found.assume("samples", f"one of {options.every}", "", f"--every; {files} files")
+
+
+def _of_entry(found: Findings, life: BearingLife, rules: LifeRules) -> None:
+    """State what a catalogue entry assumes, or leaves open."""
+    entry, name = life.bearing.entry, life.name
+    for field in entry.assumed:
+        if field == "ratings":  # those that are given stand in a table with their source
+            continue
+        value: Any = getattr(entry, field)
+        unit = {"elements": "-", "contact_angle": "deg"}.get(field, "m")
+        found.assume(f"{name}: {field.replace('_', ' ')}", value, unit, entry.sources[field])
+    if "clearance" not in entry.model_fields_set:
+        found.assume(f"{name}: clearance", 0.0, "m", "not stated in its catalogue entry")
+    words = rollers_in_words(life.bearing, rules.riser)
+    found.assume(f"{name}: rolling elements", words, "", "--profile and --riser")
+
+
+def checks(found: Findings, lives: Sequence[BearingLife]) -> None:
+    """Check that the damage of all places is that of the bearing, and that all steps count.
+
+    Parameters
+    ----------
+    found : Findings
+        Takes the checks.
+    lives : sequence of BearingLife
+        The bearings.
+    """
+    for life in lives:
+        for kind, modified in (("L10r", False), ("L10mr", True)):
+            parts = sum(life.damage.of_positions(r, modified).sum() for r in range(len(life.rows)))
+            whole = float(life.damage.totals[kind])
+            found.vanishes(
+                f"{life.name}: damage of places by {kind}, less that of all, as a share",
+                float(parts / whole - 1.0) if whole else 0.0,
+                within=1e-9,
+                why="each place takes its part: rounding of the sums",
+                source="lives of the steps, by Miner's rule",
+                basis="self-consistency",
+            )
+        found.vanishes(
+            f"{life.name}: time without equilibrium [s]",
+            life.limits.lost,
+            within=0.0,
+            why="steps without equilibrium do no damage, and the life would be too long",
+            source="residual of 1e-8 of each step's load",
+        )

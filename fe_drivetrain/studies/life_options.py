@@ -1,0 +1,172 @@
+"""What is asked of ``life`` beside scene and loads, and the defaults of every way to ask it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from math import inf
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fe_drivetrain.common.errors import InputError, require_known
+
+if TYPE_CHECKING:
+    from fe_drivetrain.hub_loads.channel_map import ChannelMap
+    from fe_drivetrain.life.lubricants import Lubricant, Supply
+    from fe_drivetrain.life.reference_life import Turning
+    from fe_drivetrain.life.roller_damage import LifeRules
+    from fe_drivetrain.studies.life_digest import Reading
+    from fe_drivetrain.studies.rolling_bearings import Choices
+
+#: Options whose defaults change lives, though the user may never have thought of them.
+ASSUMED = ("lubricant", "temperature", "cleanliness", "profile", "riser", "turning")
+
+
+@dataclass(frozen=True, kw_only=True)
+class LifeOptions:
+    """Choices of a life, each with its default.
+
+    Attributes
+    ----------
+    bearings : Mapping[str, str]
+        Catalogue entry by bearing, before what the scene says under ``catalogue``.
+    only : str or None
+        The one bearing whose life is asked for.
+    catalogues : Sequence[Path]
+        Bearing catalogues of the user, beside the program's own.
+    lubricant : str, tuple of float, or None
+        A grade of `fe_drivetrain.life.GRADES`, or viscosities at 40 and at 100 degC [mm2/s]; None
+        leaves modified lives out, which are then equal to the basic ones.
+    temperature : float
+        Temperature of the bearings in operation [degC].
+    supply : {"grease", "filtered oil", "oil bath"}
+        How the lubricant comes to the rollers.
+    cleanliness : str or None
+        A class of `fe_drivetrain.life.SUPPLIES`; None takes a usual one.
+    profile : bool
+        Rollers have the standard's logarithmic profile where their entry has none.
+    riser : bool
+        The stress riser of ISO/TS 16281 is applied.
+    turning : {"inner", "outer"}
+        The ring that turns against the load.
+    support : str or float
+        The shaft on its bearings: "rollers" in equilibrium with it, "pinned", or K_R [N m/rad].
+    rings : {"rigid", "three-degree", "housing"}
+        How the rings share the load among the rollers.
+    reliability_percent : float
+        Reliability of modified lives, one of `fe_drivetrain.life.RELIABILITY` [%].
+    channels : ChannelMap or None
+        How files call their channels, and their frame and origin; None takes OpenFAST's names, and
+        those of the program's own tables.
+    rotor_speed_rpm : float or None
+        Rotor speed of files that state none [1/min].
+    skip : float
+        Time that is left out at the beginning of each file [s].
+    every : int
+        Use every n-th sample.
+    weight : bool
+        Gearbox and shaft have their weight.
+    stated : tuple of str
+        Options of `ASSUMED` whose defaults are meant. A default that is not named here is an
+        assumption: what another value would do to the life is computed, too.
+
+    Raises
+    ------
+    InputError
+        A value is out of its range, or ``stated`` has a name that is not among `ASSUMED`.
+    """
+
+    bearings: Mapping[str, str] = field(default_factory=dict)
+    only: str | None = None
+    catalogues: Sequence[Path] = ()
+    lubricant: str | tuple[float, float] | None = "VG 460"
+    temperature: float = 50.0
+    supply: Supply = "grease"
+    cleanliness: str | None = None
+    profile: bool = True
+    riser: bool = True
+    turning: Turning = "inner"
+    support: str | float = "rollers"
+    rings: str = "rigid"
+    reliability_percent: float = 90.0
+    channels: ChannelMap | None = None
+    rotor_speed_rpm: float | None = None
+    skip: float = 0.0
+    every: int = 1
+    weight: bool = True
+    stated: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        for name in self.stated:
+            require_known("an option that is stated", name, ASSUMED)
+        if not (isinstance(self.every, int) and self.every >= 1):
+            raise InputError(f"every is {self.every}: give a whole number of samples from 1 on")
+        for name, unit in (("skip", "s"), ("rotor_speed_rpm", "1/min")):
+            value = getattr(self, name)
+            if value is not None and not 0.0 <= value < inf:
+                raise InputError(f"{name} is {value:g} {unit}: give a finite number, 0 or more")
+        _ = self.rules  # checks lubricant, ring and reliability
+
+    @property
+    def assumed(self) -> tuple[str, ...]:
+        """Options of `ASSUMED` that stand at their default and are not stated."""
+        left = [name for name in ASSUMED if getattr(self, name) == getattr(LifeOptions, name)]
+        return tuple(name for name in left if name not in self.stated)
+
+    @property
+    def rules(self) -> LifeRules:
+        """Choices that change the life of a bearing under given loads of its rollers."""
+        from fe_drivetrain.life.roller_damage import RELIABILITY, LifeRules
+
+        if self.reliability_percent not in RELIABILITY:
+            known = ", ".join(f"{value:g}" for value in RELIABILITY)
+            raise InputError(f"--reliability {self.reliability_percent:g}: choose one of {known} %")
+        return LifeRules(
+            self._oil,
+            "standard" if self.riser else "none",
+            turning=self.turning,
+            reliability=RELIABILITY[self.reliability_percent],
+        )
+
+    @property
+    def reading(self) -> Reading:
+        """How files are read."""
+        from fe_drivetrain.hub_loads.recorded import OWN_NAMES
+        from fe_drivetrain.studies.life_digest import Reading
+
+        names = OWN_NAMES if self.channels is None else self.channels
+        return Reading(names, self.skip, self.every, self.rotor_speed_rpm)
+
+    @property
+    def choices(self) -> Choices:
+        """Choices of bearings, and of the model of shaft and rings."""
+        from fe_drivetrain.studies.rolling_bearings import Choices
+
+        return Choices(
+            dict(self.bearings),
+            tuple(self.catalogues),
+            self.profile,
+            self.support,
+            self.rings,
+            self.weight,
+            self.only,
+            self.assumed,
+        )
+
+    @property
+    def _oil(self) -> Lubricant | None:
+        from fe_drivetrain.life.lubricants import GRADES, Lubricant
+
+        if self.lubricant is None:
+            return None
+        if isinstance(self.lubricant, str):
+            if self.lubricant not in GRADES:
+                raise InputError(
+                    f"--lubricant {self.lubricant}: choose {', '.join(GRADES)}, or give the "
+                    "viscosity at 40 and at 100 degC in mm2/s, as 460,30.5"
+                )
+            at_40, at_100 = GRADES[self.lubricant]
+        else:
+            at_40, at_100 = self.lubricant
+        usual = "normal" if self.supply == "grease" else "-/15/12"
+        return Lubricant(at_40, at_100, self.temperature, self.supply, self.cleanliness or usual)

@@ -1,0 +1,291 @@
+"""What files do to a bearing, added up file by file: memory hardly grows with their number."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from fe_drivetrain.bearing.geometry import Row
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.histories.sites import Site, require_winds, rounded_wind
+from fe_drivetrain.life.at_site import SiteLife, site_lives
+from fe_drivetrain.life.limits import Limits
+from fe_drivetrain.life.roller_damage import KINDS, Damage, LifeRules
+from fe_drivetrain.studies.life_assumptions import Assumption, what_ifs
+from fe_drivetrain.studies.life_digest import LifeDigest, worse
+from fe_drivetrain.studies.rolling_bearings import Choices, OneBearing
+
+
+@dataclass(frozen=True, eq=False)
+class FileLife:
+    """What one file does to a bearing, without where in the bearing.
+
+    Attributes
+    ----------
+    file : Path
+        The file.
+    damage : Damage
+        Damage and limits of the whole file; its parts by row, place and lamina are left out.
+    wind : float
+        Mean wind speed [m/s]; NaN where the file has none.
+    speed : float
+        Mean rotor speed [1/min].
+    samples : float
+        Samples that were used.
+    vertical : tuple of float
+        Mean and standard deviation of Fz at the hub [N].
+    own_speeds : ndarray, (2,)
+        Least and largest rotor speed that the file states [1/min]; NaN where it has none.
+    ratios : ndarray, (assumptions,)
+        Damage by L10mr with another value of each assumption, over that with the one taken.
+    """
+
+    file: Path
+    damage: Damage
+    wind: float
+    speed: float
+    samples: float
+    vertical: tuple[float, float]
+    own_speeds: Floats
+    ratios: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class DamageOverTime:
+    """Where and when a file does its damage.
+
+    Attributes
+    ----------
+    file : Path
+        The file.
+    rate : float
+        Damage by L10r over time [1/s].
+    times : ndarray, (w,)
+        Middles of windows [s].
+    values : ndarray, (w, rows, elements)
+        Damage by L10r of both rings in each window, at each place of the rolling elements.
+    """
+
+    file: Path
+    rate: float
+    times: Floats
+    values: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class BearingLife:
+    """Life of one bearing, what takes it, and where.
+
+    Attributes
+    ----------
+    bearing : OneBearing
+        The bearing with its catalogue entry, ratings and load path.
+    files : tuple of FileLife
+        What each file does.
+    damage : Damage
+        Damage of all files together, or of a year at the site, by row, ring, place and lamina.
+    site : SiteLife or None
+        Lives and damage by wind, where a site weights the files.
+    limits : Limits
+        Limits of the methods in the files as they are, not weighted by a site.
+    mean_load, peak_load : ndarray, (rows, elements)
+        Load of each place of the rolling elements, mean over time and largest [N].
+    pressures : ndarray, (rows, 2, laminae)
+        Hertz pressure along the roller that has most of it in all files, on inner and outer race
+        [Pa]; zero of balls.
+    worst : DamageOverTime
+        The file with the highest rate of damage by L10r.
+    assumptions : tuple of Assumption
+        What was not stated, and what it does to L10mr.
+    """
+
+    bearing: OneBearing
+    files: tuple[FileLife, ...]
+    damage: Damage
+    site: SiteLife | None
+    limits: Limits
+    mean_load: Floats
+    peak_load: Floats
+    pressures: Floats
+    worst: DamageOverTime
+    assumptions: tuple[Assumption, ...]
+
+    @property
+    def name(self) -> str:
+        """Name of the bearing in the scene."""
+        return self.bearing.name
+
+    @property
+    def rows(self) -> tuple[Row, ...]:
+        """Rows of rolling elements, upwind first."""
+        return self.bearing.rated.bearing.rows
+
+    @property
+    def years(self) -> Mapping[str, float]:
+        """Lives L10, L10m, L10r and L10mr [years]; infinite without damage."""
+        return self.damage.lives("years") if self.site is None else self.site.years
+
+    @property
+    def million_revolutions(self) -> Mapping[str, float]:
+        """The same lives [million revolutions]."""
+        return self.damage.lives("Mrev")
+
+    @property
+    def bands(self) -> Mapping[str, float | None]:
+        """Scatter of each of the lives over files of a wind [years]; see `scatter`."""
+        return {kind: scatter(self, kind) for kind in KINDS}
+
+
+class BearingSums:
+    """Sums over the files of one bearing.
+
+    Parameters
+    ----------
+    bearing : OneBearing
+        The bearing.
+    site : Site or None
+        Whose winds weight the files.
+    """
+
+    def __init__(self, bearing: OneBearing, site: Site | None) -> None:
+        self._bearing = bearing
+        self._site = site
+        self._files: list[FileLife] = []
+        self._at: dict[float, Damage] = {}
+        self._load_seconds: Floats | float = 0.0
+        self._peak: Floats | None = None
+        self._pressures = np.zeros(0)
+        self._worst: DamageOverTime | None = None
+
+    def add(self, file: Path, digest: LifeDigest) -> None:
+        """Add the digest of a file."""
+        damage = digest.damage
+        # all files are one condition where no site weights their winds
+        wind = 0.0 if self._site is None else rounded_wind(digest.wind)
+        self._at[wind] = self._at[wind] + damage if wind in self._at else damage
+        self._load_seconds = self._load_seconds + damage.seconds * digest.mean_load
+        if self._peak is None:
+            self._peak, self._pressures = digest.peak_load, digest.worst
+        else:
+            self._peak = np.maximum(self._peak, digest.peak_load)
+            self._pressures = worse(self._pressures, digest.worst)
+        rate = damage.totals["L10r"] / damage.seconds
+        if self._worst is None or rate > self._worst.rate:
+            self._worst = DamageOverTime(file, rate, digest.times, digest.over_time)
+        whole = replace(damage, basic=(), modified=())
+        self._files.append(
+            FileLife(
+                file,
+                whole,
+                digest.wind,
+                digest.speed,
+                digest.samples,
+                digest.vertical,
+                digest.own_speeds,
+                digest.ratios,
+            )
+        )
+
+    def life(self, rules: LifeRules, choices: Choices) -> BearingLife:
+        """The life that follows, with what assumptions do to it.
+
+        Parameters
+        ----------
+        rules : LifeRules
+            Choices that change lives.
+        choices : Choices
+            With the options that stayed at their default.
+
+        Raises
+        ------
+        InputError
+            A site weights winds, and files have no wind speed, or all have the same.
+        """
+        if self._site is not None:
+            require_winds([one.file for one in self._files], [one.wind for one in self._files])
+        damage, at_site = _together(self._at.items(), self._site)
+        assert self._peak is not None
+        assert self._worst is not None
+        limits = self._files[0].damage.limits
+        for one in self._files[1:]:
+            limits = limits + one.damage.limits
+        seconds = sum(one.damage.seconds for one in self._files)
+        ifs = what_ifs(self._bearing, rules, choices)
+        return BearingLife(
+            self._bearing,
+            tuple(self._files),
+            damage,
+            at_site,
+            limits,
+            np.asarray(self._load_seconds / seconds),
+            self._peak,
+            self._pressures,
+            self._worst,
+            tuple(
+                Assumption(other.assumed, other.instead, self._years_with(i))
+                for i, other in enumerate(ifs)
+            ),
+        )
+
+    def _years_with(self, i: int) -> float:
+        """L10mr with another value of the i-th assumption [years]."""
+        changed = [
+            (rounded_wind(one.wind), _with_ratio(one.damage, float(one.ratios[i])))
+            for one in self._files
+        ]
+        damage, at_site = _together(changed, self._site)
+        return (damage.lives("years") if at_site is None else at_site.years)["L10mr"]
+
+
+def _together(
+    damages: Iterable[tuple[float, Damage]], site: Site | None
+) -> tuple[Damage, SiteLife | None]:
+    """Damage of all winds as they come, or of a year at a site."""
+    if site is not None:
+        life = site_lives(list(damages), site)
+        return life.a_year, life
+    (_, whole), *others = damages
+    for _, one in others:
+        whole = whole + one
+    return whole, None
+
+
+def _with_ratio(damage: Damage, ratio: float) -> Damage:
+    """The damage, with so many times its own by L10mr."""
+    return replace(damage, of_bearing=damage.of_bearing * [1.0, ratio])
+
+
+def scatter(life: BearingLife, kind: str = "L10mr") -> float | None:
+    """Two standard errors of a life over files of a wind [years]; None where one stands alone.
+
+    Each wind's mean rate of damage has the standard error s / sqrt(n) of its n files; those of all
+    winds, weighted by their time at the site, add up as squares.
+
+    Parameters
+    ----------
+    life : BearingLife
+        The bearing.
+    kind : str
+        Kind of life, one of `fe_drivetrain.life.KINDS`.
+    """
+    site = life.site
+    if site is None:
+        return None
+    rates: dict[float, list[float]] = {}
+    for one in life.files:
+        rate = one.damage.totals[kind] / one.damage.seconds
+        rates.setdefault(rounded_wind(one.wind), []).append(rate)
+    if min(map(len, rates.values())) < 2:
+        return None
+    each = [rates[float(speed)] for speed in site.speeds]
+    mean = float(site.shares @ [np.mean(one) for one in each])
+    errors = site.shares * [np.std(one, ddof=1) / np.sqrt(len(one)) for one in each]
+    return 2.0 * float(np.linalg.norm(errors)) / mean * site.years[kind] if mean else None
+
+
+def row_names(count: int) -> list[str]:
+    """What rows are called, upwind first."""
+    return ["row"] if count == 1 else ["upwind row", "downwind row"][:count]

@@ -1,0 +1,248 @@
+"""Tables of lives: by bearing, file, wind, row and ring, place of the rollers, and lamina."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from fe_drivetrain.bearing.geometry import RollerRow, Row, angles
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.histories.sites import HOURS_A_YEAR
+from fe_drivetrain.life.reference_life import RINGS, reference_load
+from fe_drivetrain.life.roller_damage import KINDS
+from fe_drivetrain.studies.life_sums import BearingLife, row_names
+from fe_drivetrain.suite.records import Record
+
+
+def life_rows(lives: Sequence[BearingLife]) -> list[Record]:
+    """Ratings and lives of each bearing."""
+    rows: list[Record] = []
+    for life in lives:
+        rated, years = life.bearing.rated, life.years
+        million = life.million_revolutions
+        row: Record = {"bearing": life.name, "entry": life.bearing.entry_name}
+        for name, value in zip(("C", "C0", "Cu"), rated.three, strict=True):
+            row[f"{name} [kN]"] = value / 1e3
+        for name, kind in (("P_ref", "L10r"), ("P of L10", "L10")):
+            load = reference_load(rated.dynamic, million[kind], rated.exponent)
+            row[f"{name} [kN]"] = 1e-3 * float(load)
+        row |= {f"{kind} [Mrev]": million[kind] for kind in KINDS}
+        row |= {f"{kind} [years]": years[kind] for kind in KINDS}
+        rows.append(row)
+    return rows
+
+
+def limit_rows(lives: Sequence[BearingLife]) -> list[Record]:
+    """Static safety of each bearing, and time beyond the limits of the methods."""
+    rows: list[Record] = []
+    for life in lives:
+        of, rated = life.limits, life.bearing.rated
+        share = 100.0 / sum(one.damage.seconds for one in life.files)
+        rows.append(
+            {
+                "bearing": life.name,
+                "least S0": of.static_safety,
+                "largest pressure [MPa]": 1e-6 * of.largest_pressure,
+                "largest roller load [kN]": 1e-3 * of.largest_roller,
+                "largest P0 / C0": of.largest_static / rated.static,
+                "largest P / C": of.largest_load / rated.dynamic,
+                "largest P / C of the rollers": of.largest_reference / rated.dynamic,
+                "load above C/2 [% of time]": share * of.heavy,
+                "S0 below 1 [% of time]": share * of.weak,
+                "kappa below 0.1 [% of time]": share * of.thin,
+                "kappa above 4 [% of time]": share * of.thick,
+                "above the limiting speed [% of time]": share * of.fast,
+                "standing [% of time]": share * of.standing,
+                "reversals": of.reversals,
+            }
+        )
+    return rows
+
+
+def assumption_rows(lives: Sequence[BearingLife]) -> list[Record]:
+    """What was not stated of each bearing, and L10mr with another value of it."""
+    rows: list[Record] = []
+    for life in lives:
+        years = life.years["L10mr"]
+        rows += [
+            {
+                "bearing": life.name,
+                "not stated, and taken": one.assumed,
+                "instead": one.instead,
+                "L10mr then [years]": one.years,
+                "over that here [-]": one.years / years if np.isfinite(years) else None,
+            }
+            for one in life.assumptions
+        ]
+    return rows
+
+
+def file_rows(lives: Sequence[BearingLife]) -> list[Record]:
+    """Lives and limits of each bearing under each file alone."""
+    rows: list[Record] = []
+    for life in lives:
+        for one in life.files:
+            of = one.damage.limits
+            row: Record = {
+                "bearing": life.name,
+                "file": one.file.name,
+                "mean wind [m/s]": one.wind,
+                "mean speed [1/min]": one.speed,
+                "time [s]": one.damage.seconds,
+                "turns": one.damage.turns,
+            }
+            row |= {f"{kind} [years]": v for kind, v in one.damage.lives("years").items()}
+            row |= {
+                "largest P [kN]": 1e-3 * of.largest_load,
+                "largest P0 [kN]": 1e-3 * of.largest_static,
+                "largest roller load [kN]": 1e-3 * of.largest_roller,
+                "largest pressure [MPa]": 1e-6 * of.largest_pressure,
+                "least S0": of.static_safety,
+                "standing [s]": of.standing,
+            }
+            rows.append(row)
+    return rows
+
+
+def wind_rows(life: BearingLife) -> list[Record]:
+    """Life and share of damage by wind; none where no site weights them."""
+    if life.site is None:
+        return []
+    shares = {kind: life.site.of_winds(kind) for kind in KINDS}
+    rows: list[Record] = []
+    for i, (wind, share, damage) in enumerate(
+        zip(life.site.speeds, life.site.shares, life.site.at_winds, strict=True)
+    ):
+        row: Record = {"bearing": life.name, "wind [m/s]": float(wind)}
+        row["share of time [%]"] = 100.0 * float(share)
+        row |= {f"{kind} [years]": v for kind, v in damage.lives("years").items()}
+        row |= {f"share of {kind}'s damage [%]": 100.0 * float(shares[kind][i]) for kind in KINDS}
+        rows.append(row)
+    return rows
+
+
+def ring_rows(life: BearingLife) -> list[Record]:
+    """Share of each row and ring in the damage, and its life if it were alone."""
+    damage = life.damage
+    both = [damage.of_rows(modified) for modified in (False, True)]
+    rows: list[Record] = []
+    for r, word in enumerate(row_names(len(life.rows))):
+        for ring, race in enumerate(RINGS):
+            row: Record = {"row": word, "ring": race}
+            for kind, values, alone in zip(("L10r", "L10mr"), both, damage.alone, strict=True):
+                whole = values.sum()
+                row[f"share of {kind}'s damage [%]"] = (
+                    100.0 * float(values[r, ring] / whole) if whole else 0.0
+                )
+                used = alone[r, ring]
+                time = damage.seconds / 3600.0 / HOURS_A_YEAR
+                row[f"{kind} of this ring alone [years]"] = time / float(used) if used else np.inf
+            rows.append(row)
+    return rows
+
+
+def place_rows(life: BearingLife) -> list[Record]:
+    """Loads and damage of each place of the rolling elements."""
+    rows: list[Record] = []
+    for r, (row, word) in enumerate(zip(life.rows, row_names(len(life.rows)), strict=True)):
+        basic, modified = (life.damage.of_positions(r, m) for m in (False, True))
+        at = np.degrees(angles(row)) % 360.0
+        rows += [
+            {
+                "bearing": life.name,
+                "row": word,
+                "place [deg]": float(at[j]),
+                "mean load [kN]": 1e-3 * float(life.mean_load[r, j]),
+                "largest load [kN]": 1e-3 * float(life.peak_load[r, j]),
+                **{
+                    f"{ring} ring, damage by {kind}": float(values[i, j])
+                    for kind, values in (("L10r", basic), ("L10mr", modified))
+                    for i, ring in enumerate(RINGS)
+                },
+            }
+            for j in range(basic.shape[1])
+        ]
+    return rows
+
+
+def lamina_rows(life: BearingLife) -> list[Record]:
+    """Damage of each lamina of rollers; none of balls."""
+    if not has_rollers(life):
+        return []
+    rows: list[Record] = []
+    for r, word in enumerate(row_names(len(life.rows))):
+        for modified, kind in ((False, "L10r"), (True, "L10mr")):
+            values = life.damage.of_laminae(r, modified)
+            rows += [
+                {
+                    "bearing": life.name,
+                    "row": word,
+                    "kind": kind,
+                    "lamina": k + 1,
+                    **{f"{ring} ring, damage": float(values[i, k]) for i, ring in enumerate(RINGS)},
+                }
+                for k in range(values.shape[1])
+            ]
+    return rows
+
+
+def has_rollers(life: BearingLife) -> bool:
+    """Whether all rows of the bearing have rollers."""
+    return all(isinstance(row, RollerRow) for row in life.rows)
+
+
+def site_maps(life: BearingLife) -> Iterator[tuple[str, Row, Floats, Floats]]:
+    """Damage over wind and place of rollers at the site, row by row; none without a site.
+
+    Yields
+    ------
+    caption : str
+        What it shows.
+    row : Row
+        The row.
+    speeds : ndarray, (winds,)
+        Winds [m/s].
+    values : ndarray, (winds, elements)
+        Damage by L10r of both rings over time [1/s].
+    """
+    if life.site is None:
+        return
+    for r, (row, word) in enumerate(zip(life.rows, row_names(len(life.rows)), strict=True)):
+        values = np.stack(
+            [
+                one.of_positions(r).sum(axis=0) * share / one.seconds
+                for one, share in zip(life.site.at_winds, life.site.shares, strict=True)
+            ]
+        )
+        caption = f"{life.name}, {word}: damage by L10r at the site over wind and place of rollers"
+        yield caption, row, life.site.speeds, values
+
+
+def result_tables(lives: Sequence[BearingLife]) -> dict[str, Any]:
+    """Tables of the page, by name."""
+    tables: dict[str, Any] = {"lives": life_rows(lives), "limits": limit_rows(lives)}
+    if rows := assumption_rows(lives):
+        tables["assumed"] = rows
+    for life in lives:
+        tables[f"{life.name}: load zone [N]"] = {
+            "mean": life.mean_load,
+            "largest": life.peak_load,
+        }
+        tables[f"{life.name}: rows and rings"] = ring_rows(life)
+        for caption, _, speeds, values in site_maps(life):
+            tables[caption] = {"wind [m/s]": speeds, "damage [1/s]": values}
+        if has_rollers(life):
+            tables[f"{life.name}: pressure along rollers [Pa]"] = life.pressures
+    return tables
+
+
+def long_tables(lives: Sequence[BearingLife]) -> dict[str, list[Record]]:
+    """Tables that are too long for a page, by name."""
+    return {
+        "files": file_rows(lives),
+        "winds": [row for life in lives for row in wind_rows(life)],
+        "places": [row for life in lives for row in place_rows(life)],
+        "laminae": [row for life in lives for row in lamina_rows(life)],
+    }
