@@ -40,7 +40,7 @@ def check_stiffness(page: Page, found: StudyResult, tilt: Tilt) -> None:
                 f"K_R of the assembly without gearbox, {plane} plane, {estimator} [MN m/rad], "
                 "between the bounds of the unit alone",
                 values[estimator] / 1e6,
-                soft * (1.0 - unit.mesh),
+                soft * (1.0 - unit.mesh.largest),
                 stiff,
                 why="the shaft keeps the seat in shape more than a face that moves on average, and "
                 "less than a rigid one; the mesh makes both bounds too stiff",

@@ -12,6 +12,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
+from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.fidelity.bearing_units import UnitBounds
 from fe_drivetrain.fidelity.foot_opening import foot_warnings
 from fe_drivetrain.fidelity.judgement import Judgement, judge_levels
@@ -72,7 +73,8 @@ class StudyResult(Result):
     Attributes
     ----------
     units : Mapping[str, UnitBounds]
-        (6, 6) stiffness of each bearing unit between two bounds, and the band of its mesh.
+        (6, 6) stiffness of each bearing unit between two bounds, and the band of its mesh, that of
+        the motion where it is largest.
     secants : tuple of TiltSecant
         K_R of each bearing that carries moments, as the load steps show it in the drivetrain.
     reaction_statistics : Mapping[str, ReactionStatistics]
@@ -323,7 +325,7 @@ def _answer(
 
 def _units(levels: Levels) -> dict[str, UnitBounds]:
     return {
-        name: UnitBounds(levels.soft[name], stiff, levels.unit_mesh[name])
+        name: UnitBounds(levels.soft[name], stiff, StiffnessBands.alike(levels.unit_mesh[name]))
         for name, stiff in levels.stiff.items()
     }
 
@@ -352,11 +354,11 @@ def _stiffness(found: Findings, units: Mapping[str, UnitBounds]) -> None:
                     "face on average (soft)": low[quantity] / 1e6,
                     "face in shape (stiff)": high[quantity] / 1e6,
                     "range [%]": 100.0 * (high[quantity] / low[quantity] - 1.0),
-                    "mesh: less by up to [%]": 100.0 * unit.mesh,
+                    "mesh: less by up to [%]": 100.0 * unit.mesh.largest,
                 }
             )
             if component > 2:
-                least = low[quantity] * (1.0 - unit.mesh)
+                least = low[quantity] * (1.0 - unit.mesh.largest)
                 middle, half = (high[quantity] + least) / 2e6, (high[quantity] - least) / 2e6
                 found.found(f"{words} of {name} [MN m/rad]", middle, half)
     found.data("unit_stiffness", rows)
