@@ -129,7 +129,7 @@ class StudyResult(Result):
         loads : LoadHistory, PointLoads or array_like
             Hub loads, as `fe_drivetrain.response.entering` takes them.
         model : str
-            Name of one of `levels.models`.
+            Name of a model, as the tables of errors have it.
 
         Returns
         -------
