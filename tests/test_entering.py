@@ -12,7 +12,6 @@ import pytest
 from tiny_case import Result
 
 from fe_drivetrain.bearing.catalogue import catalogue_bearing
-from fe_drivetrain.commands.loads_reactions import scene_reactions
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.coupled.body import factors_of
@@ -36,6 +35,7 @@ from fe_drivetrain.rings.assembly import RollerAssembly, assembly_equilibrium
 from fe_drivetrain.scene.reading import change_scene, library_scene, scene_text
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.solve.solvers import Diagnostics
+from fe_drivetrain.studies.load_reactions import scene_reactions
 
 DOCS = Path(__file__).parents[1] / "docs"
 NAME = "main_bearing"

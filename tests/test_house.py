@@ -26,7 +26,8 @@ FLOORS = (
     {"dynamics", "fidelity", "peers", "report", "rings"},
     {"coupled", "export", "procedure", "suite", "uncertainty"},
     {"studies"},
-    {"commands", "validation"},
+    {"pages", "validation"},
+    {"commands"},
     {"cases"},
 )
 

@@ -10,7 +10,6 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.commands import bands
 from fe_drivetrain.common import (
     FORCES,
     MOTIONS,
@@ -29,6 +28,7 @@ from fe_drivetrain.mesh import (
     Mesh,
     volume_weights,
 )
+from fe_drivetrain.pages import bands
 from fe_drivetrain.report import trace
 from fe_drivetrain.response import (
     LOADS,

@@ -27,7 +27,7 @@ def beam_of_scene(
     scene : Scene
         The scene. Shoulder fillets are left out; the flange is a section of its own.
     bearing_stiffness : Mapping[str, ArrayLike]
-        For each bearing (6,) or (6, 6) stiffness of bearing and housing; inf is rigid. A beam
+        Stiffness (6,) or (6, 6) of bearing and housing for each bearing; inf is rigid. A beam
         cannot know what a housing does, so none is assumed.
     shear : bool
         Whether shear deforms the shaft.

@@ -15,8 +15,6 @@ from fe_drivetrain.commands.study_files import (
     write_stiffness,
 )
 from fe_drivetrain.commands.study_reactions import show_reactions
-from fe_drivetrain.commands.uncertainty_page import bands, inputs
-from fe_drivetrain.commands.uncertainty_page import slopes as slopes_section
 from fe_drivetrain.export.formats.summary import summary, write_summary
 from fe_drivetrain.fidelity.judgement import Judgement
 from fe_drivetrain.fidelity.over_loads import COARSER_ASSEMBLY, Levels
@@ -24,6 +22,8 @@ from fe_drivetrain.fidelity.quantities import unit_numbers
 from fe_drivetrain.fidelity.shaft_bands import COARSER
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.mesh.files import write
+from fe_drivetrain.pages.uncertainty import bands, inputs
+from fe_drivetrain.pages.uncertainty import slopes as slopes_section
 from fe_drivetrain.report.charts import trace
 from fe_drivetrain.report.pictures import NoPictureError, picture_of_model
 from fe_drivetrain.report.solid_view import deformed_shape

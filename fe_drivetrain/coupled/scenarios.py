@@ -27,16 +27,16 @@ SCENARIOS = (
 
 @dataclass(frozen=True, eq=False)
 class TiltCurve:
-    """Moment against tilt with the other displacements held.
+    """Moment against tilt with all other displacements held.
 
     Attributes
     ----------
     tilts : Floats
-        (n,) about y [rad].
+        Tilts (n,) about y [rad].
     moments : Floats
-        (n,) about y [N m].
+        Moments (n,) about y [N m].
     stiffness : Floats
-        (n,) dM / d theta [N m/rad], Stirling 2023, Eq 4.20.
+        Tangent stiffness (n,), dM / d theta [N m/rad], Stirling 2023, Eq 4.20.
     """
 
     tilts: Floats
@@ -55,7 +55,7 @@ def displacement_scenarios(axial: ArrayLike, radial: ArrayLike) -> Floats:
     Returns
     -------
     displacements : Floats
-        (8, 2), as `SCENARIOS`.
+        Displacements (8, 2) [m], in the order of `SCENARIOS`.
     """
     values = []
     for seen in (np.asarray(axial, dtype=float), np.asarray(radial, dtype=float)):
@@ -73,12 +73,12 @@ def tilt_curve(bearing: Bearing, axial: float, radial: float, tilts: ArrayLike) 
     axial, radial : float
         Downwind, and down [m].
     tilts : array_like
-        (n,) about y [rad].
+        Tilts (n,) about y [rad].
 
     Returns
     -------
     curve : TiltCurve
-        Over the tilts.
+        Curve over the tilts.
     """
     theta = np.asarray(tilts, dtype=float)
     u = np.zeros((len(theta), 5))
@@ -93,12 +93,12 @@ def best_fit(curves: Sequence[TiltCurve]) -> float:
     Parameters
     ----------
     curves : Sequence
-        Of `TiltCurve`.
+        Tilt curves, each a `TiltCurve`.
 
     Returns
     -------
     stiffness : float
-        By least squares, the line having an offset of its own.
+        Slope by least squares, the line having an offset of its own [N m/rad].
     """
     tilts = np.concatenate([curve.tilts for curve in curves])
     moments = np.concatenate([curve.moments for curve in curves])

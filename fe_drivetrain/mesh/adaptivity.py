@@ -23,13 +23,13 @@ def marked(indicators: Floats, share: float = SHARE) -> Ints:
     Parameters
     ----------
     indicators : Floats
-        (n,) energy of the error in each cell.
+        Energy (n,) of the error in each cell.
     share : float
-        Of their sum, above 0 and at most 1.
+        Share of their sum, above 0 and at most 1.
 
     Returns
     -------
-    Indices, from the largest indicator down.
+    Indices, in descending order of the indicator.
 
     Raises
     ------
@@ -56,11 +56,11 @@ def refined_sizes(mesh: Mesh, cells: Ints, factor: float = FACTOR) -> LocalSizes
     Parameters
     ----------
     mesh : Mesh
-        That was solved.
+        Mesh that was solved.
     cells : Ints
         Indices of the cells to refine.
     factor : float
-        On their size; above 0 and below 1.
+        Factor on the size of marked cells; above 0 and below 1.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def refined_sizes(mesh: Mesh, cells: Ints, factor: float = FACTOR) -> LocalSizes
         raise InputError(f"factor = {factor:g} on the size of marked cells must be in (0, 1)")
     sizes = cell_sizes(mesh.points, mesh.cells)
     corners = mesh.cells[:, :4]
-    # a node takes the mean of its cells, but the least where one of them is marked
+    # a node takes the mean of its cells, but the minimum where one of them is marked
     number, total = np.zeros(len(mesh.points)), np.zeros(len(mesh.points))
     np.add.at(number, corners, 1.0)
     np.add.at(total, corners, sizes[:, None])

@@ -3,27 +3,48 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 
-from fe_drivetrain.fidelity.adviser import Advice
 from fe_drivetrain.fidelity.quantities import Number
 from fe_drivetrain.report.charts import chart, rounded
 from fe_drivetrain.report.results import Cell, Chart, Section, Table, Text
-from fe_drivetrain.response.entering import Factors
-from fe_drivetrain.scene.scene import Scene, Spread
+from fe_drivetrain.scene.scene import Spread
+from fe_drivetrain.studies.input_uncertainty import (
+    UncertaintyResult,
+    charted,
+    half_bands,
+    horizontal_bars,
+    sample_count,
+)
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.run import Run
-from fe_drivetrain.uncertainty.input_study import Study, level_error, result_at, study
-from fe_drivetrain.uncertainty.numbers import figures, first_order, half_band, relative_spread
+from fe_drivetrain.uncertainty.input_study import Study, result_at
+from fe_drivetrain.uncertainty.numbers import first_order, half_band, relative_spread
 from fe_drivetrain.uncertainty.sampling import SHARE, Samples, distribution, nominal_value
 
 _BINS = 16
 _LEAST = 1e-4  # smaller numbers in tables are round-off
 _SEEN = 0.01  # smallest total Sobol index in the table
-_CHARTED = 6  # quantities with their own charts; the tables have all of them
+
+
+def show_uncertainty(run: Run, page: Page, result: UncertaintyResult) -> None:
+    """Show bands, uncertain values, sensitivities and shares of the variance.
+
+    Parameters
+    ----------
+    run : Run
+        Not used: the page needs no files.
+    page : Page
+        Takes charts and tables.
+    result : UncertaintyResult
+        What was found.
+    """
+    found = result.study
+    page.sections += [bands(found), inputs(found), slopes(found), variance(found)]
+    if found.advices:
+        page.sections.append(ladder(found))
 
 
 def inputs(found: Study) -> Section:
@@ -76,8 +97,8 @@ def bands(found: Study) -> Section:
             ]
         )
     table = Table(
-        caption=f"Bands of {100 * SHARE:g} % from {_count(found)} samples at level {found.level}, "
-        "next to the error of the model",
+        caption=f"Bands of {100 * SHARE:g} % from {sample_count(found)} samples at level "
+        f"{found.level}, next to the error of the model",
         columns=[
             "quantity",
             "unit",
@@ -96,9 +117,9 @@ def bands(found: Study) -> Section:
     for number in found.numbers:
         sources.setdefault(found.errors[number.name].source, []).append(number.name)
     origins = "; ".join(f"for {', '.join(names)}: {source}" for source, names in sources.items())
-    items: list[Table | Text | Chart] = [_half_bands(found), table, Text(text=_BAND)]
+    items: list[Table | Text | Chart] = [half_bands(found), table, Text(text=_BAND)]
     items.append(Text(text=f"The model error is, {origins}."))
-    items += [_histogram(n, found.samples[n.name]) for n in _charted(found) if _varies(found, n)]
+    items += [_histogram(n, found.samples[n.name]) for n in charted(found) if _varies(found, n)]
     return Section(title="Uncertainty of the results", items=items)
 
 
@@ -114,7 +135,7 @@ def slopes(found: Study) -> Section:
         ],
     )
     items: list[Table | Text | Chart] = [
-        _tornado(found, number) for number in _charted(found) if _varies(found, number)
+        _tornado(found, number) for number in charted(found) if _varies(found, number)
     ]
     return Section(title="Influence of each value", items=[*items, table, Text(text=_SLOPE)])
 
@@ -181,61 +202,6 @@ def ladder(found: Study) -> Section:
     return Section(title="Model level", items=[*answers, table])
 
 
-def uncertain(
-    run: Run,
-    page: Page,
-    scene: Scene,
-    asked: Sequence[str],
-    load: Factors | None,
-    tolerance: float,
-    level: int | None,
-    count: int,
-    seed: int,
-    sobol: int,
-) -> None:
-    """Propagate the uncertain values of a scene to its reactions and stiffnesses.
-
-    Parameters
-    ----------
-    run : Run
-        The run that the study is a step of.
-    page : Page
-        Takes bands, inputs, sensitivities, and the check of the level that was sampled.
-    scene : Scene
-        The scene.
-    asked : sequence of str
-        Names of the quantities for which the level must be accurate.
-    load : Factors or None
-        (10,) factors of the unit loads; None for each hub load by itself.
-    tolerance : float
-        Allowed relative error of the level.
-    level : int or None
-        The level to sample; None to let the adviser choose it.
-    count : int
-        Samples of the Latin hypercube.
-    seed : int
-        Of all random samples.
-    sobol : int
-        Base samples of Sobol indices, a power of two; 0 for none.
-
-    Raises
-    ------
-    InputError
-        See `fe_drivetrain.uncertainty.input_study.study`.
-    """
-    page.about(scene)
-    with run.step("uncertainty"):
-        found = study(scene, asked, load, tolerance, level, count, seed, sobol, run.report)
-    page.seed = seed
-    page.answer(*_summary(found))
-    for advice in found.advices:
-        _judge(page, advice, found.level, tolerance)
-    page.sections += [bands(found), inputs(found), slopes(found), variance(found)]
-    if found.advices:
-        page.sections.append(ladder(found))
-    page.figures |= figures(found)
-
-
 _BAND = (
     "Half the band of the inputs is compared with the error of the model: if that of the inputs is "
     "larger, better input data help; if that of the model is larger, a better model helps. The "
@@ -286,35 +252,18 @@ def _surfaces(found: Study) -> Table:
     )
 
 
-def _half_bands(found: Study) -> Chart:
-    """Half bands and model errors, a pair of bars for each quantity."""
-    shown = [number.name for number in reversed(found.numbers)]
-    halves = [100 * half_band(found.samples[name]) for name in shown]
-    figure = chart(
-        "Uncertainty from the inputs, and error of the model",
-        [
-            _bars("model: error of the level", [100 * found.errors[n].share for n in shown], shown),
-            _bars("inputs: half the band", halves, shown),
-        ],
-        x="± [%]",
-        y="",
-    )
-    return _tall(figure, 2 * len(shown))
-
-
 def _tornado(found: Study, number: Number) -> Chart:
     moved = {
         key: 100 * found.slopes[number.name][key] * relative_spread(spread)
         for key, spread in found.scene.uncertainty.items()
     }
     order = sorted(moved, key=lambda key: abs(moved[key]))
-    figure = chart(
+    return horizontal_bars(
         f"Change of {number.name} for one standard deviation of each value",
-        [_bars("", [moved[key] for key in order], order)],
-        x="change [%]",
-        y="",
+        {"": [moved[key] for key in order]},
+        order,
+        "change [%]",
     )
-    return _tall(figure, len(order))
 
 
 def _histogram(number: Number, samples: Samples) -> Chart:
@@ -367,42 +316,8 @@ def _sobol(found: Study, varying: Sequence[Number]) -> Table:
     )
 
 
-def _summary(found: Study) -> list[str]:
-    sentences = []
-    for number in _charted(found):
-        samples, error = found.samples[number.name], found.errors[number.name]
-        band = samples.band()
-        low, high = (100 * (end / samples.nominal - 1.0) for end in (band.low, band.high))
-        sentences.append(
-            f"{number.name}: {samples.nominal:.4g} {number.unit}, {min(low, high):+.2g} to "
-            f"{max(low, high):+.2g} % from the inputs ({100 * SHARE:g} % of {_count(found)} "
-            f"samples), ± {100 * error.share:.2g} % from the model at level {found.level}."
-        )
-    return sentences
-
-
-def _judge(page: Page, advice: Advice, level: int, tolerance: float) -> None:
-    page.at_most(
-        f"{advice.quantity.name}: error of level {level}, {result_at(advice, level).model.title}",
-        level_error(advice, level),
-        tolerance,
-        why="the tolerance that was requested",
-        source=f"level {advice.top.model.level}, {advice.top.model.title}, and its own error band",
-    )
-
-
-def _charted(found: Study) -> list[Number]:
-    """The requested quantities; if there are none, the stiffnesses at the hub."""
-    asked = [number for number in found.numbers if found.is_asked(number)]
-    return (asked or [n for n in found.numbers if n.name.startswith("hub.stiffness.")])[:_CHARTED]
-
-
 def _varies(found: Study, number: Number) -> bool:
     return found.samples[number.name].varies
-
-
-def _count(found: Study) -> int:
-    return len(next(iter(found.samples.values())).values)
 
 
 def _words(spread: Spread) -> str:
@@ -428,16 +343,3 @@ def _small(value: float, digits: int = 3) -> float:
 
 def _percent(share: float) -> Cell:
     return 100 * share if math.isfinite(share) else None
-
-
-def _bars(name: str, x: Sequence[float], y: Sequence[str]) -> Mapping[str, Any]:
-    bars = {"type": "bar", "orientation": "h", "x": rounded(x), "y": list(y)}
-    return bars | ({"name": name} if name else {})
-
-
-def _tall(figure: Chart, bars: int) -> Chart:
-    """Room for every bar and its label."""
-    layout = figure.figure["layout"]
-    layout["yaxis"] |= {"automargin": True, "dtick": 1}
-    layout["height"] = 140 + 22 * bars
-    return figure
