@@ -248,9 +248,8 @@ def test_the_point_of_a_scene_is_asked_for_where_loads_enter_and_nowhere_else() 
         for file in (root / folder).rglob("*.py")
         if re.search(r"(scene|entrance|self)\.loads_at\b", file.read_text(encoding="utf-8"))
     }
-    says = {"studies/scene_description.py", "commands/study_loads.py"}  # in words alone
+    says = {"studies/scene_description.py", "studies/study_loads.py"}  # in words alone
     assert asking == {
-        "cases/main_bearing/loads.py",  # in words, too
         *(f"fe_drivetrain/{name}" for name in says),
         *(f"fe_drivetrain/scene/{name}.py" for name in ("entrance", "gate", "scene")),
         *(f"fe_drivetrain/response/{name}.py" for name in ("entering", "stated")),

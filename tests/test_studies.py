@@ -11,6 +11,7 @@ import pytest
 from coarse_scenes import coarse_scene
 from small_project import OWN, Content, small_project
 from test_commands_life import write_history
+from test_scene_study import HISTORIES
 
 from fe_drivetrain import export
 from fe_drivetrain.common import InputError
@@ -34,6 +35,7 @@ from fe_drivetrain.studies import (
     LoadsResult,
     PartResult,
     Result,
+    StudyResult,
     UncertaintyResult,
     ValidateResult,
     advise,
@@ -43,6 +45,7 @@ from fe_drivetrain.studies import (
     loads,
     part,
     prepare_export,
+    study,
     uncertainty,
     validate,
 )
@@ -127,7 +130,13 @@ def lived(tmp_path_factory: pytest.TempPathFactory) -> LifeResult:
     return life(library_scene("main_bearing_spherical"), folder / "*.csv", Site(8.5))
 
 
+@pytest.fixture(scope="module")
+def studied() -> StudyResult:
+    return study(coarse_scene("bonded"), HISTORIES, slopes=(4.0,))
+
+
 RESULTS = (
+    "studied",
     *("checked", "compared", "advised", "uncertain", "validated", "lived", "loaded"),
     *("shaped", "condensed", "exported"),
 )

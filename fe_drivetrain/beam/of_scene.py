@@ -140,6 +140,6 @@ def main_bearing_beam(scene: Scene, tilt: float = 0.0, yaw: float = 0.0) -> Main
             material=scene.material_of("shaft"),
         )
     raise InputError(
-        f"scene {scene.title!r} has {reason}: compare it with the general beam (beam_of_scene) "
-        "or simplify the scene"
+        f"scene {scene.title!r} has {reason}: compare it with the general beam (fe-drivetrain "
+        "study, or beam_of_scene) or simplify the scene"
     )

@@ -5,5 +5,3 @@ from .run import run_and_print as run_and_print
 from .settings import parse_loads as parse_loads
 from .settings import parse_settings as parse_settings
 from .settings import parse_tolerance as parse_tolerance
-from .study_loads import own_loads as own_loads
-from .study_page import studied as studied

@@ -127,10 +127,11 @@ def study_command(
                 f"--skip {skip:g} leaves out the beginning of your own files, and there are none: "
                 "give them with --loads, or leave --skip out"
             )
-        from fe_drivetrain.commands.study_loads import own_loads
-        from fe_drivetrain.commands.study_page import studied
+        from fe_drivetrain.commands.study_page import show_study
         from fe_drivetrain.histories.damage import SLOPES, check_slope
         from fe_drivetrain.hub_loads.channel_map import read_channel_map
+        from fe_drivetrain.studies.scene_study import study
+        from fe_drivetrain.studies.study_loads import own_loads
 
         for exponent in slope or ():
             check_slope(exponent)
@@ -140,12 +141,18 @@ def study_command(
 
         # before the work: a fault in a file is reported at once
         own = None if loads is None else own_loads(loads, skip, found, names)
+        histories = () if own is None else own.histories
         return run_on_scene(
             "study",
             [scene],
             f"{found.title}: stiffness, reactions, and beams against FE",
             out,
-            lambda run, page: studied(run, page, found, own, slope or SLOPES, weight),
+            shown(
+                lambda run: study(
+                    found, own, slope or SLOPES, weight, run.quick, report=run.report
+                ),
+                lambda run, page, result: show_study(run, page, result, histories),
+            ),
             quick,
             scheduler,
         )

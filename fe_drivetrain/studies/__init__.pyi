@@ -1,5 +1,8 @@
 from .bearing_lives import LifeResult as LifeResult
 from .bearing_lives import life as life
+from .closed_forms import ForceErrors as ForceErrors
+from .closed_forms import LinearModel as LinearModel
+from .closed_forms import closed_form_errors as closed_form_errors
 from .design_comparison import CompareResult as CompareResult
 from .design_comparison import Varied as Varied
 from .design_comparison import compare as compare
@@ -9,8 +12,11 @@ from .input_uncertainty import UncertaintyResult as UncertaintyResult
 from .input_uncertainty import uncertainty as uncertainty
 from .level_advice import AdviseResult as AdviseResult
 from .level_advice import advise as advise
+from .level_errors import LevelErrors as LevelErrors
 from .life_options import LifeOptions as LifeOptions
 from .load_digest import LoadOptions as LoadOptions
+from .load_facts import LoadFacts as LoadFacts
+from .load_facts import hub_load_rows as hub_load_rows
 from .load_histories import LoadsResult as LoadsResult
 from .load_histories import loads as loads
 from .load_winds import CaptureTarget as CaptureTarget
@@ -18,6 +24,12 @@ from .part_survey import PartResult as PartResult
 from .part_survey import part as part
 from .project_validation import ValidateResult as ValidateResult
 from .project_validation import validate as validate
+from .reaction_statistics import ReactionStatistics as ReactionStatistics
+from .reaction_statistics import Statistics as Statistics
 from .result import Result as Result
 from .scene_check import CheckResult as CheckResult
 from .scene_check import check as check
+from .scene_study import StudyResult as StudyResult
+from .scene_study import study as study
+from .study_loads import StudyLoads as StudyLoads
+from .tilt_secants import TiltSecant as TiltSecant

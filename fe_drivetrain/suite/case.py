@@ -85,7 +85,7 @@ class Case:
         found = Results(
             case=self.name,
             title=f"{page.subject}: {self.title}" if page.subject else self.title,
-            source=page.source or self.source,
+            source=self.source,
             notes=[
                 *self._of_quick_runs(run.quick),
                 *page.notes,

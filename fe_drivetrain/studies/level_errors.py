@@ -1,4 +1,4 @@
-"""Beams against FE over the loads of a study, and which level each reaction needs."""
+"""Errors of each level against the assembly over load histories, and the level that is enough."""
 
 from __future__ import annotations
 
@@ -7,11 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.commands.study_loads import StudyLoads
-from fe_drivetrain.commands.study_measures import measures
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.compare.time_weighted import weighted_rms
-from fe_drivetrain.fidelity.judgement import Judged, Judgement, is_within, judge_levels
+from fe_drivetrain.fidelity.judgement import Judged, Judgement, is_within
 from fe_drivetrain.fidelity.over_loads import (
     COARSER_ASSEMBLY,
     ROUND_OFF,
@@ -19,10 +17,8 @@ from fe_drivetrain.fidelity.over_loads import (
     reaction_history,
     relative_errors,
 )
-from fe_drivetrain.fidelity.shaft_bands import COARSER
-from fe_drivetrain.response.entering import entering, joined
 from fe_drivetrain.scene.scene import Scene
-from fe_drivetrain.suite.page import Page
+from fe_drivetrain.studies.study_loads import EnteredLoads
 from fe_drivetrain.suite.records import Record
 
 ENOUGH = 0.05
@@ -51,53 +47,7 @@ class LevelErrors:
     judged: Sequence[Judged]
 
 
-def errors(
-    page: Page, scene: Scene, levels: Levels, loads: StudyLoads, slopes: Sequence[float]
-) -> int:
-    """RMSE of each level against the assembly, and the cheapest level that is enough.
-
-    Parameters
-    ----------
-    page : Page
-        Takes the tables and the answer.
-    scene : Scene
-        The scene.
-    levels : Levels
-        All levels.
-    loads : StudyLoads
-        Hub loads.
-    slopes : sequence of float
-        Of S-N curves.
-
-    Returns
-    -------
-    int
-        The cheapest of levels 1 and 2 that is enough for all, or the more accurate one.
-    """
-    page.section("Beams against FE")
-    found = level_errors(scene, levels, loads)
-    judgement = judge_levels(found.judged, ENOUGH, scene.shaft.length)
-    rows: list[Record] = [
-        {"reaction": reaction, **{label: 100.0 * share for label, share in of.items()}}
-        for reaction, of in found.shares.items()
-    ]
-    page.table(
-        "Error of each reaction as a vector over all load steps: root mean square of the "
-        "difference to the assembly over that of the assembly's [%]",
-        rows,
-    )
-    page.table("RMSE of each component against the assembly over all load steps", found.components)
-    page.text(_notes(levels, judgement))
-    page.data("error_percent", rows)
-    page.data("rmse_kN", list(found.components))
-    page.answer(enough(judgement, levels.bounds))
-    _advice(page, levels, found.judged)
-    judged = [q.name for q in found.judged if q not in judgement.slight]
-    measures(page, scene, levels, loads, slopes, ENOUGH, judged)
-    return int(judgement.nearest[0])
-
-
-def level_errors(scene: Scene, levels: Levels, loads: StudyLoads) -> LevelErrors:
+def level_errors(scene: Scene, levels: Levels, loads: EnteredLoads) -> LevelErrors:
     """Errors of all levels against the assembly over all load steps.
 
     Parameters
@@ -106,25 +56,25 @@ def level_errors(scene: Scene, levels: Levels, loads: StudyLoads) -> LevelErrors
         The scene.
     levels : Levels
         All levels.
-    loads : StudyLoads
+    loads : EnteredLoads
         Hub loads.
     """
-    others = list(levels.models)[:-1]
-    hub = joined([entering(scene, history) for history in loads.histories])
+    others, weights = list(levels.models)[:-1], loads.given.weights
     components: list[Record] = []
     shares: dict[str, dict[str, float]] = {}
     judged: list[Judged] = []
     for name in levels.reference.reaction_matrices:
         histories = {
-            label: reaction_history(model, name, hub, scene.gearbox.weight, loads.gravity)
+            label: reaction_history(
+                model, name, loads.together, scene.gearbox.weight, loads.given.gravity
+            )
             for label, model in levels.models.items()
         }
         (*_, reference) = histories.values()
-        size = weighted_rms(reference, loads.weights)
-        rmse = {m: weighted_rms(histories[m] - reference, loads.weights) for m in others}
+        size = weighted_rms(reference, weights)
+        rmse = {m: weighted_rms(histories[m] - reference, weights) for m in others}
         relative = {
-            m: relative_errors(reference, histories[m], scene.shaft.length, loads.weights)
-            for m in others
+            m: relative_errors(reference, histories[m], scene.shaft.length, weights) for m in others
         }
         for k, kind in enumerate(_KINDS):
             if np.isnan(relative[others[0]][k]):
@@ -156,52 +106,31 @@ def _judged(
     return Judged(name, kind, size, by_level, band)
 
 
-def _notes(levels: Levels, judgement: Judgement) -> str:
-    """Notes on the tables: bounds, what the mesh does, and what does not decide."""
-    notes = []
-    if levels.stiff:
-        notes.append("Stiff and soft housings are the two bounds of the bearing units.")
-    if COARSER_ASSEMBLY in levels.models:
-        notes.append(
-            f"The assembly on a mesh {COARSER:g} times coarser shows what the mesh does to the "
-            "reference: differences as small as that are not errors of a beam."
-        )
-    else:
-        notes.append(f"The mesh cannot be {COARSER:g} times coarser: its own error is not shown.")
-    if judgement.slight:
-        slight = "; ".join(q.words(judgement.largest[q.kind]) for q in judgement.slight)
-        notes.append(f"Too small beside the largest of their kind to judge a level by: {slight}.")
-    notes.append("Forces and moments that are the mesh's noise are left out.")
-    return " ".join(notes)
+def needed_levels(judged: Sequence[Judged], with_band: bool) -> list[Record]:
+    """The cheapest level for each reaction, the band of the assembly's own mesh included.
 
-
-def _advice(page: Page, levels: Levels, judged: Sequence[Judged]) -> None:
-    """The cheapest level for each reaction, the band of the assembly's own mesh included."""
+    Parameters
+    ----------
+    judged : sequence of Judged
+        Reactions with their errors at each level.
+    with_band : bool
+        Whether the band of the assembly's mesh is known.
+    """
     rows: list[Record] = []
     for reaction in judged:
         level = reaction.cheapest(ENOUGH)
         needed = level or "4 assembly of solids"
         if not is_within(0.0, reaction.band, ENOUGH):
             needed = "none: a finer mesh of the assembly"
-        band = None if levels.coarser is None else 100.0 * reaction.band
         rows.append(
             {
                 "reaction": reaction.name,
                 "level that it needs": needed,
                 "error of that level [%]": 100.0 * reaction.errors[level] if level else None,
-                "± mesh of the assembly [%]": band,
+                "± mesh of the assembly [%]": 100.0 * reaction.band if with_band else None,
             }
         )
-    page.table(
-        f"The cheapest level that has each reaction within {100 * ENOUGH:g} % over these loads"
-        + (", for either bound of the housings" if levels.stiff else ""),
-        rows,
-    )
-    page.text(
-        "'fe-drivetrain advise' answers for one quantity and another tolerance, ranks the details "
-        "of the scene, and says what each level takes."
-    )
-    page.data("advice", rows)
+    return rows
 
 
 def enough(judgement: Judgement, bounds: Mapping[str, Sequence[str]]) -> str:
