@@ -73,6 +73,9 @@ UNSTAMPED = {
             "fidelity/gearbox_housing",
             "gear/subsurface",
         ),
+        "of random shafts, and of shafts with one fillet that the case makes": (
+            "verification/band_coverage",
+        ),
         "of the time that a method takes, with a drivetrain for its size": (
             "performance/drivetrain_transient",
             "performance/level_two",

@@ -205,12 +205,26 @@ def test_reactions_of_the_page_are_those_of_the_command(
         assert float(row["largest"]) == pytest.approx(values.max() / 1e3, rel=1e-8, abs=1e-6)
 
 
-@pytest.mark.parametrize("page", ["life.md", "how-to/bearing-life.md"])
-def test_lives_of_the_page_are_those_of_the_command(
-    page: str, invoke: Callable[..., Result], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+def test_the_study_of_lives_on_the_page_is_that_of_the_command(
+    invoke: Callable[..., Result], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    names = recipe(page, monkeypatch)
+    found = recipe("life.md", monkeypatch)["found"]
+    Path("scene.yaml").write_text(scene_text(gauged("main_bearing_spherical")))
+    words = ("--loads", "w12.csv", "--rotor-speed", "12", "--temperature", "60", "--out", "out")
+    status, _, error = invoke("life", "scene.yaml", *words)
+    assert status == 0, error
+    (lives,) = rows_of(Path("out/lives.csv"))
+    years = found.bearings["main_bearing"].years
+    for kind in ("L10", "L10r", "L10mr"):
+        assert float(lives[f"{kind} [years]"]) == pytest.approx(years[kind], rel=1e-8)
+
+
+def test_lives_of_the_page_are_those_of_the_command(
+    invoke: Callable[..., Result], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    names = recipe("how-to/bearing-life.md", monkeypatch)
     Path("scene.yaml").write_text(scene_text(SCENE))
     units = 3 * ["N"] + 3 * ["N m"]
     columns = [f"{name} [{unit}]" for name, unit in zip(FORCES, units, strict=True)]

@@ -140,7 +140,6 @@ def test_what_is_started_by_its_name_is_named_there(module: str, file: str) -> N
 
 #: Cases that take from the command line what is to become a study or a page of its own.
 WITH_COMMANDS = {
-    "cases.main_bearing.rmse",
     "cases.stability.fault_moments",
     "cases.verification.command_kills",
 }
