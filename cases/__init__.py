@@ -17,6 +17,7 @@ def case(
     title: str,
     *,
     source: str,
+    name: str = "",
     alone: bool | Literal["full"] = False,
     settings: Mapping[str, str] | tuple[str, ...] = (),
     changes: str = "",
@@ -29,6 +30,8 @@ def case(
         One line.
     source : str
         Where the problem and its reference come from.
+    name : str
+        Name of the case within its group where it is not that of the script.
     alone : bool or "full"
         It measures time or memory: nothing may run beside it, and nothing it uses comes from the
         cache. "full" where no check of its quick form depends on time: that may run beside others.
@@ -47,8 +50,8 @@ def case(
 
     def declared(function: _Function) -> _Function:
         if function.__module__ == "__main__":
-            group, name = Path(function.__code__.co_filename).resolve().with_suffix("").parts[-2:]
-            _run([f"{group}/{name}", *sys.argv[1:]])
+            group, script = Path(function.__code__.co_filename).resolve().with_suffix("").parts[-2:]
+            _run([f"{group}/{name or script}", *sys.argv[1:]])
         return function
 
     return declared

@@ -90,7 +90,7 @@ def to_docstrings(app: Sphinx, docname: str, source: list[str]) -> None:
     """Let the rooms and modules that the theory names lead to their docstrings."""
     if docname == "theory":
         source[0] = re.sub(
-            r"`([a-z_]+(?:\.[a-z_]+)?)`", r"{py:mod}`\1 <fe_drivetrain.\1>`", source[0]
+            r"`([a-z_]+(?:\.[a-z_]+)*)`", r"{py:mod}`\1 <fe_drivetrain.\1>`", source[0]
         )
 
 

@@ -1,7 +1,8 @@
 """The rooms of the package and what each imports, read from the code; the picture of CONTRIBUTING.
 
 ``python docs/house.py`` draws the picture again. tests/test_house.py pins what it shows: every
-import goes to a lower floor, and none in a circle.
+import goes to a lower floor, and none in a circle; and by `users` that the library has no module
+for one case alone.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ TOP_LEVEL = ("geometry", "cases")  # installed as subpackages
 BEGIN, END = "<!-- floors: python docs/house.py -->", "<!-- end of floors -->"
 
 
+@cache
 def modules() -> dict[str, Path]:
     """Every module of the installed package, by its dotted name below the package."""
     found = {}
@@ -60,6 +62,79 @@ def _statements(block: ast.AST) -> Iterator[ast.AST]:
         for node in getattr(block, part, ()):
             yield node
             yield from _statements(node)
+
+
+@cache
+def faces() -> dict[str, dict[str, str]]:
+    """Public names of every package that has a face, each with the module or face it is from."""
+    return {
+        name: {
+            alias.asname or alias.name: f"{name}.{node.module or alias.name}".strip(".")
+            for node in ast.parse(stub.read_text(encoding="utf-8")).body
+            if isinstance(node, ast.ImportFrom) and node.level == 1
+            for alias in node.names
+        }
+        for name, path in modules().items()
+        if (stub := path.with_suffix(".pyi")).is_file()
+    }
+
+
+def home(target: str) -> str:
+    """The module that has what is imported as "room.name"; itself, where it is a face or none."""
+    room, _, name = target.rpartition(".")
+    if target in modules():
+        return target
+    if name in faces().get(room, {}):
+        origin = faces()[room][name]
+        return home(f"{origin}.{name}") if origin in faces() else origin
+    return room if room in modules() else target
+
+
+def used(path: Path, name: str) -> set[str]:
+    """Modules that a file takes names from: straight, through a face, or as ``face.name``."""
+    found = {home(target) for target in imports(path, name)}
+    taken = found & faces().keys()
+    if taken:
+        attributes = {
+            node.attr
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+            if isinstance(node, ast.Attribute)
+        }
+        found |= {home(f"{face}.{a}") for face in taken for a in attributes & faces()[face].keys()}
+    return found - {name}
+
+
+@cache
+def users() -> dict[str, set[str]]:
+    """By module those that take names from it."""
+    found: dict[str, set[str]] = {name: set() for name in modules()}
+    for name, path in modules().items():
+        for target in used(path, name) & found.keys():
+            found[target].add(name)
+    return found
+
+
+@cache
+def scripts() -> set[str]:
+    """Modules that declare a case."""
+    return {
+        name
+        for name, path in modules().items()
+        if name.startswith("cases.")
+        and re.search(r"^@cases?\(", path.read_text(encoding="utf-8"), re.MULTILINE)
+    }
+
+
+def cases_with(name: str) -> set[str]:
+    """Scripts that take names from a module of the cases or the library, or through others."""
+    found: set[str] = set()
+    seen, ahead = {name}, [name]
+    while ahead:
+        new = users()[ahead.pop()] - seen
+        seen |= new
+        found |= new & scripts()
+        ahead += new - scripts()
+    return found
 
 
 def room_of(name: str) -> str:

@@ -167,7 +167,8 @@ def public_rooms() -> Iterator[str]:
     for info in pkgutil.iter_modules(fe_drivetrain.__path__):
         if info.ispkg:
             yield info.name
-    yield "geometry"  # at the top level of the repository
+    # at the top level of the repository
+    yield from ("geometry", "cases.references", "cases.performance.peers")
 
 
 def public_names(room: ModuleType) -> list[str]:

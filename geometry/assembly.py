@@ -19,7 +19,7 @@ from .shaft import Shaft
 from .walls import check_sizes
 
 NO_BANDS: Mapping[str, Band] = MappingProxyType({})
-"""Where loads enter the shaft at its ends and seats alone."""
+"""No bands: loads enter the shaft at its ends and seats alone."""
 
 
 def build(
@@ -50,7 +50,7 @@ def build(
         Names of the bearings whose outer face is bonded to the housing. It does not change the
         CAD model; it is checked here and used when the mesh is read.
     bands : Mapping[str, Band]
-        Where else loads enter the shaft, by name. Each becomes a face, "shaft.band.NAME".
+        Further bands where loads enter the shaft, by name. Each becomes a face, "shaft.band.NAME".
 
     Raises
     ------

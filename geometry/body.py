@@ -1,4 +1,4 @@
-"""What bodies of one volume share: element sizes, named faces, and how faces are found."""
+"""Base of bodies of one volume: element sizes, named faces, and how faces are found."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ _STEP = 1e-3  # of an edge's length: so far from it the material is looked for
 class BodySizes(Part):
     """Edge lengths of the elements of a body."""
 
-    size: float = dimension(0.12, of="largest element size", gt=0)
+    size: float = dimension(0.12, of="maximum element size", gt=0)
     edge: float = dimension(
         0.06, of="element size along inner edges, where stress is singular", gt=0
     )
     elements_per_turn: int = Field(
-        default=12, ge=6, le=360, description="least number of elements round any cylinder"
+        default=12, ge=6, le=360, description="minimum number of elements round any cylinder"
     )
 
     def scaled(self, factor: float) -> BodySizes:
@@ -48,15 +48,15 @@ def name_and_size(
     Parameters
     ----------
     name : str
-        Of the body; a face's group is called NAME.FACE.
+        Name of the body; a face's group is called NAME.FACE.
     volume : int
-        Tag.
+        Tag of the volume.
     faces : Mapping[str, Iterable[int]]
         Tags of the faces of each name.
     sizes : BodySizes
         Element sizes.
     copies : int
-        Of the volume in the body.
+        Number of copies of the volume in the body.
 
     Raises
     ------
@@ -182,11 +182,11 @@ def annulus(
     Parameters
     ----------
     start, length : float
-        Along x [m].
+        Start and length along x [m].
     inner, outer : float
         Radii [m].
     angle, turn : float
-        Where it begins and how far it goes about x, from the z axis on [rad].
+        Angle where it begins and angle that it spans about x, from the z axis on [rad].
     """
     occ = gmsh.model.occ
     corners = [(start, inner), (start + length, inner), (start + length, outer), (start, outer)]

@@ -82,7 +82,7 @@ def coarse_thread(diameter: float) -> Thread:
     Returns
     -------
     Thread
-        Its diameters.
+        Diameters of the thread.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def yield_strength(property_class: str) -> float:
     Returns
     -------
     float
-        [Pa]; least values of the standard are a little higher for some classes.
+        Yield strength [Pa]; minimum values of the standard are a little higher for some classes.
     """
     strength, ratio = property_class.split(".")
     return float(strength) * 100e6 * float(ratio) / 10.0
@@ -128,18 +128,18 @@ def assembly_preload(thread: Thread, strength: float, share: float, friction: fl
     Parameters
     ----------
     thread : Thread
-        Of the bolt.
+        Thread of the bolt.
     strength : float
         Yield strength [Pa].
     share : float
-        Of the yield strength, VDI 2230's nu: 0.9 as a rule there.
+        Share of the yield strength, VDI 2230's nu: 0.9 as a rule there.
     friction : float
         Coefficient of friction in the thread; 0 as where a hydraulic tool pulls the bolt.
 
     Returns
     -------
     float
-        [N].
+        Assembly preload [N].
     """
     slope = thread.pitch / (math.pi * thread.flank) + friction / math.cos(math.radians(30.0))
     shear = 1.5 * thread.flank / thread.stressed * slope

@@ -1,4 +1,4 @@
-"""How many elements the parts of a scene make, from their dimensions: no CAD model is needed.
+"""Number of elements of a scene's parts, from their dimensions: no CAD model is needed.
 
 What `fe_drivetrain.geometry.element_sizes` foresees on the faces of the CAD model, in closed form.
 """
@@ -40,7 +40,7 @@ def check_counts(
     Parameters
     ----------
     shaft, bearings, housings, sizes, bands : Shaft or None, Sequence, Mapping, MeshSizes, Mapping
-        As of `fe_drivetrain.geometry.build`.
+        Parts and sizes, as `fe_drivetrain.geometry.build` takes them.
     bores : Mapping[str, float]
         Bore diameters of the bearings by name, m.
 
@@ -65,7 +65,7 @@ def check_counts(
 
 
 class _Face(NamedTuple):
-    """A face of revolution: its area, m^2, and the largest element that it allows, m."""
+    """Face of revolution: its area, m^2, and the maximum element size that it allows, m."""
 
     x: tuple[float, float]
     radii: tuple[float, float]

@@ -27,11 +27,11 @@ _PER_VOLUME = 6 * math.sqrt(2)  # regular tetrahedra of edge 1 in a volume of 1
 
 
 SIZE_PER_WALL = 3.0
-"""Largest mesh size, in thicknesses of the thinnest wall: elements flatter than this fold over."""
+"""Maximum mesh size, in thicknesses of the thinnest wall: elements flatter than this fold over."""
 
 
 LEAST_TURN, SOUND_TURN, MOST_TURN = 6, 8, 360
-"""Fewest elements round any cylinder or sphere, fewest that fold over but seldom, and most."""
+"""Elements round any cylinder or sphere: minimum, minimum that seldom folds over, and maximum."""
 
 
 class MeshSizes(Part):
@@ -47,7 +47,7 @@ class MeshSizes(Part):
         default=12,
         ge=LEAST_TURN,
         le=MOST_TURN,
-        description="least number of elements round any cylinder or sphere",
+        description="minimum number of elements round any cylinder or sphere",
     )
 
     def scaled(self, factor: float, elements_per_turn: int | None = None) -> MeshSizes:
@@ -59,9 +59,10 @@ class MeshSizes(Part):
         Parameters
         ----------
         factor : float
-            On all sizes.
+            Factor on all sizes.
         elements_per_turn : int or None
-            In place of those, where a mesh is wanted that is coarse and sound, not one of a series.
+            Number of elements per turn in place of the sizes' own, where a mesh is wanted that is
+            coarse and sound, not one of a series.
         """
         turn = self.elements_per_turn
         turn = max(min(turn, SOUND_TURN), round(turn / factor))
@@ -81,9 +82,9 @@ class MeshSizes(Part):
         Parameters
         ----------
         kinds : Iterable[str]
-            Any of 'shaft', 'bearing', 'housing'.
+            Kinds of parts: any of 'shaft', 'bearing', 'housing'.
         factor : float
-            Above 1 for a finer mesh.
+            Factor, above 1 for a finer mesh.
         """
         update: dict[str, float] = {kind: getattr(self, kind) / factor for kind in kinds}
         if "shaft" in update:
@@ -133,14 +134,14 @@ def apply_sizes(sizes: MeshSizes, parts: Mapping[str, int], faces: Mapping[str, 
 
 
 def elements_within(name: str, volume: float, size: float) -> float:
-    """About how many elements of a size fill a part.
+    """Approximate number of elements of a size that fill a part.
 
     Parameters
     ----------
     name : str
         Name of the part.
     volume, size : float
-        Its volume, m^3, and the size of its elements, m.
+        Volume of the part, m^3, and size of its elements, m.
 
     Raises
     ------
@@ -158,7 +159,7 @@ def elements_within(name: str, volume: float, size: float) -> float:
 
 
 def _elements_beside(face: int, size: float) -> float:
-    """About how many elements a face of the open gmsh model makes."""
+    """Approximate number of elements that a face of the open gmsh model makes."""
     area, meridian = gmsh.model.occ.getMass(2, face), revolved_ranges(face)
     box = gmsh.model.getBoundingBox(2, face)
     length = math.dist(box[:3], box[3:])
@@ -169,7 +170,8 @@ def _elements_beside(face: int, size: float) -> float:
 
 
 def elements_beside(area: float, length: float, size: float) -> float:
-    """About how many elements a face of small ones makes, those that grow away from it included.
+    """Approximate number of elements at a face of small ones, those that grow away from it
+    included.
 
     The integral of 6 sqrt(2) / h^3 with h = h0 + g d at the distance d: over one side of a wide
     face A / (2 g h0^2), over half the space round a narrow one of length L pi L / (2 g^2 h0).
@@ -177,7 +179,7 @@ def elements_beside(area: float, length: float, size: float) -> float:
     Parameters
     ----------
     area, length, size : float
-        Of the face, m^2 and m, and of its elements, m.
+        Area and length of the face, m^2 and m, and size of its elements, m.
     """
     wide, narrow = area / (2 * GROWTH * size**2), math.pi * length / (2 * GROWTH**2 * size)
     return float(_PER_VOLUME * (wide + narrow))
@@ -197,7 +199,7 @@ def refuse_too_many(
     name : str
         Name of the part.
     x, y : tuple[float, float]
-        Where the face is, m.
+        Ranges of x and y that the face spans, m.
     size, elements : float
         Size of its elements, m, and how many elements the part has with them.
 
@@ -242,7 +244,7 @@ def refuse_fine_edges(length: float, size: float) -> None:
     Parameters
     ----------
     length, size : float
-        Of all edges, and of the elements along them, m.
+        Length of all edges, and size of the elements along them, m.
 
     Raises
     ------
@@ -260,7 +262,7 @@ def refuse_fine_edges(length: float, size: float) -> None:
 
 
 def _size_limit(face: int, elements_per_turn: int) -> float:
-    """Largest element size that a face allows, whatever its part is given, m.
+    """Maximum element size that a face allows, whatever its part is given, m.
 
     A curved face gets its number of elements a turn; a fillet (torus) is allowed elements half as
     long again, since its arc is a quarter of a turn or less, and small elements all round the
@@ -280,16 +282,16 @@ def _size_limit(face: int, elements_per_turn: int) -> float:
 
 
 def curved_limit(curvature: float, fillet: bool, elements_per_turn: int) -> float:
-    """Largest element size that a curved face allows; see `_size_limit`.
+    """Maximum element size that a curved face allows; see `_size_limit`.
 
     Parameters
     ----------
     curvature : float
-        The largest of the face, 1/m.
+        Maximum curvature of the face, 1/m.
     fillet : bool
         Whether it is a fillet.
     elements_per_turn : int
-        Of a scene.
+        Elements per turn of a scene.
     """
     if curvature == 0:
         return math.inf
@@ -297,7 +299,7 @@ def curved_limit(curvature: float, fillet: bool, elements_per_turn: int) -> floa
 
 
 def narrow_limit(width: float, radius: float) -> float:
-    """Largest element size that a ring of a width and its larger radius allows, m."""
+    """Maximum element size that a ring of a width and its larger radius allows, m."""
     return 2 * math.sqrt(radius * width)
 
 

@@ -30,7 +30,7 @@ def check_parts(
     Parameters
     ----------
     shaft, bearings, housings, bonded : Shaft or None, Sequence[Bearing], Mapping, frozenset
-        As of `fe_drivetrain.geometry.build`.
+        Parts, as `fe_drivetrain.geometry.build` takes them.
 
     Returns
     -------
@@ -69,7 +69,7 @@ def check_bands(shaft: Shaft, bands: Mapping[str, Band], bearings: Sequence[Bear
     shaft : Shaft
         The shaft.
     bands : Mapping[str, Band]
-        By name.
+        Bands by name.
     bearings : Sequence[Bearing]
         The bearings on the shaft.
 
@@ -167,11 +167,11 @@ def refuse_millimetres(part: str, long: float, wide: float, longest: float = LON
     Parameters
     ----------
     part : str
-        What it is, for the message.
+        Name of the part, for the message.
     long, wide : float
-        Its extents along x and across, m.
+        Extents of the part along x and across, m.
     longest : float
-        What it may be along x, m.
+        Maximum length along x, m.
 
     Raises
     ------

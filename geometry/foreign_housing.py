@@ -25,7 +25,7 @@ STEP_ENDINGS = (".step", ".stp")
 MESH_ENDINGS = (".msh", ".vtu", ".inp")
 
 LARGEST_PRELOAD = 1e9
-"""Of a bolt [N]."""
+"""Maximum preload of a bolt [N]."""
 
 
 class Pick(Part):
@@ -86,11 +86,11 @@ _WAYS: tuple[set[str], ...] = (
 class Bolts(Part):
     """Bolts through the foot, and how they hold it.
 
-    As washers, the annulus round each hole on the held faces is fixed, as under bolts whose
-    preload keeps the joint closed. As beams, each bolt alone carries, from the annulus round the
-    hole's other end down to the held face, where the ground holds it: a joint that is open.
-    Clamped, each bolt is such a beam, tightened, and the held faces press on the ground: where the
-    preload leaves them pressed they stand on it, beside the bolts.
+    With hold 'washers', the annulus round each hole on the held faces is fixed, as under bolts
+    whose preload keeps the joint closed. With 'beams', each bolt alone carries, from the annulus
+    round the hole's other end down to the held face, where the ground holds it: a joint that is
+    open. With 'clamped', each bolt is such a beam, tightened, and the held faces press on the
+    ground: where the preload leaves them pressed they stand on it, beside the bolts.
     """
 
     hole_radius: float = Field(gt=0, description="radius of the holes, in the file's unit")
@@ -101,25 +101,25 @@ class Bolts(Part):
     diameter: float | None = Field(
         default=None,
         gt=0,
-        description="of the bolts, in the file's unit (hold 'beams' and 'clamped')",
+        description="diameter of the bolts, in the file's unit (hold 'beams' and 'clamped')",
     )
     clamp_length: float | None = Field(
         default=None,
         gt=0,
-        description="of the bolts from the head to where the ground holds them, in that unit; the "
-        "hole's length where left out",
+        description="length of the bolts from the head to where the ground holds them, in that "
+        "unit; the hole's length where left out",
     )
     preload: float | None = Field(
-        default=None, gt=0, le=LARGEST_PRELOAD, description="of each bolt, tightened [N]"
+        default=None, gt=0, le=LARGEST_PRELOAD, description="tension of each bolt, tightened [N]"
     )
     property_class: Literal["4.6", "5.6", "6.8", "8.8", "10.9", "12.9"] | None = Field(
-        default=None, description="of the bolts, in place of their preload"
+        default=None, description="property class of the bolts, in place of their preload"
     )
     of_yield: float | None = Field(
         default=None,
         gt=0,
         le=1,
-        description="to which share of yield they are tightened; 0.9 where left out",
+        description="share of yield that they are tightened to; 0.9 where left out",
     )
     thread_friction: float | None = Field(
         default=None, ge=0, le=1, description="coefficient in the thread; 0.12 where left out"
@@ -168,7 +168,7 @@ class Bolts(Part):
         Returns
         -------
         float
-            [N]; given, or that of its property class, see `assembly_preload`.
+            Preload [N]; given, or that of its property class, see `assembly_preload`.
 
         Raises
         ------
@@ -212,13 +212,13 @@ class BoltedJoint(Part):
 class ForeignFile(Part):
     """A part from a STEP file or a mesh file: which solid, of what material, and how it is turned.
 
-    It is turned about the fixed axes x, y and z one after the other, before it is moved.
+    It is turned about the fixed axes x, y and z in this order, before it is moved.
     """
 
     step: str | None = Field(default=None, min_length=1, max_length=1000)
     mesh: str | None = Field(default=None, min_length=1, max_length=1000)
     unit: Literal["mm", "m", "in"] | None = Field(
-        default=None, description="of the file's lengths; mm for STEP where left out"
+        default=None, description="unit of the file's lengths; mm for STEP where left out"
     )
     part: str | None = Field(
         default=None, min_length=1, description="name of one solid, where a file has several"
@@ -263,12 +263,12 @@ class ForeignFile(Part):
         return self
 
     def what(self) -> str:
-        """What it is, for messages."""
+        """Name of the part, for messages."""
         return "a housing from a file"
 
     @property
     def file(self) -> str:
-        """Its file."""
+        """Path of its file."""
         return self.step or self.mesh or ""
 
     @property
@@ -297,7 +297,7 @@ class ForeignHousing(ForeignFile):
     held: tuple[Pick, ...] = Field(default=(), max_length=100)
     bolts: Bolts | None = None
     bolted: BoltedJoint | None = Field(
-        default=None, description="of several solids of one STEP file: joined round bolts alone"
+        default=None, description="joint of several solids of one STEP file, round bolts alone"
     )
 
     @model_validator(mode="after")
@@ -318,7 +318,7 @@ class ForeignHousing(ForeignFile):
 
     @property
     def held_by(self) -> str:
-        """How it is held, in words."""
+        """Phrase that says how it is held."""
         if self.bolts is None:
             return "held faces fixed"
         return {
@@ -377,7 +377,7 @@ class FurtherPart(ForeignFile):
     held: tuple[Pick, ...] = Field(default=(), max_length=100)
 
     def what(self) -> str:
-        """What it is, for messages."""
+        """Name of the part, for messages."""
         return f"part {self.name!r}"
 
 
@@ -415,8 +415,8 @@ class CondensedHousing(Part):
         least = float(np.linalg.eigvalsh(0.5 * (scaled + scaled.T))[0])
         if least < _LEAST or K.diagonal().max() > _STIFFEST:
             raise InputError(
-                f"a housing's stiffness has a least eigenvalue of {least:.2g} of its diagonal and "
-                f"a largest entry of {K.diagonal().max():.2g}, but must hold every motion (at "
+                f"a housing's stiffness has a minimum eigenvalue of {least:.2g} of its diagonal "
+                f"and a maximum entry of {K.diagonal().max():.2g}, but must hold every motion (at "
                 f"least {_LEAST:g}) with at most {_STIFFEST:g} [N/m, N m/rad]: check its units"
             )
         return self
@@ -430,7 +430,7 @@ class CondensedHousing(Part):
 _SYMMETRIC, _LEAST, _STIFFEST = 1e-6, 1e-9, 1e16
 
 SEAT_TOLERANCE = 1e-4
-"""Of the radius of a seat: it may differ so much from the bearing's raceway."""
+"""Allowed difference of a seat's radius from the bearing's raceway, over the radius."""
 
 
 def _kind(value: Any) -> str:

@@ -238,7 +238,7 @@ class Housing(Part):
         bearing, shaft : Bearing, Shaft
             The bearing in its bore, and the body.
         what : str
-            What the body is.
+            Name of the body.
 
         Raises
         ------

@@ -15,9 +15,9 @@ class LocalSizes(NamedTuple):
     Attributes
     ----------
     corners : NDArray[np.float64]
-        (n, 4, 3) corners of each tetrahedron, m.
+        Corners (n, 4, 3) of each tetrahedron, m.
     sizes : NDArray[np.float64]
-        (n, 4) element size at each corner, m.
+        Element size (n, 4) at each corner, m.
     """
 
     corners: NDArray[np.float64]

@@ -31,7 +31,7 @@ def bearing_solid(bearing: Bearing, bore_diameter: float) -> Solid:
     bearing : Bearing
         The bearing.
     bore_diameter : float
-        Of it [m].
+        Bore diameter of the bearing [m].
     """
     with gmsh_session():
         tag = bearing.build(bore_diameter)
@@ -54,7 +54,7 @@ def unit_solids(bearing: Bearing, housing: Housing, bore_diameter: float) -> tup
     bearing, housing : Bearing, Housing
         The unit.
     bore_diameter : float
-        Of the bearing [m].
+        Bore diameter of the bearing [m].
     """
     occ = gmsh.model.occ
     with gmsh_session():

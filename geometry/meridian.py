@@ -17,7 +17,7 @@ from .session import gmsh_session, integrate_sizes
 from .shaft import Segment, Shaft
 
 HIGHEST_ORDER = 6
-"""Of triangles: the nodes of gmsh's are equally spaced, too poor for higher ones."""
+"""Maximum order of triangles: gmsh's nodes are equally spaced, too poor for higher orders."""
 
 GROWTH = 0.5
 """Growth of the element size with the distance from a fillet or a corner, m per m."""
@@ -35,21 +35,21 @@ def meridian_triangles(
     Parameters
     ----------
     shaft : Shaft
-        Any.
+        Shaft of any kind.
     size : float
-        Largest edge length, m.
+        Maximum edge length, m.
     order : int
-        Of the triangles, 1 to `HIGHEST_ORDER`; all their nodes on a fillet lie on its arc.
+        Order of the triangles, 1 to `HIGHEST_ORDER`; all their nodes on a fillet lie on its arc.
     per_fillet : int
-        Elements along each fillet.
+        Number of elements along each fillet.
     corner : float
         Edge length at every sharp corner of the outline, m.
 
     Returns
     -------
     nodes, cells, places
-        (n, 2) x and radius, m; (ne, k) node ids; (k, 2) places of an element's nodes in the unit
-        triangle (0, 0), (1, 0), (0, 1), these corners first.
+        Nodes (n, 2), x and radius, m; node ids (ne, k); places (k, 2) of an element's nodes in the
+        unit triangle (0, 0), (1, 0), (0, 1), these corners first.
 
     Raises
     ------

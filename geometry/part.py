@@ -1,4 +1,4 @@
-"""What every parametric part has in common: frozen, no unknown keys, one-sentence errors."""
+"""Base of every parametric part: frozen, no unknown keys, one-sentence errors."""
 
 from __future__ import annotations
 
@@ -32,17 +32,17 @@ _SLIP = 100.0
 
 
 def slip_of_units(value: float, limit: float) -> str:
-    """What a message adds where a length may have been given in the wrong unit.
+    """Sentence that a message adds where a length may have been given in the wrong unit.
 
     Parameters
     ----------
     value, limit : float
-        The length, and what it must be less than, or more, m.
+        Length, and what it must be less than, or more, m.
 
     Returns
     -------
     str
-        As in " (lengths are in metres: 1.42 m if this was in millimetres)"; empty where the
+        Text such as " (lengths are in metres: 1.42 m if this was in millimetres)"; empty where the
         length is near to its limit, or in millimetres would be no better.
     """
     if limit > 0 and _SLIP * limit < value:
@@ -81,11 +81,11 @@ def dimension(
     default : Any
         Default value; required where left out.
     of : str
-        What the number measures, in a few words.
+        Quantity that the number measures, in a few words.
     unit : str
         Unit of the number.
     source : str
-        Where the default comes from: a catalogue, or 'assumed: reason'.
+        Source of the default: a catalogue, or 'assumed: reason'.
     gt, ge : float or None
         Lower bounds, exclusive and inclusive. A length lies between `SMALLEST` and `LARGEST`, too,
         where it must be greater than 0; else it is at most `LARGEST`, with either sign.
@@ -117,14 +117,14 @@ def rows_of(what: str, of: type[Part] | Mapping[str, type[Part]]) -> Any:
     Parameters
     ----------
     what : str
-        What a row is, in messages.
+        Name of a row, in messages.
     of : type or mapping of str to type
-        Its part, or parts by their ``kind``.
+        Part of the row, or parts by their ``kind``.
 
     Returns
     -------
     callable
-        From a list of mappings, or of anything else, to one with parts for the mappings.
+        Function from a list of mappings, or of anything else, to one with parts for the mappings.
     """
 
     def one(row: Mapping[str, Any]) -> Part:
@@ -187,8 +187,8 @@ class Part(BaseModel):
         Returns
         -------
         list of Assumption
-            (name, value, unit, source); a value that differs from the default is reported as
-            given by the scene, since the source of the default no longer speaks for it.
+            Assumptions (name, value, unit, source); a value that differs from the default is
+            reported as given by the scene, since the source of the default no longer speaks for it.
         """
         rows = []
         for name, field in type(self).model_fields.items():
@@ -208,7 +208,7 @@ class Part(BaseModel):
 
 
 def assumed_in(parts: Sequence[tuple[str, Part]]) -> list[Assumption]:
-    """What parts do not give and have all the same, by the name of each part and its key."""
+    """Assumed values of parts, by the name of each part and its key."""
     return [
         row._replace(name=f"{owner}: {row.name}")
         for owner, part in parts

@@ -156,7 +156,7 @@ class PlanetCarrier(Part):
 
     @property
     def length(self) -> float:
-        """From the flange face to the end of the rear cheek, or of the pins, m."""
+        """Length from the flange face to the end of the rear cheek, or of the pins, m."""
         return self.hub_length + self.walls * self.cheek_thickness + self.gap
 
     @property

@@ -139,7 +139,7 @@ PARTS: dict[str, Callable[[], int | tuple[int, ...]]] = {
     "bedplate": bedplate,
     "torque_arm": torque_arm,
 }
-"""What `write_sample` makes, by name."""
+"""Parts that `write_sample` makes, by name."""
 
 
 def write_sample(name: str, path: str | os.PathLike[str]) -> float:

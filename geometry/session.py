@@ -75,7 +75,7 @@ def numbered_nodes() -> tuple[Floats, Ints]:
     Returns
     -------
     points : ndarray, (n, 3)
-        In the units of the model.
+        Points in the units of the model.
     number : ndarray
         Row of the points by gmsh's tag; -1 where there is none.
     """

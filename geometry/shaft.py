@@ -210,7 +210,7 @@ class Shaft(Part):
         return tuple(segments)
 
     def outer_radius(self, x: float) -> float:
-        """Largest outer radius at x, m (fillets left out: they only add material)."""
+        """Maximum outer radius at x, m (fillets left out: they only add material)."""
         radii = []
         for piece, x0, x1 in zip(self.pieces, self.stations, self.stations[1:], strict=False):
             if x0 - LENGTH_TOLERANCE <= x <= x1 + LENGTH_TOLERANCE:
@@ -228,7 +228,7 @@ class Shaft(Part):
         name : str
             Name of the bearing, for the message.
         what : str
-            What it is, where it is no bearing.
+            Name of the seat, where it is no bearing.
 
         Returns
         -------
@@ -262,7 +262,7 @@ class Shaft(Part):
         )
 
     def inner_radius(self, x: float) -> float:
-        """Smallest radius of the bore at x, m; 0 where the shaft is solid."""
+        """Minimum radius of the bore at x, m; 0 where the shaft is solid."""
         return min(
             (
                 piece.inner_diameter / 2
@@ -355,7 +355,7 @@ class Shaft(Part):
         seats: Iterable[tuple[float, float]] = (),
         bore_seats: Iterable[tuple[float, float]] = (),
     ) -> list[Segment]:
-        """The closed meridian, a segment for each face of the solid; arguments as of `build`."""
+        """Closed meridian, a segment for each face of the solid; arguments of `build`."""
         cuts = sorted({x for seat in seats for x in seat})
         bore_cuts = sorted({x for seat in bore_seats for x in seat})
         outline = [piece for segment in self.outer_profile() for piece in split(segment, cuts)]

@@ -47,7 +47,7 @@ def write_step(path: str | os.PathLike[str], volumes: Sequence[int], unit: str =
     volumes : Sequence[int]
         Tags of the solids; all else of the model is removed.
     unit : str
-        Of the model's lengths: "m" or "mm". gmsh itself writes any number as mm.
+        Unit of the model's lengths: "m" or "mm". gmsh itself writes any number as mm.
 
     Raises
     ------

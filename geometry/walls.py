@@ -1,4 +1,4 @@
-"""Walls of the parts, and the largest elements that they allow."""
+"""Walls of the parts, and the maximum element sizes that they allow."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Wall(NamedTuple):
 
     @property
     def largest(self) -> float:
-        """Largest element size that it allows [m]."""
+        """Maximum element size that it allows [m]."""
         return SIZE_PER_WALL * self.thickness
 
 

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_drivetrain.commands.loads_digest import Digest, Options
-from fe_drivetrain.commands.loads_page import kept_digest
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.fidelity import beam_shaft
 from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.studies.load_digest import LoadOptions
+from fe_drivetrain.studies.load_reactions import FileDigest, kept_digest
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.run import Run
 
@@ -31,8 +31,8 @@ def await_kill(mark: Path) -> None:
 
 
 def digest_with_death(
-    report: Progress, file: Path, options: Options, folder: Path, dies: bool
-) -> Digest:
+    report: Progress, file: Path, options: LoadOptions, folder: Path, dies: bool
+) -> FileDigest:
     report(file.stem)
     with (folder / "log").open("a") as log:
         log.write(f"{file.stem}\n")

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fe_drivetrain.cases.verification.adaptivity import cell_sizes, marked, refined_sizes
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
-from fe_drivetrain.mesh.adaptivity import cell_sizes, marked, refined_sizes
 from fe_drivetrain.mesh.generation import generate
 from fe_drivetrain.mesh.measures import volume
 

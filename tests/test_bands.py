@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from coarse_scenes import coarse_scene
 
+from fe_drivetrain.cases.verification.random_shafts import random_scene
 from fe_drivetrain.common.scaling import largest_difference
 from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.fidelity.bearing_units import banded_unit, unit_stiffness
@@ -17,7 +18,6 @@ from fe_drivetrain.mesh.measures import mean_size, volume
 from fe_drivetrain.scene.reading import library_scene
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.solve.condensation import followed, keep_points
-from fe_drivetrain.validation.random_shafts import random_scene
 
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
 

@@ -3,13 +3,11 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.references import end_flexibilities as ends
+from fe_drivetrain.cases.references.shaft_theory import Tube
+from fe_drivetrain.cases.stability.clamped_plates import boss_rotation
 from fe_drivetrain.compare.sweeps import least_safe
 from fe_drivetrain.report.maps import LEVELS, map_traces
-from fe_drivetrain.validation import end_flexibilities as ends
-from fe_drivetrain.validation.clamped_plates import boss_rotation
-from fe_drivetrain.validation.shaft_theory import (
-    Tube,
-)
 
 
 @pytest.mark.parametrize("bore", [0.0, 0.6])

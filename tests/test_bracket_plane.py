@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.integrate import trapezoid
 
+from fe_drivetrain.cases.verification.bracket_plane import Bracket, plane_answer
 from fe_drivetrain.scene.materials import Material
-from fe_drivetrain.validation.bracket_plane import Bracket, plane_answer
 
 BRACKET = Bracket(fillet=0.5, height=1.0, arm=3.0, leg=2.0)
 SOFT = Material(youngs_modulus=2e6, poisson_ratio=0.3, density=0.0)

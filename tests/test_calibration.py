@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.main_bearing.calibration import calibrated, fitted, hypercube, nearest
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.compare.calibration import calibrated, fitted, hypercube, nearest
 
 LOW, HIGH = np.array([0.1, 0.4, 0.6]), np.array([0.3, 0.9, 1.6])
 EXPONENTS = np.array([[2.7, -1.1, 0.5], [2.3, -2.0, 0.9]])

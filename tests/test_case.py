@@ -12,16 +12,17 @@ from typing import Any
 import pytest
 from tiny_case import check_one
 
-from fe_drivetrain.commands.advice_page import tornado
 from fe_drivetrain.commands.settings import parse_settings
 from fe_drivetrain.common import folders
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.manifest import MANIFEST
 from fe_drivetrain.fidelity.ablation import Effect
+from fe_drivetrain.pages.advice import tornado
 from fe_drivetrain.report.answer import headline
 from fe_drivetrain.report.charts import trace
 from fe_drivetrain.report.history import FILE
 from fe_drivetrain.report.results import Chart, Image, Table, Text, read_results
+from fe_drivetrain.studies.level_advice import AdviseResult
 from fe_drivetrain.suite import case as case_module
 from fe_drivetrain.suite.case import Case, find_cases
 from fe_drivetrain.suite.page import Page
@@ -121,11 +122,20 @@ def test_a_chart_of_one_point_is_a_sentence() -> None:
 
 
 def test_details_that_change_nothing_have_no_empty_bars() -> None:
-    advice: Any = SimpleNamespace(quantity=SimpleNamespace(name="hub.Fz"), tolerance=0.05)
-    section = tornado(advice, "1", [Effect("bore", 0.0), Effect("rings", 0.0)])
-    (said,) = section.items
-    assert said.text == "No detail changes hub.Fz at level 1: bore, rings."
-    kinds = [item.kind for item in tornado(advice, "1", [Effect("bore", 0.1)]).items]
+    def result(*effects: Effect) -> AdviseResult:
+        advice: Any = SimpleNamespace(quantity=SimpleNamespace(name="hub.Fz"), tolerance=0.05)
+        scene: Any = None
+        return AdviseResult(
+            drivetrain=scene, advice=advice, effects=effects, effects_level=1, **Page().frozen({})
+        )
+
+    items = tornado(result(Effect("bore", 0.0), Effect("rings", 0.0))).items
+    assert [item.kind for item in items] == ["text"]
+    said: Any = items[0]
+    assert said.text == (
+        "No detail changes hub.Fz at level 1 with housings as springs: bore, rings."
+    )
+    kinds = [item.kind for item in tornado(result(Effect("bore", 0.1))).items]
     assert kinds == ["chart", "table"]
 
 
@@ -253,6 +263,9 @@ def test_every_case_of_the_package_is_named_after_its_place() -> None:
         assert isinstance(found.run, partial)
         module, function = found.run.args
         assert callable(getattr(import_module(module), function))
-        if "row" in found.run.keywords:  # of a table, in any script of the group
-            last = module.rpartition(".")[2]
-        assert module == f"fe_drivetrain.cases.{group}.{last}"
+        place = f"fe_drivetrain.cases.{group}"
+        script = module.rpartition(".")[2]
+        assert module == f"{place}.{script}"
+        # of a table, in any script of the group; else of another name only where a folder has it
+        if "row" not in found.run.keywords and script != last:
+            assert hasattr(import_module(f"{place}.{last}"), "__path__")

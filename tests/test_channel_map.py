@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fe_drivetrain.commands.study_loads import own_loads
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.hub_loads.channel_map import ChannelMap, read_channel_map
 from fe_drivetrain.hub_loads.recorded import read_recorded
 from fe_drivetrain.scene.reading import library_scene
+from fe_drivetrain.studies.study_loads import own_loads
 
 TIME = 0.1 * np.arange(50)
 FORCE = np.array([200e3, -15e3, -400e3])

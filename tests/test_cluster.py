@@ -23,8 +23,8 @@ from test_docs_blocks import blocks
 from test_docs_pages import DOCS
 from tiny_case import Result
 
-from fe_drivetrain.commands.loads_digest import Options
 from fe_drivetrain.common import jobs as jobs_module
+from fe_drivetrain.common.array_records import as_arrays
 from fe_drivetrain.common.cache import CACHE_VARIABLE
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import AT_ONCE, mapped, pool, scheduled_by
@@ -35,6 +35,8 @@ from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.histories.farm import Counting, counted_histories, piece
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.scene.reading import scene_text
+from fe_drivetrain.studies.load_digest import LoadOptions
+from fe_drivetrain.studies.load_reactions import FileDigest
 from fe_drivetrain.suite.case import Case
 from fe_drivetrain.suite.suite import _run, run_cases
 from fe_drivetrain.uncertainty.input_study import study
@@ -42,7 +44,11 @@ from fe_drivetrain.uncertainty.sampling import sample
 
 pytestmark = pytest.mark.needs("distributed")
 
-OPTIONS = Options({}, 0.0, (4.0,), "half", 0.0, None)
+OPTIONS = LoadOptions(slopes=(4.0,))
+
+
+def in_bytes(found: FileDigest) -> dict[str, bytes]:
+    return {name: array.tobytes() for name, array in as_arrays(found).items()}
 
 
 def _python(*words: str) -> subprocess.Popen[bytes]:
@@ -149,7 +155,7 @@ def test_a_stopped_study_goes_on_where_it_was(
         assert done >= 3
         again = list(mapped(cluster_jobs.digest_with_death, items, 1))
     for one, other in zip(first, again, strict=False):
-        assert all(one[name].tobytes() == other[name].tobytes() for name in one)
+        assert in_bytes(one) == in_bytes(other)
     assert len(again) == len(histories)
 
 
@@ -277,8 +283,7 @@ def test_no_file_is_lost_or_counted_twice_when_a_worker_is_killed(
     here = list(mapped(cluster_jobs.digest_with_death, items, 1))
     assert len(found) == len(here) == len(histories)
     for one, other in zip(found, here, strict=True):
-        assert one.keys() == other.keys()
-        assert all(one[name].tobytes() == other[name].tobytes() for name in one)
+        assert in_bytes(one) == in_bytes(other)
 
 
 def test_a_farm_is_counted_the_same_when_a_worker_is_killed(

@@ -9,20 +9,21 @@ import numpy as np
 import pytest
 from tiny_case import Result
 
-from fe_drivetrain.commands import loads_page
-from fe_drivetrain.commands.loads_digest import Options, digest
-from fe_drivetrain.commands.loads_reactions import scene_reactions
 from fe_drivetrain.commands.loads_tables import write_tables
-from fe_drivetrain.commands.loads_together import Together
-from fe_drivetrain.common.cache import CACHE_VARIABLE
+from fe_drivetrain.common.cache import CACHE_VARIABLE, Cache
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.remarks import VERBOSE_VARIABLE
+from fe_drivetrain.histories.sites import site_of_class
 from fe_drivetrain.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.recorded import Recorded, read_recorded
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.scene.reading import library_scene
+from fe_drivetrain.studies import load_reactions, loads
+from fe_drivetrain.studies.load_digest import LoadOptions, digest
+from fe_drivetrain.studies.load_reactions import scene_reactions
+from fe_drivetrain.studies.load_totals import LoadSums
 
 HERTZ = 0.25  # of the rotor
 COLUMNS = "--channel", "wind speed=Vhub", "--channel", "rotor speed=N"
@@ -136,7 +137,7 @@ def test_a_stopped_run_goes_on(
             raise KeyboardInterrupt
         return read_recorded(path, *more)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(loads_page, "read_recorded", counted)
+    monkeypatch.setattr(load_reactions, "read_recorded", counted)
     command = ("loads", str(histories), "--out", str(histories.parent / "out"), *COLUMNS)
     status, _, err = invoke(*command)
     assert status == 130
@@ -158,7 +159,7 @@ def test_what_is_kept_of_a_file_is_known_by_its_content(
         read.append(path.name)
         return read_recorded(path, *more)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(loads_page, "read_recorded", counted)
+    monkeypatch.setattr(load_reactions, "read_recorded", counted)
     command = ("loads", str(histories), "--out", str(histories.parent / "out"), *COLUMNS)
     assert invoke(*command)[0] == 0
     file = histories / "b.csv"
@@ -194,6 +195,52 @@ def test_a_digest_of_another_file_is_made_again_and_said(
     assert err.count(f"fe-drivetrain: kept load-digests are made again: {one.name} of ") == 1
     assert "it is of something else" in err
     assert read_results(out / "results.json").figures == sound
+
+
+def test_a_digest_of_another_form_is_made_again_and_said(
+    invoke: Callable[..., Result], histories: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever an earlier program has kept under the same key."""
+    out, cache = histories.parent / "out", Cache(histories.parent / "cache")
+    monkeypatch.setenv(CACHE_VARIABLE, str(cache.folder))
+    monkeypatch.setenv(VERBOSE_VARIABLE, "")
+    command = ("loads", str(histories / "a.csv"), "--out", str(out), *COLUMNS)
+    assert invoke(*command)[0] == 0
+    sound = read_results(out / "results.json").figures
+    columns = {"wind speed": "Vhub", "rotor speed": "N"}
+    content = LoadOptions(columns).content(histories / "a.csv")
+    kept = cache.load("load-digests", content)
+    assert kept is not None
+    del kept["hub/torque/turns"]
+    cache.keep("load-digests", content, kept)
+    status, _, err = invoke(*command, "--resume", "-v")
+    assert status == 0
+    assert "kept load-digests are made again" in err
+    assert "it has another form, without an array 'hub/torque/turns'" in err
+    assert read_results(out / "results.json").figures == sound
+    status, _, err = invoke(*command, "--resume", "-v")
+    assert (status, "made again" in err) == (0, False)
+
+
+def test_the_study_finds_what_the_command_writes(
+    invoke: Callable[..., Result], histories: Path
+) -> None:
+    out = histories.parent / "out"
+    assert invoke("loads", str(histories), "--out", str(out), *COLUMNS, "--site", "IIB")[0] == 0
+    files = [histories / "a.csv", histories / "b.csv"]
+    options = LoadOptions({"wind speed": "Vhub", "rotor speed": "N"})
+    found = loads(files, options, site=site_of_class("IIB"))
+    results = read_results(out / "results.json")
+    assert results.summary == list(found.answer)
+    assert results.answers == list(found.figures)
+    assert results.figures == found.to_dict()["tables"]
+    for name, rows in found.file_tables().items():
+        written = rows_of(out / f"{name}.csv")
+        assert len(written) == len(rows), name
+        for row, cells in zip(rows, written, strict=True):
+            for key, value in row.items():
+                if isinstance(value, float):
+                    assert float(cells[key]) == pytest.approx(value, rel=1e-8), name
 
 
 def test_another_set_is_compared_by_wind(invoke: Callable[..., Result], histories: Path) -> None:
@@ -281,24 +328,24 @@ def test_reactions_balance_hub_loads_and_weights(rng: np.random.Generator) -> No
 
 
 def test_files_together_are_what_they_are_apart(rng: np.random.Generator) -> None:
-    options = Options({}, 0.0, (3.0,), "half", 0.0, 1.5)
+    options = LoadOptions(slopes=(3.0,), rotor_speed=1.5)
     walk = 1e5 * rng.standard_normal((2400, 6)).cumsum(axis=0)
     parts = [walk[:1200], walk[1200:]]
-    together = Together()
+    sums, first = LoadSums(), LoadSums()
     for k, part in enumerate(parts):
         history = LoadHistory(str(k), np.arange(1200) * 0.1, part)
-        together.add(str(k), digest(Recorded(history), options))
+        sums.add(str(k), digest(Recorded(history), options))
+    together = sums.totals()
     np.testing.assert_allclose(
-        together.overall()[:6],
+        together.statistics.overall[:6],
         np.column_stack([walk.min(0), walk.mean(0), walk.max(0), walk.std(0)]),
     )
     one = digest(Recorded(LoadHistory("0", np.arange(1200) * 0.1, parts[0])), options)
-    single = Together()
-    single.add("0", one)
-    assert single.damage is not None
-    assert together.damage is not None
-    assert (together.damage >= single.damage).all()
-    assert together.classes["turns at Mx"].amount.sum() == pytest.approx(240.0 * 1.5 / 2 / np.pi)
+    first.add("0", one)
+    single = first.totals()
+    assert (together.cycles.damage >= single.cycles.damage).all()
+    np.testing.assert_allclose(together.damages.sum(axis=0), together.cycles.damage)
+    assert together.levels.turns["Mx"].amount.sum() == pytest.approx(240.0 * 1.5 / 2 / np.pi)
 
 
 def test_mistakes_are_one_sentence(invoke: Callable[..., Result], histories: Path) -> None:

@@ -8,9 +8,6 @@ from coarse_scenes import coarse_scene
 
 from fe_drivetrain.beam import closed_forms
 from fe_drivetrain.beam.of_scene import main_bearing_beam
-from fe_drivetrain.cases.main_bearing.comparison import (
-    Linear,
-)
 from fe_drivetrain.cases.main_bearing.study import (
     Solved,
 )
@@ -18,6 +15,7 @@ from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.mesh.measures import quality
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.unit_loads import Response
+from fe_drivetrain.studies import LinearModel
 
 Beam = closed_forms.MainBearingBeam
 
@@ -40,7 +38,7 @@ def test_a_beam_is_its_closed_form(
 ) -> None:
     beam = main_bearing_beam(coarse_scene("bonded"), 145e6, 392e6)
     expected = model(loads, beam)
-    found = Linear.of_beam(model, beam)
+    found = LinearModel.of_beam(model, beam)
     scale = np.abs(expected).max()
     np.testing.assert_allclose(found.reaction(loads), expected, rtol=0, atol=1e-12 * scale)
     np.testing.assert_allclose(
@@ -57,7 +55,7 @@ def test_a_solid_is_its_response(solved: Solved, loads: np.ndarray) -> None:
     for gravity in (0.0, GRAVITY):
         expected = solved.response.history(solved.bearing, loads, weight, gravity)
         np.testing.assert_allclose(
-            Linear.of_fe(solved, gravity).reaction(loads),
+            LinearModel.of_fe(solved.scene, solved.response, gravity).reaction(loads),
             expected,
             rtol=0,
             atol=1e-12 * np.abs(expected).max(),
@@ -67,7 +65,7 @@ def test_a_solid_is_its_response(solved: Solved, loads: np.ndarray) -> None:
 def test_loads_taken_out_or_moved_ahead_are_loads_changed(
     solved: Solved, loads: np.ndarray
 ) -> None:
-    model = Linear.of_fe(solved)
+    model = LinearModel.of_fe(solved.scene, solved.response)
     for component in (0, 3):
         less = loads.copy()
         less[..., component] = 0.0

@@ -298,7 +298,7 @@ def test_a_component_s_mesh_is_written(tmp_path: Path) -> None:
     ("options", "message"),
     [
         (["--what", "shaft"], "'shaft' of a component cannot be exported: use body or supported"),
-        (["--level", "2"], "--level '2' of a component is unknown: use auto, 1 or 3"),
+        (["--level", "2"], "level 2 of a component is unknown: use 1 or 3"),
         (["--level", "1", "--at", "rim"], "point 'rim' is unknown: use hub, pin_1"),
         (["--level", "1", "--at", "hub,hub"], "must be one or more, each once"),
         (["--level", "1", "--what", "supported", "--at", "hub"], "'hub' is held rigidly"),

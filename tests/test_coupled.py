@@ -27,11 +27,11 @@ from fe_drivetrain.bearing.contact import linear
 from fe_drivetrain.bearing.contact_forces import forces, turn
 from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.bearing.rolling import equilibrium
+from fe_drivetrain.cases.bearing.tilt_scenarios import best_fit, displacement_scenarios, tilt_curve
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.coupled.body import FIVE, LinearBody, factors_of, in_housings, linear_body
 from fe_drivetrain.coupled.newton import contact_stiffness, coupled_equilibrium
 from fe_drivetrain.coupled.of_scene import scene_body
-from fe_drivetrain.coupled.scenarios import best_fit, displacement_scenarios, tilt_curve
 from fe_drivetrain.coupled.springs import (
     on_springs,
     stiffness_loop,

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.references.loaded_blocks import within_surface
+from fe_drivetrain.cases.references.plane_rings import CurvedBar, plane_strain
+from fe_drivetrain.cases.verification.curved_bars import bent_and_pulled, curvature_of
 from fe_drivetrain.scene.materials import Material
-from fe_drivetrain.validation.curved_bars import bent_and_pulled, curvature_of
-from fe_drivetrain.validation.loaded_blocks import within_surface
-from fe_drivetrain.validation.plane_rings import CurvedBar, plane_strain
 
 
 def test_a_bent_and_pulled_bar_turns_and_stores_what_theory_says():

@@ -4,6 +4,14 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from fe_drivetrain.cases.references import published_drivetrains as published
+from fe_drivetrain.cases.references.independent_torsion import (
+    certified,
+    holzer_frequencies,
+    inverse_squares,
+    modes_below,
+    two_mass_frequencies,
+)
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.compare.tolerances import digit
 from fe_drivetrain.suite.case import find_cases
@@ -34,14 +42,6 @@ from fe_drivetrain.torsion.system import (
     relative_sensitivities,
     response,
     static_stiffness,
-)
-from fe_drivetrain.validation import published_drivetrains as published
-from fe_drivetrain.validation.independent_torsion import (
-    certified,
-    holzer_frequencies,
-    inverse_squares,
-    modes_below,
-    two_mass_frequencies,
 )
 
 NAMES = ("nrel_750kw", "drivetrain_a", "drivetrain_b", "drivetrain_c")

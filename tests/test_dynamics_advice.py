@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.references import park_2021 as park
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import point_motions
 from fe_drivetrain.compare.tolerances import digit
@@ -30,7 +31,6 @@ from fe_drivetrain.dynamics.tables import library_machine
 from fe_drivetrain.fidelity.component_frames import carrier_frame
 from fe_drivetrain.scene.reading import library_component
 from fe_drivetrain.solve.condensation import Condensed
-from fe_drivetrain.validation import park_2021 as park
 
 FIVE_MW, C = library_machine("nrel_5mw"), library_machine("synthetic_2mw")
 

@@ -7,6 +7,7 @@ import pytest
 from scipy.linalg import eigh
 
 from fe_drivetrain.bearing.arrangements import cylindrical
+from fe_drivetrain.cases.references.machine_shafts import shaft_scene
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import point_motions
@@ -22,7 +23,6 @@ from fe_drivetrain.dynamics.tables import library_machine
 from fe_drivetrain.dynamics.travelling import travelling
 from fe_drivetrain.fidelity.shafts import beam_shaft, meridian_shaft
 from fe_drivetrain.solve.condensation import Condensed
-from fe_drivetrain.validation.machine_shafts import shaft_scene
 
 FIVE_MW = library_machine("nrel_5mw")
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.references.published_gears import nrel_5mw
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.gear_pairs import (
     contact_ratios,
@@ -21,7 +22,6 @@ from fe_drivetrain.dynamics.meshing import machine_meshing, varying_equations
 from fe_drivetrain.dynamics.tables import Machine, library_machine
 from fe_drivetrain.gear.flank_stress import reduced_modulus, tooth_contact
 from fe_drivetrain.gear.pair_stiffness import constant_law
-from fe_drivetrain.validation.published_gears import nrel_5mw
 
 
 def test_stiffness_of_iso_6336_is_what_the_table_of_the_5_mw_gearbox_states() -> None:

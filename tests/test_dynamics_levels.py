@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.bodies import assemble
 from fe_drivetrain.dynamics.levels import (
@@ -29,7 +30,6 @@ from fe_drivetrain.torsion.gear_table import (
     stage_masses,
 )
 from fe_drivetrain.torsion.system import natural_modes
-from fe_drivetrain.validation import published_drivetrains as published
 
 C, GRC, PARK, FIVE_MW = (
     library_machine(n) for n in ("synthetic_2mw", "nrel_750kw", "park_2021", "nrel_5mw")

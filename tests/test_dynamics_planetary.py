@@ -5,6 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.references.published_planetary import (
+    COOLEY_PARKER_PRINTED,
+    COOLEY_PARKER_STAGE,
+    LIN_PARKER_PRINTED,
+    LIN_PARKER_STAGE,
+    helical_stage,
+    helical_system,
+    lin_parker_stage,
+    plane_stage,
+    plane_system,
+    printed_values,
+)
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.bodies import Body, assemble, stretched
@@ -32,18 +44,6 @@ from fe_drivetrain.dynamics.planetary import (
 from fe_drivetrain.dynamics.response import frequency_response
 from fe_drivetrain.dynamics.springs import Place, bushing
 from fe_drivetrain.gear.planets import sun_phases
-from fe_drivetrain.validation.published_planetary import (
-    COOLEY_PARKER_PRINTED,
-    COOLEY_PARKER_STAGE,
-    LIN_PARKER_PRINTED,
-    LIN_PARKER_STAGE,
-    helical_stage,
-    helical_system,
-    lin_parker_stage,
-    plane_stage,
-    plane_system,
-    printed_values,
-)
 
 CENTRAL = ("carrier", "ring", "sun")
 

@@ -5,6 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.dynamics.planet_loads import SharingStage, shared_load
+from fe_drivetrain.cases.references.published_planetary import (
+    COOLEY_PARKER_STAGE,
+    LIN_PARKER_STAGE,
+    helical_stage,
+    plane_system,
+    support,
+)
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.bodies import Body, assemble
 from fe_drivetrain.dynamics.modes import system_modes
@@ -19,14 +27,6 @@ from fe_drivetrain.dynamics.springs import Place, bushing
 from fe_drivetrain.dynamics.static import load_sharing, over_a_turn, static
 from fe_drivetrain.dynamics.system import System
 from fe_drivetrain.torsion.orders import Toothed, absolute_sun_orders, mesh_orders
-from fe_drivetrain.validation.planet_loads import SharingStage, shared_load
-from fe_drivetrain.validation.published_planetary import (
-    COOLEY_PARKER_STAGE,
-    LIN_PARKER_STAGE,
-    helical_stage,
-    plane_system,
-    support,
-)
 
 
 @pytest.mark.parametrize("planets", [3, 4, 5, 6, 7])

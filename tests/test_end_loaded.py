@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.references import end_loaded, solid_shafts
+from fe_drivetrain.cases.references.interference_fits import exact_fit, press
+from fe_drivetrain.cases.verification.bent_blocks import BentBlock
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.scene.materials import Material
-from fe_drivetrain.validation import end_loaded, solid_shafts
-from fe_drivetrain.validation.bent_blocks import BentBlock
-from fe_drivetrain.validation.interference_fits import exact_fit, press
 
 STEEL = Material(youngs_modulus=200e9, poisson_ratio=0.3, density=0.0)
 

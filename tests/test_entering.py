@@ -12,7 +12,6 @@ import pytest
 from tiny_case import Result
 
 from fe_drivetrain.bearing.catalogue import catalogue_bearing
-from fe_drivetrain.commands.loads_reactions import scene_reactions
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.coupled.body import factors_of
@@ -36,6 +35,7 @@ from fe_drivetrain.rings.assembly import RollerAssembly, assembly_equilibrium
 from fe_drivetrain.scene.reading import change_scene, library_scene, scene_text
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.solve.solvers import Diagnostics
+from fe_drivetrain.studies.load_reactions import scene_reactions
 
 DOCS = Path(__file__).parents[1] / "docs"
 NAME = "main_bearing"
@@ -205,12 +205,26 @@ def test_reactions_of_the_page_are_those_of_the_command(
         assert float(row["largest"]) == pytest.approx(values.max() / 1e3, rel=1e-8, abs=1e-6)
 
 
-@pytest.mark.parametrize("page", ["life.md", "how-to/bearing-life.md"])
-def test_lives_of_the_page_are_those_of_the_command(
-    page: str, invoke: Callable[..., Result], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+def test_the_study_of_lives_on_the_page_is_that_of_the_command(
+    invoke: Callable[..., Result], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    names = recipe(page, monkeypatch)
+    found = recipe("life.md", monkeypatch)["found"]
+    Path("scene.yaml").write_text(scene_text(gauged("main_bearing_spherical")))
+    words = ("--loads", "w12.csv", "--rotor-speed", "12", "--temperature", "60", "--out", "out")
+    status, _, error = invoke("life", "scene.yaml", *words)
+    assert status == 0, error
+    (lives,) = rows_of(Path("out/lives.csv"))
+    years = found.bearings["main_bearing"].years
+    for kind in ("L10", "L10r", "L10mr"):
+        assert float(lives[f"{kind} [years]"]) == pytest.approx(years[kind], rel=1e-8)
+
+
+def test_lives_of_the_page_are_those_of_the_command(
+    invoke: Callable[..., Result], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    names = recipe("how-to/bearing-life.md", monkeypatch)
     Path("scene.yaml").write_text(scene_text(SCENE))
     units = 3 * ["N"] + 3 * ["N m"]
     columns = [f"{name} [{unit}]" for name, unit in zip(FORCES, units, strict=True)]
@@ -248,9 +262,8 @@ def test_the_point_of_a_scene_is_asked_for_where_loads_enter_and_nowhere_else() 
         for file in (root / folder).rglob("*.py")
         if re.search(r"(scene|entrance|self)\.loads_at\b", file.read_text(encoding="utf-8"))
     }
-    says = {"studies/scene_description.py", "commands/study_loads.py"}  # in words alone
+    says = {"studies/scene_description.py", "studies/study_loads.py"}  # in words alone
     assert asking == {
-        "cases/main_bearing/loads.py",  # in words, too
         *(f"fe_drivetrain/{name}" for name in says),
         *(f"fe_drivetrain/scene/{name}.py" for name in ("entrance", "gate", "scene")),
         *(f"fe_drivetrain/response/{name}.py" for name in ("entering", "stated")),

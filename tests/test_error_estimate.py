@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.references.exact_blocks import cantilever, twisted
 from fe_drivetrain.mesh.blocks import brick
 from fe_drivetrain.operator.elasticity import assemble
 from fe_drivetrain.solve.error_estimate import (
@@ -10,10 +11,6 @@ from fe_drivetrain.solve.error_estimate import (
     energy_density,
     recovered_work,
     recovery_estimate,
-)
-from fe_drivetrain.validation.exact_blocks import (
-    cantilever,
-    twisted,
 )
 
 LAME = (1.2e11, 8e10)

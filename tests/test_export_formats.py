@@ -14,6 +14,11 @@ from scipy.linalg import eigh
 from test_superelement import random_element
 
 from fe_drivetrain import export
+from fe_drivetrain.cases.export.calculix_runs import (
+    compliance_by_calculix,
+    frequencies_by_calculix,
+    held,
+)
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
@@ -24,11 +29,6 @@ from fe_drivetrain.export.formats.calculix_springs import model_lines, squares
 from fe_drivetrain.export.formats.dmig import double
 from fe_drivetrain.export.formats.statement import comment_lines, commented, statement
 from fe_drivetrain.export.from_scene import shaft_superelement, unit_superelement
-from fe_drivetrain.export.programs.calculix_runs import (
-    compliance_by_calculix,
-    frequencies_by_calculix,
-    held,
-)
 from fe_drivetrain.export.programs.ccx import run_calculix
 from fe_drivetrain.export.superelement import FRAME, UNITS, Superelement
 from fe_drivetrain.fidelity.ladder import shaft_level

@@ -11,6 +11,7 @@ from coarse_scenes import coarse_scene
 from scipy.linalg import eigh
 
 from fe_drivetrain import export
+from fe_drivetrain.cases.export.sample_elastodyn import TEXT
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.export.formats import extptfm, subdyn
@@ -27,9 +28,6 @@ from fe_drivetrain.export.formats.torsion import (
 )
 from fe_drivetrain.export.from_scene import shaft_superelement, unit_superelement
 from fe_drivetrain.export.superelement import Origin, Superelement
-from fe_drivetrain.validation.sample_elastodyn import (
-    TEXT,
-)
 
 NEW = Torsion(87876717.58333518, 123456.78901234567)
 BANDS = StiffnessBands(0.02, 0.001, 0.03)

@@ -3,12 +3,8 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain.validation import (
-    fillet_factors,
-)
-from fe_drivetrain.validation.solid_fillet import (
-    fitted_peak,
-)
+from fe_drivetrain.cases.references import fillet_factors
+from fe_drivetrain.cases.verification.solid_fillet import fitted_peak
 
 
 @pytest.mark.parametrize("load", ["tension", "bending"])

@@ -9,6 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.references.published_gears import (
+    NREL_5MW_PRINTED,
+    iso_example_1,
+    nrel_5mw,
+    nrel_750kw,
+)
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.gear.functions import inverse_involute, involute_of
 from fe_drivetrain.gear.involute import (
@@ -23,12 +29,6 @@ from fe_drivetrain.gear.planets import (
     ring_phases,
     sequence,
     sun_phases,
-)
-from fe_drivetrain.validation.published_gears import (
-    NREL_5MW_PRINTED,
-    iso_example_1,
-    nrel_5mw,
-    nrel_750kw,
 )
 
 PAIRS = nrel_5mw()

@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import quad, trapezoid
 
 from fe_drivetrain.bearing.contact import line_pressure
+from fe_drivetrain.cases.references.published_gears import nrel_750kw
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.gear.flank_stress import (
     LineContact,
@@ -16,7 +17,6 @@ from fe_drivetrain.gear.flank_stress import (
     von_mises,
 )
 from fe_drivetrain.gear.involute import Pair
-from fe_drivetrain.validation.published_gears import nrel_750kw
 
 STEEL = reduced_modulus()
 CONTACT = LineContact(8e5, 0.03, STEEL)

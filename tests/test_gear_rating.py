@@ -6,6 +6,7 @@ from math import cos, inf, pi, sqrt, tan
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.references.rated_gears import HARD, SOFT, rated, rated_meshes, tolerance
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.gear.load_factors import (
     Deviations,
@@ -33,7 +34,6 @@ from fe_drivetrain.gear.strength import (
     notch_factor,
     size_factor,
 )
-from fe_drivetrain.validation.rated_gears import HARD, SOFT, rated, rated_meshes, tolerance
 
 MESHES = rated_meshes()
 SUN = MESHES["NREL 5 MW, stage 1, sun and planet"]

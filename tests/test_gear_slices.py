@@ -303,6 +303,6 @@ def test_wrong_inputs_say_what_to_give() -> None:
         sliced(SPUR, slices=0)
     with pytest.raises(InputError, match="jam"):
         SlicedMesh(SPUR, constant_law(C), backlash=-1e-4)
-    with pytest.raises(InputError, match="give more"):
+    with pytest.raises(InputError, match="contact in series"):
         loaded_with_coupling(sliced(SPUR), 0.5, TORQUE, Coupling(0.0, 1e9))
     assert replace(sliced(SPUR), backlash=None).play == pytest.approx(0.0, abs=1e-12)

@@ -6,6 +6,7 @@ from math import cos, degrees, pi, radians, sin, tan
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.references.published_gears import NREL_5MW_PRINTED, iso_example_1, nrel_5mw
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.gear.functions import involute_of
 from fe_drivetrain.gear.involute import Gear, Pair, Rack, meshing_without_backlash
@@ -27,7 +28,6 @@ from fe_drivetrain.gear.pair_stiffness import (
     parabolic_mean,
 )
 from fe_drivetrain.gear.planets import ring_after_sun, sun_phases
-from fe_drivetrain.validation.published_gears import NREL_5MW_PRINTED, iso_example_1, nrel_5mw
 
 PAIRS = nrel_5mw()
 STRAIGHT = PAIRS["sun 2"]

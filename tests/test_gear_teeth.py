@@ -6,6 +6,14 @@ from math import cos, pi, tan
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.gear.plane_teeth import (
+    MeshedPair,
+    compliances,
+    mesh_teeth,
+    meshed_pair,
+    pressed_surface,
+)
+from fe_drivetrain.cases.references.plane_rings import Plane, plane_strain
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.gear.energy import (
     Steel,
@@ -20,14 +28,6 @@ from fe_drivetrain.gear.involute import Gear, Rack, meshing_without_backlash
 from fe_drivetrain.gear.iso import iso_stiffness
 from fe_drivetrain.gear.pair_stiffness import kuang_yang_law
 from fe_drivetrain.gear.profile import fillet_points, flank_normals, flank_points, tooth_outline
-from fe_drivetrain.validation.plane_rings import Plane, plane_strain
-from fe_drivetrain.validation.plane_teeth import (
-    MeshedPair,
-    compliances,
-    mesh_teeth,
-    meshed_pair,
-    pressed_surface,
-)
 
 PINION, WHEEL = Gear(20, 1e-2, 0.1), Gear(40, 1e-2, 0.1)
 PAIR = meshing_without_backlash(PINION, WHEEL)

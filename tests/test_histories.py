@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fe_drivetrain.cases.references.published_campaigns import IDENTIFICATION, MONITORING
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.histories.classes import added, in_classes
 from fe_drivetrain.histories.levels import (
@@ -17,7 +18,6 @@ from fe_drivetrain.histories.levels import (
 from fe_drivetrain.histories.polar import direction
 from fe_drivetrain.histories.spectra import alias, campbell, multiples, spectrum
 from fe_drivetrain.histories.windows import capture_matrix, window_statistics
-from fe_drivetrain.validation.published_campaigns import IDENTIFICATION, MONITORING
 
 
 def test_time_and_turns_at_level_add_up(rng: np.random.Generator) -> None:

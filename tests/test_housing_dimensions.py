@@ -3,15 +3,10 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.main_bearing import housing_dimensions as housings
+from fe_drivetrain.cases.main_bearing.housing_dimensions import BOLTED, ONE_BODY, STEEL, WIDTH
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.scene.reading import change_scene, library_scene
-from fe_drivetrain.validation import housing_dimensions as housings
-from fe_drivetrain.validation.housing_dimensions import (
-    BOLTED,
-    ONE_BODY,
-    STEEL,
-    WIDTH,
-)
 
 PLATE = np.array([0.14, 0.11, 0.5, 0.95, 0.1])
 
@@ -87,7 +82,7 @@ def test_the_nominal_stress_is_that_of_a_rectangular_beam(scene):
 
 
 def test_a_housing_whose_bore_breaks_through_is_left_out(scene):
-    from fe_drivetrain.compare.calibration import fitted, hypercube
+    from fe_drivetrain.cases.main_bearing.calibration import fitted, hypercube
 
     wide = {"bearing.raceway_diameter": 0.9, "housing.centre_height": 0.6}
     low = change_scene(scene, {f"bearing_units.0.{key}": value for key, value in wide.items()})

@@ -677,7 +677,7 @@ def test_the_program_says_what_is_wrong_with_a_history(
     header = "time [s],Fx [kN],Fy [kN],Fz [kN],Mx [kN m],My [kN m],Mz [kN m]"
     file = tmp_path / "loads.csv"
     file.write_text("\n".join([header, *rows]))
-    words = ["run", "main_bearing/rmse", "--set", f"loads={file}", "--out", str(tmp_path / "out")]
+    words = ["study", "main_bearing_bonded", "--loads", str(file), "--out", str(tmp_path / "out")]
     monkeypatch.setattr("sys.argv", ["fe-drivetrain", *words])
     with pytest.raises(SystemExit) as stopped:
         main()

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain.validation import published_drivetrains
-from fe_drivetrain.validation.implied_shafts import SHEAR_MODULUS, of_stiffness
-from fe_drivetrain.validation.shaft_theory import polar_moment
+from fe_drivetrain.cases.references import published_drivetrains
+from fe_drivetrain.cases.references.implied_shafts import SHEAR_MODULUS, of_stiffness
+from fe_drivetrain.cases.references.shaft_theory import polar_moment
 
 
 @pytest.mark.parametrize("letter", list(published_drivetrains.RATED))

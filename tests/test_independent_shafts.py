@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.verification.independent_shafts import independent_shaft
+from fe_drivetrain.cases.verification.random_shafts import random_scene
 from fe_drivetrain.geometry import Section, Shaft
-from fe_drivetrain.validation.independent_shafts import independent_shaft
-from fe_drivetrain.validation.random_shafts import random_scene
 
 pytestmark = pytest.mark.needs("ngsolve")
 

@@ -3,18 +3,14 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.fidelity.rollers_on_rings import RollerRing
+from fe_drivetrain.cases.references.plane_rings import Lame, harmonics, plane_strain
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.revolution.harmonics import dofs
 from fe_drivetrain.revolution.influence import Strip, carried, influence_functions, roller_forces
 from fe_drivetrain.revolution.meridian_mesh import meridian
 from fe_drivetrain.scene.materials import MATERIALS, Material
-from fe_drivetrain.validation.plane_rings import (
-    Lame,
-    harmonics,
-    plane_strain,
-)
-from fe_drivetrain.validation.rollers_on_rings import RollerRing
 
 STEEL = MATERIALS["steel"]
 INNER, OUTER, WIDTH = 0.3, 0.36, 0.1

@@ -5,7 +5,6 @@ import pytest
 import yaml
 
 from fe_drivetrain.commands.settings import parse_tolerance
-from fe_drivetrain.commands.study_errors import enough
 from fe_drivetrain.fidelity.adviser import Advice, LevelResult, advise
 from fe_drivetrain.fidelity.assembly_bands import finer_mesh
 from fe_drivetrain.fidelity.judgement import Judged, judge_levels
@@ -14,6 +13,7 @@ from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.geometry import MeshSizes
 from fe_drivetrain.scene.reading import change_scene, library_scene
 from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.studies.level_errors import enough
 
 LENGTH = 3.8
 BOUNDS = {"1 beam": ["beam"], "2 meridian": ["meridian"]}

@@ -7,8 +7,6 @@ import numpy as np
 import pytest
 
 from fe_drivetrain.beam.sections import cowper_shear_coefficient
-from fe_drivetrain.commands.loads_reactions import scene_reactions
-from fe_drivetrain.commands.study_loads import own_loads
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.export.calculix_plan import plan_deck
 from fe_drivetrain.fidelity.ladder import (
@@ -29,6 +27,8 @@ from fe_drivetrain.response.model import Model, build_model, mesh_scene, scene_l
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.scene.without_weight import weightless
+from fe_drivetrain.studies.load_reactions import scene_reactions
+from fe_drivetrain.studies.study_loads import own_loads
 
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
 

@@ -3,14 +3,7 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain.compare.convergence import band_of
-from fe_drivetrain.mesh.blocks import Block, brick
-from fe_drivetrain.operator.loads import pressure
-from fe_drivetrain.scene.materials import Material
-from fe_drivetrain.suite.page import Page
-from fe_drivetrain.suite.records import MeshSeries
-from fe_drivetrain.suite.targets import Target
-from fe_drivetrain.validation.loaded_blocks import (
+from fe_drivetrain.cases.references.loaded_blocks import (
     edge_nodes,
     face_loads,
     graded,
@@ -18,6 +11,13 @@ from fe_drivetrain.validation.loaded_blocks import (
     solve_block,
     supports,
 )
+from fe_drivetrain.compare.convergence import band_of
+from fe_drivetrain.mesh.blocks import Block, brick
+from fe_drivetrain.operator.loads import pressure
+from fe_drivetrain.scene.materials import Material
+from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.records import MeshSeries
+from fe_drivetrain.suite.targets import Target
 
 STEEL = Material(youngs_modulus=200e9, poisson_ratio=0.3, density=0.0)
 

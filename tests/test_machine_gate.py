@@ -7,7 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.references import published_drivetrains as published
+from fe_drivetrain.cases.references.published_planetary import LIN_PARKER_STAGE, plane_stage
 from fe_drivetrain.cases.verification import mutated_machines as mutations
+from fe_drivetrain.cases.verification.machine_facts import machine_facts, own_energy, own_motion
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.bodies import Body, assemble
 from fe_drivetrain.dynamics.gear_pairs import mesh_stresses
@@ -25,9 +28,6 @@ from fe_drivetrain.gear.strength import GearMaterial
 from fe_drivetrain.torsion.gear_table import Drivetrain, PlanetaryStage, parse_drivetrain
 from fe_drivetrain.torsion.orders import Toothed
 from fe_drivetrain.torsion.system import Inertia, Torsional
-from fe_drivetrain.validation import published_drivetrains as published
-from fe_drivetrain.validation.machine_facts import machine_facts, own_energy, own_motion
-from fe_drivetrain.validation.published_planetary import LIN_PARKER_STAGE, plane_stage
 
 PLAIN = {name: mutations.plain(library_machine(name)) for name in MACHINES}
 GONE = object()

@@ -7,14 +7,14 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 from coarse_scenes import COARSE, FINER
 
+from fe_drivetrain.cases.main_bearing import surrogate
 from fe_drivetrain.commands.app import main
 from fe_drivetrain.common.typeset import typeset
 from fe_drivetrain.export.formats.stiffness_file import read_stiffness_json
-from fe_drivetrain.hub_loads.csv_table import read_csv
+from fe_drivetrain.hub_loads.surrogate import Condition
 from fe_drivetrain.report.pictures.off_screen import can_draw
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.suite.case import all_cases, find_cases
@@ -26,6 +26,7 @@ pytestmark = pytest.mark.usefixtures("kept_between_runs")
 ROOT = Path(__file__).parents[1]
 CASES = (
     "bonded",
+    "levels",
     "mesh_convergence",
     "rmse",
     "shaft_thickness",
@@ -42,26 +43,12 @@ NEEDS_REAL_SCENE = (
 
 
 @pytest.fixture(scope="module")
-def hub_load_file(tmp_path_factory):
-    """Two seconds of hub loads as a user would bring them."""
-    path = tmp_path_factory.mktemp("loads") / "loads.csv"
-    rows = ["time [s], Fx [kN], Fy [kN], Fz [kN], Mx [kN m], My [kN m], Mz [kN m]"]
-    for k in range(40):
-        wave = (k % 7 - 3) / 3
-        rows.append(
-            f"{0.05 * k:.2f}, {200 + wave}, {5 * wave}, -370, 1100, {600 + 90 * wave}, {40 * wave}"
-        )
-    path.write_text("\n".join(rows))
-    return path
-
-
-@pytest.fixture(scope="module")
-def reports(request, tmp_path_factory, hub_load_file):
+def reports(request, tmp_path_factory):
     """Result folder of each case; all draw by the same function, so that one of them does."""
     folder = tmp_path_factory.mktemp("reports")
     (bonded,) = find_cases("main_bearing/bonded")
-    (rmse,) = find_cases("main_bearing/rmse")
     others = [find_cases(f"main_bearing/{name}")[0] for name in CASES]
+    (rmse,) = find_cases("main_bearing/rmse")
     others = [case for case in others if case not in (bonded, rmse)]
     # at eight elements a turn, which is the least, coarser meshes are hardly coarser
     scene = COARSE | FINER
@@ -70,7 +57,11 @@ def reports(request, tmp_path_factory, hub_load_file):
         assert (folder / "main_bearing" / "bonded" / picture).is_file() == can_draw()
     request.getfixturevalue("without_pictures")
     problems |= run_cases(others, folder, scene, quick=True)
-    problems |= run_cases([rmse], folder, scene | {"loads": str(hub_load_file)}, quick=True)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(
+            surrogate, "grid", lambda run: [Condition(12.0, "medium", 0.2, k) for k in (1, 2)]
+        )
+        problems |= run_cases([rmse], folder, scene, quick=True)
     assert not problems
     return folder / "main_bearing"
 
@@ -111,21 +102,6 @@ def test_stiffness_file_is_valid(reports, name):
     assert content.matrices[0].reference_point == (0.0, 0.0, 0.0)
 
 
-def test_reactions_of_own_histories_are_written(reports):
-    """What the user's hub loads do to the bearing stands in a file of its own, with the weight."""
-    found = read_csv(reports / "rmse" / "reactions_spherical_loads.csv")
-    assert found.loads.shape == (40, 6)
-    # Statics of the short shaft: Fz on the bearing is ((L1 + L2) Fz + My) / L2 ...
-    without_weight = (2.2 * -370e3 + 600e3 - 90e3) / 1.2
-    # ... and the weight of the parts, which is stated: of the shaft what lies before the gearbox
-    stated = str(found.attributes["weight"])
-    weight = {p: float(w) * 1e3 for p, w in re.findall(r"([\w.]+) ([\d.]+) kN", stated)}
-    parts = weight["main_bearing"] + weight["main_bearing.housing"]
-    on_bearing = parts + weight["shaft"] * 1.1 / 1.2
-    np.testing.assert_allclose(found.loads[0, 2], without_weight - on_bearing, rtol=1e-4)
-    assert (reports / "rmse" / "reaction_statistics.csv").is_file()
-
-
 def test_statics_is_right_in_every_measure_of_design(reports):
     """A spherical bearing is determinate: means, extremes, time at level and damage are FE's."""
     results = read_results(reports / "rmse" / "results.json")
@@ -146,13 +122,6 @@ def test_meshes_are_written(reports):
     assert "displacement hub.Fz" in mesh.point_data
 
 
-LOAD_HEADER = "time [s], Fx [kN], Fy [kN], Fz [kN], Mx [kN m], My [kN m], Mz [kN m]\n"
-
-
-def load_text(times, value="1"):
-    return LOAD_HEADER + "".join(f"{t}, 1, {value}, 1, 1, 1, 1\n" for t in times)
-
-
 @pytest.mark.parametrize(
     ("case", "settings", "message"),
     [
@@ -163,14 +132,9 @@ def load_text(times, value="1"):
         ("spherical", {"shaft.material": "cheese"}, "'cheese'"),
         ("spherical", {"bearing_units.0.housing.bore_diameter": 0.9}, "do not touch"),
         ("spherical", {"gearbox.stiffness": [0, 8e7, 8e7, 0, 0, 0]}, "can turn freely about x"),
-        ("spherical", {"scene": "nowhere.yaml"}, "cannot read scene file nowhere.yaml"),
+        ("spherical", {"scene": "nowhere.yaml"}, "is studied by fe-drivetrain study FILE"),
+        ("rmse", {"gearbox.stiffness": [1e6, 1e7, 2e7, "rigid", 0, 0]}, "fe-drivetrain study"),
         ("spherical", {"solver": "magic"}, "use one of auto, superlu, .*multigrid"),
-        ("rmse", {"loads": "nowhere/*.csv"}, "nowhere"),
-        ("rmse", {"loads": load_text([0, 0.1, 0.2, 0.3], "nan")}, "Fy"),
-        ("rmse", {"loads": load_text([0, 0.1, 0.2, 0.3, 0.9, 1.0])}, "0.9|0.3"),
-        ("rmse", {"loads": load_text([0])}, "sample"),
-        ("rmse", {"loads": load_text([0, 0.2, 0.4]).replace(", 1", ", 0")}, "zero"),
-        ("rmse", {"loads": "time [s], Fx [kN]\n0, 1\n1, 1\n2, 1\n"}, "Fy"),
     ],
 )
 def test_bad_input_is_one_sentence_and_status_2(
@@ -178,10 +142,6 @@ def test_bad_input_is_one_sentence_and_status_2(
 ):
     """As typed at the command line: refused with one sentence, and no result half-written."""
     out = tmp_path / "reports" / "out"
-    if "\n" in str(settings.get("loads", "")):
-        file = tmp_path / "loads.csv"
-        file.write_text(settings["loads"])
-        settings = {"loads": str(file)}
     options = [f"--set={k}={v if isinstance(v, str) else json.dumps(v)}" for k, v in COARSE.items()]
     options += [
         f"--set={k}={v if isinstance(v, str) else json.dumps(v)}" for k, v in settings.items()

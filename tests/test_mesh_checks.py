@@ -5,15 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.references import slivers
+from fe_drivetrain.cases.stability import faulty_meshes
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.mesh.checks import FLATTEST, find_faults, flatness, refuse_unsound
 from fe_drivetrain.mesh.shared_facets import facet_keys
 from fe_drivetrain.response.model import build_model, mesh_scene, needed_faces
 from fe_drivetrain.scene.reading import change_scene, library_scene
-from fe_drivetrain.validation import (
-    faulty_meshes,
-    slivers,
-)
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain.commands.study_measures import _larger, failure, sentence
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.histories.model_errors import (
     damage_ratio,
@@ -11,6 +10,7 @@ from fe_drivetrain.histories.model_errors import (
     measured,
     model_errors,
 )
+from fe_drivetrain.studies.design_measures import _larger, failure, sentence
 
 
 @pytest.fixture

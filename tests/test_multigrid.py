@@ -7,6 +7,7 @@ import pytest
 from coarse_scenes import coarse_scene
 from scipy import linalg, sparse
 
+from fe_drivetrain.cases.references import layers
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.interfaces.constraints import eliminate, fixed, rigid_face, rigid_point
 from fe_drivetrain.mesh.blocks import brick
@@ -18,7 +19,6 @@ from fe_drivetrain.scene.reading import change_scene
 from fe_drivetrain.solve import direct_solvers, multigrid, solvers
 from fe_drivetrain.solve.reduction import reduce
 from fe_drivetrain.solve.stopping import energy_error
-from fe_drivetrain.validation import layers
 
 ROWS = [{"x": -0.05, "contact_angle": -20.0}, {"x": 0.05, "contact_angle": 20.0}]
 

@@ -6,25 +6,17 @@ import numpy as np
 import pytest
 
 from fe_drivetrain.beam.sections import cowper_shear_coefficient
+from fe_drivetrain.cases.fidelity.energy_sensitivities import energy_slopes, total
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.coupled.of_scene import scene_body
 from fe_drivetrain.export.calculix_plan import plan_deck
 from fe_drivetrain.export.formats.summary import summary
 from fe_drivetrain.fidelity.adviser import advise
-from fe_drivetrain.fidelity.energy_sensitivities import energy_slopes, total
-from fe_drivetrain.fidelity.ladder import (
-    LevelModel,
-    shaft_level,
-    solved_assembly,
-    statics_level,
-)
+from fe_drivetrain.fidelity.ladder import LevelModel, shaft_level, solved_assembly, statics_level
 from fe_drivetrain.fidelity.level_costs import forecast
 from fe_drivetrain.fidelity.over_loads import imbalance
 from fe_drivetrain.fidelity.quantity import Quantity
-from fe_drivetrain.response.influence_fields import (
-    influences_of_all_reactions,
-    reaction_influences,
-)
+from fe_drivetrain.response.influence_fields import influences_of_all_reactions, reaction_influences
 from fe_drivetrain.response.model import Model, mesh_scene
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
 from fe_drivetrain.scene.nose import Nose

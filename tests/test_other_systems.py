@@ -8,11 +8,11 @@ from types import SimpleNamespace
 
 import pytest
 
+from fe_drivetrain.cases.performance.peers import launching
 from fe_drivetrain.cases.stability.faults import experiment
 from fe_drivetrain.common import files, folders, memory, processes, threads
 from fe_drivetrain.common.errors import MissingToolError
 from fe_drivetrain.common.memory import peak_memory
-from fe_drivetrain.peers import launching
 from fe_drivetrain.solve.cost_model import available_memory
 
 ROOT = Path(__file__).parents[1]

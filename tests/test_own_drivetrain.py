@@ -15,9 +15,7 @@ import pytest
 from test_hub_loads import rotating_columns, write_outb
 from tiny_case import Result
 
-from fe_drivetrain.commands import study_loads
 from fe_drivetrain.commands.app import main
-from fe_drivetrain.commands.study_loads import own_loads
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import parse_mapping
@@ -44,8 +42,10 @@ from fe_drivetrain.scene.arrangements import (
 )
 from fe_drivetrain.scene.reading import change_scene, is_component, library_scene, parse_scene
 from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.studies import study_loads
 from fe_drivetrain.studies.named_bearings import named_bearings
 from fe_drivetrain.studies.scene_description import description
+from fe_drivetrain.studies.study_loads import own_loads
 
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
 
@@ -566,12 +566,21 @@ def test_errors_are_relative_to_the_vector(rng: np.random.Generator) -> None:
         (("--skip", "5"), "--skip 5 leaves out the beginning of your own files"),
         (("--loads", "none/*.outb"), "file is there"),
         (("--set", "gearbox.stiffness=[0, 0, 0, 0, 0, 0]", "--loads", "a.csv"), "can"),
+        (("--loads", "gap.csv"), "0.6 s where the others are 0.1 s"),
+        (("--loads", "zero.csv"), "zero"),
+        (("--loads", "thrust.csv"), "Fy"),
     ],
 )
 def test_study_refuses_in_one_sentence(
     invoke: Callable[..., Result], tmp_path: Path, words: tuple[str, ...], sentence: str
 ) -> None:
     write_loads(tmp_path / "a.csv", 3)
+    head = "time [s],Fx [kN],Fy [kN],Fz [kN],Mx [kN m],My [kN m],Mz [kN m]"
+    gap = [f"{t},1,{t},1,1,1,1" for t in (0, 0.1, 0.2, 0.3, 0.9, 1.0)]
+    zero = [f"{t},0,0,0,0,0,0" for t in (0, 0.2, 0.4)]
+    for name, rows in (("gap", [head, *gap]), ("zero", [head, *zero])):
+        (tmp_path / f"{name}.csv").write_text("\n".join(rows))
+    (tmp_path / "thrust.csv").write_text("time [s],Fx [kN]\n0,1\n1,1\n2,1\n")
     status, out, err = invoke("study", "main_bearing_spherical", *QUICK, *words)
     assert (status, out) == (2, "")
     lines = [line for line in err.splitlines() if line.startswith("fe-drivetrain: ")]

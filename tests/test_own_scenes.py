@@ -1,93 +1,43 @@
-"""Main-bearing cases on a user's scene: the page is about that scene, and says what is not."""
+"""What of a main bearing the user may change in its cases, and what is sent to the study."""
 
 import re
+from pathlib import Path
 
-import numpy as np
 import pytest
-import yaml
-from coarse_scenes import COARSE, FINER, coarse_scene
+from coarse_scenes import COARSE, coarse_scene
 
-from fe_drivetrain.cases.main_bearing import loads, study
+from fe_drivetrain.cases.main_bearing import charts, study
+from fe_drivetrain.commands.settings import parse_settings
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry.fits import check_parts
 from fe_drivetrain.geometry.walls import check_sizes
 from fe_drivetrain.hub_loads.surrogate import Condition
-from fe_drivetrain.report.results import Chart, Results, Text, read_results
-from fe_drivetrain.scene.reading import change_scene, library_text
+from fe_drivetrain.report.results import Chart, Text
+from fe_drivetrain.scene.reading import change_scene, library_scene
 from fe_drivetrain.scene.scene import coarser_scene
 from fe_drivetrain.suite.case import all_cases
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.run import Run
-from fe_drivetrain.suite.suite import run_cases
-
-pytestmark = pytest.mark.usefixtures("kept_between_runs")
-
-#: Cases that take a scene of the user's; what each needs its bearing to be.
-NEEDS = {
-    "bonded": "bonded",
-    "mesh_convergence": "bonded",
-    "rmse": "bonded",
-    "shaft_thickness": "bonded",
-    "spherical": "spherical",
-    "torsional_stiffness": "bonded",
-}
-#: Takes minutes, and reads its scene as these do.
-SLOW = {"secant_stiffness"}
+from fe_drivetrain.suite.settings import settings_by_case
 
 
-@pytest.fixture(scope="module")
-def pages(tmp_path_factory, without_pictures) -> dict[str, Results]:
-    """Results of each case on a small scene with a sliding bearing; what they say is asked."""
-    folder = tmp_path_factory.mktemp("own")
-    scene = coarse_scene("spherical", title="Turbine of mine", **FINER).model_dump(mode="json")
-    (folder / "mine.yaml").write_text(yaml.safe_dump(scene))
-    time = 0.05 * np.arange(40)
-    forces = np.array([2e5, 0, -3.7e5, 1.1e6, 6e5, 0]) + 1e4 * np.sin(time)[:, None]
-    table = np.column_stack([time, forces])
-    header = "time [s],Fx [N],Fy [N],Fz [N],Mx [N m],My [N m],Mz [N m]"
-    np.savetxt(folder / "loads.csv", table, delimiter=",", header=header, comments="")
-    settings = {"scene": str(folder / "mine.yaml"), "loads": str(folder / "loads.csv")}
-    cases = [all_cases()[f"main_bearing/{name}"] for name in NEEDS]
-    assert run_cases(cases, folder / "reports", settings, quick=True) == {}
-    return {
-        name: read_results(folder / "reports/main_bearing" / name / "results.json")
-        for name in NEEDS
-    }
+@pytest.mark.parametrize(
+    ("setting", "command"),
+    [
+        ("scene=mine.yaml", "fe-drivetrain study FILE)"),
+        ("loads=outputs", "fe-drivetrain study FILE --loads FILES)"),
+        ("skip=60", "fe-drivetrain study FILE --loads FILES --skip SECONDS)"),
+        ("self_weight=false", "fe-drivetrain study FILE --no-weight)"),
+    ],
+)
+def test_a_drivetrain_of_ones_own_is_sent_to_the_study(setting: str, command: str) -> None:
+    cases = [case for name, case in all_cases().items() if name.startswith("main_bearing/")]
+    with pytest.raises(InputError, match=re.escape(command)):
+        settings_by_case(cases, parse_settings([setting]))
 
 
-def test_these_are_all_cases_that_take_a_scene():
-    found = {n.partition("/")[2] for n, case in all_cases().items() if "scene" in case.settings}
-    assert found == set(NEEDS) | SLOW
-
-
-@pytest.mark.parametrize("name", NEEDS)
-def test_the_page_is_about_the_users_scene(pages, name):
-    results = pages[name]
-    assert results.title.startswith("Turbine of mine: ")
-    assert re.fullmatch(r"scene .*mine\.yaml", results.source)
-    assert "thesis" not in results.model_dump_json().lower()
-    # the source of a formula is named where it is used, that of a default where it is listed
-    text = results.model_dump_json(exclude={"assumptions"})
-    assert re.findall(r"Stirling 2023(?!, Eq)", text) == []
-
-
-@pytest.mark.parametrize("name", NEEDS)
-def test_another_bearing_than_the_scenes_is_the_first_that_is_said(pages, name):
-    quick, *notes = pages[name].notes
-    assert quick.startswith("Quick run")
-    exchanged = [note for note in notes if note.startswith("Another bearing")]
-    if NEEDS[name] == "spherical":
-        assert exchanged == []
-    else:
-        (note,) = exchanged
-        assert note == notes[0]
-        assert "'main_bearing' of the scene is sliding" in note
-        assert "needs a bonded one" in note
-        assert "made bonded, not of the scene as it was given" in note
-
-
-def test_the_study_begins_with_the_bearing_that_the_scene_has(pages):
-    assert "spherical bearing" in pages["rmse"].summary[0]
+def test_no_case_takes_a_scene_of_ones_own() -> None:
+    assert [name for name, case in all_cases().items() if "scene" in case.settings] == []
 
 
 @pytest.mark.parametrize("kind", ["spherical", "bonded"])
@@ -101,11 +51,11 @@ def test_no_bearing_is_exchanged_in_silence(tmp_path, kind, interface):
     }
     page = Page()
     scene = study.scene_of(Run(COARSE | changes, False, tmp_path), page, kind)
-    assert study.kind_of(scene) == kind
+    allowed = study.SPHERICAL if kind == "spherical" else ("bonded",)
+    assert scene.bearing_units[0].interface in allowed
     kept = scene.bearing_units[0].interface == interface
     assert kept == (page.notes == [])
     assert kept == ((interface == "bonded") == (kind == "bonded"))
-    assert page.subject == ""
 
 
 def test_a_quick_look_at_a_thin_wall_is_as_coarse_as_the_wall_allows():
@@ -123,12 +73,24 @@ def test_a_quick_look_at_a_thin_wall_is_as_coarse_as_the_wall_allows():
         check_sizes(*parts, bores, scene.mesh.scaled(2.0, 8))
 
 
-def test_several_bearings_are_sent_to_the_study(tmp_path):
-    file = tmp_path / "mine.yaml"
-    file.write_text(library_text("two_bearings"))
-    run = Run({"scene": str(file)}, False, tmp_path)
-    with pytest.raises(InputError, match=r"2 bearing units.*fe-drivetrain study"):
-        study.given_scene(run, "bonded")
+@pytest.mark.parametrize(
+    ("scene", "has"), [("two_bearings", "2 bearing units"), ("iea_15mw_shaft_on_nose", "a nose")]
+)
+def test_several_bearings_and_a_nose_are_sent_to_the_study(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, scene: str, has: str
+) -> None:
+    monkeypatch.setattr(study, "library_scene", lambda name: library_scene(scene))
+    run = Run({}, False, tmp_path)
+    with pytest.raises(InputError, match=rf"has {has}.*run fe-drivetrain study"):
+        study.changed_scene(run, "bonded")
+
+
+def test_load_points_are_left_out_aloud(tmp_path: Path) -> None:
+    brake = {"name": "brake", "x": 0.8, "width": 0.1, "weight": 2e4}
+    page = Page()
+    run = Run(COARSE | {"load_points": [brake]}, False, tmp_path)
+    assert study.scene_of(run, page, "bonded").load_points == ()
+    assert page.notes[0].startswith("Without the loads and weights at brake")
 
 
 def test_errors_of_round_off_are_a_sentence_and_not_a_chart(rng):
@@ -140,10 +102,10 @@ def test_errors_of_round_off_are_a_sentence_and_not_a_chart(rng):
         "near against FE": ("bonded", fe["bonded"] + 1.0 * noise),
     }
     page = Page()
-    loads.rmse_charts(page, conditions, fe, pairs)
+    charts.rmse_charts(page, conditions, fe, pairs)
     (section,) = page.sections
     texts = [item.text for item in section.items if isinstance(item, Text)]
-    charts = [item.caption for item in section.items if isinstance(item, Chart)]
+    drawn = [item.caption for item in section.items if isinstance(item, Chart)]
     assert ["exact" in text and "round-off" in text for text in texts] == [True]
-    assert len(charts) == 2
-    assert all("near" in caption for caption in charts)
+    assert len(drawn) == 2
+    assert all("near" in caption for caption in drawn)

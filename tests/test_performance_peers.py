@@ -14,16 +14,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fe_drivetrain.cases.performance import peer_settings, peers, two_million_unknowns
+from fe_drivetrain.cases.performance import (
+    peer_comparison,
+    peer_settings,
+    two_million_unknowns,
+)
+from fe_drivetrain.cases.performance.peers import launching, problems, rounds, runner
+from fe_drivetrain.cases.performance.peers.launching import Limits, Outcome, Variant
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.interpreter import interpreters
 from fe_drivetrain.mesh.mesh import FACETS
-from fe_drivetrain.peers import launching, problems, rounds, runner
-from fe_drivetrain.peers.launching import (
-    Limits,
-    Outcome,
-    Variant,
-)
 from fe_drivetrain.suite import Page
 from fe_drivetrain.suite.case import find_cases
 from fe_drivetrain.suite.result_folders import run_case
@@ -489,7 +489,7 @@ def test_slower_or_hungrier_than_a_peer_is_shown():
     direct = row(Variant("ngsolve", "cholesky"), 50_000, 4.0, 2e8)
     rows = [ours, peer, direct]
     rounds.judge_errors(rows)
-    (found,) = peers.goals(benchmark, rows, 1)
+    (found,) = peer_comparison.goals(benchmark, rows, 1)
     assert found["fastest other"] == peer.variant.name
     assert found["its time over ours"] == pytest.approx(0.5)
     assert found["reached"] == "no"
@@ -497,23 +497,23 @@ def test_slower_or_hungrier_than_a_peer_is_shown():
     assert found["its peak memory over ours"] == pytest.approx(0.667)
     # a peer that does not reach the accuracy is no peer
     peer.error = 1e-3
-    (found,) = peers.goals(benchmark, rows, 1)
+    (found,) = peer_comparison.goals(benchmark, rows, 1)
     assert found["fastest other"] == direct.variant.name
     assert (found["its time over ours"], found["reached"]) == (2.0, "yes")
     # with ten right-hand sides twice as fast is not enough
-    (found,) = peers.goals(benchmark, rows, 10)
+    (found,) = peer_comparison.goals(benchmark, rows, 10)
     assert (found["goal, at least"], found["reached"]) == (4.0, "no")
     # nothing is known of what came to no end that counts
     direct.error = 1e-3
-    (found,) = peers.goals(benchmark, rows, 1)
+    (found,) = peer_comparison.goals(benchmark, rows, 1)
     assert (found["its time over ours"], found["reached"]) == (None, "not known")
     late = row(Variant("calculix", "spooles"), 50_000, trouble="over 30 s")
     late.least_seconds = 30.0
-    (found,) = peers.goals(benchmark, [*rows, late], 1)
+    (found,) = peer_comparison.goals(benchmark, [*rows, late], 1)
     assert (found["its time over ours"], found["reached"]) == (15.0, "yes")
     # small meshes, and runs without another tool, are not compared
-    assert peers.goals(benchmark, [ours], 1) == []
-    assert peers.goals(benchmark, [row(r.variant, 8_000, 1.0) for r in rows], 1) == []
+    assert peer_comparison.goals(benchmark, [ours], 1) == []
+    assert peer_comparison.goals(benchmark, [row(r.variant, 8_000, 1.0) for r in rows], 1) == []
 
 
 def test_the_case_runs_and_its_page_says_what_is_missing(tmp_path, monkeypatch):
@@ -541,7 +541,9 @@ def test_without_an_answer_of_our_own_the_case_fails():
     auto, page = Variant("this_project", "auto"), Page()
     exact = problems.hollow_shaft().exact
     solved = row(auto, 50_000, 2.0, stiffness=exact)
-    peers.check(page, problems.hollow_shaft(), [row(auto, 10_000, trouble="over 30 s"), solved])
+    peer_comparison.check(
+        page, problems.hollow_shaft(), [row(auto, 10_000, trouble="over 30 s"), solved]
+    )
     assert [v.passed for v in page.verdicts] == [False, True]
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain.validation.plane_rings import (
+from fe_drivetrain.cases.references.plane_rings import (
     CurvedBar,
     Lame,
     Plane,

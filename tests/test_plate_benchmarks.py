@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.references.loaded_blocks import solve_block
+from fe_drivetrain.cases.verification.elliptic_plate import EllipticPlate
+from fe_drivetrain.cases.verification.pressed_plate import PressedPlate
 from fe_drivetrain.mesh.facets import facet_points
 from fe_drivetrain.scene.materials import Material
-from fe_drivetrain.validation.elliptic_plate import EllipticPlate
-from fe_drivetrain.validation.loaded_blocks import solve_block
-from fe_drivetrain.validation.pressed_plate import PressedPlate
 
 STEEL = Material(youngs_modulus=210e9, poisson_ratio=0.3, density=0.0)
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from fe_drivetrain.beam.frame import beam_stiffness, round_section
+from fe_drivetrain.cases.references.published_drivetrains import table
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import rigid_motions
@@ -23,7 +24,6 @@ from fe_drivetrain.torsion.system import (
     natural_modes,
     response,
 )
-from fe_drivetrain.validation.published_drivetrains import table
 
 STEEL = Material(youngs_modulus=210e9, poisson_ratio=0.3, density=0.0)
 STATIONS = (0.0, 1.0, 2.5)

@@ -2,7 +2,7 @@
 
 from itertools import pairwise
 
-from fe_drivetrain.validation.random_shafts import STEP, random_scene
+from fe_drivetrain.cases.verification.random_shafts import STEP, random_scene
 
 
 def test_random_shafts_follow_from_their_seed_and_are_sound() -> None:

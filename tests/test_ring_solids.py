@@ -4,33 +4,20 @@ import numpy as np
 import pytest
 from scipy.integrate import trapezoid
 
-from fe_drivetrain.common.spatial import rigid_motions
-from fe_drivetrain.interfaces.constraints import held_nodes
-from fe_drivetrain.mesh.facets import facet_points
-from fe_drivetrain.operator.loads import body_loads, pressure, traction_loads
-from fe_drivetrain.scene.materials import Material
-from fe_drivetrain.solve.solid import solve_solid
-from fe_drivetrain.validation.bar_sections import (
+from fe_drivetrain.cases.references.bar_sections import (
     round_bar,
     section_motion,
     section_stresses,
     solve_bar,
 )
-from fe_drivetrain.validation.plane_rings import (
-    Lame,
-    Plane,
-    Rotating,
-)
-from fe_drivetrain.validation.quarter_disc import (
-    quarter_disc,
-)
-from fe_drivetrain.validation.ring_slices import (
+from fe_drivetrain.cases.references.plane_rings import Lame, Plane, Rotating
+from fe_drivetrain.cases.references.ring_slices import (
     divided_sector,
     half_wave,
     slice_supports,
     wave_pressure,
 )
-from fe_drivetrain.validation.ring_solids import (
+from fe_drivetrain.cases.references.ring_solids import (
     facets_where,
     moves_as_one,
     node_at,
@@ -39,6 +26,13 @@ from fe_drivetrain.validation.ring_solids import (
     ring_sector,
     sector_symmetry,
 )
+from fe_drivetrain.cases.verification.quarter_disc import quarter_disc
+from fe_drivetrain.common.spatial import rigid_motions
+from fe_drivetrain.interfaces.constraints import held_nodes
+from fe_drivetrain.mesh.facets import facet_points
+from fe_drivetrain.operator.loads import body_loads, pressure, traction_loads
+from fe_drivetrain.scene.materials import Material
+from fe_drivetrain.solve.solid import solve_solid
 
 E, NU = 3.0, 0.25
 LAME = (E * NU / ((1 + NU) * (1 - 2 * NU)), E / (2 * (1 + NU)))

@@ -1,18 +1,28 @@
 """Two sets of histories: seeds alone are not a difference, other physics are."""
 
+from collections.abc import Iterable
+
 import numpy as np
 import pytest
 
-from fe_drivetrain.commands.loads_against import beside, features
-from fe_drivetrain.commands.loads_digest import Options, digest
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.histories.sets import differences
+from fe_drivetrain.histories.spectra import spectrum
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.recorded import Recorded
-from fe_drivetrain.suite.page import Page
+from fe_drivetrain.studies.load_comparison import LoadSet, compare_sets, features
+from fe_drivetrain.studies.load_digest import LoadOptions, digest
+from fe_drivetrain.studies.load_reactions import FileDigest
 
-OPTIONS = Options({}, 0.0, (3.0, 10.0), "half", 0.0, 1.5)
+OPTIONS = LoadOptions(slopes=(3.0, 10.0), rotor_speed=1.5)
+
+
+def set_of(histories: Iterable[Recorded]) -> LoadSet:
+    found = LoadSet(OPTIONS.slopes)
+    for history in histories:
+        found.add(FileDigest(digest(history, OPTIONS)))
+    return found
 
 
 def test_seeds_alone_are_named_as_often_as_chance_has_it(rng: np.random.Generator) -> None:
@@ -50,20 +60,25 @@ def test_features_of_a_history_are_what_its_samples_have(rng: np.random.Generato
         return Recorded(LoadHistory("x", time, 1e4 * scale * (noise + 5.0 * wave)), None, wind)
 
     wind = np.full(len(time), 8.0)
-    one = [digest(history(seed, 1.0, wind), OPTIONS) for seed in range(3)]
-    other = [digest(history(seed, 2.0, wind), OPTIONS) for seed in range(3, 6)]
-    found = features(one[0], OPTIONS.slopes)
+    one = set_of(history(seed, 1.0, wind) for seed in range(3))
+    other = set_of(history(seed, 2.0, wind) for seed in range(3, 6))
+    found = features(digest(history(0, 1.0, wind), OPTIONS), OPTIONS.slopes)
+    assert one.features["8 m/s"][0] == found
     values = history(0, 1.0, wind).history.loads[:, 4]
     assert found["My, mean [kN m]"] == pytest.approx(values.mean() / 1e3)
     assert found["My, standard deviation [kN m]"] == pytest.approx(values.std() / 1e3)
     assert found["My, 3P [kN m]"] == pytest.approx(50.0, rel=0.1)
-    page = Page()
-    rows = beside(page, one, other, OPTIONS, ("old", "new"))
-    assert {row["wind"] for row in rows} == {"8 m/s"}
-    named = {row["quantity"]: row["ratio"] for row in rows if row["beyond"]}
+    compared = compare_sets(one, other, ("old", "new"))
+    (at_wind,) = compared.winds
+    assert at_wind.wind == "8 m/s"
+    named = {one.quantity: one.ratio for one in at_wind.beyond}
     assert named["My, standard deviation [kN m]"] == pytest.approx(0.5, rel=0.1)
     assert "My, mean [kN m]" not in named
-    assert "quantities differ between old (3) and new (3)" in page.summary[0]
-    storm = [digest(history(seed, 1.0, 2.0 * wind), OPTIONS) for seed in range(3)]
+    assert "quantities differ between old (3) and new (3)" in compared.sentences[0]
+    spectra = [
+        spectrum(history(seed, 1.0, wind).history.loads[:, 4], 0.2).density for seed in range(3)
+    ]
+    np.testing.assert_allclose(at_wind.spectra["My"][0], np.mean(spectra, axis=0)[:150], rtol=1e-12)
+    storm = set_of(history(seed, 1.0, 2.0 * wind) for seed in range(3))
     with pytest.raises(InputError, match="no mean wind speed"):
-        beside(Page(), one, storm, OPTIONS)
+        compare_sets(one, storm)

@@ -207,7 +207,7 @@ def test_a_number_of_things_may_be_written_with_an_exponent():
         ("drivetrain/from_table", "tabel", "table"),
         ("performance/peers", "sises", "sizes"),
         ("performance/work_precision", "part", "parts"),
-        ("main_bearing/rmse", "self_wieght", "self_weight"),
+        ("main_bearing/rmse", "sovler", "solver"),
         ("fidelity/planet_carrier", "planet_carier.pins", "planet_carrier.pins"),
         ("fidelity/housing_on_bedplate", "gearboxes.weight", "gearbox.weight"),
     ],

@@ -6,9 +6,7 @@ import pytest
 from fe_drivetrain.beam.beam import Beam, Support
 from fe_drivetrain.beam.sections import BeamSection
 from fe_drivetrain.beam.shaft import unit_load_response
-from fe_drivetrain.geometry import Section, Shaft
-from fe_drivetrain.scene.materials import MATERIALS
-from fe_drivetrain.validation.shaft_theory import (
+from fe_drivetrain.cases.references.shaft_theory import (
     Spring,
     Tube,
     chain_frequencies,
@@ -25,15 +23,15 @@ from fe_drivetrain.validation.shaft_theory import (
     two_mass_frequencies,
     within_arcs,
 )
-from fe_drivetrain.validation.solid_shafts import (
+from fe_drivetrain.cases.references.solid_shafts import (
     on_springs,
     sectional_compliance,
     solid,
     straight,
 )
-from fe_drivetrain.validation.torsion_meridian import (
-    torsion_bounds,
-)
+from fe_drivetrain.cases.references.torsion_meridian import torsion_bounds
+from fe_drivetrain.geometry import Section, Shaft
+from fe_drivetrain.scene.materials import MATERIALS
 
 STEEL = MATERIALS["steel"]
 TUBES = [Tube(0.4, bore, 1.5, STEEL) for bore in (0.0, 0.2, 0.36)]

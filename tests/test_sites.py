@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.gear import published_hours as printed
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.histories.sites import (
     Site,
@@ -13,7 +14,6 @@ from fe_drivetrain.histories.sites import (
     site_of_class,
     time_factors,
 )
-from fe_drivetrain.validation import published_hours as printed
 
 
 def test_hours_and_time_factors_of_a_thesis() -> None:

@@ -11,6 +11,9 @@ from PIL import Image
 
 from fe_drivetrain.bearing import Bearing, RollerRow, ball_row, catalogue_bearing
 from fe_drivetrain.bearing.geometry import count
+from fe_drivetrain.cases.references.fillet_factors import shouldered
+from fe_drivetrain.cases.references.manufactured import quarter_ring
+from fe_drivetrain.cases.references.published_gears import iso_example_1
 from fe_drivetrain.geometry.shaft import Section, Shaft
 from fe_drivetrain.mesh.blocks import brick
 from fe_drivetrain.report.pictures.rollers import rolling_elements
@@ -25,9 +28,6 @@ from fe_drivetrain.report.pictures.sketch import (
 from fe_drivetrain.report.pictures.teeth import gear_pair
 from fe_drivetrain.scene.reading import library_scene
 from fe_drivetrain.suite.run import Run
-from fe_drivetrain.validation.fillet_factors import shouldered
-from fe_drivetrain.validation.manufactured import quarter_ring
-from fe_drivetrain.validation.published_gears import iso_example_1
 
 STEPPED = Shaft(
     front=-1.0,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain.validation.spherical_shells import (
+from fe_drivetrain.cases.verification.spherical_shells import (
     AXIS,
     JOINTS,
     Shell,

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from fe_drivetrain.validation.plane_rings import plane_strain
-from fe_drivetrain.validation.squeezed_rings import ACROSS, ALONG, SqueezedRing
+from fe_drivetrain.cases.references.plane_rings import plane_strain
+from fe_drivetrain.cases.verification.squeezed_rings import ACROSS, ALONG, SqueezedRing
 
 PLANE = plane_strain(206e9, 0.3)
 

@@ -4,15 +4,11 @@ import numpy as np
 import pytest
 from scipy import sparse
 
+from fe_drivetrain.cases.references import layers
+from fe_drivetrain.cases.stability import fingerprints, other_precisions, penalised_couplings
 from fe_drivetrain.compare.sweeps import decades, fitted_exponent, safe_range
 from fe_drivetrain.operator.elasticity import assemble
 from fe_drivetrain.scene.materials import MATERIALS
-from fe_drivetrain.validation import (
-    fingerprints,
-    layers,
-    other_precisions,
-    penalised_couplings,
-)
 
 
 def test_safe_range_is_the_run_about_the_least_error():

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain.scene.materials import MATERIALS
-from fe_drivetrain.validation import solid_shafts
-from fe_drivetrain.validation.exact_shafts import (
+from fe_drivetrain.cases.references import solid_shafts
+from fe_drivetrain.cases.references.exact_shafts import (
     bent,
     flexed,
     neutral_shear,
@@ -13,9 +12,10 @@ from fe_drivetrain.validation.exact_shafts import (
     tip_deflection,
     twisted,
 )
-from fe_drivetrain.validation.shaft_theory import Tube, sag
-from fe_drivetrain.validation.supported_shafts import Load, SupportedShaft
-from fe_drivetrain.validation.torsion_meridian import series_stiffness, torsion_bounds
+from fe_drivetrain.cases.references.shaft_theory import Tube, sag
+from fe_drivetrain.cases.references.supported_shafts import Load, SupportedShaft
+from fe_drivetrain.cases.references.torsion_meridian import series_stiffness, torsion_bounds
+from fe_drivetrain.scene.materials import MATERIALS
 
 STEEL = MATERIALS["steel"]
 TUBE = Tube(0.4, 0.28, 0.8, STEEL)

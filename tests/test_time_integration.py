@@ -467,7 +467,7 @@ def test_pyyeti_superposes_the_same() -> None:
 @pytest.mark.parametrize("radius", [1.0, 0.8])
 def test_exudyn_takes_the_same_steps(radius: float) -> None:
     """Exudyn's generalised alpha is the same method, to what its Newton's method leaves."""
-    from fe_drivetrain.export.programs.exudyn_motion import exudyn_motion
+    from fe_drivetrain.cases.performance.exudyn_motion import exudyn_motion
 
     equations, loads = frame()
     _, q = exudyn_motion(equations, loads, 1.0, 0.02, radius)
@@ -478,7 +478,7 @@ def test_exudyn_takes_the_same_steps(radius: float) -> None:
 
 @pytest.mark.needs("exudyn")
 def test_exudyn_on_a_stiffness_that_varies_with_an_angle() -> None:
-    from fe_drivetrain.export.programs.exudyn_motion import exudyn_motion
+    from fe_drivetrain.cases.performance.exudyn_motion import exudyn_motion
 
     equations, loads = varying_with_angle(), steady([0.0, 0.0])
     start = started([0.2, 0.0], [5.0, 0.0])

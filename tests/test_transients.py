@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.brakes import Brake, Phase, Transient, transient
 from fe_drivetrain.dynamics.equations import (
@@ -19,7 +20,6 @@ from fe_drivetrain.dynamics.equations import (
 from fe_drivetrain.dynamics.integration import State, at_rest, integrate
 from fe_drivetrain.dynamics.machines import constant_power, grid_spring, slip_line
 from fe_drivetrain.dynamics.stopping import StopSequence, shutdown
-from fe_drivetrain.validation import published_drivetrains as published
 
 J = np.array([3.0, 1.0])
 SHAFT = equations_of_motion(J, spring_laws([[1.0, -1.0]], 50.0))

@@ -8,6 +8,11 @@ import numpy as np
 import pytest
 
 from fe_drivetrain.bearing.arrangements import cylindrical
+from fe_drivetrain.cases.references.published_planetary import (
+    LIN_PARKER_STAGE,
+    plane_stage,
+    plane_supports,
+)
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.bodies import Body, assemble
@@ -31,11 +36,6 @@ from fe_drivetrain.dynamics.travelling import (
     travelling_of,
 )
 from fe_drivetrain.scene.materials import Material
-from fe_drivetrain.validation.published_planetary import (
-    LIN_PARKER_STAGE,
-    plane_stage,
-    plane_supports,
-)
 
 GRC = library_machine("nrel_750kw")
 STEEL = Material(youngs_modulus=2.06e11, poisson_ratio=0.3, density=7850.0)

@@ -2,16 +2,20 @@
 
 import pytest
 
-from fe_drivetrain.validation.implied_shafts import (
+from fe_drivetrain.cases.references.implied_shafts import (
     DAMPING_RATIO,
     SHEAR_MODULUS,
     diameter,
     implied,
 )
-from fe_drivetrain.validation.shaft_theory import polar_moment
-from fe_drivetrain.validation.solid_shafts import stepped
-from fe_drivetrain.validation.torsion_meridian import added_length, series_stiffness, torsion_bounds
-from fe_drivetrain.validation.twisted_tubes import material_of, twisted_step, twisted_tube
+from fe_drivetrain.cases.references.shaft_theory import polar_moment
+from fe_drivetrain.cases.references.solid_shafts import stepped
+from fe_drivetrain.cases.references.torsion_meridian import (
+    added_length,
+    series_stiffness,
+    torsion_bounds,
+)
+from fe_drivetrain.cases.references.twisted_tubes import material_of, twisted_step, twisted_tube
 
 
 def test_an_implied_shaft_has_the_stiffness_and_damping_that_it_was_made_of() -> None:

@@ -7,20 +7,19 @@ import pytest
 from coarse_scenes import coarse_scene
 from typer.testing import CliRunner
 
-from fe_drivetrain.commands.app import app
-from fe_drivetrain.commands.terminal import FAILED, MISTAKE, PASSED
-from fe_drivetrain.commands.uncertainty_page import bands, inputs
-from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.spatial import wrench_transport
-from fe_drivetrain.export.formats.summary import summary
-from fe_drivetrain.fidelity.bearing_units import unit_stiffness
-from fe_drivetrain.fidelity.energy_sensitivities import (
+from fe_drivetrain.cases.fidelity.energy_sensitivities import (
     compliance,
     energy_slopes,
     hub_elasticities,
     moment_elasticities,
     total,
 )
+from fe_drivetrain.commands.app import app
+from fe_drivetrain.commands.terminal import FAILED, MISTAKE, PASSED
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import wrench_transport
+from fe_drivetrain.export.formats.summary import summary
+from fe_drivetrain.fidelity.bearing_units import unit_stiffness
 from fe_drivetrain.fidelity.ladder import shaft_level
 from fe_drivetrain.fidelity.quantities import (
     numbers,
@@ -29,6 +28,7 @@ from fe_drivetrain.fidelity.quantities import (
     unit_numbers,
     without_zeros,
 )
+from fe_drivetrain.pages.uncertainty import bands, inputs
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.response.model import LOADS, Model, build_model
 from fe_drivetrain.response.unit_loads import Response, unit_load_response

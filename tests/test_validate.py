@@ -17,7 +17,6 @@ from conftest import QuickRun
 from small_project import RANGE, Content, change, small_project, write_case
 from tiny_case import Result
 
-from fe_drivetrain.commands.validate import standing_of
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import parse_mapping
 from fe_drivetrain.procedure.channels import ChannelFile, read_channels, write_channels
@@ -36,6 +35,7 @@ from fe_drivetrain.procedure.steps import require_complete
 from fe_drivetrain.report.results import Results, Table, read_results
 from fe_drivetrain.report.seal import drivetrain_record
 from fe_drivetrain.scene.reading import change_scene, library_scene, scene_text
+from fe_drivetrain.studies.project_validation import validate as validate_project
 
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
 
@@ -98,7 +98,7 @@ def test_it_is_not_complete_without_any_one_step(
 ) -> None:
     key = SECTIONS[number - 1]
     del small[key]
-    found = standing_of(Project.model_validate(small), tmp_path)
+    found = validate_project(Project.model_validate(small), tmp_path)
     assert found.states[number - 1].lacks == (f"it was not begun: add the section {key}",)
 
 
@@ -165,7 +165,7 @@ def test_a_step_says_what_it_lacks(
     key: str, value: Any, step: int, words: str, small: Content, tmp_path: Path
 ) -> None:
     change(small, key, value)
-    states = standing_of(Project.model_validate(small), tmp_path).states
+    states = validate_project(Project.model_validate(small), tmp_path).states
     assert words in " ".join(states[step - 1].lacks)
 
 
@@ -179,7 +179,7 @@ def test_evidence_that_fails_is_quick_or_stale_does_not_count(
         ({"code": "0" * 64}, "of another version of the program", ["quick"]),
     ):
         write_case(reports, "group/run", **more)
-        found = standing_of(Project.model_validate(small | {"accept": accept}), tmp_path)
+        found = validate_project(Project.model_validate(small | {"accept": accept}), tmp_path)
         assert words in found.states[0].lacks[0]
     write_case(reports, "group/run", quick=True)
     status, results = validate(small | {"accept": ["quick"]})
@@ -188,12 +188,12 @@ def test_evidence_that_fails_is_quick_or_stale_does_not_count(
     assert results.summary[0].endswith("the project accepts 2 of it as it is.")
     write_case(reports, "group/run", code="0" * 64)
     accepted = Project.model_validate(small | {"accept": ["other version"]})
-    assert standing_of(accepted, tmp_path).states[0].complete
+    assert validate_project(accepted, tmp_path).states[0].complete
     # what is both is accepted as both, or not at all
     write_case(reports, "group/run", code="0" * 64, quick=True)
-    assert not standing_of(accepted, tmp_path).states[0].complete
+    assert not validate_project(accepted, tmp_path).states[0].complete
     both = Project.model_validate(small | {"accept": ["other version", "quick"]})
-    assert standing_of(both, tmp_path).states[0].complete
+    assert validate_project(both, tmp_path).states[0].complete
 
 
 def test_evidence_of_another_scene_does_not_count(small: Content, tmp_path: Path) -> None:
@@ -213,7 +213,7 @@ def test_evidence_of_another_scene_does_not_count(small: Content, tmp_path: Path
     }
 
     def missing() -> tuple[str, ...]:
-        return standing_of(Project.model_validate(small), tmp_path).states[1].lacks
+        return validate_project(Project.model_validate(small), tmp_path).states[1].lacks
 
     def advised(changes: dict[str, float]) -> None:
         changed = change_scene(scene, changes)
@@ -277,7 +277,7 @@ def test_a_signature_holds_for_what_was_signed_alone(
     project = Project.model_validate(small | {"signed": [signature]})
 
     def now() -> str:
-        found = standing_of(project, tmp_path)
+        found = validate_project(project, tmp_path)
         return content_digest(project, found.states, found.measured.verdicts, found.drivetrain)
 
     assert now() == digest

@@ -23,7 +23,6 @@ from small_project import (
 )
 from tiny_case import Result
 
-from fe_drivetrain.commands.validate import standing_of
 from fe_drivetrain.commands.validate_commands import ready_commands
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.tables import library_machine
@@ -43,6 +42,7 @@ from fe_drivetrain.procedure.tolerances import EXAMPLE, WIDEST, is_guess, is_vac
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.report.seal import drivetrain_hash, drivetrain_record, results_digest
 from fe_drivetrain.scene.reading import change_scene, library_scene
+from fe_drivetrain.studies.project_validation import validate as validate_project
 from fe_drivetrain.suite.page import Page
 
 Invoke = Callable[..., Result]
@@ -55,7 +55,7 @@ def small(tmp_path: Path) -> Content:
 
 
 def lacks_of(content: Content, folder: Path, step: int = 1) -> str:
-    standing = standing_of(Project.model_validate(content), folder)
+    standing = validate_project(Project.model_validate(content), folder)
     assert not standing.complete
     return "\n".join(standing.states[step - 1].lacks)
 
@@ -113,7 +113,7 @@ def test_results_of_another_drivetrain_do_not_count_and_both_titles_are_shown(
     assert OTHER.title in words
     assert OWN.title in words
     assert OTHER.hash in words
-    states = standing_of(Project.model_validate(small), tmp_path).states
+    states = validate_project(Project.model_validate(small), tmp_path).states
     assert [one.state for one in states[0].evidence] == ["of another drivetrain"]
     # and of none that is stated
     write_case(tmp_path / "reports", "group/run", drivetrains=[])
@@ -140,7 +140,7 @@ def test_of_results_of_several_drivetrains_only_what_is_of_this_one_counts(
         value_of("margin", 0.2, RESONANCE, of=OWN.hash),
     ]
     write_case(reports, "group/run", drivetrains=both, answers=answers, verdicts=checks)
-    assert standing_of(Project.model_validate(small), tmp_path).states[0].complete
+    assert validate_project(Project.model_validate(small), tmp_path).states[0].complete
     write_case(reports, "group/run", drivetrains=both, answers=answers, verdicts=checks[1:])
     assert "has no checks of this drivetrain" in lacks_of(small, tmp_path)
 
@@ -165,7 +165,7 @@ def test_results_that_were_edited_or_have_no_digest_do_not_count(
     write_case(tmp_path / "reports", "group/run")
     edited(tmp_path, lambda content: None)
     small["failure_modes"]["gaps"][0]["evidence"][0] = MARGIN
-    assert standing_of(Project.model_validate(small), tmp_path).states[0].complete
+    assert validate_project(Project.model_validate(small), tmp_path).states[0].complete
 
 
 @pytest.mark.parametrize(
@@ -192,7 +192,7 @@ def test_a_run_that_is_no_proof_does_not_count(
 ) -> None:
     write_case(tmp_path / "reports", "group/run", **more)
     assert words in lacks_of(small, tmp_path)
-    found = standing_of(Project.model_validate(small), tmp_path).states[0].evidence
+    found = validate_project(Project.model_validate(small), tmp_path).states[0].evidence
     assert [one.state for one in found] == [state]
 
 
@@ -203,7 +203,7 @@ def test_a_check_that_anything_passes_is_no_evidence_of_a_step(
     for tolerance, relative, counts in ((0.1, True, True), (0.5, True, False), (0.4, False, False)):
         checks = [check_of(tolerance=tolerance, relative=relative)]
         write_case(tmp_path / "reports", "group/wide", verdicts=checks)
-        standing = standing_of(Project.model_validate(small), tmp_path)
+        standing = validate_project(Project.model_validate(small), tmp_path)
         assert standing.states[5].complete == counts
 
 
@@ -254,10 +254,10 @@ def test_a_vacuous_tolerance_is_told_with_its_range_and_the_key_to_set(
     said += "above 0 and below 33.3 %: " + words + " to less than 0.333, for instance "
     said += words.rpartition(" ")[2] + ": 0.05"
     change(small, key, 0.4)
-    found = standing_of(Project.model_validate(small), tmp_path)
+    found = validate_project(Project.model_validate(small), tmp_path)
     assert said in "\n".join(found.states[step - 1].lacks)
     change(small, key, EXAMPLE)
-    found = standing_of(Project.model_validate(small), tmp_path)
+    found = validate_project(Project.model_validate(small), tmp_path)
     assert "says nothing" not in "\n".join(found.states[step - 1].lacks)
 
 
@@ -331,7 +331,7 @@ def test_signals_give_the_spread_of_an_input_that_they_determine(
     }
     small["comparison"]["identified"] = [identified]
     small["inputs"]["values"][0] |= {"band": None, "measured_by": "torque"}
-    standing = standing_of(Project.model_validate(small), tmp_path)
+    standing = validate_project(Project.model_validate(small), tmp_path)
     assert standing.states[3].lacks == ()
     assert 0.0 < standing.measured.spreads["stiffness of shafts: LSS"] < 0.05
     change(small, "inputs.values.0.value", 4e7)
@@ -392,7 +392,7 @@ def test_ready_commands_name_cases_machine_and_paths_as_a_shell_takes_them(
     small["comparison"]["measured"]["file"] = "reports/procedure/campaign/measured.csv"
     for name in ("wind.csv", "model.csv"):
         (tmp_path / name).rename(folder / name)
-    standing = standing_of(Project.model_validate(small), folder)
+    standing = validate_project(Project.model_validate(small), folder)
     file = folder / "p.yaml"
     assert ready_commands(standing, file) == [
         f"fe-drivetrain run --out '{folder}/reports/procedure/machine_gaps' --set "

@@ -3,17 +3,12 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.references import distorted_blocks, manufactured
+from fe_drivetrain.cases.verification import condensed_bodies
+from fe_drivetrain.cases.verification.round_shafts import Bush
 from fe_drivetrain.mesh.blocks import brick
 from fe_drivetrain.mesh.facets import facet_points
 from fe_drivetrain.operator.loads import body_loads
-from fe_drivetrain.validation import (
-    condensed_bodies,
-    distorted_blocks,
-    manufactured,
-)
-from fe_drivetrain.validation.round_shafts import (
-    Bush,
-)
 
 
 @pytest.mark.parametrize("waves", [manufactured.three_waves(), manufactured.plane_waves()])

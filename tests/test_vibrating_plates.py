@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.references.loaded_blocks import supports
+from fe_drivetrain.cases.verification.vibrating_plates import bending_wave, block_modes, thick_plate
 from fe_drivetrain.mesh.blocks import brick
 from fe_drivetrain.scene.materials import Material
-from fe_drivetrain.validation.loaded_blocks import supports
-from fe_drivetrain.validation.vibrating_plates import bending_wave, block_modes, thick_plate
 
 STEEL = Material(youngs_modulus=200e9, poisson_ratio=0.3, density=8000.0)
 

@@ -16,6 +16,20 @@ from fe_drivetrain.cases.performance.work_precision import (
     PARTS,
     parts_of,
 )
+from fe_drivetrain.cases.references.growing_shafts import STEPPED
+from fe_drivetrain.cases.references.stiffness_choices import (
+    CURVED,
+    ELEMENTS,
+    HEXAHEDRA,
+    P1,
+    STRAIGHT,
+    Level,
+    Solve,
+    assemble_shaft,
+    mesh_shaft,
+    shaft_outcomes,
+)
+from fe_drivetrain.cases.references.tilt_choices import QUANTITIES, assemble_tilt, in_element
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.compare.pareto import (
     cheapest_within,
@@ -31,26 +45,6 @@ from fe_drivetrain.response.unit_loads import unit_load_response
 from fe_drivetrain.scene.materials import MATERIALS, Material
 from fe_drivetrain.solve import solvers
 from fe_drivetrain.suite.run import Run
-from fe_drivetrain.validation.growing_shafts import (
-    STEPPED,
-)
-from fe_drivetrain.validation.stiffness_choices import (
-    CURVED,
-    ELEMENTS,
-    HEXAHEDRA,
-    P1,
-    STRAIGHT,
-    Level,
-    Solve,
-    assemble_shaft,
-    mesh_shaft,
-    shaft_outcomes,
-)
-from fe_drivetrain.validation.tilt_choices import (
-    QUANTITIES,
-    assemble_tilt,
-    in_element,
-)
 
 STEEL = MATERIALS["steel"]
 TUBE = Shaft(front=-2.0, sections=(Section(length=2.0, outer_diameter=0.7, inner_diameter=0.3),))

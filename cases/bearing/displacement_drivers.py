@@ -4,11 +4,7 @@ import numpy as np
 
 from fe_drivetrain.bearing import equilibrium
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Bools, Floats
-from fe_drivetrain.coupled import coupled_equilibrium
-from fe_drivetrain.report import rolling_elements, trace
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.thesis_beam import (
+from fe_drivetrain.cases.references.thesis_beam import (
     ASSUMED,
     BEARINGS,
     beam_body,
@@ -17,6 +13,10 @@ from fe_drivetrain.validation.thesis_beam import (
     housed_body,
     radial,
 )
+from fe_drivetrain.common import Bools, Floats
+from fe_drivetrain.coupled import coupled_equilibrium
+from fe_drivetrain.report import rolling_elements, trace
+from fe_drivetrain.suite import Page, Record, Run
 
 #: Of a bearing S with the moment of the rotor's weight alone [N m].
 MOMENT = 8e5

@@ -13,8 +13,8 @@ from fe_drivetrain.bearing import (
     equilibrium_on_races,
 )
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.bearing.flexible_rings_calculix import PART, calculix_rollers
-from fe_drivetrain.cases.bearing.ladder import (
+from fe_drivetrain.cases.bearing.gap_springs import PART, calculix_rollers
+from fe_drivetrain.cases.bearing.peak_rollers import (
     CROWN,
     FIVE,
     LOADS,
@@ -22,12 +22,17 @@ from fe_drivetrain.cases.bearing.ladder import (
     error_against_time,
     peaks,
 )
+from fe_drivetrain.cases.references.housed_bearing import (
+    ASSUMED_HOUSING,
+    NAME,
+    bearing_s,
+    housed_scene,
+)
 from fe_drivetrain.common import Floats, MissingToolError
 from fe_drivetrain.export import find_calculix
 from fe_drivetrain.report import rolling_elements
 from fe_drivetrain.rings import housing_races, housing_solid
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.housed_bearing import ASSUMED_HOUSING, NAME, bearing_s, housed_scene
 
 SIZE, QUICK_SIZE = (1.6, None), (3.6, 8)
 ALL = 144

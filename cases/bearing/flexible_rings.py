@@ -18,13 +18,7 @@ from fe_drivetrain.bearing import (
     rigid_races,
 )
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats
-from fe_drivetrain.fidelity import unit_stiffness
-from fe_drivetrain.report import Chart, chart, rolling_elements, trace
-from fe_drivetrain.rings import housing_races
-from fe_drivetrain.scene import change_scene, joint_stiffness, library_scene
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.housed_bearing import (
+from fe_drivetrain.cases.references.housed_bearing import (
     ASSUMED_HOUSING,
     NAME,
     RACEWAY,
@@ -34,6 +28,12 @@ from fe_drivetrain.validation.housed_bearing import (
     housed_races,
     housed_scene,
 )
+from fe_drivetrain.common import Floats
+from fe_drivetrain.fidelity import unit_stiffness
+from fe_drivetrain.report import Chart, chart, rolling_elements, trace
+from fe_drivetrain.rings import housing_races
+from fe_drivetrain.scene import change_scene, joint_stiffness, library_scene
+from fe_drivetrain.suite import Page, Record, Run
 
 #: Loads [N, N m].
 LOADS = {

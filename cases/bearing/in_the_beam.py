@@ -9,6 +9,19 @@ import numpy as np
 
 from fe_drivetrain.bearing import Bearing, equilibrium, roller_loads
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references.thesis_beam import (
+    ASSUMED,
+    BEARINGS,
+    BEST_FIT,
+    HOUSING_RADIAL,
+    HOUSING_TILT,
+    WIND_SPEEDS,
+    beam_body,
+    bearing_s,
+    histories,
+    housed_body,
+    radial,
+)
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import round_off
 from fe_drivetrain.coupled import (
@@ -27,19 +40,6 @@ from fe_drivetrain.histories import (
 )
 from fe_drivetrain.report import rolling_elements, trace
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.thesis_beam import (
-    ASSUMED,
-    BEARINGS,
-    BEST_FIT,
-    HOUSING_RADIAL,
-    HOUSING_TILT,
-    WIND_SPEEDS,
-    beam_body,
-    bearing_s,
-    histories,
-    housed_body,
-    radial,
-)
 
 CONSTANT = "constant 1272 MN m/rad"
 LOOP = "the thesis's loop"

@@ -5,41 +5,22 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fe_drivetrain.bearing import (
-    Bearing,
-    catalogue_bearing,
-    equilibrium,
-    superposed_peak,
-    three_degrees,
-)
+from fe_drivetrain.bearing import Bearing, catalogue_bearing, three_degrees
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.bearing.peak_rollers import (
+    CROWN,
+    FIVE,
+    LOADS,
+    closed_form,
+    error_against_time,
+    peaks,
+)
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report import rolling_elements
 from fe_drivetrain.suite import Page, Record, Run
 
-#: Loads [N, N m]: where closed forms hold, and where they do not.
-LOADS = {
-    "radial": (0, 0, -4e5, 0, 0),
-    "moment": (0, 0, 0, 8e5, 0),
-    "combined, in one plane": (2e5, 0, -4e5, 8e5, 0),
-    "combined, 45 deg out of plane": (2e5, 0, -4e5, 5.7e5, 5.7e5),
-}
-CROWN = 0.00045
 REFERENCE_LAMINAE = 400
 
-
-def closed_form(bearing: Bearing, loads: Floats) -> Floats:
-    """Peak rollers from closed forms, each load alone, added."""
-    peak = [superposed_peak(bearing, load).max() for load in np.unique(loads, axis=0)]
-    return np.full(len(loads), max(peak))
-
-
-def peaks(solve: Callable[[Bearing, Floats], Floats]) -> Callable[[Bearing, Floats], Floats]:
-    """A rung whose answer has all rollers: their peaks."""
-    return lambda bearing, loads: solve(bearing, loads).max(axis=1)
-
-
-FIVE = peaks(lambda bearing, loads: equilibrium(bearing, loads, warm=False).rollers)
 
 #: Name, bearing's changes, and how the peak roller comes from it, cheap to expensive.
 RUNGS: tuple[tuple[str, dict[str, float], Callable[[Bearing, Floats], Floats]], ...] = (
@@ -56,21 +37,6 @@ RUNGS: tuple[tuple[str, dict[str, float], Callable[[Bearing, Floats], Floats]], 
     ("five degrees, 30 laminae with profile", {"laminae": 30, "crown": CROWN}, FIVE),
     ("five degrees, 100 laminae with profile", {"laminae": 100, "crown": CROWN}, FIVE),
 )
-
-
-def error_against_time(page: Page, rows: list[Record]) -> None:
-    """Each rung's error of the peak roller against its time, load by load."""
-    page.section("Error against time")
-    for kind in LOADS:
-        page.sweep(
-            f"Peak roller, {kind}",
-            [row for row in rows if row["load"] == kind],
-            "time per load case [µs]",
-            "error [%]",
-            by="model",
-            log="xy",
-            points=True,
-        )
 
 
 @case(

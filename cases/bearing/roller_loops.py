@@ -17,6 +17,16 @@ from fe_drivetrain.bearing import (
     turn,
 )
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references.thesis_beam import (
+    ASSUMED,
+    BEAM,
+    WIND_SPEEDS,
+    beam_body,
+    bearing_s,
+    histories,
+    housed_body,
+    radial,
+)
 from fe_drivetrain.common import Floats
 from fe_drivetrain.coupled import coupled_equilibrium
 from fe_drivetrain.hub_loads import (
@@ -29,16 +39,6 @@ from fe_drivetrain.hub_loads import (
 )
 from fe_drivetrain.report import density_chart, rolling_elements, trace
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.thesis_beam import (
-    ASSUMED,
-    BEAM,
-    WIND_SPEEDS,
-    beam_body,
-    bearing_s,
-    histories,
-    housed_body,
-    radial,
-)
 
 #: Length of an example [s], as in the thesis's figures 4.15 and 4.16.
 WINDOW = 2.0

@@ -7,6 +7,8 @@ import numpy as np
 from scipy.linalg import expm
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import published_drivetrains as published
+from fe_drivetrain.cases.references.implied_shafts import DAMPING_RATIO, SHEAR_MODULUS, implied
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run
@@ -26,8 +28,6 @@ from fe_drivetrain.torsion import (
     stage_masses,
     two_masses,
 )
-from fe_drivetrain.validation import published_drivetrains as published
-from fe_drivetrain.validation.implied_shafts import DAMPING_RATIO, SHEAR_MODULUS, implied
 
 #: Section 4.1: average damping ratio of gear meshes.
 MESH_RATIO = 0.1

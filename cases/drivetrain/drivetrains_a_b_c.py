@@ -7,6 +7,8 @@ from scipy.optimize import brentq
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.drivetrain.printed import check_count, check_printed, show_shapes
+from fe_drivetrain.cases.references import published_drivetrains as published
+from fe_drivetrain.cases.references.independent_torsion import certified
 from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run
@@ -20,8 +22,6 @@ from fe_drivetrain.torsion import (
     natural_modes,
     stage_masses,
 )
-from fe_drivetrain.validation import published_drivetrains as published
-from fe_drivetrain.validation.independent_torsion import certified
 
 #: What each table of inputs needs in place of one entry, and the number in Table 6.4 (from 1) that
 #: it is solved for.

@@ -15,6 +15,8 @@ from fe_drivetrain.cases.drivetrain.printed import (
     frequency_rows,
     show_shapes,
 )
+from fe_drivetrain.cases.references import published_drivetrains as published
+from fe_drivetrain.cases.references.independent_torsion import certified
 from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.compare import digit, round_off
 from fe_drivetrain.report import trace
@@ -32,8 +34,6 @@ from fe_drivetrain.torsion import (
     stage_masses,
     static_stiffness,
 )
-from fe_drivetrain.validation import published_drivetrains as published
-from fe_drivetrain.validation.independent_torsion import certified
 
 #: Modes of Table 6.1 that do not follow from the inputs of Table 4.2; shown, and restored below.
 ASTRAY = frozenset({3, 4, 5, 6, 8})

@@ -7,6 +7,10 @@ import numpy as np
 from scipy.optimize import brentq
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.drivetrain import low_speed_shaft as lss
+from fe_drivetrain.cases.references import published_drivetrains as published
+from fe_drivetrain.cases.references.implied_shafts import SHEAR_MODULUS, implied
+from fe_drivetrain.cases.references.torsion_meridian import torsion_bounds
 from fe_drivetrain.compare import GridConvergence, digit, grid_convergence
 from fe_drivetrain.geometry import Shaft
 from fe_drivetrain.report import trace
@@ -21,10 +25,6 @@ from fe_drivetrain.torsion import (
     stage_masses,
     two_masses,
 )
-from fe_drivetrain.validation import low_speed_shaft as lss
-from fe_drivetrain.validation import published_drivetrains as published
-from fe_drivetrain.validation.implied_shafts import SHEAR_MODULUS, implied
-from fe_drivetrain.validation.torsion_meridian import torsion_bounds
 
 #: Elements round a turn of the meshes.
 TURNS, QUICK_TURNS = (8, 11, 14), (8, 9, 10)

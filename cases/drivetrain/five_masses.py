@@ -14,6 +14,12 @@ from fe_drivetrain.cases.drivetrain.printed import (
     show_energy,
     show_shapes,
 )
+from fe_drivetrain.cases.references import published_drivetrains as published
+from fe_drivetrain.cases.references.independent_torsion import (
+    holzer,
+    holzer_frequencies,
+    inverse_squares,
+)
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import round_off
 from fe_drivetrain.report import Cell
@@ -30,12 +36,6 @@ from fe_drivetrain.torsion import (
     referred,
     stage_masses,
     two_masses,
-)
-from fe_drivetrain.validation import published_drivetrains as published
-from fe_drivetrain.validation.independent_torsion import (
-    holzer,
-    holzer_frequencies,
-    inverse_squares,
 )
 
 #: Modes of Table 6.1 that do not follow from the inputs of Table 4.2; shown, and restored below.

@@ -8,6 +8,8 @@ from scipy.optimize import brentq
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.drivetrain.printed import check_printed, frequency_rows, show_shapes
+from fe_drivetrain.cases.references import published_drivetrains as published
+from fe_drivetrain.cases.references.independent_torsion import two_mass_frequencies
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import round_off
 from fe_drivetrain.report import trace
@@ -21,8 +23,6 @@ from fe_drivetrain.torsion import (
     natural_modes,
     two_masses,
 )
-from fe_drivetrain.validation import published_drivetrains as published
-from fe_drivetrain.validation.independent_torsion import two_mass_frequencies
 
 NAME = "nrel_750kw"
 TABLE = published.table(NAME)

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.common import InputError
 from fe_drivetrain.dynamics import (
     Crossing,
@@ -23,7 +24,6 @@ from fe_drivetrain.torsion import (
     mesh_orders,
     natural_modes,
 )
-from fe_drivetrain.validation import published_drivetrains as published
 
 TABLE_4_8 = {"A": ("146", "730"), "B": ("154", "707.259", "2419.575"), "C": ("174", "648", "2664")}
 RPM = np.pi / 30.0

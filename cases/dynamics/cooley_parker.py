@@ -3,10 +3,10 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import published_planetary as published
 from fe_drivetrain.dynamics import distinct, divergence_speeds, system_modes, turning_modes
 from fe_drivetrain.report import crosses
 from fe_drivetrain.suite import Page, Run, Target
-from fe_drivetrain.validation import published_planetary as published
 
 CENTRAL = ("carrier", "ring", "sun")
 STAGE = published.COOLEY_PARKER_STAGE

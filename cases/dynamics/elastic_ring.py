@@ -3,6 +3,12 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references.published_planetary import (
+    LIN_PARKER_STAGE,
+    plane_stage,
+    plane_supports,
+    plane_system,
+)
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import round_off
 from fe_drivetrain.dynamics import (
@@ -15,12 +21,6 @@ from fe_drivetrain.dynamics import (
 )
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.published_planetary import (
-    LIN_PARKER_STAGE,
-    plane_stage,
-    plane_supports,
-    plane_system,
-)
 
 STEEL = Material(youngs_modulus=210e9, poisson_ratio=0.3, density=7850.0)
 WIDTH = 0.03  # m

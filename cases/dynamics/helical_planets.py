@@ -1,9 +1,9 @@
 """Helical planets in three dimensions: kinds of modes, and how often each is there."""
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references.published_planetary import helical_system
 from fe_drivetrain.dynamics import distinct, planetary_kinds, system_modes
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.published_planetary import helical_system
 
 CENTRAL = ("carrier", "ring", "sun")
 

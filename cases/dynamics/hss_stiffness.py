@@ -4,6 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.dynamics.drivetrains import Rated, drivetrains
+from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import InTime, converge_in_time, decades, peak_between
 from fe_drivetrain.dynamics import StopSequence, shutdown
@@ -15,7 +16,6 @@ from fe_drivetrain.torsion import (
     gear_masses,
     natural_modes,
 )
-from fe_drivetrain.validation import published_drivetrains as published
 
 FACTOR = "stiffness of the high-speed shaft over the tabled one"
 #: A generator's spring over its inertia, of drivetrain D: that of A is not printed.

@@ -3,16 +3,16 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats
-from fe_drivetrain.dynamics import distinct, planetary_kinds, system_modes
-from fe_drivetrain.suite import Page, Record, Run, Target
-from fe_drivetrain.validation.published_planetary import (
+from fe_drivetrain.cases.references.published_planetary import (
     LIN_PARKER,
     LIN_PARKER_PRINTED,
     lin_parker_stage,
     plane_system,
     printed_values,
 )
+from fe_drivetrain.common import Floats
+from fe_drivetrain.dynamics import distinct, planetary_kinds, system_modes
+from fe_drivetrain.suite import Page, Record, Run, Target
 
 CENTRAL = ("carrier", "ring", "sun")
 #: Lines of four planets that are rounded further than their last digit says.

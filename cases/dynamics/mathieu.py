@@ -5,6 +5,7 @@ from functools import partial
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references.mathieu import exact_growth, stepped_growth
 from fe_drivetrain.compare import InTime, converge_in_time
 from fe_drivetrain.dynamics import (
     State,
@@ -16,7 +17,6 @@ from fe_drivetrain.dynamics import (
 )
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Run, check_in_time
-from fe_drivetrain.validation.mathieu import exact_growth, stepped_growth
 
 DEPTHS = (0.02, 0.05, 0.1, 0.2)
 STEPS = 128

@@ -4,6 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.dynamics.park_models import SPEED, turning_inertia
+from fe_drivetrain.cases.references import park_2021 as park
 from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.compare import as_printed, round_off
 from fe_drivetrain.dynamics import (
@@ -17,7 +18,6 @@ from fe_drivetrain.dynamics import (
 )
 from fe_drivetrain.dynamics.static import static
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation import park_2021 as park
 
 COSINE = float(np.cos(np.radians(20.0)) ** 2)
 #: The reading of the meshes, their factor, whether the planetary ones are there along both axes.

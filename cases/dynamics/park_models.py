@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fe_drivetrain.cases.references import park_2021 as park
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import InTime
 from fe_drivetrain.dynamics import (
@@ -23,7 +24,6 @@ from fe_drivetrain.dynamics import (
     varying_equations,
     wind_up,
 )
-from fe_drivetrain.validation import park_2021 as park
 
 SPEED = 6.0 * np.pi / 30.0  # rad/s
 GRAVITY = 9.81

@@ -3,15 +3,14 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.export.samples import frequencies, samples, show
-from fe_drivetrain.common import scaled_to_unit_diagonal, scratch_folder
-from fe_drivetrain.export import (
-    ROUNDING,
+from fe_drivetrain.cases.export.calculix_runs import (
     compliance_by_calculix,
-    find_calculix,
     frequencies_by_calculix,
     held,
 )
+from fe_drivetrain.cases.export.samples import frequencies, samples, show
+from fe_drivetrain.common import scaled_to_unit_diagonal, scratch_folder
+from fe_drivetrain.export import ROUNDING, find_calculix
 from fe_drivetrain.suite import Page, Run, Target, column
 
 #: Natural frequencies that are compared.

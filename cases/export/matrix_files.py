@@ -4,10 +4,10 @@ from importlib import import_module
 
 from fe_drivetrain import export
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.export.matrix_readers import READERS
 from fe_drivetrain.cases.export.samples import matrices, samples, show
 from fe_drivetrain.common import MissingToolError, largest_difference, scratch_folder
 from fe_drivetrain.suite import Page, Record, Run, column
-from fe_drivetrain.validation.matrix_readers import READERS
 
 WRITTEN = "the matrix before it was written"
 DIFFERENCE = "difference of a unit diagonal"

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.export.sample_elastodyn import TEXT
 from fe_drivetrain.cases.export.samples import FACTOR, frequencies, show
 from fe_drivetrain.common import largest_difference, scratch_folder
 from fe_drivetrain.export import (
@@ -17,7 +18,6 @@ from fe_drivetrain.export import (
 from fe_drivetrain.export.formats import elastodyn, extptfm, subdyn
 from fe_drivetrain.scene import Scene, library_scene
 from fe_drivetrain.suite import Page, Run
-from fe_drivetrain.validation.sample_elastodyn import TEXT
 
 PUBLISHED = "OpenFAST r-test, SD_Spring_Case1"
 

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain import export
-from fe_drivetrain.commands import QUICK_BAND
 from fe_drivetrain.common import (
     Floats,
     largest_difference,
@@ -29,6 +28,7 @@ from fe_drivetrain.fidelity import (
     solid_level,
 )
 from fe_drivetrain.mesh import mean_size
+from fe_drivetrain.pages import QUICK_BAND
 from fe_drivetrain.report import (
     Cell,
     Chart,

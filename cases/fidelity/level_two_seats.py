@@ -5,6 +5,7 @@ import time
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references.shaft_ends import SHAFTS, STEEL
 from fe_drivetrain.common import (
     Floats,
     rigid_motions,
@@ -16,7 +17,6 @@ from fe_drivetrain.report import Cell, trace
 from fe_drivetrain.revolution import seat_stiffness
 from fe_drivetrain.solve import solve_solid
 from fe_drivetrain.suite import Page, Run
-from fe_drivetrain.validation.shaft_ends import SHAFTS, STEEL
 
 #: A seat on each of the shafts [m].
 SEATS = {"bored": (0.6, 0.85), "stepped": (1.0, 1.2)}

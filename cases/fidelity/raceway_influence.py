@@ -5,14 +5,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.fidelity.rollers_on_rings import (
+    Pressed,
+    RollerRing,
+    ring_meridian,
+    squeezed,
+)
+from fe_drivetrain.cases.references.plane_rings import Lame, harmonics, plane_strain
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import band_of
 from fe_drivetrain.report import Cell, trace
 from fe_drivetrain.revolution import InfluenceFunctions, Strip, dofs, influence_functions
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import Page, Run
-from fe_drivetrain.validation.plane_rings import Lame, harmonics, plane_strain
-from fe_drivetrain.validation.rollers_on_rings import Pressed, RollerRing, ring_meridian, squeezed
 
 STEEL = MATERIALS["steel"]
 

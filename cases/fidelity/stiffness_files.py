@@ -45,7 +45,7 @@ def stiffness_files(page: Page, folder: Path, scene: Scene, quantity: Quantity) 
     Parameters
     ----------
     page : Page
-        With what `fe_drivetrain.commands.advised` found of the scene; takes the checks and tables.
+        With what `fe_drivetrain.studies.advise` found of the scene; takes the checks and tables.
     folder : Path
         Where the files go.
     scene : Scene

@@ -10,25 +10,19 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.commands import bands
-from fe_drivetrain.common import (
-    FORCES,
-    MOTIONS,
-)
-from fe_drivetrain.fidelity import (
-    LEAST_ORDER,
+from fe_drivetrain.cases.fidelity.energy_sensitivities import (
     compliance,
     energy_slopes,
     hub_elasticities,
     moment_elasticities,
     total,
-    unit_numbers,
 )
+from fe_drivetrain.cases.fidelity.moved_meshes import BORE, FRONT, OUTER, PEDESTAL, WALL, moved
+from fe_drivetrain.common import FORCES, MOTIONS
+from fe_drivetrain.fidelity import LEAST_ORDER, unit_numbers
 from fe_drivetrain.geometry import MeshSizes, unit_solids
-from fe_drivetrain.mesh import (
-    Mesh,
-    volume_weights,
-)
+from fe_drivetrain.mesh import Mesh, volume_weights
+from fe_drivetrain.pages import bands
 from fe_drivetrain.report import trace
 from fe_drivetrain.response import (
     LOADS,
@@ -41,14 +35,8 @@ from fe_drivetrain.response import (
 from fe_drivetrain.scene import Scene, change_scene, library_scene
 from fe_drivetrain.suite import Page, Record, Run, column
 from fe_drivetrain.uncertainty import (
-    BORE,
-    FRONT,
-    OUTER,
-    PEDESTAL,
-    WALL,
     Study,
     first_order,
-    moved,
     nominal_value,
     relative_spread,
     study,

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.foreign.held_by_bolts import in_scene
+from fe_drivetrain.cases.foreign.bolted_housing import in_scene
 from fe_drivetrain.common import Floats
 from fe_drivetrain.fidelity import unit_stiffness
 from fe_drivetrain.foreign import mesh_parts

@@ -6,13 +6,14 @@ from pathlib import Path
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.foreign.bolted_housing import in_scene
 from fe_drivetrain.common import Floats, stiffness_transport
 from fe_drivetrain.fidelity import unit_stiffness
 from fe_drivetrain.foreign import bolt_springs, mesh_parts
 from fe_drivetrain.geometry import write_sample
 from fe_drivetrain.report import NoPictureError, bars, picture_of_model
 from fe_drivetrain.response import build_model, mesh_scene
-from fe_drivetrain.scene import Scene, change_scene, parse_scene
+from fe_drivetrain.scene import Scene, change_scene
 from fe_drivetrain.suite import Page, Record, Run
 
 HOUSINGS = {"ribbed_pillow_block": "ribbed block", "split_housing": "split housing"}
@@ -26,25 +27,6 @@ MOMENT = 1e6  # N m, which tilts the seat about y
 PRINTED = (1.25, 2.07)  # minutes of arc
 SIZES, QUICK_SIZES = (0.07, 0.05), (0.1,)  # m
 STIFF = (1e13, 5e12)  # Pa: housings that are stiff against their bolts, of two moduli
-
-_SCENE = """
-title: {title}
-shaft: {{front: -2.145, sections: [{{length: 4.76, outer_diameter: 0.4}}]}}
-bearing_units:
-  - bearing: {{name: main_bearing, kind: ring}}
-    interface: bonded
-    housing:
-      step: {file}
-      seat: {{radius: 300}}
-      held: [{{point: [0, 0, -420], normal: [0, 0, 1]}}]
-      {bolts}
-gearbox: {{stiffness: [4.0e6, 8.0e7, 8.0e7, rigid, 0, 0]}}
-"""
-
-
-def in_scene(title: str, file: Path, bolts: str) -> Scene:
-    """A housing from a STEP file, held by its underside, under the ring of a shaft."""
-    return parse_scene(_SCENE.format(title=title, file=file, bolts=bolts))
 
 
 def held(folder: Path, name: str, way: str, size: float) -> Scene:

@@ -4,6 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.gear.rows import mesh_row, stiffness_row
+from fe_drivetrain.cases.references.published_gears import NREL_5MW_PRINTED, nrel_5mw
 from fe_drivetrain.gear import (
     constant_law,
     iso_stiffness,
@@ -14,7 +15,6 @@ from fe_drivetrain.gear import (
 )
 from fe_drivetrain.report import gear_pair, trace
 from fe_drivetrain.suite import Page, Record, Run, Target
-from fe_drivetrain.validation.published_gears import NREL_5MW_PRINTED, nrel_5mw
 
 REPORTS = "KISSsoft 03/2017 reports of the gearbox, ISO 6336:2006 method B"
 DIGITS = "half a unit of the last printed digit"

@@ -3,8 +3,8 @@
 from math import isinf
 from typing import Literal
 
+from fe_drivetrain.cases.references.rated_gears import RatedMesh, rated, tolerance
 from fe_drivetrain.suite import Page, Record
-from fe_drivetrain.validation.rated_gears import RatedMesh, rated, tolerance
 
 JUDGED = (
     "n_E1 [1/min]",

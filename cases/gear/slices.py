@@ -8,6 +8,7 @@ from math import log2, pi, sin
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references.rated_gears import rated_meshes
 from fe_drivetrain.gear import (
     Coupling,
     Modifications,
@@ -23,7 +24,6 @@ from fe_drivetrain.gear import (
 )
 from fe_drivetrain.report import gear_pair
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.rated_gears import rated_meshes
 
 MESH = rated_meshes()["NREL 5 MW, stage 3"]
 PAIR, TORQUE = MESH.pair, MESH.running.torque

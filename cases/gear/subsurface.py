@@ -5,6 +5,7 @@ from math import cos
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references.published_gears import nrel_750kw
 from fe_drivetrain.gear import (
     LineContact,
     Pair,
@@ -15,7 +16,6 @@ from fe_drivetrain.gear import (
 )
 from fe_drivetrain.report import gear_pair, trace
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.published_gears import nrel_750kw
 
 STEEL = reduced_modulus()
 TORQUE = 325e3  # N m of the low-speed shaft

@@ -8,6 +8,16 @@ from collections.abc import Callable
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.gear.plane_teeth import (
+    DEPTH,
+    MeshedPair,
+    compliances,
+    mesh_teeth,
+    meshed_pair,
+    pressed_surface,
+)
+from fe_drivetrain.cases.references.plane_rings import Plane, plane_strain
+from fe_drivetrain.cases.references.published_gears import nrel_5mw
 from fe_drivetrain.common import Floats
 from fe_drivetrain.gear import (
     Gear,
@@ -25,16 +35,6 @@ from fe_drivetrain.gear import (
 )
 from fe_drivetrain.report import gear_pair, trace
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.plane_rings import Plane, plane_strain
-from fe_drivetrain.validation.plane_teeth import (
-    DEPTH,
-    MeshedPair,
-    compliances,
-    mesh_teeth,
-    meshed_pair,
-    pressed_surface,
-)
-from fe_drivetrain.validation.published_gears import nrel_5mw
 
 STEEL = Steel()
 STRAIN = plane_strain(STEEL.youngs_modulus, STEEL.poisson_ratio)

@@ -1,17 +1,20 @@
 """Samples per second of each step that histories go through, against other packages."""
 
 import importlib
+import shutil
+import tempfile
 import time
 import tracemalloc
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.commands import Options, digest
 from fe_drivetrain.common import Floats, timed_runs
+from fe_drivetrain.common.cache import switched_off
 from fe_drivetrain.histories import (
     even_levels,
     rainflow_cycles,
@@ -20,7 +23,9 @@ from fe_drivetrain.histories import (
     time_at_level,
     window_statistics,
 )
-from fe_drivetrain.hub_loads import LoadHistory, Recorded, find_loops
+from fe_drivetrain.hub_loads import LoadHistory, Recorded, find_loops, write_csv
+from fe_drivetrain.studies import LoadOptions, loads
+from fe_drivetrain.studies.load_digest import digest
 from fe_drivetrain.suite import Page, Record, Run, goal
 
 STEP = 0.05
@@ -41,7 +46,7 @@ FILE = 120_000  # samples of a history that goes through the whole of 'loads'
     alone="full",
 )
 def run(run: Run, page: Page) -> None:
-    """Stream a long history; time each step on coloured noise with 3P, at several lengths."""
+    """Stream a long history and many files; time each step on coloured noise with 3P."""
     repeats = run.count("repeats", 1 if run.quick else 5)
     samples = run.count("samples", 1_000_000 if run.quick else STREAMED, least=PIECE // 2)
     stream(run, page, samples, repeats)
@@ -74,6 +79,7 @@ def run(run: Run, page: Page) -> None:
         log="xy",
     )
     cores(run, page, repeats)
+    many_files(run, page)
     last = {row["step"]: row["samples per second"] for row in rows if row["samples"] == sizes[-1]}
     first = {row["step"]: row["samples per second"] for row in rows if row["samples"] == sizes[0]}
     counted, looped = (1e3 * 12_000 / first[name] for name in ("rainflow", "load loops"))
@@ -265,12 +271,66 @@ def cores(run: Run, page: Page, repeats: int) -> None:
     )
 
 
-def whole(seed: int, size: int) -> int:
-    """The digest of a made history; how many arrays it has."""
+def many_files(run: Run, page: Page) -> None:
+    """Peak memory of `loads` over few files and over many, each in a process of its own."""
+    size, few, many = (FILE // 20, 4, 8) if run.quick else (FILE // 10, 4, 40)
+    with tempfile.TemporaryDirectory() as folder, run.step("few files and many"):
+        file = Path(folder, "made.csv")
+        write_csv(made_history(0, size), file)
+        with run.side_by_side(2) as jobs:
+            started = [jobs.start(peak_over_files, file, count) for count in (few, many)]
+            peaks = [job.result() for job in started]
+    samples = 8.0 * 7 * size  # time and six loads
+    growth = (peaks[1] - peaks[0]) / (many - few)
+    rows: list[Record] = [
+        {"files": count, "samples of all [MB]": 1e-6 * count * samples, "peak [MB]": 1e-6 * peak}
+        for count, peak in zip((few, many), peaks, strict=True)
+    ]
+    page.section("Few files and many")
+    page.table(
+        f"Peak memory of 'loads' over files of {size:,} samples, in one process; what modules and "
+        "compiled loops take is not counted",
+        rows,
+    )
+    page.data("many_files", rows)
+    page.answer(
+        f"'loads' takes {1e-6 * peaks[0]:.3g} MB for {few} files and {1e-6 * peaks[1]:.3g} MB for "
+        f"{many}, whose samples take {1e-6 * many * samples:.3g} MB."
+    )
+    page.at_most(
+        f"loads: growth of peak memory from {few} files to {many}, per file, over its samples",
+        growth / samples,
+        0.1,
+        why="a file at a time is in memory; of each its windows, damage and load loops stay",
+        source="time and six loads of 8 bytes a sample",
+        measure=None,
+    )
+
+
+def peak_over_files(_run: Run, file: Path, count: int) -> int:
+    """Peak memory of `loads` over so many copies of a file [bytes]."""
+    copies = [file.with_name(f"{count}_{k}.csv") for k in range(count)]
+    for copy in copies:
+        shutil.copyfile(file, copy)
+    with switched_off():
+        loads(copies[:1])  # modules and compiled loops are loaded
+        tracemalloc.start()
+        loads(copies)
+        peak = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+    return peak
+
+
+def made_history(seed: int, size: int) -> LoadHistory:
+    """A history of noise in all six loads."""
     loads = np.column_stack([1e3 * noise(size, 10 * seed + c) for c in range(6)])
-    history = LoadHistory("made", STEP * np.arange(size, dtype=np.float64), loads)
-    options = Options({}, 0.0, (3.0, 4.0, 10.0), "half", 0.0, None)
-    return len(digest(Recorded(history, np.full(size, 1.2)), options))
+    return LoadHistory("made", STEP * np.arange(size, dtype=np.float64), loads)
+
+
+def whole(seed: int, size: int) -> int:
+    """The digest of a made history; how many of its samples were counted."""
+    found = Recorded(made_history(seed, size), np.full(size, 1.2))
+    return digest(found, LoadOptions()).span.samples
 
 
 def in_process(_report: object, seed: int, size: int) -> int:

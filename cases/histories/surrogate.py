@@ -9,7 +9,6 @@ import numpy as np
 import yaml
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.commands import Options, digest, features
 from fe_drivetrain.histories import Difference, differences
 from fe_drivetrain.hub_loads import (
     RIGID,
@@ -25,9 +24,12 @@ from fe_drivetrain.hub_loads import (
     similar_turbine,
     turbine_histories,
 )
+from fe_drivetrain.studies import LoadOptions
+from fe_drivetrain.studies.load_comparison import features
+from fe_drivetrain.studies.load_digest import digest
 from fe_drivetrain.suite import Page, Record, Run
 
-OPTIONS = Options({}, 0.0, (3.0, 4.0, 10.0), "half", 0.0, None)
+OPTIONS = LoadOptions()
 TABLE = Path(__file__).with_name("openfast.yaml")
 #: Models of the turbine, each with what the one before has.
 MODELS = {

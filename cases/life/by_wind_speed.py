@@ -6,12 +6,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.life.operating import state_assumptions, state_meaning
-from fe_drivetrain.common import Floats
-from fe_drivetrain.histories import Site
-from fe_drivetrain.life import equivalent_life, stress_riser, years
-from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.studied_lives import (
+from fe_drivetrain.cases.references.studied_lives import (
     EDGES,
     HOUSING,
     SPEEDS,
@@ -26,7 +21,12 @@ from fe_drivetrain.validation.studied_lives import (
     shares,
     thesis_setup,
 )
-from fe_drivetrain.validation.thesis_beam import BEARINGS, beam_body, housed_body
+from fe_drivetrain.cases.references.thesis_beam import BEARINGS, beam_body, housed_body
+from fe_drivetrain.common import Floats
+from fe_drivetrain.histories import Site
+from fe_drivetrain.life import equivalent_life, stress_riser, years
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record, Run
 
 #: Site of the thesis's figure 5.9 [m/s], and its lives without and with the stress riser [years].
 MEAN_WIND = 10.0

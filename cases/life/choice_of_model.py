@@ -17,15 +17,8 @@ from fe_drivetrain.bearing import (
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.life import models
 from fe_drivetrain.cases.life.operating import state_assumptions, state_meaning
-from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import round_off
-from fe_drivetrain.coupled import body_on_races, on_springs, scene_body
-from fe_drivetrain.life import miner_load
-from fe_drivetrain.report import Chart, trace
-from fe_drivetrain.rings import RollerAssembly, assembly_equilibrium, housing_races, roller_assembly
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.housed_bearing import ASSUMED_HOUSING, NAME, Size, housed_scene
-from fe_drivetrain.validation.studied_lives import (
+from fe_drivetrain.cases.references.housed_bearing import ASSUMED_HOUSING, NAME, Size, housed_scene
+from fe_drivetrain.cases.references.studied_lives import (
     SPEEDS,
     Setup,
     Winds,
@@ -36,7 +29,14 @@ from fe_drivetrain.validation.studied_lives import (
     scatter_of_seeds,
     shares,
 )
-from fe_drivetrain.validation.thesis_beam import BEAM, beam_body
+from fe_drivetrain.cases.references.thesis_beam import BEAM, beam_body
+from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import round_off
+from fe_drivetrain.coupled import body_on_races, on_springs, scene_body
+from fe_drivetrain.life import miner_load
+from fe_drivetrain.report import Chart, trace
+from fe_drivetrain.rings import RollerAssembly, assembly_equilibrium, housing_races, roller_assembly
+from fe_drivetrain.suite import Page, Record, Run
 
 MEAN_WIND = 8.0
 

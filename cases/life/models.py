@@ -14,6 +14,14 @@ from fe_drivetrain.bearing import (
     roller_motions,
     three_degrees,
 )
+from fe_drivetrain.cases.references.studied_lives import (
+    HOUSING,
+    Setup,
+    by_chunks,
+    on_rigid_rings,
+    roller_rows,
+)
+from fe_drivetrain.cases.references.thesis_beam import BEAM, HOUSING_RADIAL
 from fe_drivetrain.common import Floats
 from fe_drivetrain.coupled import (
     LinearBody,
@@ -23,14 +31,6 @@ from fe_drivetrain.coupled import (
     in_housings,
 )
 from fe_drivetrain.rings import RollerAssembly, assembly_equilibrium
-from fe_drivetrain.validation.studied_lives import (
-    HOUSING,
-    Setup,
-    by_chunks,
-    on_rigid_rings,
-    roller_rows,
-)
-from fe_drivetrain.validation.thesis_beam import BEAM, HOUSING_RADIAL
 
 #: A bearing's five of the six motions of a point.
 FIVE = np.array([0, 1, 2, 4, 5])

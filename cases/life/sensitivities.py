@@ -8,6 +8,21 @@ import numpy as np
 from fe_drivetrain.beam import pinned_model
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.life.operating import state_assumptions, state_meaning
+from fe_drivetrain.cases.references.studied_lives import (
+    PITCH,
+    SPEEDS,
+    Setup,
+    Winds,
+    at_site,
+    by_chunks,
+    by_wind,
+    hub_loads_of,
+    on_rigid_rings,
+    own_setup,
+    rotor_speed,
+    thesis_setup,
+)
+from fe_drivetrain.cases.references.thesis_beam import BEAM, radial
 from fe_drivetrain.common import Floats
 from fe_drivetrain.life import (
     GRADES,
@@ -22,21 +37,6 @@ from fe_drivetrain.life import (
 )
 from fe_drivetrain.report import bars
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.studied_lives import (
-    PITCH,
-    SPEEDS,
-    Setup,
-    Winds,
-    at_site,
-    by_chunks,
-    by_wind,
-    hub_loads_of,
-    on_rigid_rings,
-    own_setup,
-    rotor_speed,
-    thesis_setup,
-)
-from fe_drivetrain.validation.thesis_beam import BEAM, radial
 
 SOURCE = "Stirling 2023, section 5.3.7, figure 5.10"
 

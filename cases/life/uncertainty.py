@@ -11,15 +11,8 @@ from fe_drivetrain.bearing import Bearing, lamina_loads
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.life import models
 from fe_drivetrain.cases.life.operating import state_assumptions, state_meaning
-from fe_drivetrain.common import Floats
-from fe_drivetrain.coupled import LinearBody, in_housings, scene_body
-from fe_drivetrain.life import GRADES, LifeRules, Lubricant, Steps, damage_of_steps
-from fe_drivetrain.report import bars, trace
-from fe_drivetrain.rings import housing_races
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.uncertainty import Samples, Shares, variance_shares
-from fe_drivetrain.validation.housed_bearing import ASSUMED_HOUSING, housed_scene
-from fe_drivetrain.validation.studied_lives import (
+from fe_drivetrain.cases.references.housed_bearing import ASSUMED_HOUSING, housed_scene
+from fe_drivetrain.cases.references.studied_lives import (
     SPEEDS,
     Setup,
     Winds,
@@ -29,7 +22,14 @@ from fe_drivetrain.validation.studied_lives import (
     roller_rows,
     rotor_speed,
 )
-from fe_drivetrain.validation.thesis_beam import HOUSING_RADIAL, HOUSING_TILT, HOUSING_YAW
+from fe_drivetrain.cases.references.thesis_beam import HOUSING_RADIAL, HOUSING_TILT, HOUSING_YAW
+from fe_drivetrain.common import Floats
+from fe_drivetrain.coupled import LinearBody, in_housings, scene_body
+from fe_drivetrain.life import GRADES, LifeRules, Lubricant, Steps, damage_of_steps
+from fe_drivetrain.report import bars, trace
+from fe_drivetrain.rings import housing_races
+from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.uncertainty import Samples, Shares, variance_shares
 
 MEAN_WIND = 8.0
 SEEDS = 6

@@ -7,13 +7,7 @@ import numpy as np
 from fe_drivetrain.bearing import angles, turn
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.life.operating import state_assumptions, state_meaning
-from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import round_off
-from fe_drivetrain.histories import Site
-from fe_drivetrain.life import lamina_life, stress_riser
-from fe_drivetrain.report import Chart, heat_map, trace
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.studied_lives import (
+from fe_drivetrain.cases.references.studied_lives import (
     EDGES,
     SPEEDS,
     Setup,
@@ -26,6 +20,12 @@ from fe_drivetrain.validation.studied_lives import (
     rotor_speed,
     thesis_setup,
 )
+from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import round_off
+from fe_drivetrain.histories import Site
+from fe_drivetrain.life import lamina_life, stress_riser
+from fe_drivetrain.report import Chart, heat_map, trace
+from fe_drivetrain.suite import Page, Record, Run
 
 MEAN_WIND = 8.0
 ROWS = ("upwind", "downwind")

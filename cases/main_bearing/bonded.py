@@ -9,7 +9,7 @@ import numpy as np
 
 from fe_drivetrain.beam import beam_of_scene, closed_forms, main_bearing_beam, shaft
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import bands, general, shown, study
+from fe_drivetrain.cases.main_bearing import bands, shown, study
 from fe_drivetrain.common import (
     FORCES,
     Floats,
@@ -85,17 +85,12 @@ OF_THESIS = "in the thesis, whose gearbox has three translational springs only, 
     "Bonded main bearing: shares of bearing and gearbox, and what the beam leaves out",
     source="Stirling 2023, PhD thesis, sections 3.2 and 3.3 (DTRB), Table 3.1, Eq 3.18-3.19",
     settings={
-        "scene": "FILE (otherwise of the library)",
         "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
     },
     changes="scene",
 )
 def run(run: Run, page: Page) -> None:
     """Solve the bonded scene, and compare its reactions with three beams."""
-    other = general.general_scene(run, page, "bonded", exchange=True)
-    if other is not None:
-        general.unit_load_page(run, page, other)
-        return
     scene = study.scene_of(run, page, "bonded")
     pinned_beam = main_bearing_beam(scene)  # refuses before the work what it cannot stand for
     with run.side_by_side(4) as jobs:
@@ -144,8 +139,7 @@ def run(run: Run, page: Page) -> None:
             row["FE"],
             within=0.02,
             why="the beam has no ring on its shaft and no radial give in its bearing",
-            source="FE of this case"
-            + ("" if page.subject else "; Stirling 2023 states 1.61 % over load histories"),
+            source="FE of this case; Stirling 2023 states 1.61 % over load histories",
             measure="reaction",
             # the beam's own value rests on K_R of FE: its change between K_R's limits is its band
             band=series.band(lambda f, k=load: beam_reaction(scene, f["K_R"][:, 1], k)),
@@ -193,8 +187,8 @@ def run(run: Run, page: Page) -> None:
     page.text(
         "Bearing and housing are one body with the shaft and react moments, torque among them. "
         "Here the gearbox holds the shaft's rotation about x at its end, as in the spherical case, "
-        f"and the bonded bearing takes {100 * reaction[3, 3]:.1f} % of the hub's torque"
-        + ("." if page.subject else f"; {OF_THESIS}")
+        f"and the bonded bearing takes {100 * reaction[3, 3]:.1f} % of the hub's torque; "
+        f"{OF_THESIS}"
     )
     page.table(
         "Load on the main bearing per unit load at the hub [N/N, N m/N, 1/m, N m/N m]", shares

@@ -7,6 +7,18 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import bands, shown, study
+from fe_drivetrain.cases.main_bearing import housing_dimensions as housings
+from fe_drivetrain.cases.main_bearing.housing_dimensions import (
+    BOLTED,
+    CENTRE,
+    DIMENSIONS,
+    HIGH,
+    ONE_BODY,
+    PEDESTAL,
+    PUBLISHED,
+    WIDTH,
+    Member,
+)
 from fe_drivetrain.cases.main_bearing.housing_families import (
     TOLERANCE,
     Family,
@@ -21,18 +33,6 @@ from fe_drivetrain.report import trace
 from fe_drivetrain.response import ESTIMATORS
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation import housing_dimensions as housings
-from fe_drivetrain.validation.housing_dimensions import (
-    BOLTED,
-    CENTRE,
-    DIMENSIONS,
-    HIGH,
-    ONE_BODY,
-    PEDESTAL,
-    PUBLISHED,
-    WIDTH,
-    Member,
-)
 
 #: Housings sampled by form.
 SAMPLES, BOLTED_SAMPLES, QUICK_SAMPLES = 60, 36, 8

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,18 +14,16 @@ from fe_drivetrain.beam import (
     main_bearing_beam,
     shaft,
 )
-from fe_drivetrain.cases.main_bearing.loads import (
-    HubLoads,
-)
 from fe_drivetrain.cases.main_bearing.study import (
     Solved,
     Tilt,
 )
 from fe_drivetrain.common import GRAVITY, Floats
 from fe_drivetrain.compare import compare, statistics
-from fe_drivetrain.hub_loads import PointLoads
+from fe_drivetrain.hub_loads import HubLoadSet
 from fe_drivetrain.response import ESTIMATORS
 from fe_drivetrain.scene import Scene
+from fe_drivetrain.studies import LinearModel
 from fe_drivetrain.suite import Record, Run
 
 #: Mean error [%] and correlation of the resultant force over all histories (Stirling 2023, lines
@@ -42,71 +39,6 @@ SIXBYSIX = "beam on the 6x6 against bonded FE"
 QUANTITIES = ("Fy", "Fz", "My", "Mz")
 COMPONENT = {"Fy": 1, "Fz": 2, "My": 4, "Mz": 5}
 UNITS = {"Fy": "N", "Fz": "N", "My": "N m", "Mz": "N m"}
-
-
-@dataclass(frozen=True, eq=False)
-class Linear:
-    """A model of the load on the main bearing: every one, FE or beam, is linear in the hub loads.
-
-    Attributes
-    ----------
-    matrix : Floats
-        (6, 6): row i is what the hub load i puts on the bearing.
-    constant : Floats
-        (6,) what it carries without hub loads [N, N m].
-    """
-
-    matrix: Floats
-    constant: Floats
-
-    @classmethod
-    def of_fe(cls, solved: Solved, gravity: float = 0.0) -> Linear:
-        """The solid, with its gearbox weight and under gravity [m/s^2]."""
-        name, weight, front = solved.bearing, solved.scene.gearbox.weight, solved.scene.shaft.front
-        nothing, units = PointLoads(np.zeros(6), front), PointLoads(np.eye(6), front)
-        constant = solved.response.history(name, nothing, weight, gravity)
-        return cls(solved.response.history(name, units), constant)
-
-    @classmethod
-    def of_beam(
-        cls, model: Callable[[Floats, MainBearingBeam], Floats], beam: MainBearingBeam
-    ) -> Linear:
-        """A closed form of `beams`."""
-        constant = model(np.zeros(6), beam)
-        # loads as large as the weight in the constant, which would swallow digits of a unit load's
-        size = 1e6
-        return cls((model(size * np.eye(6), beam) - constant) / size, constant)
-
-    @classmethod
-    def of_reactions(cls, matrix: Floats, weight: float) -> Linear:
-        """A solid known by its (6, 10) reactions to unit loads, and its gearbox weight [N]."""
-        return cls(matrix[:, :6].T, weight * matrix[:, 9])
-
-    def reaction(self, loads: Floats) -> Floats:
-        """(..., 6) reactions [N, N m] to (..., 6) hub loads."""
-        result = loads @ self.matrix
-        result += self.constant
-        return result
-
-    def radial(self, loads: Floats) -> Floats:
-        """(...) resultant radial force [N]."""
-        return statistics.resultant(
-            loads @ self.matrix[:, 1] + self.constant[1],
-            loads @ self.matrix[:, 2] + self.constant[2],
-        )
-
-    def without(self, component: int) -> Linear:
-        """The same, blind to one component of the hub loads."""
-        matrix = self.matrix.copy()
-        matrix[component] = 0.0
-        return Linear(matrix, self.constant)
-
-    def ahead(self, arm: float) -> Linear:
-        """The same, for loads that act an arm [m] in front of the hub."""
-        matrix = self.matrix.copy()
-        matrix[2] += arm * self.matrix[4]
-        matrix[1] -= arm * self.matrix[5]
-        return Linear(matrix, self.constant)
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +75,7 @@ class Comparison:
 
 def compared(
     run: Run,
-    hub: HubLoads,
+    hub: HubLoadSet,
     pinned_beam: MainBearingBeam,
     spherical: Solved,
     bonded: Solved,
@@ -151,14 +83,17 @@ def compared(
 ) -> Comparison:
     """Compare four pairs of beam and FE over all histories."""
     name, scene = bonded.bearing, bonded.scene
-    solids = {"spherical": Linear.of_fe(spherical), "bonded": Linear.of_fe(bonded)}
+    solids = {
+        "spherical": LinearModel.of_fe(spherical.scene, spherical.response),
+        "bonded": LinearModel.of_fe(bonded.scene, bonded.response),
+    }
     start = time.perf_counter()
     with run.step("reactions of all histories"):
         fe = {kind: solid.reaction(hub.loads) for kind, solid in solids.items()}
     seconds = time.perf_counter() - start
 
     springs = {
-        estimator: Linear.of_beam(
+        estimator: LinearModel.of_beam(
             closed_forms.torsional_spring_model, main_bearing_beam(scene, *tilt.both(estimator))
         )
         for estimator in ESTIMATORS
@@ -169,12 +104,12 @@ def compared(
     )
     down = np.array([0.0, 0.0, -scene.gearbox.weight, 0.0, 0.0, 0.0])
     first, second, third = PUBLISHED
-    on_matrix = Linear(
+    on_matrix = LinearModel(
         unit.reaction_matrix(name)[:, 0, :].T,
         unit.solution([np.zeros(6), down]).reaction(name),
     )
     with run.step("beam models"):
-        pinned = Linear.of_beam(closed_forms.pinned_model, pinned_beam).reaction(hub.loads)
+        pinned = LinearModel.of_beam(closed_forms.pinned_model, pinned_beam).reaction(hub.loads)
         pairs = {
             first: ("spherical", pinned),
             second: ("bonded", pinned),
@@ -214,7 +149,7 @@ def compared(
             _by_estimator(estimator, tilt, fe["bonded"], force["bonded"], model, hub.loads)
             for estimator, model in springs.items()
         ]
-        theirs = Linear.of_beam(
+        theirs = LinearModel.of_beam(
             closed_forms.torsional_spring_model, main_bearing_beam(scene, 145e6, 392e6)
         )
         with_their_stiffness = _mean_error(theirs.radial(hub.loads), beam_force[first])
@@ -235,13 +170,13 @@ def compared(
 
 
 def of_one_mesh(
-    hub: HubLoads, scene: Scene, matrix: Floats, stiffness: Floats
+    hub: HubLoadSet, scene: Scene, matrix: Floats, stiffness: Floats
 ) -> tuple[float, float, float]:
     """Errors of both beams against a bonded bearing, with what one mesh gives.
 
     Parameters
     ----------
-    hub : HubLoads
+    hub : HubLoadSet
         The load histories.
     scene : Scene
         The bonded scene.
@@ -255,10 +190,10 @@ def of_one_mesh(
     correlation : float
         Of the torsional-spring beam.
     """
-    force = Linear.of_reactions(matrix, scene.gearbox.weight).radial(hub.loads)
+    force = LinearModel.of_reactions(matrix, scene.gearbox.weight).radial(hub.loads)
     spring = main_bearing_beam(scene, float(stiffness[0]), float(stiffness[1]))
     pinned, sprung = (
-        Linear.of_beam(model, spring).radial(hub.loads)
+        LinearModel.of_beam(model, spring).radial(hub.loads)
         for model in (closed_forms.pinned_model, closed_forms.torsional_spring_model)
     )
     return (
@@ -310,7 +245,7 @@ def _by_quantity(label: str, reference: Floats, model: Floats) -> list[Record]:
 
 
 def _by_estimator(
-    estimator: str, tilt: Tilt, reference: Floats, force: Floats, model: Linear, loads: Floats
+    estimator: str, tilt: Tilt, reference: Floats, force: Floats, model: LinearModel, loads: Floats
 ) -> Record:
     """The torsional-spring beam with K_R of one estimator against bonded FE."""
     fy, fz = (loads @ model.matrix[:, k] + model.constant[k] for k in (1, 2))
@@ -331,7 +266,7 @@ def _causes(
     loads: Floats,
     spherical: Solved,
     bonded: Solved,
-    spring: Linear,
+    spring: LinearModel,
     beam_force: dict[str, Floats],
     force: dict[str, Floats],
 ) -> list[Record]:
@@ -342,16 +277,16 @@ def _causes(
     ahead = "FE loads 50 mm in front of the shaft"
     of_first = [
         (plain, force["spherical"]),
-        (heavy, Linear.of_fe(spherical, GRAVITY).radial(loads)),
-        (ahead, Linear.of_fe(spherical).ahead(0.05).radial(loads)),
+        (heavy, LinearModel.of_fe(spherical.scene, spherical.response, GRAVITY).radial(loads)),
+        (ahead, LinearModel.of_fe(spherical.scene, spherical.response).ahead(0.05).radial(loads)),
     ]
     cases = [(first, what, reference, beam_force[first]) for what, reference in of_first]
     cases.append((third, plain, force["bonded"], beam_force[third]))
-    solid = Linear.of_fe(bonded)
+    solid = LinearModel.of_fe(bonded.scene, bonded.response)
     for what, component in (("without thrust Fx", 0), ("without torque Mx", 3)):
         less = [model.without(component).radial(loads) for model in (solid, spring)]
         cases.append((third, what, less[0], less[1]))
-    heavy_force = Linear.of_fe(bonded, GRAVITY).radial(loads)
+    heavy_force = LinearModel.of_fe(bonded.scene, bonded.response, GRAVITY).radial(loads)
     cases.append((third, heavy, heavy_force, beam_force[third]))
     return [
         {

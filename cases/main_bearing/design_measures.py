@@ -3,7 +3,6 @@
 import numpy as np
 
 from fe_drivetrain.cases.main_bearing.comparison import Comparison
-from fe_drivetrain.cases.main_bearing.loads import HubLoads
 from fe_drivetrain.common import Floats
 from fe_drivetrain.histories import (
     Measured,
@@ -12,13 +11,14 @@ from fe_drivetrain.histories import (
     measured,
     model_errors,
 )
+from fe_drivetrain.hub_loads import HubLoadSet
 from fe_drivetrain.suite import Page, Record, Run
 
 WITHIN = 0.05
 SLOPES = (3.0, 4.0, 10.0)
 
 
-def section(run: Run, page: Page, hub: HubLoads, found: Comparison) -> None:
+def section(run: Run, page: Page, hub: HubLoadSet, found: Comparison) -> None:
     """Errors of each beam by measure, and what each is good enough for.
 
     Parameters
@@ -27,12 +27,12 @@ def section(run: Run, page: Page, hub: HubLoads, found: Comparison) -> None:
         The run that this is a step of.
     page : Page
         Takes the table and the answer.
-    hub : HubLoads
+    hub : HubLoadSet
         The histories.
     found : Comparison
         Reactions of FE and beams.
     """
-    steps = np.median(np.diff(hub.times, axis=1), axis=1).tolist()
+    steps = len(hub) * [float(np.median(np.diff(hub.time)))]
 
     def radial(reaction: Floats) -> Measured:
         return measured(list(np.hypot(reaction[..., 1], reaction[..., 2])), steps, SLOPES)

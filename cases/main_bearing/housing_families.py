@@ -5,11 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.cases.main_bearing import bands, study
-from fe_drivetrain.common import Floats, InputError
-from fe_drivetrain.scene import Scene
-from fe_drivetrain.suite import Run
-from fe_drivetrain.validation import housing_dimensions as housings
-from fe_drivetrain.validation.housing_dimensions import (
+from fe_drivetrain.cases.main_bearing import housing_dimensions as housings
+from fe_drivetrain.cases.main_bearing.housing_dimensions import (
     CENTRE,
     DIMENSIONS,
     ONE_BODY,
@@ -23,6 +20,9 @@ from fe_drivetrain.validation.housing_dimensions import (
     Member,
     Sampled,
 )
+from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.scene import Scene
+from fe_drivetrain.suite import Run
 
 #: Order of the surface through the sampled housings.
 ORDER, QUICK_ORDER = 2, 1

@@ -39,7 +39,6 @@ def quantities(solved: Solved, tilt: Tilt) -> dict[str, float]:
     "Mesh convergence of reactions, stiffness and deflection",
     source="Stirling 2023, PhD thesis, section 3.2: 'a convergence study was again undertaken'",
     settings={
-        "scene": "FILE (otherwise of the library)",
         "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
     },
     changes="scene",

@@ -4,34 +4,38 @@ Three comparisons, as in the thesis: pinned beam against spherical FE, pinned be
 FE, torsional-spring beam against bonded FE; and a fourth, a beam on the full 6x6 stiffness.
 """
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
 
 from fe_drivetrain.beam import beam_of_scene, main_bearing_beam, shaft
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import (
     bands,
+    charts,
     design_measures,
-    general,
-    loads,
-    reactions,
     shown,
     study,
+    surrogate,
 )
 from fe_drivetrain.cases.main_bearing.comparison import (
     MEAN_ERROR,
     PUBLISHED,
     SIXBYSIX,
-    THESIS,
     Comparison,
     compared,
     of_one_mesh,
 )
 from fe_drivetrain.cases.main_bearing.study import Solved, Tilt
-from fe_drivetrain.commands import own_loads, studied
-from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import weighted_statistics
 from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
+from fe_drivetrain.hub_loads import HubLoadSet, assumptions
+from fe_drivetrain.report import Image, Solid, Text
 from fe_drivetrain.response import bearing_unit_stiffness
 from fe_drivetrain.scene import Scene
+from fe_drivetrain.studies import hub_load_rows
 from fe_drivetrain.suite import Page, Record, Run
 
 OF_THESIS = (
@@ -90,7 +94,7 @@ def check_beams(page: Page, found: Comparison, of_beams: bands.Series, spherical
         found.mean_error[third],
         2.0,
         why="asked of the torsional-spring model: under 2 %",
-        source="FE of this study" + ("" if page.subject else "; the thesis reports 1.61 %"),
+        source="FE of this study; the thesis reports 1.61 %",
         band=of_beams.band(lambda f: float(f["beams"][1])),
     )
     if np.isfinite(found.correlation[third]):  # a load that never changes has no correlation
@@ -99,39 +103,46 @@ def check_beams(page: Page, found: Comparison, of_beams: bands.Series, spherical
             found.correlation[third],
             0.999,
             why="asked of the torsional-spring model: above 0.999",
-            source="FE of this study" + ("" if page.subject else "; the thesis reports 0.9996"),
+            source="FE of this study; the thesis reports 0.9996",
             band=of_beams.band(lambda f: float(f["beams"][2])),
         )
 
 
+def load_statistics(hub: HubLoadSet) -> Floats:
+    """(6, 4) min, mean, max, standard deviation over all histories, which are equally long."""
+    samples = hub.loads.reshape(-1, 6)
+    return weighted_statistics(samples, np.full(len(samples), 1.0 / len(samples)))
+
+
 def result_section(
-    page: Page, hub: loads.HubLoads, found: Comparison, error_band: dict[str, float | None]
+    page: Page, hub: HubLoadSet, found: Comparison, error_band: dict[str, float | None]
 ) -> None:
     """Loads, errors over all histories, and what they come from."""
     page.section("Result")
-    page.text(hub.statement)
-    loads.load_table(page, hub)
-    columns = [c for c in found.headline[0] if not (page.subject and c in THESIS)]
+    page.text(surrogate.statement(hub))
+    page.table(
+        "Hub loads over all histories, in the non-rotating shaft frame at the hub",
+        hub_load_rows(load_statistics(hub)),
+    )
+    columns = list(found.headline[0])
     place = columns.index(MEAN_ERROR) + 1
     page.table(
         "Resultant radial force on the main bearing over all histories: mean of each history's "
-        "value" + ("" if page.subject else OF_THESIS),
+        f"value{OF_THESIS}",
         [{**row, f"± {MEAN_ERROR}": error_band.get(row["comparison"])} for row in found.headline],
         [*columns[:place], f"± {MEAN_ERROR}", *columns[place:]],
     )
     page.text(
-        "Mean error is |F_beam - F_FE| / |F_FE| averaged over samples"
-        + ("" if page.subject else ", the thesis's metric")
-        + "; it breaks down where the reference passes zero, so samples with a reference below "
+        "Mean error is |F_beam - F_FE| / |F_FE| averaged over samples, the thesis's metric; it "
+        "breaks down where the reference passes zero, so samples with a reference below "
         "0.1 % of its rms are left out and counted, and a robust measure stands beside it."
     )
-    if not page.subject:
-        page.text(
-            "The pinned beam's mean error on a bonded bearing depends on the housing and on the "
-            "loads, so likeness to the thesis's 22.74 % is chance: with the thesis's own K_R of "
-            "145 and 392 MN m/rad in Eq 3.19 the same hub loads give "
-            f"{found.with_their_stiffness:.1f} %, and its hub loads were others."
-        )
+    page.text(
+        "The pinned beam's mean error on a bonded bearing depends on the housing and on the "
+        "loads, so likeness to the thesis's 22.74 % is chance: with the thesis's own K_R of "
+        "145 and 392 MN m/rad in Eq 3.19 the same hub loads give "
+        f"{found.with_their_stiffness:.1f} %, and its hub loads were others."
+    )
     page.table(
         "By quantity, means over all histories: usable as a model uncertainty. FE = slope x beam, "
         "with the residual's coefficient of variation (EN 1990, Annex D); relative scatter is the "
@@ -145,65 +156,44 @@ def result_section(
     )
 
 
-def over_loads(run: Run, page: Page, scene: Scene) -> None:
-    """The general study: every level against FE over the loads, each history with its own time.
+@dataclass(frozen=True, eq=False)
+class Worked:
+    """Both bearings solved, their coarser meshes, the loads, and what comes of them.
 
-    Raises
-    ------
-    InputError
-        A setting is of the comparison with closed forms alone.
+    Attributes
+    ----------
+    spherical, bonded : Solved
+        Both bearings on the case's own mesh.
+    tilt : Tilt
+        K_R of the bonded one.
+    series : dict[str, bands.Series]
+        Meshes of each kind.
+    hub : HubLoadSet
+        The load histories.
+    found : Comparison
+        Beams against FE.
+    pictures : sequence of Image, Solid or Text
+        Of the model.
     """
-    for key in ("self_weight", "solver"):
-        if key in run.settings:
-            raise InputError(
-                f"{key} is a setting of the comparison with closed forms, which do not apply to "
-                f"scene {scene.title!r}: leave it out"
-            )
-    skip = loads.skip_of(run)
-    own = own_loads(str(run.settings["loads"]), skip, scene) if "loads" in run.settings else None
-    studied(run, page, scene, own)
+
+    spherical: Solved
+    bonded: Solved
+    tilt: Tilt
+    series: dict[str, bands.Series]
+    hub: HubLoadSet
+    found: Comparison
+    pictures: Sequence[Image | Solid | Text]
 
 
-@case(
-    "Main-bearing study: beam models against FE over hub-load histories",
-    source="Stirling 2023, PhD thesis, chapter 3 (Figures 3.6 to 3.15, Table 3.1, Eq 3.1-3.19)",
-    settings={
-        "scene": "FILE (otherwise of the library)",
-        "loads": "FILES (otherwise made for the study)",
-        "skip": "0 (seconds of loads, from 0)",
-        "self_weight": "true (or false)",
-        "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
-    },
-    changes="scene",
-)
-def run(run: Run, page: Page) -> None:
-    """Make or read the hub loads, solve both scenes, compare over all histories."""
-    other = general.general_scene(run, page, "bonded")
-    if other is not None:
-        over_loads(run, page, study.any_scene(run, "bonded"))
-        return
-    try:
-        # before the work: a fault in a file is reported at once
-        given = loads.own_hub_loads(run, study.any_scene(run, "bonded"))
-    except loads.UnequalHistoriesError:
-        scene = study.any_scene(run, "bonded")
-        page.subject = scene.title
-        page.note(
-            "On the general beam, over all load steps by the time that each stands for: the "
-            "histories differ in length, and the closed forms are compared history by history."
-        )
-        over_loads(run, page, scene)
-        return
-    spherical_scene = study.scene_of(run, page, "spherical")
-    bonded_scene = study.scene_of(run, page, "bonded")
+def solved(run: Run, spherical_scene: Scene, bonded_scene: Scene) -> Worked:
+    """Make the hub loads, solve both scenes, compare over all histories."""
     pinned_beam = main_bearing_beam(spherical_scene)  # refuses early what it cannot stand for
-    self_weight = reactions.has_self_weight(run)
     with run.side_by_side(7) as jobs:
         solving = jobs.start(
             study.solve_and_write, spherical_scene, "spherical", None, "mesh_spherical"
         )
         # beside the first solid, which compiles loops: two at once would compile each of them twice
-        making = loads.start_surrogate(run, jobs) if given is None else []
+        making = surrogate.start(run, jobs)
         meshed = study.mesh_of(run, bonded_scene, "bonded")
         solving_bonded = jobs.start(
             study.solve_and_write, bonded_scene, "bonded", meshed, "mesh_bonded"
@@ -211,7 +201,7 @@ def run(run: Run, page: Page) -> None:
         tilting = jobs.start(study.solve_tilt, bonded_scene, "bonded, no gearbox", meshed)
         coarser = bands.start(jobs, spherical_scene, "spherical")
         coarser_bonded = bands.start(jobs, bonded_scene, "bonded", tilted=True)
-        hub = loads.surrogate_hub_loads(run, making) if given is None else given
+        hub = surrogate.made(run, making)
         spherical = solving.result()
         mean_load = np.zeros(10)
         mean_load[:6] = hub.loads.mean(axis=(0, 1))
@@ -226,90 +216,61 @@ def run(run: Run, page: Page) -> None:
             "spherical": coarser.below(bands.of_solved(spherical)),
             "bonded": coarser_bonded.below(bands.of_solved(bonded) | bands.of_tilt(tilt)),
         }
-    name = bonded.bearing
-    kinds = {"spherical": spherical, "bonded": bonded}
-    if not hub.conditions:
-        reactions.write_files(run.folder, hub, kinds, self_weight)
-    page.seed = hub.seed
-    mean_error, correlation = found.mean_error, found.correlation
+    return Worked(spherical, bonded, tilt, series, hub, found, pictures)
+
+
+def errors_by_mesh(run: Run, work: Worked) -> bands.Series:
+    """Mean errors of pinned and torsional-spring beam, and its correlation, on each mesh."""
+    found, series = work.found, work.series["bonded"]
+    name, scene = work.bonded.bearing, work.bonded.scene
     _, second, third = PUBLISHED
     with run.step("bands of the mean errors"):
-        by_mesh = [
-            of_one_mesh(hub, bonded_scene, f[f"reaction {name}"], f["K_R"][:, 1])
-            for f in series["bonded"].levels[:-1]
+        rows = [
+            of_one_mesh(work.hub, scene, f[f"reaction {name}"], f["K_R"][:, 1])
+            for f in series.levels[:-1]
         ]
-    by_mesh.append((mean_error[second], mean_error[third], correlation[third]))
-    sizes = [f["size"] for f in series["bonded"].levels]
-    of_beams = bands.Series(
-        tuple(
-            {"beams": np.array(row), "size": size} for row, size in zip(by_mesh, sizes, strict=True)
-        )
+    rows.append((found.mean_error[second], found.mean_error[third], found.correlation[third]))
+    sizes = [f["size"] for f in series.levels]
+    return bands.Series(
+        tuple({"beams": np.array(row), "size": size} for row, size in zip(rows, sizes, strict=True))
     )
-    error_band = {
-        label: of_beams.band(lambda f, k=k: float(f["beams"][k]))
-        for k, label in enumerate((second, third))
-    }
-    for label, solved in (
-        ("spherical", spherical),
-        ("bonded", bonded),
-        ("bonded, without gearbox", tilt.free),
-    ):
-        shown.check_solution(page, solved, label)
-    for label, of_meshes in series.items():
-        with page.of(kinds[label].scene):
-            shown.check_series(page, of_meshes, label)
-    check_beams(page, found, of_beams, spherical_scene)
 
-    stiffness = bearing_unit_stiffness(spherical.response, name)
-    write_stiffness(run, bonded, tilt, stiffness)
-    n_histories, n_samples = hub.loads.shape[:2]
-    n_steps = n_histories * n_samples
-    on_bonded = (
-        f"Over {n_histories:,} hub-load histor{'y' if n_histories == 1 else 'ies'} "
-        f"({n_steps:,} load steps) the pinned beam's resultant force on a bonded bearing has a "
-        f"mean error of {mean_error[second]:.1f} %, with a correlation of "
-        f"{correlation[second]:.3f}.",
+
+def answer(page: Page, found: Comparison, n_histories: int, n_steps: int) -> None:
+    """What the comparison says."""
+    _, second, third = PUBLISHED
+    mean_error, correlation = found.mean_error, found.correlation
+    page.headline = "torsional-spring beam against bonded FE: mean error of the resultant"
+    page.answer(
+        f"Over {n_histories:,} hub-load histories ({n_steps:,} load steps) the pinned beam's "
+        f"resultant force on a bonded bearing has a mean error of {mean_error[second]:.1f} %, with "
+        f"a correlation of {correlation[second]:.3f}.",
         f"With torsional springs, K_R from the averaged seat, the beam has a mean error of "
         f"{mean_error[third]:.2g} % and a correlation of {correlation[third]:.4f}; on the "
         f"full 6x6 stiffness {mean_error[SIXBYSIX]:.2g} % and {correlation[SIXBYSIX]:.6f}.",
-    )
-    on_spherical = (
         "On a spherical bearing pinned beam and FE agree to solver accuracy: statics decide, and "
         "their agreement says nothing about the FE model. Deflection, slope and stiffness, which "
         "do depend on it, stand below.",
     )
-    # the bearing that the scene has comes first
-    own_kind = study.kind_of(study.given_scene(run, "bonded"))
-    page.headline = "torsional-spring beam against bonded FE: mean error of the resultant"
-    page.answer(
-        *(on_spherical + on_bonded if own_kind == "spherical" else on_bonded + on_spherical)
-    )
-    page.section("Model")
-    page.add(*pictures)
-    result_section(page, hub, found, error_band)
-    reactions.statistics_section(run, page, hub, kinds, self_weight)
-    if hub.conditions:
-        page.section("RMSE by wind speed, turbulence and shear")
-        loads.rmse_charts(page, hub.conditions, found.fe, found.pairs)
-    page.section("Example time series")
-    loads.series_charts(page, hub, found.fe, found.pairs)
-    page.section("FE against beam")
-    loads.scatter_charts(page, found.fe, found.pairs)
-    design_measures.section(run, page, hub, found)
+
+
+def stiffness_section(page: Page, work: Worked, stiffness: Floats) -> None:
+    """K_R, deflection and slope, which reactions do not show."""
+    tilt, series = work.tilt, work.series
     page.section("What reactions do not show: stiffness, deflection, slope")
     shown.tilt_table(page, tilt, series["bonded"])
     page.table(
         "The torsional-spring beam with K_R of each estimator, against bonded FE; no value is "
         "fitted",
-        found.estimators,
+        work.found.estimators,
     )
     page.table(
         "Under Fz = 1 kN at the hub: FE, and Timoshenko beams on the FE stiffness of the bearing "
         "unit. The ring stiffens the shaft; the 6x6 of the bonded unit holds its share already, so "
         "there the beam with a ring counts it twice",
         [
-            *deflections(spherical, stiffness, series["spherical"], "spherical"),
-            *deflections(bonded, tilt.matrix, series["bonded"], "bonded"),
+            *deflections(work.spherical, stiffness, series["spherical"], "spherical"),
+            *deflections(work.bonded, tilt.matrix, series["bonded"], "bonded"),
         ],
     )
     shown.matrix_table(
@@ -318,19 +279,64 @@ def run(run: Run, page: Page) -> None:
         + series["bonded"].largest("stiffness"),
         tilt.matrix,
     )
-    shown.mesh_section(
-        page, {"spherical": spherical, "bonded": bonded, "bonded, no gearbox": tilt.free}
-    )
-    page.text(series["bonded"].note())
+
+
+@case(
+    "Main-bearing study: beam models against FE over hub-load histories",
+    source="Stirling 2023, PhD thesis, chapter 3 (Figures 3.6 to 3.15, Table 3.1, Eq 3.1-3.19)",
+    settings={
+        "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
+    },
+    changes="scene",
+)
+def run(run: Run, page: Page) -> None:
+    """Make the hub loads, solve both scenes, compare over all histories."""
+    page.seed = 1
+    scenes = [study.scene_of(run, page, kind) for kind in ("spherical", "bonded")]
+    work = solved(run, *scenes)
+    hub, found, tilt = work.hub, work.found, work.tilt
+    of_beams = errors_by_mesh(run, work)
+    kinds = {
+        "spherical": work.spherical,
+        "bonded": work.bonded,
+        "bonded, without gearbox": tilt.free,
+    }
+    for label, one in kinds.items():
+        shown.check_solution(page, one, label)
+    for label, of_meshes in work.series.items():
+        with page.of(kinds[label].scene):
+            shown.check_series(page, of_meshes, label)
+    check_beams(page, found, of_beams, work.spherical.scene)
+    stiffness = bearing_unit_stiffness(work.spherical.response, work.spherical.bearing)
+    write_stiffness(run, work.bonded, tilt, stiffness)
+    n_histories, n_samples = hub.loads.shape[:2]
+    n_steps = n_histories * n_samples
+    answer(page, found, n_histories, n_steps)
+    page.section("Model")
+    page.add(*work.pictures)
+    error_band = {
+        label: of_beams.band(lambda f, k=k: float(f["beams"][k]))
+        for k, label in enumerate(list(PUBLISHED)[1:])
+    }
+    result_section(page, hub, found, error_band)
+    page.section("RMSE by wind speed, turbulence and shear")
+    charts.rmse_charts(page, hub.conditions, found.fe, found.pairs)
+    page.section("Example time series")
+    charts.series_charts(page, hub, found.fe, found.pairs)
+    page.section("FE against beam")
+    charts.scatter_charts(page, found.fe, found.pairs)
+    design_measures.section(run, page, hub, found)
+    stiffness_section(page, work, stiffness)
+    shown.mesh_section(page, kinds)
+    page.text(work.series["bonded"].note())
     page.text(
         f"{n_steps:,} load steps were turned into the reactions of two models in "
         f"{found.seconds:.2f} s: one matrix product each."
     )
-    shown.assume(page, bonded_scene)
-    for assumption in hub.assumptions:
-        page.assume(*assumption)
-    page.data("mean_error_percent", mean_error)
-    page.data("correlation", correlation)
+    shown.assume(page, work.bonded.scene)
+    page.assume_all(assumptions())
+    page.data("mean_error_percent", found.mean_error)
+    page.data("correlation", found.correlation)
     page.data("tilt_stiffness", tilt.by_plane)
     page.data("load_steps", n_steps)
     page.data("seconds_for_reactions", found.seconds)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import general, secants, shown, study
+from fe_drivetrain.cases.main_bearing import secants, shown, study
 from fe_drivetrain.cases.main_bearing.secants import FULL, LEAN, OF_FORM, QUANTITIES, SINGLE
 from fe_drivetrain.common import (
     FORCES,
@@ -118,7 +118,7 @@ def check_springs(page: Page, made: dict[str, tuple[Floats, Floats]], coupled: F
 def secant_traces(key: str, unit: Reacted) -> list[Any]:
     """K_R of each load case at the axis and at the elastic centre."""
     at_axis = unit.secant(4).secants
-    at_centre = secant_stiffness.secant(*secants.at_centre(unit), 4, unit.weights).secants
+    at_centre = secant_stiffness.secant(*secants.at_centre(unit), 4).secants
     slope = unit.loads[:, 0] / unit.motions[:, 4] / 1e6
     # seen: each case, at most as many as a page shows without weight
     chosen = np.linspace(0, len(slope) - 1, min(len(slope), 600)).astype(int)
@@ -135,19 +135,12 @@ def secant_traces(key: str, unit: Reacted) -> list[Any]:
     "K_R as a secant over load cases, and the coupling that makes it scatter",
     source="Stirling 2023, PhD thesis, section 3.3.1, Eq 3.20",
     settings={
-        "scene": "FILE (otherwise of the library)",
-        "loads": "FILES (otherwise made for the study)",
-        "skip": "0 (seconds of loads, from 0)",
         "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
     },
     changes="scene",
 )
 def run(run: Run, page: Page) -> None:
     """Secants of three bearings and of made-up springs, and the beams that follow from them."""
-    other = general.general_scene(run, page, "bonded", uniform=False)
-    if other is not None:
-        general.secant_page(run, page, other, secants.hub_loads(run, EVERY, other))
-        return
     spherical = study.scene_of(run, page, "spherical", coarsen=False)
     bonded = study.scene_of(run, page, "bonded", coarsen=False)
     tall_scene = secants.tall(bonded, TALL)
@@ -169,7 +162,6 @@ def run(run: Run, page: Page) -> None:
             finest[key].motions,
             finest[key].fit.matrix,
             a,
-            finest[key].weights,
         )
         for key, a in both
     }

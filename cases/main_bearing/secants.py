@@ -10,11 +10,9 @@ import numpy as np
 from fe_drivetrain.beam import beam_of_scene, shaft
 from fe_drivetrain.cases.main_bearing import (
     bands,
-    loads,
     study,
 )
 from fe_drivetrain.common import FORCES, Floats, InputError, stiffness_transport
-from fe_drivetrain.compare import sample_weights, weighted_rms
 from fe_drivetrain.coupled import factors_of
 from fe_drivetrain.hub_loads import (
     SHEARS,
@@ -27,7 +25,6 @@ from fe_drivetrain.hub_loads import (
 from fe_drivetrain.response import (
     bearing_unit_stiffness,
     entering,
-    joined,
     secant_stiffness,
     without_gearbox,
 )
@@ -59,8 +56,6 @@ class Reacted:
         (6, 6) condensed, from unit loads without a gearbox.
     fit : secant_stiffness.Spring
         The spring that the load cases show.
-    weights : Floats or None
-        (m,) share of each load case in the whole time; None where all are equal.
     """
 
     scene: Scene
@@ -68,11 +63,10 @@ class Reacted:
     motions: Floats
     stiffness: Floats
     fit: secant_stiffness.Spring
-    weights: Floats | None = None
 
     def secant(self, component: int) -> secant_stiffness.Secant:
         """Of the load cases, about one axis."""
-        return secant_stiffness.secant(self.loads, self.motions, component, self.weights)
+        return secant_stiffness.secant(self.loads, self.motions, component)
 
 
 @dataclass(frozen=True)
@@ -90,24 +84,11 @@ class Cases:
     """
 
     hub: PointLoads
-    weights: Floats | None
     statement: str
 
 
 def hub_loads(run: Run, every: int, scene: Scene) -> Cases:
-    """Load cases at the hub.
-
-    The user's own, of any length and step, where ``--set loads=FILE`` is given; else samples of
-    made histories.
-    """
-    own = loads.own_histories(run, scene)
-    if own is not None:
-        histories, statement = own
-        steps = [history.step for history in histories]
-        unlike = np.ptp(steps) > 1e-9 * max(steps)
-        weights = sample_weights([len(h) for h in histories], steps) if unlike else None
-        hub = joined([entering(scene, history) for history in histories])
-        return Cases(hub, weights, statement)
+    """Load cases at the hub: every n-th sample of made histories."""
     speeds = WIND_SPEEDS[1:2] if run.quick else WIND_SPEEDS
     conditions = [Condition(speed, "medium", shear, 1) for speed in speeds for shear in SHEARS]
     with run.step("hub loads"):
@@ -116,10 +97,9 @@ def hub_loads(run: Run, every: int, scene: Scene) -> Cases:
     samples = LoadHistory("samples", np.arange(float(len(chosen))), chosen, about="front face")
     return Cases(
         entering(scene, samples),
-        None,
         f"Load cases: {len(chosen):,} samples of {len(conditions)} made ten-minute histories (wind "
         f"of {', '.join(f'{s:g}' for s in speeds)} m/s, medium turbulence, both shear exponents, "
-        "one seed), each with the gearbox's weight. Your own: `--set loads=FILE`.",
+        "one seed), each with the gearbox's weight.",
     )
 
 
@@ -147,8 +127,8 @@ def solved(run: Run, scene: Scene, factor: float, cases: Cases) -> Reacted:
     on_bearing, motions, coarser = reacted(run, scene, factor, cases.hub)
     free = study.solve_scene(run, without_gearbox(coarser), f"without gearbox, sizes x {factor:g}")
     stiffness = bearing_unit_stiffness(free.response, free.bearing)
-    fit = secant_stiffness.fitted_spring(on_bearing, motions, cases.weights)
-    return Reacted(coarser, on_bearing, motions, stiffness, fit, cases.weights)
+    fit = secant_stiffness.fitted_spring(on_bearing, motions)
+    return Reacted(coarser, on_bearing, motions, stiffness, fit)
 
 
 def series(run: Run, scene: Scene, factors: tuple[float, float], cases: Cases) -> list[Reacted]:
@@ -175,7 +155,7 @@ def vertical_scatter(unit: Reacted) -> float:
 
 def scatter_at_centre(unit: Reacted) -> float:
     """Of the secant about y, at the elastic centre."""
-    return secant_stiffness.secant(*at_centre(unit), 4, unit.weights).scatter
+    return secant_stiffness.secant(*at_centre(unit), 4).scatter
 
 
 def predicted_scatter(unit: Reacted) -> float:
@@ -188,7 +168,7 @@ def predicted_scatter(unit: Reacted) -> float:
     moment = moment + secant_stiffness.elastic_centre(unit.stiffness) * thrust
     made = np.zeros_like(unit.loads)
     made[:, 4] = moment
-    return secant_stiffness.secant(made, unit.motions, 4, unit.weights).scatter
+    return secant_stiffness.secant(made, unit.motions, 4).scatter
 
 
 def springs(unit: Reacted) -> dict[str, Floats]:
@@ -228,16 +208,13 @@ def beam_errors(unit: Reacted, hub: Floats) -> dict[str, Mapping[str, float]]:
     beams = {form: on_beam(unit.scene, k, hub)[0] for form, k in springs(unit).items()}
     found: dict[str, Mapping[str, float]] = {}
     for form, beam in beams.items():
-        error = _error(beam, unit.loads, unit.weights)
+        error = _error(beam, unit.loads)
         by = {q: float(error[FORCES.index(q)]) for q in QUANTITIES}
-        found[form] = by | {OF_FORM: float(_error(beam, beams[FULL], unit.weights)[4])}
+        found[form] = by | {OF_FORM: float(_error(beam, beams[FULL])[4])}
     return found
 
 
-def _error(found: Floats, reference: Floats, weights: Floats | None) -> Floats:
+def _error(found: Floats, reference: Floats) -> Floats:
     """(6,) root mean square over that of the reference [%]."""
-    if weights is not None:
-        difference = weighted_rms(found - reference, weights)
-        return np.asarray(100.0 * difference / weighted_rms(reference, weights))
     size = np.sqrt((reference**2).mean(axis=0))
     return np.asarray(100.0 * np.sqrt(((found - reference) ** 2).mean(axis=0)) / size)

@@ -6,7 +6,7 @@ import numpy as np
 
 from fe_drivetrain.beam import closed_forms, main_bearing_beam
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import bands, general, shown, study
+from fe_drivetrain.cases.main_bearing import bands, shown, study
 from fe_drivetrain.cases.main_bearing.study import Tilt
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import resultant
@@ -68,7 +68,6 @@ def change_of_beam(loads: Floats, whole: Scene, scene: Scene, tilt: Tilt) -> flo
     "Shaft wall of 100, 75 and 50 %: effect on the main-bearing reactions",
     source="Stirling 2023, PhD thesis, section 3.2, Figure 3.4",
     settings={
-        "scene": "FILE (otherwise of the library)",
         "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
     },
     changes="scene",
@@ -76,11 +75,6 @@ def change_of_beam(loads: Floats, whole: Scene, scene: Scene, tilt: Tilt) -> flo
 def run(run: Run, page: Page) -> None:
     """Solve both bearing types with three bores, over ten seconds of hub loads."""
     page.seed = 1
-    other = general.general_scene(run, page, "bonded")
-    if other is not None:
-        wanted = QUICK_WALLS if run.quick else WALLS
-        general.wall_page(run, page, {wall: bored(other, wall) for wall in wanted})
-        return
     with run.step("hub loads"):
         history = hub_loads(Condition(16.0, "medium", 0.2, 1)).between(100.0, 110.0)
     walls = QUICK_WALLS if run.quick else WALLS
@@ -164,9 +158,7 @@ def run(run: Run, page: Page) -> None:
                     label, wall, lambda f, this, ref: 1e9 * f["motion hub"][2, 2]
                 ),
             }
-            # The first wall is the reference itself. How far the beam's K_R is from that of a bored
-            # seat is known of the project's scene; of others the table shows it.
-            if wall != walls[0] and not (page.subject and label == "DTRB"):
+            if wall != walls[0]:  # which is the reference itself
                 within, why = TOLERANCE[label]
                 with page.of(scene):
                     page.equals(
@@ -188,12 +180,11 @@ def run(run: Run, page: Page) -> None:
     ]
     page.answer(
         "A bore does not change the reactions of the spherical bearing at all, and changes "
-        f"those of the bonded one by {largest:.2g} % on average with half the wall"
-        + ("." if page.subject else ": the thesis's finding of almost no effect, with a number."),
+        f"those of the bonded one by {largest:.2g} % on average with half the wall: the thesis's "
+        "finding of almost no effect, with a number.",
         f"What it does change is stiffness: with half the wall the hub deflects {softer[0]:.2g} % "
         f"(DSRB) and {softer[1]:.2g} % (DTRB) more. "
-        "Self-weight, which a bore reduces, is left out here"
-        + ("." if page.subject else " as in the thesis."),
+        "Self-weight, which a bore reduces, is left out here as in the thesis.",
     )
     page.section("Reactions")
     page.text(
@@ -202,8 +193,8 @@ def run(run: Run, page: Page) -> None:
     )
     for label in KINDS:
         page.chart(
-            f"{label}: radial reaction over ten seconds, by shaft wall"
-            + ("" if page.subject else " (as Figure 3.4 of the thesis)"),
+            f"{label}: radial reaction over ten seconds, by shaft wall (as Figure 3.4 of the "
+            "thesis)",
             [line for of, line in traces if of == label],
             "time [s]",
             "radial reaction [kN]",

@@ -73,10 +73,10 @@ def tilt_table(page: Page, tilt: Tilt, series: Series) -> None:
             band = series.band(lambda f, p=p, k=k: float(f["K_R"][p, k]) / 1e6)
             row |= {estimator: value / 1e6, f"± {estimator}": band}
         row["spread [%]"] = spread(values)
-        rows.append(row if page.subject else row | {"Stirling 2023": PUBLISHED[plane]})
+        rows.append(row | {"Stirling 2023": PUBLISHED[plane]})
     page.table(
-        "K_R = M / theta of bearing and housing [MN m/rad], gearbox springs removed"
-        + ("" if page.subject else f". {_OTHER_HOUSING}"),
+        f"K_R = M / theta of bearing and housing [MN m/rad], gearbox springs removed. "
+        f"{_OTHER_HOUSING}",
         rows,
     )
 
@@ -201,15 +201,14 @@ def pictures_of(
 
 def assume(page: Page, scene: Scene) -> None:
     """Everything that the source of the scene does not give."""
-    own = bool(page.subject)
     unit = scene.bearing_units[0]
     torque = scene.gearbox.stiffness[3]
     page.assume(
         "gearbox torque reaction",
         torque if torque == "rigid" else float(torque),
         "" if torque == "rigid" else "N m/rad",
-        "a spherical joint lets the shaft spin, so the gearbox must react torque"
-        + ("" if own else "; the thesis names three translational springs only"),
+        "a spherical joint lets the shaft spin, so the gearbox must react torque; the thesis names "
+        "three translational springs only",
     )
     page.assume(
         "coupling of hub and gearbox",
@@ -218,14 +217,11 @@ def assume(page: Page, scene: Scene) -> None:
         "averaged: loads and springs act on the mean motion of the shaft's end face (RBE3)",
     )
     base = {
-        "fixed": "the whole underside of the housing is fixed" + ("" if own else _AS),
-        "bolted": "four washer footprints are fixed"
-        + ("" if own else "; in the thesis the whole underside"),
+        "fixed": f"the whole underside of the housing is fixed{_AS}",
+        "bolted": "four washer footprints are fixed; in the thesis the whole underside",
     }[unit.block.base]
     page.assume("bedplate", "rigid", "", base)
-    page.assume(
-        "clearance, friction, damping", "none", "", "quasi-static, linear" + ("" if own else _AS)
-    )
+    page.assume("clearance, friction, damping", "none", "", f"quasi-static, linear{_AS}")
     for unit in scene.bearing_units:
         name = unit.bearing.name
         for owner, part in ((name, unit.bearing), (f"{name}.housing", unit.block)):
@@ -236,11 +232,10 @@ def assume(page: Page, scene: Scene) -> None:
     for name in ("shaft", *names, *(f"{name}.housing" for name in names)):
         material = scene.material_of(name)
         given = material in scene.materials.values()
-        assumed = "of the library" if own else "assumed: the thesis names no material"
         page.assume(
             f"{name}: E, nu, density",
             f"{material.youngs_modulus / 1e9:g} GPa, {material.poisson_ratio:g}, "
             f"{material.density:g} kg/m³",
             "",
-            "given by the scene" if given else assumed,
+            "given by the scene" if given else "assumed: the thesis names no material",
         )

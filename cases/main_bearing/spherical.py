@@ -8,7 +8,7 @@ import numpy as np
 
 from fe_drivetrain.beam import beam_of_scene, closed_forms, main_bearing_beam, shaft
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import bands, general, shown, study
+from fe_drivetrain.cases.main_bearing import bands, shown, study
 from fe_drivetrain.cases.main_bearing.study import Solved
 from fe_drivetrain.common import (
     GRAVITY,
@@ -127,17 +127,12 @@ def axis_deflection(solved: Solved, load: int, n_slices: int) -> tuple[Floats, F
     "Spherical main bearing: reactions, deflection and the joint's three forms",
     source="Stirling 2023, PhD thesis, sections 3.1 and 3.2 (DSRB), Table 3.1, Eq 3.1",
     settings={
-        "scene": "FILE (otherwise of the library)",
         "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
     },
     changes="scene",
 )
 def run(run: Run, page: Page) -> None:
     """Solve the three forms of the joint and compare them with statics and with a beam."""
-    other = general.general_scene(run, page, "spherical", exchange=True)
-    if other is not None:
-        general.unit_load_page(run, page, other, FORMS)
-        return
     scene = study.scene_of(run, page, "spherical")
     if scene.bearing_units[0].interface != FORMS[0]:
         page.note(

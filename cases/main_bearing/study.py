@@ -27,7 +27,6 @@ from fe_drivetrain.scene import (
     change_scene,
     coarser_scene,
     library_scene,
-    read_scene,
 )
 from fe_drivetrain.solve import METHODS
 from fe_drivetrain.suite import Page, Run
@@ -62,15 +61,17 @@ class Solved:
 
 
 def scene_of(run: Run, page: Page, kind: str, coarsen: bool = True) -> Scene:
-    """The library's scene, or the user's own, with the user's changes, and a bearing of a kind.
+    """The library's scene of a kind with the user's changes.
 
-    Where the scene has another bearing, that is exchanged, and load points are left out; the page
-    says so first.
+    Where these make another bearing of it, that is exchanged, and load points are left out; the
+    page says so first.
 
     Parameters
     ----------
+    run : Run
+        Its settings are the changes.
     page : Page
-        Learns that it is about a scene of the user's.
+        Learns what it is about.
     kind : str
         "spherical" or "bonded".
     coarsen : bool
@@ -79,18 +80,15 @@ def scene_of(run: Run, page: Page, kind: str, coarsen: bool = True) -> Scene:
     Raises
     ------
     InputError
-        The scene has not exactly one bearing unit, as the closed forms need.
+        The scene has not exactly one bearing unit, or a nose, which the closed forms do not know.
     """
-    given = given_scene(run, kind)
+    given = changed_scene(run, kind)
     if given.load_points:
         page.note(
             f"Without the loads and weights at {', '.join(given.bands)}: this case loads the hub "
             "and the gearbox alone, and a stiffness does not depend on loads."
         )
         given = given.model_copy(update={"load_points": ()})
-    if "scene" in run.settings:
-        page.subject = given.title
-        page.source = f"scene {run.settings['scene']}"
     scene = with_kind(given, kind)
     (before,), (after,) = given.bearing_units, scene.bearing_units
     if before.interface != after.interface:
@@ -105,52 +103,33 @@ def scene_of(run: Run, page: Page, kind: str, coarsen: bool = True) -> Scene:
     return scene
 
 
-def any_scene(run: Run, kind: str) -> Scene:
-    """The user's scene, or the library's of a kind, with the user's changes."""
+def changed_scene(run: Run, kind: str) -> Scene:
+    """The library's scene of a kind with the user's changes, refused where closed forms end."""
     changes = {
         key: value
         for key, value in run.settings.items()
         if key.partition(".")[0] in Scene.model_fields
     }
-    if "scene" in run.settings:
-        scene = read_scene(str(run.settings["scene"]), changes)
-    else:
-        scene = change_scene(library_scene(f"main_bearing_{kind}"), changes)
-    if scene.nose is not None:
+    scene = change_scene(library_scene(f"main_bearing_{kind}"), changes)
+    count = len(scene.bearing_units)
+    if scene.nose is not None or count != 1:
+        has = "a nose" if scene.nose is not None else f"{count} bearing units"
         raise InputError(
-            f"scene {scene.title!r} has a nose: the main-bearing cases compare solids on bearing "
-            "units; run fe-drivetrain advise, which takes both"
+            f"scene {scene.title!r} has {has}: the main-bearing cases compare with closed forms "
+            "for one bearing unit; run fe-drivetrain study, which takes any scene"
         )
     return scene
-
-
-def given_scene(run: Run, kind: str) -> Scene:
-    """`any_scene`, refused where it has not exactly one bearing unit; see `scene_of`."""
-    scene = any_scene(run, kind)
-    if len(scene.bearing_units) != 1:
-        raise InputError(
-            f"scene {scene.title!r} has {len(scene.bearing_units)} bearing units: the "
-            "main-bearing cases compare with closed forms for one; give a scene with one, or run "
-            "fe-drivetrain study, which takes any number"
-        )
-    return scene
-
-
-def kind_of(scene: Scene) -> str:
-    """Kind of the scene's bearing: "spherical", "bonded", or the name of another interface."""
-    interface = scene.bearing_units[0].interface
-    return "spherical" if interface in SPHERICAL else interface
 
 
 def with_kind(scene: Scene, kind: str) -> Scene:
     """The scene with its bearing spherical (sliding joint) or bonded (plain ring)."""
-    if kind_of(scene) == kind:
+    interface = scene.bearing_units[0].interface
+    if interface == kind or (kind == "spherical" and interface in SPHERICAL):
         return scene
-    changes = {
-        "spherical": {"bearing.kind": "spherical", "interface": "sliding"},
-        "bonded": {"bearing.kind": "ring", "interface": "bonded"},
-    }[kind]
-    return change_scene(scene, {f"bearing_units.0.{k}": v for k, v in changes.items()})
+    bearing, joint = {"spherical": ("spherical", "sliding"), "bonded": ("ring", "bonded")}[kind]
+    unit = "bearing_units.0"
+    kinds = {f"{unit}.bearing.kind": bearing, f"{unit}.interface": joint}
+    return change_scene(scene, kinds | {f"{unit}.stiffness": None, f"{unit}.rollers": None})
 
 
 def with_interface(scene: Scene, interface: str) -> Scene:

@@ -13,9 +13,9 @@ from numba import get_num_threads
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.performance.peer_settings import problems_of, sizes_of
+from fe_drivetrain.cases.performance.peers import BENCHMARKS, Problem, assembled, problems
 from fe_drivetrain.interfaces import eliminate, fixed
 from fe_drivetrain.operator import Pattern, kernels, sparsity
-from fe_drivetrain.peers import BENCHMARKS, Problem, assembled, problems
 from fe_drivetrain.report import trace
 from fe_drivetrain.solve import System, multigrid, reduce
 from fe_drivetrain.suite import Page, Record, Run, grouped

@@ -10,6 +10,7 @@ from scipy.sparse.linalg import splu
 from threadpoolctl import threadpool_limits
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references.torsion_meridian import torsion_bounds
 from fe_drivetrain.common import RUNS, Floats, Times, largest_difference
 from fe_drivetrain.fidelity import beam_shaft, meridian_shaft
 from fe_drivetrain.geometry import Section, Shaft
@@ -24,7 +25,6 @@ from fe_drivetrain.revolution import (
 )
 from fe_drivetrain.scene import MATERIALS, library_scene
 from fe_drivetrain.suite import Page, Record, Run, column, grouped
-from fe_drivetrain.validation.torsion_meridian import torsion_bounds
 
 STEEL = MATERIALS["steel"]
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable, Sequence
 
 from fe_drivetrain.cases.performance.peer_settings import OURS
-from fe_drivetrain.peers import Benchmark, Row, rounds
+from fe_drivetrain.cases.performance.peers import Benchmark, Row, rounds
 from fe_drivetrain.suite import Page, Record
 
 COMPARED_FROM = 9_000

@@ -1,6 +1,6 @@
 """How the comparison with other tools is measured, in words for its page."""
 
-from fe_drivetrain.peers import Plan
+from fe_drivetrain.cases.performance.peers import Plan
 
 
 def of_motions(number: int) -> list[str]:

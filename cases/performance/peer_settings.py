@@ -2,8 +2,15 @@
 
 from typing import Any
 
+from fe_drivetrain.cases.performance.peers import (
+    BENCHMARKS,
+    MOST_MOTIONS,
+    TOOLS,
+    Limits,
+    Plan,
+    parse,
+)
 from fe_drivetrain.common import InputError
-from fe_drivetrain.peers import BENCHMARKS, MOST_MOTIONS, TOOLS, Limits, Plan, parse
 from fe_drivetrain.suite import Run
 
 OURS = "this_project"

@@ -6,11 +6,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases.performance.studies import Study
-from fe_drivetrain.common import SafeWriter
-from fe_drivetrain.compare import pareto_front
-from fe_drivetrain.report import Chart, bars, rounded, trace
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.stiffness_choices import (
+from fe_drivetrain.cases.references.stiffness_choices import (
     ELEMENTS,
     P1,
     REPEATS,
@@ -18,6 +14,10 @@ from fe_drivetrain.validation.stiffness_choices import (
     STEPS,
     Outcome,
 )
+from fe_drivetrain.common import SafeWriter
+from fe_drivetrain.compare import pareto_front
+from fe_drivetrain.report import Chart, bars, rounded, trace
+from fe_drivetrain.suite import Page, Record, Run
 
 #: Errors that an engineer asks for.
 BOUNDS = (1e-2, 1e-3, 1e-4)

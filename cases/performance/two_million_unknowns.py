@@ -8,9 +8,7 @@ from statistics import median
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.performance.peer_settings import problems_of, sizes_of
-from fe_drivetrain.common import cores, scratch_folder
-from fe_drivetrain.compare import PowerLaw, power_law
-from fe_drivetrain.peers import (
+from fe_drivetrain.cases.performance.peers import (
     BENCHMARKS,
     Benchmark,
     Limits,
@@ -21,6 +19,8 @@ from fe_drivetrain.peers import (
     rounds,
     write_problem,
 )
+from fe_drivetrain.common import cores, scratch_folder
+from fe_drivetrain.compare import PowerLaw, power_law
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run
 

@@ -9,13 +9,13 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.performance import studies
 from fe_drivetrain.cases.performance.studies import Setting, Study
 from fe_drivetrain.cases.performance.study_page import BOUNDS, percent, show
+from fe_drivetrain.cases.references.growing_shafts import STEPPED, Grown
+from fe_drivetrain.cases.references.stiffness_choices import CURVED, STEPS, STRAIGHT, Outcome
+from fe_drivetrain.cases.references.tilt_choices import BALANCED, sizes_in_words
 from fe_drivetrain.common import InputError, Times
 from fe_drivetrain.compare import growth_exponent
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run, column, goal
-from fe_drivetrain.validation.growing_shafts import STEPPED, Grown
-from fe_drivetrain.validation.stiffness_choices import CURVED, STEPS, STRAIGHT, Outcome
-from fe_drivetrain.validation.tilt_choices import BALANCED, sizes_in_words
 
 PARTS = ("shaft", "housing", "growth")
 

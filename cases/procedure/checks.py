@@ -8,6 +8,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.procedure import checks_of_parts, checks_of_signals
 from fe_drivetrain.cases.procedure.assumed import PLACES
 from fe_drivetrain.cases.procedure.checks_of_parts import Found
+from fe_drivetrain.cases.references import published_drivetrains
 from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.procedure import (
     Excitation,
@@ -44,7 +45,6 @@ from fe_drivetrain.torsion import (
     stage_masses,
     static_stiffness,
 )
-from fe_drivetrain.validation import published_drivetrains
 
 TABLE = published_drivetrains.table("drivetrain_c")
 FRONT, REAR, STIFFNESS, DAMPING = 150.34, 24.0, 5296.0, 19.86

@@ -3,6 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.cases.procedure.checks_of_parts import Found
+from fe_drivetrain.cases.references import published_campaigns
 from fe_drivetrain.compare import round_off
 from fe_drivetrain.histories import (
     alias,
@@ -14,7 +15,6 @@ from fe_drivetrain.histories import (
     time_at_level,
 )
 from fe_drivetrain.procedure import sampling_rates
-from fe_drivetrain.validation import published_campaigns
 
 
 def captured() -> list[Found]:

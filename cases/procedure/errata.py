@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.procedure.identification import (
+from fe_drivetrain.cases.procedure.known_drivetrain import (
     BRAKING,
     BROAD,
     FRONT,
@@ -18,7 +18,7 @@ from fe_drivetrain.cases.procedure.identification import (
     TURN,
     simulated,
 )
-from fe_drivetrain.cases.procedure.pitch_and_yaw import (
+from fe_drivetrain.cases.procedure.slewing_drives import (
     AXIAL,
     BRIDGES,
     DEFICIT,
@@ -28,6 +28,7 @@ from fe_drivetrain.cases.procedure.pitch_and_yaw import (
     RADIAL,
     stop_motion,
 )
+from fe_drivetrain.cases.references import published_campaigns, published_drivetrains
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import round_off
 from fe_drivetrain.histories import capture_matrix
@@ -47,7 +48,6 @@ from fe_drivetrain.procedure import (
 from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.torsion import GENERATOR as GENERATOR_NAME
 from fe_drivetrain.torsion import ROTOR, gear_masses, static_stiffness
-from fe_drivetrain.validation import published_campaigns, published_drivetrains
 
 INCONSISTENT, GARBLED, OURS = "inconsistent", "garbled in the text at hand", "open or unclear"
 

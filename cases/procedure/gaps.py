@@ -5,6 +5,7 @@ import numpy as np
 from fe_drivetrain.beam import Beam, BeamSection, condensed_beam
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.procedure.assumed import PLACES
+from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import (
     ConvergenceInTime,
@@ -44,7 +45,6 @@ from fe_drivetrain.torsion import (
     shaft_damping,
     two_masses,
 )
-from fe_drivetrain.validation import published_drivetrains as published
 
 TABLE = published.table("drivetrain_c")
 SPEEDS = (9.0, 18.0)  # rpm

@@ -3,11 +3,33 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.procedure.known_drivetrain import (
+    BRAKING,
+    BROAD,
+    DAMPING,
+    DRIVING,
+    FRONT,
+    GAUGE,
+    GEAR,
+    MEAN,
+    NARROW,
+    OMEGA,
+    RATIO,
+    REAR,
+    REDUCED,
+    SPEED,
+    STEP,
+    STIFFNESS,
+    SYSTEM,
+    TRUTH,
+    TURN,
+    USED,
+    simulated,
+)
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import InTime, converge_in_time, peak_between
 from fe_drivetrain.histories import spectrum
 from fe_drivetrain.procedure import (
-    Sensor,
     Solutions,
     Twist,
     band_torque,
@@ -23,7 +45,6 @@ from fe_drivetrain.procedure import (
     motions_energy_error,
     periodic_motions,
     ratio_by_ranges,
-    reduced_torque,
     scaled_to_power,
     spectral_fit,
     stiffness_by_ranges,
@@ -31,24 +52,10 @@ from fe_drivetrain.procedure import (
 )
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run, check_in_time
-from fe_drivetrain.torsion import Inertia, chain, damped_modes
+from fe_drivetrain.torsion import damped_modes
 
-FRONT, REAR, STIFFNESS, RATIO = 150.34, 24.0, 5296.0, 0.03  # kg m^2, N m/rad, of critical damping
-GEAR, SPEED, MEAN = 81.49, 188.5, 4000.0  # -, rad/s and N m of the high-speed shaft
-REDUCED = FRONT * REAR / (FRONT + REAR)
-OMEGA = float(np.sqrt(STIFFNESS / REDUCED))
-DAMPING = 2.0 * RATIO * REDUCED * OMEGA
-TRUTH = np.array([REDUCED, DAMPING, STIFFNESS])
-SYSTEM = chain(
-    (Inertia("rotor", FRONT), Inertia("generator", REAR)), [("shaft", STIFFNESS, DAMPING)]
-)
-TURN = 2.0 * np.pi * GEAR / SPEED  # s
-STEP = 0.005  # s
-DRIVING, BRAKING = 100.0, 40.0  # N m, standard deviations of a broadband run
-BROAD, NARROW, USED = (0.05, 20.0), (2.4, 2.7), (1.0, 5.0)  # Hz
 OF = ("inertia / truth", "damping / truth", "stiffness / truth")
 REPEATS = 20
-GAUGE = Sensor(gain=0.93, offset=20.0, noise=25.0)
 ENCODERS = 4096, 60  # pulses a turn of low- and high-speed shaft
 
 
@@ -104,26 +111,6 @@ def run(run: Run, page: Page) -> None:
         f"samples have {noisy[1]['least squares: damping / truth']:.2g} and "
         f"{noisy[1]['least squares: stiffness / truth']:.2g}.",
     )
-
-
-def simulated(
-    samples: int,
-    band: tuple[float, float],
-    braking: float,
-    braking_band: tuple[float, float] | None = None,
-) -> dict[str, Twist]:
-    """The twist with three torques that could be called T_rot."""
-    driving = band_torque(samples, STEP, band, DRIVING, 1)
-    load = band_torque(samples, STEP, braking_band or band, 1.0, 2) * braking
-    motions = periodic_motions(SYSTEM, np.stack([driving, -load]), STEP)
-    twist = [a[0] - a[1] for a in (motions.angle, motions.speed, motions.acceleration)]
-    reduced, _ = reduced_torque(driving, load, FRONT, REAR)
-    torques = {
-        "shaft": element_torques(SYSTEM, motions)[0],
-        "reduced": reduced,
-        "aerodynamic": driving,
-    }
-    return {name: Twist(STEP, torque, *twist) for name, torque in torques.items()}
 
 
 def printed(page: Page, run: str, twists: dict[str, Twist]) -> list[Record]:

@@ -5,14 +5,7 @@ import json
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.procedure.pitch_and_yaw import (
-    AXIAL,
-    DIAMETER,
-    MOMENT,
-    PITCH,
-    RADIAL,
-    YAW,
-)
+from fe_drivetrain.cases.procedure.slewing_drives import AXIAL, DIAMETER, MOMENT, PITCH, RADIAL, YAW
 from fe_drivetrain.common import Floats, wrench_transport
 from fe_drivetrain.compare import round_off
 from fe_drivetrain.hub_loads import (

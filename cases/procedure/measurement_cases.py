@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.procedure.identification import FRONT, GAUGE, MEAN, REAR, SYSTEM
+from fe_drivetrain.cases.procedure.known_drivetrain import FRONT, GAUGE, MEAN, REAR, SYSTEM
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import InTime, converge_in_time, peak_between
 from fe_drivetrain.dynamics import energy_error, torsional_equations, varying

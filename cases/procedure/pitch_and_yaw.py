@@ -3,6 +3,20 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.procedure.slewing_drives import (
+    AXIAL,
+    BRIDGES,
+    DEFICIT,
+    DIAMETER,
+    MOMENT,
+    PITCH,
+    RADIAL,
+    STEP,
+    STOP_RAMP,
+    TEETH,
+    YAW,
+    stop_motion,
+)
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import round_off
 from fe_drivetrain.histories import even_levels, time_at_level
@@ -14,7 +28,6 @@ from fe_drivetrain.hub_loads import (
     turbine_histories,
 )
 from fe_drivetrain.procedure import (
-    SlewingDrive,
     drive_torque,
     friction_torque,
     governing_torque,
@@ -30,14 +43,7 @@ from fe_drivetrain.procedure import (
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run
 
-PITCH = SlewingDrive(part=12e3, drive=0.02, ratio=1500.0)
-YAW = SlewingDrive(part=2.0e6, drive=0.08, ratio=1200.0)
-DIAMETER, TEETH = 2.0, 130
-STEP = 0.01  # s
-MOMENT, AXIAL, RADIAL = 3000e3, 200e3, 100e3  # N m, N
-STOP_SPEED, STOP_RAMP = np.radians(7.0), 0.3  # rad/s, s
 PAUSE, DURATION, TURNED = 120.0, 12.0, np.radians(5.0)  # s, s, rad
-BRIDGES, DEFICIT = 35.576, -0.09  # m, share
 BRAKES, MOTOR = (100.0, 200.0, 400.0), 150.0  # N m, at the motors of the yaw drives, all together
 WINDS = (13.0, 16.0, 20.0, 24.0)
 ASSUMED = "the report prints none: of the size of a machine of 2 MW"
@@ -63,24 +69,6 @@ def run(run: Run, page: Page) -> None:
         f"{counts[:quarter].sum() / counts.sum():.0%} "
         f"of all meshes, and one tooth {counts.max() / counts.mean():.1f} times the mean."
     )
-
-
-def stop_motion() -> tuple[Floats, Floats, Floats, Floats]:
-    """Time, angle, speed, acceleration of pitching by 70 degrees, ramps without corners."""
-    time = np.arange(0.0, 13.0, STEP)
-    hold = np.radians(70.0) / STOP_SPEED - STOP_RAMP
-    start = 1.0
-    end = start + STOP_RAMP + hold
-
-    def ramp(at: float) -> tuple[Floats, Floats]:
-        x = np.clip((time - at) / STOP_RAMP, 0.0, 1.0)
-        speed = 0.5 * (1.0 - np.cos(np.pi * x))
-        return speed, 0.5 * np.pi / STOP_RAMP * np.sin(np.pi * x) * ((x > 0) & (x < 1))
-
-    up, down = ramp(start), ramp(end)
-    speed, acceleration = (STOP_SPEED * (a - b) for a, b in zip(up, down, strict=True))
-    speed = np.where(time > end + STOP_RAMP, 0.0, speed)
-    return time, np.cumsum(speed) * STEP, speed, acceleration
 
 
 def work(torque: Floats, speed: Floats) -> float:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.dynamics.drivetrain_levels import more_rungs
+from fe_drivetrain.cases.references.machine_rungs import more_rungs
 from fe_drivetrain.common import Floats
 from fe_drivetrain.dynamics import (
     RUNGS,

@@ -7,6 +7,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import end_flexibilities as shafts
+from fe_drivetrain.cases.stability.clamped_plates import boss_rotation
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import least_safe
 from fe_drivetrain.geometry import Flange, MeshSizes, Section, Shaft
@@ -16,8 +18,6 @@ from fe_drivetrain.report import dashed, map_traces
 from fe_drivetrain.revolution import seat_stiffness
 from fe_drivetrain.solve import recovery_estimate, solve_solid
 from fe_drivetrain.suite import Page, Run
-from fe_drivetrain.validation import end_flexibilities as shafts
-from fe_drivetrain.validation.clamped_plates import boss_rotation
 
 #: Flange over shaft diameter.
 RATIOS = (1.4, 1.7, 2.0, 2.5, 3.0)

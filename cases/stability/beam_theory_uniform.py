@@ -7,6 +7,10 @@ from functools import partial
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import end_flexibilities as shafts
+from fe_drivetrain.cases.references import rigid_ended_shafts
+from fe_drivetrain.cases.references.shaft_theory import Tube, flexure_stress
+from fe_drivetrain.cases.references.solid_shafts import straight
 from fe_drivetrain.common import Bools, Floats
 from fe_drivetrain.compare import least_safe
 from fe_drivetrain.geometry import LENGTH_TOLERANCE
@@ -19,10 +23,6 @@ from fe_drivetrain.revolution import (
     surface_loads,
 )
 from fe_drivetrain.suite import Page, Run
-from fe_drivetrain.validation import end_flexibilities as shafts
-from fe_drivetrain.validation import rigid_ended_shafts
-from fe_drivetrain.validation.shaft_theory import Tube, flexure_stress
-from fe_drivetrain.validation.solid_shafts import straight
 
 #: Bore over outer diameter.
 BORES = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9)

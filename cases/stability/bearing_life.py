@@ -6,6 +6,14 @@ import numpy as np
 
 from fe_drivetrain.bearing import equilibrium, lamina_loads, pressures, sjovall
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references.studied_lives import (
+    ENOUGH,
+    LOAD,
+    Setup,
+    own_setup,
+    roller_rows,
+    thesis_setup,
+)
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import (
     decades,
@@ -23,14 +31,6 @@ from fe_drivetrain.life import (
     life_factor,
 )
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.studied_lives import (
-    ENOUGH,
-    LOAD,
-    Setup,
-    own_setup,
-    roller_rows,
-    thesis_setup,
-)
 
 KAPPA = "viscosity ratio kappa"
 OVER = "e_C C_u / P"

@@ -7,23 +7,15 @@ import numpy as np
 
 from fe_drivetrain.bearing import Bearing, RollerRow, catalogue_bearing, equilibrium, forces
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.cases.stability.random_loads import random_loads
+from fe_drivetrain.common import InputError
 from fe_drivetrain.compare import decades
 from fe_drivetrain.report import rolling_elements
 from fe_drivetrain.suite import Page, Record, Run, column
 
-#: Sizes of axial force, radial forces and moments of random loads [N, N m].
-SIZES = np.array([3e5, 2e5, 4e5, 8e5, 6e5])
-
 UM = 1e-6
 
 SHARE = "clearance over the deflection of all rollers by the load"
-
-
-def random_loads(n: int) -> Floats:
-    """Loads of all directions and of two decades of size."""
-    rng = np.random.default_rng(0)
-    return SIZES * rng.normal(size=(n, 5)) * 10.0 ** rng.uniform(-2.0, 0.0, (n, 1))
 
 
 @case(

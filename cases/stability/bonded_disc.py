@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_drivetrain.cases.references import locking_bars as bars
+from fe_drivetrain.cases.references import locking_solids as solids
 from fe_drivetrain.cases.stability import locking_curves as curves
 from fe_drivetrain.cases.stability.locking_curves import (
     AVERAGED,
@@ -20,8 +22,6 @@ from fe_drivetrain.operator import incompressible
 from fe_drivetrain.report import crosses, trace
 from fe_drivetrain.solve import MAX_ITERATIONS, TOLERANCE, direct_solvers
 from fe_drivetrain.suite import Page, Run
-from fe_drivetrain.validation import locking_bars as bars
-from fe_drivetrain.validation import locking_solids as solids
 
 NUS = (0.3, 0.4, 0.45, 0.49, 0.499, 0.4999)
 QUICK_NUS = (0.3, 0.49, 0.499, 0.4999)

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.stability import extreme_parts
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Run
-from fe_drivetrain.validation import extreme_parts
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ import meshio
 import numpy as np
 import rich.progress  # noqa: F401 - once here, not in each of the forked children
 
-from fe_drivetrain.commands import run_and_print, show_steps
+from fe_drivetrain.commands import main_of_case
 from fe_drivetrain.common import CACHE_VARIABLE, MANIFEST, Cache, rigid_motions, until_stopped
 from fe_drivetrain.geometry import NO_BANDS, MeshSizes, Shaft
 from fe_drivetrain.geometry import Section as ShaftSection
@@ -175,17 +175,27 @@ def ended(pid: int, read: int) -> tuple[int, str]:
 
 
 def run_new(out: Path) -> int:
-    """Run a case as the command line does."""
-    return run_and_print(lambda: [CASE_KILLED], out, [f"mark={NEW}"])
+    """Run the case as a user's script does; its exit status."""
+    sys.argv = ["small.py", "--out", str(out), "--set", f"mark={NEW}"]
+    try:
+        main_of_case(CASE_KILLED)
+    except SystemExit as end:
+        return int(end.code or 0)
+    raise AssertionError("a script ends with its exit status")
 
 
 def run_in_place(out: Path) -> int:
     """Run a case as a program without protection would: empty the folder and write into it."""
     shutil.rmtree(out)
     out.mkdir()
-    with show_steps() as report:
-        run_into(CASE_KILLED, out, {"mark": NEW}, False, report)
+    run_into(CASE_KILLED, out, {"mark": NEW}, False, _say)
     return 0
+
+
+def _say(step: str, lane: int = 0) -> None:
+    """Write a step as it begins, as the command line does."""
+    sys.stderr.write(f"{step} ...\n")
+    sys.stderr.flush()
 
 
 def experiment(folder: Path, moments: int) -> Found:
@@ -297,10 +307,7 @@ def _signalled(sent: signal.Signals, out: Path) -> int:
         time.sleep(10)
 
     globals()["solve_solid"] = stop
-    try:
-        return run_new(out)
-    except SystemExit as end:
-        return int(end.code or 0)
+    return run_new(out)
 
 
 def _starved(size: int, out: Path) -> int:

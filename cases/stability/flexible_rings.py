@@ -13,7 +13,7 @@ from fe_drivetrain.bearing import (
     equilibrium_on_races,
 )
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.stability.bearing_newton import random_loads
+from fe_drivetrain.cases.stability.random_loads import random_loads
 from fe_drivetrain.common import Floats
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.report import rolling_elements

@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import fillet_factors, rigid_ended_shafts
+from fe_drivetrain.cases.stability import folded_meshes
 from fe_drivetrain.geometry import MeshSizes
 from fe_drivetrain.mesh import (
     Mesh,
@@ -17,7 +19,6 @@ from fe_drivetrain.mesh import (
 )
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run, column, grouped
-from fe_drivetrain.validation import fillet_factors, folded_meshes, rigid_ended_shafts
 
 #: Elements to a full turn of the fillet's radius; a fillet is a quarter of a turn.
 PER_TURN = (6.0, 5.0, 4.0, 3.5, 3.0, 2.5, 2.0, 1.5, 1.0)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references.rated_gears import rated_meshes
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import decades, safe_range
 from fe_drivetrain.gear import (
@@ -17,7 +18,6 @@ from fe_drivetrain.gear import (
 )
 from fe_drivetrain.report import gear_pair
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.rated_gears import rated_meshes
 
 PAIR = rated_meshes()["NREL 5 MW, stage 1, sun and planet"].pair
 C = 14e9  # N/m^2

@@ -6,13 +6,7 @@ import numpy as np
 
 from fe_drivetrain.bearing import equilibrium, lamina_loads
 from fe_drivetrain.cases import case
-from fe_drivetrain.compare import (
-    as_printed,
-    fitted_exponent,
-)
-from fe_drivetrain.life import stress_riser
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.studied_lives import (
+from fe_drivetrain.cases.references.studied_lives import (
     ENOUGH,
     LOAD,
     SPEEDS,
@@ -24,6 +18,12 @@ from fe_drivetrain.validation.studied_lives import (
     roller_rows,
     thesis_setup,
 )
+from fe_drivetrain.compare import (
+    as_printed,
+    fitted_exponent,
+)
+from fe_drivetrain.life import stress_riser
+from fe_drivetrain.suite import Page, Record, Run
 
 LAMINAE = "laminae of a roller"
 SEEDS = "histories of each wind speed"

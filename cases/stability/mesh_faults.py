@@ -5,6 +5,9 @@ import time
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import rigid_ended_shafts, slivers
+from fe_drivetrain.cases.references.exact_blocks import LENGTH, SIDE
+from fe_drivetrain.cases.stability import faulty_meshes
 from fe_drivetrain.common import InputError
 from fe_drivetrain.geometry import WIDEST, MeshSizes, Section, Shaft
 from fe_drivetrain.mesh import Mesh, find_faults, generate
@@ -12,8 +15,6 @@ from fe_drivetrain.report import trace
 from fe_drivetrain.response import build_model, mesh_scene, needed_faces
 from fe_drivetrain.scene import Scene, library_scene
 from fe_drivetrain.suite import Page, Record, Run, column
-from fe_drivetrain.validation import faulty_meshes, rigid_ended_shafts, slivers
-from fe_drivetrain.validation.exact_blocks import LENGTH, SIDE
 
 #: Rows of cubes over the height of the cracked bar, and crack depths in rows.
 ROWS, DEPTHS = 8, (0, 1, 2, 4, 6, 8)

@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.stability.tied_strips import TIES, strip, tied_strip
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import fitted_exponent, last_within
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run, column
-from fe_drivetrain.validation.tied_strips import TIES, strip, tied_strip
 
 #: Elements across the coarser side, and how many times as many across the finer.
 COARSE = 2

@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import tied_rings
+from fe_drivetrain.cases.references.tied_rings import TIES, Tie, Twisted
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import fitted_exponent, last_within
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run, column, grouped
-from fe_drivetrain.validation import tied_rings
-from fe_drivetrain.validation.tied_rings import TIES, Tie, Twisted
 
 #: Elements round the coarser ring, and how many times as many round the finer.
 COARSE, QUICK_COARSE = 5, 4

@@ -5,13 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import InputError
-from fe_drivetrain.compare import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
-from fe_drivetrain.report import crosses, trace
-from fe_drivetrain.scene import change_scene, library_scene
-from fe_drivetrain.solve import System, solve
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.penalised_couplings import (
+from fe_drivetrain.cases.stability.penalised_couplings import (
     KINDS,
     bar,
     eliminated,
@@ -19,6 +13,12 @@ from fe_drivetrain.validation.penalised_couplings import (
     penalised,
     work,
 )
+from fe_drivetrain.common import InputError
+from fe_drivetrain.compare import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
+from fe_drivetrain.report import crosses, trace
+from fe_drivetrain.scene import change_scene, library_scene
+from fe_drivetrain.solve import System, solve
+from fe_drivetrain.suite import Page, Record, Run
 
 NAMES = {
     "tie": "tie of two halves that do not match",

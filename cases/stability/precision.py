@@ -3,13 +3,13 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references.solid_shafts import straight
+from fe_drivetrain.cases.stability import other_precisions
+from fe_drivetrain.cases.stability.other_precisions import BORE, DIAMETER
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import FOUR_DIGITS, fitted_exponent, in_words, safe_range
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run, column
-from fe_drivetrain.validation import other_precisions
-from fe_drivetrain.validation.other_precisions import BORE, DIAMETER
-from fe_drivetrain.validation.solid_shafts import straight
 
 LOADS = ("bending", "torsion")
 

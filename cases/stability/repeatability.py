@@ -5,11 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats, scratch_folder
-from fe_drivetrain.compare import FOUR_DIGITS, fitted_exponent, in_words, safe_range
-from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.fingerprints import (
+from fe_drivetrain.cases.stability.fingerprints import (
     STIFFNESS,
     Arrays,
     different,
@@ -17,6 +13,10 @@ from fe_drivetrain.validation.fingerprints import (
     methods,
     tube_answers,
 )
+from fe_drivetrain.common import Floats, scratch_folder
+from fe_drivetrain.compare import FOUR_DIGITS, fitted_exponent, in_words, safe_range
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record, Run
 
 #: Lengths over diameters of the tubes that other processes solve.
 LENGTHS = (5.0, 200.0)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import locking_bars as bars
 from fe_drivetrain.cases.stability.bent_shafts import (
     ONE_PERCENT,
     OVER_DIAMETER,
@@ -27,7 +28,6 @@ from fe_drivetrain.operator import elasticity, incompatible, incompressible
 from fe_drivetrain.report import trace
 from fe_drivetrain.solve import recovery_estimate
 from fe_drivetrain.suite import Page, Run
-from fe_drivetrain.validation import locking_bars as bars
 
 #: Lengths of elements over the depth of the square bar.
 LENGTHS = (1 / 16, 1 / 8, 1 / 4, 1 / 2, 1.0, 2.0, 4.0, 8.0, 16.0)

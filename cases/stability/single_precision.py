@@ -9,6 +9,9 @@ from scipy import sparse
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import layers, slivers
+from fe_drivetrain.cases.references import solver_trials as trials
+from fe_drivetrain.cases.references import thin_bodies as bodies
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import FOUR_DIGITS, safe_range
 from fe_drivetrain.geometry import MeshSizes
@@ -25,9 +28,6 @@ from fe_drivetrain.scene import (
 )
 from fe_drivetrain.solve import TOLERANCE, System, multigrid, reduce
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation import layers, slivers
-from fe_drivetrain.validation import solver_trials as trials
-from fe_drivetrain.validation import thin_bodies as bodies
 
 Solid = tuple[System, Floats]
 

@@ -3,11 +3,11 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import solver_trials as trials
+from fe_drivetrain.cases.references import thin_bodies as bodies
 from fe_drivetrain.cases.stability import solver_sweep as sweep
 from fe_drivetrain.compare import fitted_exponent
 from fe_drivetrain.suite import Page, Run
-from fe_drivetrain.validation import solver_trials as trials
-from fe_drivetrain.validation import thin_bodies as bodies
 
 DIAMETER, WALL = 0.7, 0.175  # m
 #: Elements along a shaft, at most, and round it.

@@ -3,13 +3,13 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import slivers
 from fe_drivetrain.common import Bools, Floats
 from fe_drivetrain.compare import fitted_exponent
 from fe_drivetrain.mesh import FLATTEST, find_faults, flatness
 from fe_drivetrain.report import trace
 from fe_drivetrain.solve import MAX_ITERATIONS
 from fe_drivetrain.suite import Page, Record, Run, column
-from fe_drivetrain.validation import slivers
 
 #: Heights of the slivers, in cubes.
 HEIGHTS = (0.5, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-14)

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.stability import housing_nodes as housing
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report import trace
 from fe_drivetrain.response import PLANES, VERTICAL
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation import housing_nodes as housing
 
 #: Factors on the sizes of the mesh, coarse first.
 FACTORS = (1.4, 1.0, 0.75)

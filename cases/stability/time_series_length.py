@@ -5,11 +5,11 @@ import math
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.stability import streamed_series as series
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import fitted_exponent, moments
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run, column
-from fe_drivetrain.validation import streamed_series as series
 
 #: Samples of the histories whose variance is taken, and how many of these.
 SAMPLES, HISTORIES = 20_000, 8

@@ -6,6 +6,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import locking_solids as solids
 from fe_drivetrain.cases.stability.bonded_disc import bent_shaft, disc, iterations
 from fe_drivetrain.cases.stability.locking_curves import (
     AVERAGED,
@@ -26,7 +27,6 @@ from fe_drivetrain.operator import incompatible
 from fe_drivetrain.report import crosses, trace
 from fe_drivetrain.scene import HIGHEST_POISSON_RATIO
 from fe_drivetrain.suite import Page, Run
-from fe_drivetrain.validation import locking_solids as solids
 
 #: Poisson's ratios of the pressed cylinder.
 NUS = (0.3, 0.35, 0.4, 0.45, 0.48, 0.49, 0.495, 0.499, 0.4995, 0.4999)

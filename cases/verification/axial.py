@@ -3,12 +3,12 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import shaft_theory as theory
+from fe_drivetrain.cases.references.end_loaded import section_area
+from fe_drivetrain.cases.references.exact_shafts import pulled
 from fe_drivetrain.cases.verification.shaft_inputs import begin_uniform
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column
-from fe_drivetrain.validation import shaft_theory as theory
-from fe_drivetrain.validation.end_loaded import section_area
-from fe_drivetrain.validation.exact_shafts import pulled
 
 STEEL = MATERIALS["steel"]
 OUTER, BORE, LENGTH = 0.4, 0.28, 0.8  # m

@@ -1,11 +1,24 @@
 """Coverage of the bands of condensed shafts: random shafts against much finer models."""
 
 from collections.abc import Callable, Sequence
-from itertools import pairwise
 
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.verification.bands_over_errors import (
+    BAND,
+    BINS,
+    COVERED,
+    ERROR,
+    HOLDS,
+    LEFT,
+    RATIO,
+    WIDE,
+    counted,
+)
+from fe_drivetrain.cases.verification.filleted_shafts import filleted_scenes
+from fe_drivetrain.cases.verification.independent_shafts import FOUND, independent_shaft
+from fe_drivetrain.cases.verification.random_shafts import random_scene
 from fe_drivetrain.common import (
     Floats,
     InputError,
@@ -20,9 +33,6 @@ from fe_drivetrain.report import shaft_with_rings
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.solve import Condensed
 from fe_drivetrain.suite import Page, Record, Run, column, grouped
-from fe_drivetrain.validation.filleted_shafts import filleted_scenes
-from fe_drivetrain.validation.independent_shafts import FOUND, independent_shaft
-from fe_drivetrain.validation.random_shafts import random_scene
 
 SHAFTS, SOLIDS, FILLETS = 200, 25, 19
 #: Of a quick run: shafts of few elements, one of them also as a solid.
@@ -33,21 +43,11 @@ REFERENCE, FILLETED = (8, 5), (6, 4)
 #: Order where quadrilaterals have fillets, which two elements each are to follow.
 ROUNDED = 10
 
-#: Required: share of the bands that hold, and median of the bands over their errors.
-COVERED, WIDE = 0.95, 5.0
 #: Required: least of the bands over their errors on shafts with one fillet, without the safety
 #: factor of the rule, which is for rates that mix.
 RESERVE = 1.8
 #: Largest order of the meridian that is judged.
 ORDER = 6
-#: Edges of the histogram's bins.
-EDGES = (0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 10.0, np.inf)
-BINS = [
-    f"{low:g} to {high:g}" if high < np.inf else f"above {low:g}" for low, high in pairwise(EDGES)
-]
-
-BAND, ERROR, RATIO = "band, relative", "error, relative", "band over error"
-LEFT, HOLDS = "left of the reference, relative", "holds"
 #: Shafts without fillets that an independent program solves, too, hub and gearbox kept.
 INDEPENDENT, QUICK_INDEPENDENT = (2, 8, 1, 3, 13, 14), (2,)
 MERIDIAN, SOLID, ONE_FILLET = "2, meridian", "3, solid", "2, one fillet"
@@ -80,11 +80,6 @@ def reference(scene: Scene, quick: bool = False) -> tuple[Floats, StiffnessBands
     share = ((order - 1) / order) ** 2
     change = StiffnessBands.of_difference(before, found)
     return found, change.each(lambda c: c * share / (1.0 - share))
-
-
-def counted(rows: list[Record]) -> list[int]:
-    """How many bands over errors are in each of the `BINS`."""
-    return [int(n) for n in np.histogram(column(rows, RATIO), EDGES)[0]]
 
 
 def chosen(run: Run) -> tuple[Sequence[int], Sequence[int]]:

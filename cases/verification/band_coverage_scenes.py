@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.band_coverage import (
+from fe_drivetrain.cases.verification.bands_over_errors import (
     BAND,
     BINS,
     COVERED,
@@ -17,6 +17,7 @@ from fe_drivetrain.cases.verification.band_coverage import (
     WIDE,
     counted,
 )
+from fe_drivetrain.cases.verification.random_scenes import random_scene
 from fe_drivetrain.common import MOTIONS, Cache, Floats, InputError
 from fe_drivetrain.fidelity import (
     LevelModel,
@@ -31,7 +32,6 @@ from fe_drivetrain.report import shaft_with_rings
 from fe_drivetrain.response import mesh_scene
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.suite import Page, Record, Run, column, grouped
-from fe_drivetrain.validation.random_scenes import random_scene
 
 SCENES, QUICK = 60, 1
 #: A finer mesh than this has a reference of a hundred thousand elements: those are left out.

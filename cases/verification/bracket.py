@@ -1,10 +1,10 @@
 """Bracket with a fillet under an end force, against a plane solution by scikit-fem."""
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.verification.bracket_plane import Bracket, plane_answer
+from fe_drivetrain.cases.verification.bracket_solid import meshed, solid_answer
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
-from fe_drivetrain.validation.bracket_plane import Bracket, plane_answer
-from fe_drivetrain.validation.bracket_solid import meshed, solid_answer
 
 FILLET, HEIGHT, ARM, LEG = 0.05, 0.1, 0.3, 0.2  # m
 BRACKET = Bracket(FILLET, HEIGHT, ARM, LEG)

@@ -1,13 +1,13 @@
 """A cantilever bent by a force: Saint-Venant's exact flexure, and Cowper's shear."""
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import shaft_theory as theory
+from fe_drivetrain.cases.references.exact_shafts import flexed, neutral_shear, tip_deflection
+from fe_drivetrain.cases.references.solid_shafts import straight
 from fe_drivetrain.cases.verification import shaft_inputs as inputs
 from fe_drivetrain.cases.verification.shaft_inputs import ERROR, SHAFT, TURN
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
-from fe_drivetrain.validation import shaft_theory as theory
-from fe_drivetrain.validation.exact_shafts import flexed, neutral_shear, tip_deflection
-from fe_drivetrain.validation.solid_shafts import straight
 
 STEEL = MATERIALS["steel"]
 OUTER, LENGTH, FORCE = 0.4, 0.8, 1e6  # m, m, N

@@ -277,8 +277,9 @@ def main() -> None:
     kinds = {name: words for name, words in (QUICK | OTHERS).items() if name in names}
     load(
         f"fe_drivetrain.commands.{name}"
-        for name in ("advice_page", "validate_page", "run", "studies", "export", "loads_page")
+        for name in ("validate_page", "run", "studies", "export", "loads_page")
     )
+    load(iter(("fe_drivetrain.pages.advice", "fe_drivetrain.pages.uncertainty")))
     load(f"fe_drivetrain.cases.{name.replace('/', '.')}" for name in CASES)
     load(iter(("fe_drivetrain.report.page", "fe_drivetrain.report.index", "rich.progress")))
     gc.freeze()

@@ -5,12 +5,12 @@ from collections.abc import Callable
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references.loaded_blocks import fourth_power, within_surface
+from fe_drivetrain.cases.references.plane_rings import CURVED_BAR, CurvedBar, plane_strain
+from fe_drivetrain.cases.verification.curved_bars import bent_and_pulled, curvature_of, quarter_of
 from fe_drivetrain.common import Floats
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
-from fe_drivetrain.validation.curved_bars import bent_and_pulled, curvature_of, quarter_of
-from fe_drivetrain.validation.loaded_blocks import fourth_power, within_surface
-from fe_drivetrain.validation.plane_rings import CURVED_BAR, CurvedBar, plane_strain
 
 INNER, OUTER = 0.1, 0.3  # m
 BAR = CurvedBar(INNER, OUTER)

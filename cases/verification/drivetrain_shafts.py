@@ -3,13 +3,18 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import published_drivetrains as published
+from fe_drivetrain.cases.references.implied_shafts import (
+    SHEAR_MODULUS,
+    diameter,
+    implied,
+    of_stiffness,
+)
+from fe_drivetrain.cases.references.solid_shafts import straight
+from fe_drivetrain.cases.references.twisted_tubes import twisted_tube
 from fe_drivetrain.cases.verification.shaft_inputs import show_inputs
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run, Target
-from fe_drivetrain.validation import published_drivetrains as published
-from fe_drivetrain.validation.implied_shafts import SHEAR_MODULUS, diameter, implied, of_stiffness
-from fe_drivetrain.validation.solid_shafts import straight
-from fe_drivetrain.validation.twisted_tubes import twisted_tube
 
 LENGTHS = 0.5, 1.0, 2.0
 STIFFNESS, DIAMETER = "k [N m/rad]", "diameter at 1 m"

@@ -1,10 +1,11 @@
 """A shoulder fillet in curved tetrahedra, against the same fillet in its meridian."""
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import fillet_factors
+from fe_drivetrain.cases.verification import solid_fillet
 from fe_drivetrain.compare import DOUBTFUL, richardson
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run, Target
-from fe_drivetrain.validation import fillet_factors, solid_fillet
 
 #: D/d, r/d.
 WIDE, RADIUS = 1.6, 0.25

@@ -7,10 +7,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases import cases
-from fe_drivetrain.plots import PALETTE
-from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.fillet_factors import (
+from fe_drivetrain.cases.references.fillet_factors import (
     PETERSON,
     TIPTON,
     Factor,
@@ -22,6 +19,9 @@ from fe_drivetrain.validation.fillet_factors import (
     shouldered,
     tipton,
 )
+from fe_drivetrain.plots import PALETTE
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record, Run
 
 #: r/d of the sweep.
 RADII = (0.03, 0.05, 0.12, 0.2, 0.3)

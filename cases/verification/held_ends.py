@@ -1,13 +1,13 @@
 """Tension of a shaft whose ends are held flat and round: how much stiffer it is than EA / L."""
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import end_loaded, solid_shafts
+from fe_drivetrain.cases.references import shaft_theory as theory
 from fe_drivetrain.cases.verification.shaft_inputs import HARMONICS, begin_uniform
 from fe_drivetrain.mesh import Grading
 from fe_drivetrain.revolution import end_stiffness
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import Page, Record, Run, Target
-from fe_drivetrain.validation import end_loaded, solid_shafts
-from fe_drivetrain.validation import shaft_theory as theory
 
 STEEL = MATERIALS["steel"]
 OUTER, BORE, STRETCH = 0.4, 0.28, 1e-4  # m

@@ -3,10 +3,16 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references.interference_fits import (
+    ExactFit,
+    Pressed,
+    exact_fit,
+    press,
+    quarters,
+)
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, targets_of
-from fe_drivetrain.validation.interference_fits import ExactFit, Pressed, exact_fit, press, quarters
 
 RADII = BORE, SEAT, OUTER = 0.15, 0.3175, 0.348  # m
 MISFIT = 100e-6  # m, on the radius

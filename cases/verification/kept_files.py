@@ -15,9 +15,8 @@ from typing import Any, get_args
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.commands.loads_digest import Options
-from fe_drivetrain.commands.loads_page import kept_digest as loads_digest
 from fe_drivetrain.common import CACHE_VARIABLE, Floats, silent
+from fe_drivetrain.common.array_records import as_arrays
 from fe_drivetrain.common.cache import Kind
 from fe_drivetrain.common.kept_files import UnfitError, read_kept
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
@@ -28,6 +27,8 @@ from fe_drivetrain.mesh import cached_mesh
 from fe_drivetrain.scene import library_scene
 from fe_drivetrain.studies.life_digest import Reading
 from fe_drivetrain.studies.life_digest import kept_digest as life_digest
+from fe_drivetrain.studies.load_digest import LoadOptions
+from fe_drivetrain.studies.load_reactions import kept_digest as loads_digest
 from fe_drivetrain.studies.rolling_bearings import Choices, bearings_of
 from fe_drivetrain.suite import Page, Record, Run, column
 from fe_drivetrain.uncertainty.kept_rows import evaluated_rows
@@ -86,9 +87,9 @@ class Maker:
 
     def counted_loads(self) -> Any:
         """The digest of a file by `loads`."""
-        options = Options({}, 0.0, (3.0, 10.0), "half", 0.0, 1.5)
+        options = LoadOptions(slopes=(3.0, 10.0), rotor_speed=1.5)
         found = loads_digest(silent, self.loads, options, resume=True)
-        return {name: array.tobytes() for name, array in found.items()}
+        return {name: array.tobytes() for name, array in as_arrays(found).items()}
 
     def damage(self) -> Any:
         """The digest of a file by `life`."""

@@ -6,17 +6,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import solid_shafts
+from fe_drivetrain.cases.references.shaft_theory import (
+    Tube,
+    evenly_loaded_shear,
+    parabola_shortfall,
+)
 from fe_drivetrain.cases.verification.shaft_inputs import show_inputs
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import Page, Run
-from fe_drivetrain.validation import solid_shafts
-from fe_drivetrain.validation.shaft_theory import (
-    Tube,
-    evenly_loaded_shear,
-    parabola_shortfall,
-)
 
 #: Bending and torsion [N m/rad] of the three shafts of Park et al. 2021, Table 2.
 TABLE = {

@@ -1,9 +1,9 @@
 """Orders of convergence of tetrahedra for a manufactured solution, on a bar and a curved body."""
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import manufactured as m
 from fe_drivetrain.cases.verification.orders import add_manufactured
 from fe_drivetrain.suite import Page, Run
-from fe_drivetrain.validation import manufactured as m
 
 
 @case(

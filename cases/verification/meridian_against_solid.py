@@ -5,12 +5,7 @@ import time
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.compare import grid_convergence, richardson
-from fe_drivetrain.geometry import Shaft
-from fe_drivetrain.report import trace
-from fe_drivetrain.revolution import end_stiffness
-from fe_drivetrain.suite import Page, Record, Run, column
-from fe_drivetrain.validation.shaft_ends import (
+from fe_drivetrain.cases.references.shaft_ends import (
     SHAFTS,
     STEEL,
     Solid,
@@ -18,7 +13,12 @@ from fe_drivetrain.validation.shaft_ends import (
     imbalance,
     solid_stiffness,
 )
-from fe_drivetrain.validation.torsion_meridian import torsion_bounds
+from fe_drivetrain.cases.references.torsion_meridian import torsion_bounds
+from fe_drivetrain.compare import grid_convergence, richardson
+from fe_drivetrain.geometry import Shaft
+from fe_drivetrain.report import trace
+from fe_drivetrain.revolution import end_stiffness
+from fe_drivetrain.suite import Page, Record, Run, column
 
 #: Elements per coarsest element, in all three directions.
 CUTS = (1, 2, 3)

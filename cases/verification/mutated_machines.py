@@ -9,17 +9,17 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.dynamics import MACHINES, Machine, MachineTable, library_machine, parse_machine
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.torsion import Drivetrain, parse_drivetrain
-from fe_drivetrain.validation import published_drivetrains as published
-from fe_drivetrain.validation.machine_facts import (
+from fe_drivetrain.cases.references import published_drivetrains as published
+from fe_drivetrain.cases.verification.machine_facts import (
     Outcome,
     machine_facts,
     table_facts,
     tried,
 )
-from fe_drivetrain.validation.mutated_tables import mutated
+from fe_drivetrain.cases.verification.mutated_tables import mutated
+from fe_drivetrain.dynamics import MACHINES, Machine, MachineTable, library_machine, parse_machine
+from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.torsion import Drivetrain, parse_drivetrain
 
 MACHINES_TRIED, TABLES_TRIED, QUICK, FEWEST = 300, 200, 40, 20
 TABLES = ("drivetrain_a", "drivetrain_b", "drivetrain_c", "nrel_750kw")

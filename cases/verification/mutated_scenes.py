@@ -3,10 +3,10 @@
 from collections import Counter
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.verification import scene_mutants
+from fe_drivetrain.cases.verification.scene_mutants import Outcome
 from fe_drivetrain.report import bars
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation import mutated_scenes
-from fe_drivetrain.validation.mutated_scenes import Outcome
 
 SEED = 43
 COUNT, QUICK_COUNT = 500, 60
@@ -39,11 +39,9 @@ def run(run: Run, page: Page) -> None:
     found: list[Outcome] = []
     run.report(f"{count} mutants")
     with run.step("mutants"):
-        for mutant in mutated_scenes.mutants(count, seed):
+        for mutant in scene_mutants.mutants(count, seed):
             k = sum(not outcome.sentence for outcome in found)
-            found.append(
-                mutated_scenes.judged(mutant, meridian=k % meridian == 0, cad=k % cad == 0)
-            )
+            found.append(scene_mutants.judged(mutant, meridian=k % meridian == 0, cad=k % cad == 0))
     taken = [o for o in found if not o.sentence]
     worst = worst_errors(taken)
     check(page, found, worst)
@@ -81,8 +79,8 @@ def check(page: Page, found: list[Outcome], worst: dict[str, tuple[float, str]])
             f"{fact}, {FACTS[fact.partition(': ')[2]]}: worst error over what round-off may change",
             error,
             1.0,
-            why=f"{mutated_scenes.ROUNDINGS} roundings times the condition of the motions, at most "
-            f"{mutated_scenes.MOST:g} of the largest",
+            why=f"{scene_mutants.ROUNDINGS} roundings times the condition of the motions, at most "
+            f"{scene_mutants.MOST:g} of the largest",
             source="independent of the solver: statics, Maxwell, Hooke, volumes",
         )
     page.holds(

@@ -3,9 +3,9 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.verification import patched_interfaces as patched
 from fe_drivetrain.report import bars
 from fe_drivetrain.suite import Page, Run, Target, column
-from fe_drivetrain.validation import patched_interfaces as patched
 
 DIVISIONS = "elements along a side of the sector"
 ERROR = "error of the stress"

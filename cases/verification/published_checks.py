@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_drivetrain.cases.references.shaft_theory import polar_moment
+from fe_drivetrain.cases.references.twisted_tubes import TwistedTube, twisted_tube
 from fe_drivetrain.suite import Page, Run, Target
-from fe_drivetrain.validation.shaft_theory import polar_moment
-from fe_drivetrain.validation.twisted_tubes import TwistedTube, twisted_tube
 
 DIGITS = "half of the last published digit"
 CLOSED_FORM = "closed form G J / L"

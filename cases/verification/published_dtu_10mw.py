@@ -5,6 +5,12 @@ from typing import Any
 
 import numpy as np
 
+from fe_drivetrain.cases.references.shaft_theory import (
+    chain_frequencies,
+    polar_moment,
+    rod_frequency,
+    two_mass_frequencies,
+)
 from fe_drivetrain.cases.verification.published_checks import (
     DIGITS,
     STIFFNESS,
@@ -14,12 +20,6 @@ from fe_drivetrain.cases.verification.published_checks import (
 )
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Target
-from fe_drivetrain.validation.shaft_theory import (
-    chain_frequencies,
-    polar_moment,
-    rod_frequency,
-    two_mass_frequencies,
-)
 
 STEEL_DENSITY = 7850.0  # kg/m^3
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from fe_drivetrain.cases.references.shaft_theory import polar_moment
 from fe_drivetrain.cases.verification.published_checks import (
     CLOSED_FORM,
     USUAL_G,
@@ -15,7 +16,6 @@ from fe_drivetrain.cases.verification.published_checks import (
 )
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record
-from fe_drivetrain.validation.shaft_theory import polar_moment
 
 
 def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaft) -> None:

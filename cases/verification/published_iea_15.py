@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+from fe_drivetrain.cases.references.shaft_theory import polar_moment
 from fe_drivetrain.cases.verification.published_checks import (
     DIGITS,
     MainShaft,
@@ -11,7 +12,6 @@ from fe_drivetrain.cases.verification.published_checks import (
     compare_stiffness,
 )
 from fe_drivetrain.suite import Page, Record
-from fe_drivetrain.validation.shaft_theory import polar_moment
 
 TURN, ERROR = "elements round a turn", "relative error"
 

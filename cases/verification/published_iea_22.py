@@ -5,6 +5,9 @@ from typing import Any
 
 import numpy as np
 
+from fe_drivetrain.cases.references import solid_shafts
+from fe_drivetrain.cases.references.shaft_theory import polar_moment
+from fe_drivetrain.cases.references.twisted_tubes import material_of
 from fe_drivetrain.cases.verification.published_checks import (
     CLOSED_FORM,
     STIFFNESS,
@@ -16,9 +19,6 @@ from fe_drivetrain.cases.verification.published_checks import (
 from fe_drivetrain.report import trace
 from fe_drivetrain.revolution import end_stiffness
 from fe_drivetrain.suite import Page, Record, Target
-from fe_drivetrain.validation import solid_shafts
-from fe_drivetrain.validation.shaft_theory import polar_moment
-from fe_drivetrain.validation.twisted_tubes import material_of
 
 
 def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaft) -> None:

@@ -5,6 +5,12 @@ from typing import Any
 
 import numpy as np
 
+from fe_drivetrain.cases.references.shaft_theory import (
+    chain_frequencies,
+    polar_moment,
+    solid_diameter,
+    two_mass_frequencies,
+)
 from fe_drivetrain.cases.verification.published_checks import (
     CLOSED_FORM,
     STIFFNESS,
@@ -15,12 +21,6 @@ from fe_drivetrain.cases.verification.published_checks import (
 )
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record
-from fe_drivetrain.validation.shaft_theory import (
-    chain_frequencies,
-    polar_moment,
-    solid_diameter,
-    two_mass_frequencies,
-)
 
 
 def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaft) -> None:

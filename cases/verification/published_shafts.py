@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from fe_drivetrain.cases import cases
+from fe_drivetrain.cases.references.solid_shafts import straight
 from fe_drivetrain.cases.verification import (
     published_dtu_10mw,
     published_iea_10,
@@ -14,7 +15,6 @@ from fe_drivetrain.cases.verification import (
 from fe_drivetrain.cases.verification.published_checks import MainShaft, main_shaft
 from fe_drivetrain.cases.verification.shaft_inputs import show_inputs
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.solid_shafts import straight
 
 #: By the turbine of a row: what judges it.
 TURBINES: dict[str, Callable[[Page, Mapping[str, Any], Record, MainShaft], None]] = {

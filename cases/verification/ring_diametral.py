@@ -5,11 +5,11 @@ from functools import partial
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references.plane_rings import plane_strain
+from fe_drivetrain.cases.verification import squeezed_rings as rings
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, targets_of
-from fe_drivetrain.validation import squeezed_rings as rings
-from fe_drivetrain.validation.plane_rings import plane_strain
 
 RADIUS, FORCE = 0.33, 1e6  # m, of the wall's middle; N/m of width
 STEEL = Material(youngs_modulus=206e9, poisson_ratio=0.3, density=0.0)

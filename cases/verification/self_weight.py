@@ -3,13 +3,18 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import solid_shafts
+from fe_drivetrain.cases.references.shaft_theory import Tube, evenly_loaded_shear, sag, within_arcs
+from fe_drivetrain.cases.references.supported_shafts import (
+    EVENLY,
+    Load,
+    SupportedShaft,
+    sag_over_beam,
+)
 from fe_drivetrain.cases.verification.shaft_inputs import SIZE, begin, check_motion, show_inputs
 from fe_drivetrain.common import GRAVITY
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column
-from fe_drivetrain.validation import solid_shafts
-from fe_drivetrain.validation.shaft_theory import Tube, evenly_loaded_shear, sag, within_arcs
-from fe_drivetrain.validation.supported_shafts import EVENLY, Load, SupportedShaft, sag_over_beam
 
 STEEL = MATERIALS["steel"]
 OUTER, RATIO, DOWN = 0.4, 6.0, -GRAVITY  # diameter [m], overhang over it, m/s^2

@@ -5,14 +5,14 @@ from typing import Any
 
 import numpy as np
 
+from fe_drivetrain.cases.references.exact_shafts import ExactShaft
+from fe_drivetrain.cases.references.solid_shafts import Supported, mesh_band, straight
+from fe_drivetrain.cases.references.supported_shafts import Load, SupportedShaft
 from fe_drivetrain.common import Floats
 from fe_drivetrain.geometry import Shaft
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import Page, Record, Run, Target
-from fe_drivetrain.validation.exact_shafts import ExactShaft
-from fe_drivetrain.validation.solid_shafts import Supported, mesh_band, straight
-from fe_drivetrain.validation.supported_shafts import Load, SupportedShaft
 
 SIZE = "Stirling 2023, Table 3.1, in size"
 HARMONICS = "Fourier harmonics in the meridian (fe_drivetrain.revolution.harmonics)"

@@ -3,13 +3,18 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references.shaft_theory import Tube
+from fe_drivetrain.cases.references.solid_shafts import local_compliance, mesh_band, straight
+from fe_drivetrain.cases.references.supported_shafts import (
+    EVENLY,
+    Load,
+    SupportedShaft,
+    within_evenly,
+)
 from fe_drivetrain.cases.verification import shaft_inputs as inputs
 from fe_drivetrain.common import GRAVITY
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import Page, Record, Run, Target
-from fe_drivetrain.validation.shaft_theory import Tube
-from fe_drivetrain.validation.solid_shafts import local_compliance, mesh_band, straight
-from fe_drivetrain.validation.supported_shafts import EVENLY, Load, SupportedShaft, within_evenly
 
 STEEL, OUTER, L = MATERIALS["steel"], 0.4, 2.4  # m
 TUBE = Tube(OUTER, 0.0, L, STEEL)

@@ -6,14 +6,15 @@ from typing import Literal
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import two_bodies
+from fe_drivetrain.cases.verification import tied_bars
+from fe_drivetrain.cases.verification.tied_bars import TIES, Stiffnesses, TieKind
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import GridConvergence, grid_convergence
 from fe_drivetrain.interfaces import eliminate, mortar_tie
 from fe_drivetrain.mesh import brick
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation import tied_bars, two_bodies
-from fe_drivetrain.validation.tied_bars import TIES, Stiffnesses, TieKind
 
 #: Divisions of the section's sides: of the slave, of the master.
 RATIOS = ((2, 4), (2, 3), (2, 2), (3, 2), (4, 2))

@@ -7,15 +7,15 @@ from typing import Literal
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import tied_rings, two_bodies
+from fe_drivetrain.cases.references.tied_rings import BORE, LAME, OUTSIDE, TIED
+from fe_drivetrain.cases.references.two_bodies import Bodies
 from fe_drivetrain.common import Floats, rigid_motions
 from fe_drivetrain.compare import grid_convergence
 from fe_drivetrain.interfaces import Constraint, dofs, held_dofs, mortar_tie, settled
 from fe_drivetrain.mesh import Block
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run, column
-from fe_drivetrain.validation import tied_rings, two_bodies
-from fe_drivetrain.validation.tied_rings import BORE, LAME, OUTSIDE, TIED
-from fe_drivetrain.validation.two_bodies import Bodies
 
 WIDTH = 1.0  # m
 

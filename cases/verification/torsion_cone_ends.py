@@ -3,19 +3,13 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import solid_shafts
+from fe_drivetrain.cases.references.shaft_theory import between_spheres, within_arcs
+from fe_drivetrain.cases.references.torsion_meridian import series_stiffness, torsion_bounds
+from fe_drivetrain.cases.verification.conical_shaft import HALF_ANGLE, INPUTS, RADII, SHAFT, STEEL
 from fe_drivetrain.cases.verification.shaft_inputs import begin, show_inputs
 from fe_drivetrain.cases.verification.torsion_bound import between, check_plane_sections
-from fe_drivetrain.cases.verification.torsion_conical import (
-    HALF_ANGLE,
-    INPUTS,
-    RADII,
-    SHAFT,
-    STEEL,
-)
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
-from fe_drivetrain.validation import solid_shafts
-from fe_drivetrain.validation.shaft_theory import between_spheres, within_arcs
-from fe_drivetrain.validation.torsion_meridian import series_stiffness, torsion_bounds
 
 G = STEEL.shear_modulus
 ANGLES, QUICK_ANGLES = (2.5, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0), (5.0, 10.0, 20.0, 30.0)

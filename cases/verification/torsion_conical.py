@@ -3,22 +3,12 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import end_loaded, solid_shafts
+from fe_drivetrain.cases.references.shaft_theory import michell_torque, within_arcs
+from fe_drivetrain.cases.verification.conical_shaft import HALF_ANGLE, INPUTS, RADII, SHAFT, STEEL
 from fe_drivetrain.cases.verification.shaft_inputs import begin, show_inputs
-from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
-from fe_drivetrain.validation import end_loaded, solid_shafts
-from fe_drivetrain.validation.shaft_theory import michell_torque, within_arcs
 
-STEEL = MATERIALS["steel"]
-#: Radii at the ends [m] and half angle of the cone [degrees].
-RADII, HALF_ANGLE = (0.15, 0.3), 10.0
-SHAFT = solid_shafts.cone(RADII, HALF_ANGLE)
-INPUTS = (
-    ("radius at the thin end", RADII[0], "m"),
-    ("radius at the thick end", RADII[1], "m"),
-    ("half angle of the cone", HALF_ANGLE, "degrees"),
-    ("length", SHAFT.length, "m", "of these"),
-)
 #: Of Michell's displacements: u_t = -SCALE r / R^3 [m^3].
 SCALE = 1e-3 * RADII[0] ** 3
 TORQUE = SCALE * michell_torque(np.radians(HALF_ANGLE), STEEL.shear_modulus)

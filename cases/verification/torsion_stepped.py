@@ -1,13 +1,17 @@
 """Torsion of a stepped shaft: the series sum of L / GJ, and the flexibility of the step."""
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references import solid_shafts
+from fe_drivetrain.cases.references.torsion_meridian import (
+    added_length,
+    series_stiffness,
+    torsion_bounds,
+)
+from fe_drivetrain.cases.references.twisted_tubes import twisted_step
 from fe_drivetrain.cases.verification import torsion_bound as bound
 from fe_drivetrain.cases.verification.shaft_inputs import begin, show_inputs
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation import solid_shafts
-from fe_drivetrain.validation.torsion_meridian import added_length, series_stiffness, torsion_bounds
-from fe_drivetrain.validation.twisted_tubes import twisted_step
 
 STEEL = MATERIALS["steel"]
 G = STEEL.shear_modulus

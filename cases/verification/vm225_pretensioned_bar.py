@@ -3,6 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references.interference_fits import pressed_pairs
 from fe_drivetrain.cases.verification.units import INCH, POUND, PSI
 from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.compare import round_off
@@ -13,7 +14,6 @@ from fe_drivetrain.report import Measure
 from fe_drivetrain.scene import Material
 from fe_drivetrain.solve import solve_solid
 from fe_drivetrain.suite import Page, Run
-from fe_drivetrain.validation.interference_fits import pressed_pairs
 
 LENGTH, WIDTH, HEIGHT = 12.0 * INCH, 1.0 * INCH, 0.5 * INCH
 FORCE = 125.0 * POUND  # on this half of the bar

@@ -1,13 +1,17 @@
 """Long cylinder under pressure and in rotation: verification problem VM25 of Ansys."""
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references.loaded_blocks import face_loads, solve_block
+from fe_drivetrain.cases.references.plane_rings import Rotating, plane_strain
+from fe_drivetrain.cases.references.ring_slices import (
+    along_the_middle,
+    divided_sector,
+    slice_supports,
+)
 from fe_drivetrain.cases.verification.units import INCH, PSI
 from fe_drivetrain.operator import body_loads, pressure
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, targets_of
-from fe_drivetrain.validation.loaded_blocks import face_loads, solve_block
-from fe_drivetrain.validation.plane_rings import Rotating, plane_strain
-from fe_drivetrain.validation.ring_slices import along_the_middle, divided_sector, slice_supports
 
 INNER, INSIDE, OUTER = 4.0 * INCH, 5.43 * INCH, 8.0 * INCH
 PLACES = {"bore": INNER, "r = 5.43 in": INSIDE, "mid-wall": 6.0 * INCH, "outside": OUTER}

@@ -87,13 +87,13 @@ class Beam:
     Attributes
     ----------
     sections : sequence of BeamSection or RigiditySection
-        From the upwind end on.
+        Sections, from the upwind end on.
     supports : sequence of Support
-        At any stations on the beam, each with its own name.
+        Supports at any stations on the beam, each with its own name.
     start : float
-        x of the upwind end, m.
+        Axial place x of the upwind end, m.
     material : Material
-        Of every section given by its shape; the density counts only where gravity does.
+        Material of every section given by its shape; the density counts only where gravity does.
     shear : bool
         Whether shear deforms the beam (Timoshenko, Cowper's coefficient); False is
         Euler-Bernoulli.

@@ -45,20 +45,21 @@ class MainBearingBeam:
     Attributes
     ----------
     overhang : float
-        L1, hub to main bearing, m.
+        Length L1, hub to main bearing, m.
     span : float
-        L2, main bearing to gearbox, m.
+        Length L2, main bearing to gearbox, m.
     radial_stiffness, axial_stiffness : float
-        K1 and K2 of the gearbox connection, N/m; `inf` is rigid.
+        Stiffness K1 and K2 of the gearbox connection, N/m; `inf` is rigid.
     gearbox_weight : float
-        At the gearbox along -z, N, so positive is downward.
+        Weight at the gearbox along -z, N, so positive is downward.
     shaft_diameter, bore : float
-        m.
+        Diameters, m.
     tilt_stiffness, yaw_stiffness : float
-        K_R of the bearing about y (vertical plane) and about z (horizontal plane), N m/rad.
-        Defaults are the thesis's for its housing (section 3.3.1); `inf` is rigid, 0 is pinned.
+        Stiffness K_R of the bearing about y (vertical plane) and about z (horizontal plane), N
+        m/rad. Defaults are the thesis's for its housing (section 3.3.1); `inf` is rigid, 0 is
+        pinned.
     material : Material
-        Of the shaft. The thesis gives none: steel is an assumption.
+        Material of the shaft. The thesis gives none: steel is an assumption.
 
     Raises
     ------
@@ -198,8 +199,8 @@ def torsional_spring_reaction(
         total = 1.0 / bearing_stiffness + lift + bend
         if total == 0.0:
             raise InputError(
-                "bearing, gearbox and shaft stiffness inf share the load in a way that statics "
-                "cannot tell: make at least one of them finite."
+                "bearing, gearbox and shaft have infinite stiffness, so that their shares of the "
+                "load are indeterminate: make at least one of them finite."
             )
         bearing_moment = (arm * bend + (arm - G * span) * lift) / total
     reaction = (M + B * (overhang + span) - bearing_moment) / span
@@ -219,7 +220,7 @@ def pinned_model(loads: ArrayLike, parameters: MainBearingBeam) -> Floats:
     Returns
     -------
     ndarray, (..., 6)
-        Load on the main bearing. The closed forms say nothing of thrust and torque; here the
+        Load on the main bearing. The closed forms do not cover thrust and torque; here the
         bearing locates the shaft and takes all of Fx, and the gearbox takes all of Mx.
 
     Raises

@@ -13,21 +13,22 @@ from fe_drivetrain.solve.condensation import Condensed
 
 
 def condensed_beam(beam: Beam, names: Sequence[str], stations: Floats) -> Condensed:
-    """The beam without its supports at named stations, exact for loads at these.
+    """Condense the beam without its supports to named stations, exact for loads at these.
 
     Parameters
     ----------
     beam : Beam
         The beam; what supports it has is left out.
     names : Sequence[str]
-        Of n stations.
+        Names of n stations.
     stations : Floats
-        (n,) x of each [m], in any order, both ends of the beam among them.
+        Axial place x (n,) of each [m], in any order, both ends of the beam among them.
 
     Returns
     -------
     body : Condensed
-        Stiffness between the stations, and the weight as it is carried by clamps at all of them.
+        Body: stiffness between the stations, and the weight as it is carried by clamps at all of
+        them.
     """
     bare = replace(beam, supports=())
     n = len(names)

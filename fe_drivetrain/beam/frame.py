@@ -28,12 +28,12 @@ from fe_drivetrain.solve.condensation import Condensed, condense
 
 @dataclass(frozen=True)
 class CrossSection:
-    """What a beam's section does, in its principal axes.
+    """Properties of a beam's section, in its principal axes.
 
     Attributes
     ----------
     area : float
-        [m^2].
+        Area [m^2].
     shear_areas : tuple[float, float]
         Effective in forces along the section's first and second axis [m^2].
     torsion : float
@@ -56,7 +56,7 @@ def round_section(outer: float, poisson_ratio: float, inner: float = 0.0) -> Cro
     outer, inner : float
         Diameters [m].
     poisson_ratio : float
-        For Cowper's shear coefficient (Cowper 1966).
+        Poisson ratio, for Cowper's shear coefficient (Cowper 1966).
     """
     area = np.pi / 4 * (outer**2 - inner**2)
     inertia = np.pi / 64 * (outer**4 - inner**4)
@@ -91,7 +91,7 @@ def annular_sector(inner: float, outer: float, angle: float, poisson_ratio: floa
     inner, outer : float
         Radii [m].
     angle : float
-        Of the sector [rad].
+        Angle of the sector [rad].
     """
     area = angle / 2 * (outer**2 - inner**2)
     square = (outer**4 - inner**4) / 8
@@ -136,13 +136,13 @@ class Member:
     Attributes
     ----------
     nodes : tuple[int, int]
-        Their numbers.
+        Numbers of the nodes.
     ends : tuple[Floats, Floats]
-        Where the beam begins and ends, (3,) each [m].
+        Positions (3,) of both ends of the beam [m].
     section : CrossSection
-        Its section.
+        Cross-section of the beam.
     first_axis : Floats
-        (3,) direction of the section's first axis, made square to the beam.
+        Direction (3,) of the section's first axis, made square to the beam.
     """
 
     nodes: tuple[int, int]
@@ -158,13 +158,13 @@ class Follower:
     Attributes
     ----------
     name, position : str, Floats
-        Of the point; (3,) [m].
+        Name and position (3,) of the point [m].
     nodes : Sequence[int]
-        (k,) that the places belong to.
+        Nodes (k,) that the places belong to.
     places : Floats
-        (k, 3) [m].
+        Positions (k, 3) of the places [m].
     weights : Floats
-        (k,) of each.
+        Weights (k,) of the places.
     """
 
     name: str
@@ -181,14 +181,13 @@ class SpatialFrame:
     Attributes
     ----------
     positions : Floats
-        (n, 3) of the nodes [m].
+        Positions (n, 3) of the nodes [m].
     members : Sequence[Member]
         The beams.
     material : Material
-        Of all.
+        Material of all members.
     inertias : dict[int, Floats]
-        (6, 6) mass matrix about the node, of nodes that are bodies of their own [kg, kg m,
-        kg m^2].
+        Mass matrix (6, 6) about the node, of nodes that are bodies of their own [kg, kg m, kg m^2].
     """
 
     positions: Floats

@@ -27,7 +27,7 @@ def beam_of_scene(
     scene : Scene
         The scene. Shoulder fillets are left out; the flange is a section of its own.
     bearing_stiffness : Mapping[str, ArrayLike]
-        For each bearing (6,) or (6, 6) stiffness of bearing and housing; inf is rigid. A beam
+        Stiffness (6,) or (6, 6) of bearing and housing for each bearing; inf is rigid. A beam
         cannot know what a housing does, so none is assumed.
     shear : bool
         Whether shear deforms the shaft.
@@ -140,6 +140,6 @@ def main_bearing_beam(scene: Scene, tilt: float = 0.0, yaw: float = 0.0) -> Main
             material=scene.material_of("shaft"),
         )
     raise InputError(
-        f"scene {scene.title!r} has {reason}: compare it with the general beam (beam_of_scene) "
-        "or simplify the scene"
+        f"scene {scene.title!r} has {reason}: compare it with the general beam (fe-drivetrain "
+        "study, or beam_of_scene) or simplify the scene"
     )

@@ -68,9 +68,10 @@ class BeamSection:
     length : float
         Length along x, m.
     outer_diameter, inner_diameter : float
-        At the section's start, m.
+        Diameters at the section's start, m.
     outer_diameter_end, inner_diameter_end : float, optional
-        At the section's end, m; the same as at the start when left out. Both vary linearly.
+        Diameters at the section's end, m; the same as at the start when left out. Both vary
+        linearly.
 
     Raises
     ------
@@ -166,7 +167,7 @@ class ElementIntegrals:
     sag : ndarray, (6, 3)
         Motion of the right end under the length's own weight, per m/s^2 along x, y, z.
     weight : ndarray, (6, 3)
-        That weight as force and moment at the left end, per m/s^2 along x, y, z.
+        Weight as force and moment at the left end, per m/s^2 along x, y, z.
     """
 
     flexibility: Floats
@@ -226,7 +227,7 @@ def flexibility(compliance: Floats, arm: Floats) -> Floats:
         Strains of pieces of the beam per force and moment in them, times their lengths: weights of
         a quadrature over rigidities.
     arm : ndarray, (q,)
-        From each piece to the right end, m.
+        Distance from each piece to the right end, m.
 
     Returns
     -------

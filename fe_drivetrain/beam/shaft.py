@@ -49,7 +49,7 @@ class BeamSolution:
     Attributes
     ----------
     stations : ndarray, (S,) or ()
-        Where displacements are given, m; for a scalar they have no axis S.
+        Stations where displacements are given, m; for a scalar they have no axis S.
     supports : tuple of str, (m,)
         Names, in the order of the reactions.
     displacements : ndarray, (..., S, 6)
@@ -83,19 +83,19 @@ class UnitLoadResponse:
     Attributes
     ----------
     load_stations : ndarray, (L,) or ()
-        Where loads may act, m.
+        Stations where loads may act, m.
     stations : ndarray, (S,) or ()
-        Where displacements are given, m.
+        Stations where displacements are given, m.
     supports : tuple of str, (m,)
         Names, in the order of the reactions.
     displacement : ndarray, (S, 6, L, 6)
-        Per unit load: the compliance, m/N and so on.
+        Displacement per unit load: the compliance, m/N and so on.
     reaction : ndarray, (m, 6, L, 6)
         Load on each support per unit load.
     gravity_displacement : ndarray, (S, 6, 3)
-        Per m/s^2 of gravity along x, y, z.
+        Displacement per m/s^2 of gravity along x, y, z.
     gravity_reaction : ndarray, (m, 6, 3)
-        Per m/s^2 of gravity along x, y, z.
+        Reaction per m/s^2 of gravity along x, y, z.
     """
 
     load_stations: Floats
@@ -186,7 +186,7 @@ def unit_load_response(
     ------
     InputError
         If a station is not on the beam, the supports leave the beam free to move (the motion is
-        named), or two rigid supports share a load in a way that statics cannot tell.
+        named), or two rigid supports share a load indeterminately.
     """
     loaded = stations_on(beam, "load station", load_stations)
     wanted = stations_on(beam, "output station", [] if at is None else at)

@@ -23,13 +23,13 @@ class LoadZone:
     Attributes
     ----------
     loaded : Ints
-        (n,) how many.
+        Number (n,) of loaded rolling elements.
     peak, total : Floats
-        (n,) largest load, and sum of all [N].
+        Maximum load (n,), and sum of all loads [N].
     at_deg : Floats
-        (n,) angle of the largest load [deg], 0 to 360.
+        Angle (n,) of the maximum load [deg], 0 to 360.
     centre_deg : Floats
-        (n,) direction of the row's radial force [deg]; not a number without one.
+        Direction (n,) of the row's radial force [deg]; not a number without one.
     """
 
     loaded: Ints
@@ -47,12 +47,12 @@ def by_row(bearing: Bearing, values: Floats) -> list[Floats]:
     bearing : Bearing
         The bearing.
     values : Floats
-        (n, total), as from `roller_loads`.
+        Values (n, total), as from `roller_loads`.
 
     Returns
     -------
     rows : list of Floats
-        (n, elements of the row) each.
+        Values (n, elements of the row) of each row.
     """
     return np.split(values, np.cumsum(bearing.counts)[:-1], axis=1)
 
@@ -65,7 +65,7 @@ def load_zones(bearing: Bearing, displacements: ArrayLike) -> list[LoadZone]:
     bearing : Bearing
         The bearing.
     displacements : array_like
-        (n, 5) [m, rad].
+        Displacements (n, 5) [m, rad].
 
     Returns
     -------
@@ -99,34 +99,34 @@ def lamina_loads(row: RollerRow, displacements: ArrayLike) -> Floats:
     Parameters
     ----------
     row : RollerRow
-        With one lamina or more.
+        Row with one lamina or more.
     displacements : array_like
-        (n, 5) or (5,) [m, rad].
+        Displacements (n, 5) or (5,) [m, rad].
 
     Returns
     -------
     loads : Floats
-        (n, rollers, laminae) [N].
+        Loads (n, rollers, laminae) [N].
     """
     n_laminae = max(row.laminae, 1)
     return row.law.load(approaches(row, displacements)) / n_laminae
 
 
 def laminae_of_contacts(row: RollerRow, approach: ArrayLike, lean: ArrayLike) -> Floats:
-    """Load of each lamina where every roller has its own deflection, as on rings that give way.
+    """Load of each lamina where every roller has its own deflection, as on elastic rings.
 
     Parameters
     ----------
     row : RollerRow
-        With one lamina or more.
+        Row with one lamina or more.
     approach, lean : array_like
-        (n, rollers) of the races at the roller's middle [m], and along the roller [rad], as
-        `fe_drivetrain.rings.AssemblyEquilibrium.deflections` has them.
+        Approach (n, rollers) of the races at the roller's middle [m], and lean along the roller
+        [rad], as `fe_drivetrain.rings.AssemblyEquilibrium.deflections` has them.
 
     Returns
     -------
     loads : Floats
-        (n, rollers, laminae) [N].
+        Loads (n, rollers, laminae) [N].
     """
     middle, t = np.asarray(approach, dtype=float), np.asarray(lean, dtype=float)
     along = 0.0 * row.places if row.aligning else row.places
@@ -140,14 +140,14 @@ def approaches(row: RollerRow, displacements: ArrayLike) -> Floats:
     Parameters
     ----------
     row : RollerRow
-        With one lamina or more.
+        Row with one lamina or more.
     displacements : array_like
-        (n, 5) or (5,) [m, rad].
+        Displacements (n, 5) or (5,) [m, rad].
 
     Returns
     -------
     approach : Floats
-        (n, rollers, laminae) [m]: Stirling 2023, Eq 4.13, less clearance and profile.
+        Approach (n, rollers, laminae) [m]: Stirling 2023, Eq 4.13, less clearance and profile.
     """
     u = np.atleast_2d(np.asarray(displacements, dtype=float))
     psi = angles(row)
@@ -162,21 +162,21 @@ def approaches(row: RollerRow, displacements: ArrayLike) -> Floats:
 
 
 def end_loads(row: RollerRow, displacements: ArrayLike) -> Floats:
-    """How much the ends of each roller carry: load per length there over that of the whole roller.
+    """Relative load of each roller's ends: load per length there over that of the whole roller.
 
     Parameters
     ----------
     row : RollerRow
-        With laminae.
+        Row with laminae.
     displacements : array_like
-        (n, 5) [m, rad].
+        Displacements (n, 5) [m, rad].
 
     Returns
     -------
     ends : Floats
-        (n, rollers, 2), upwind end first: 1 is an even load, more is edge loading, 0 an end that is
-        free; 0 of unloaded rollers. The thesis's difference of two end laminae is the difference of
-        these two times the load over the number of laminae.
+        Relative end loads (n, rollers, 2), upwind end first: 1 is an even load, more is edge
+        loading, 0 an end that is free; 0 of unloaded rollers. The thesis's difference of two end
+        laminae is the difference of these two times the load over the number of laminae.
     """
     q = lamina_loads(row, displacements)
     mean = q.mean(axis=2, keepdims=True)
@@ -194,14 +194,14 @@ def ball_contacts(
     Parameters
     ----------
     row : BallRow
-        The row.
+        Row of balls.
     youngs_modulus : float
-        Of balls and rings [Pa].
+        Young's modulus of balls and rings [Pa].
 
     Returns
     -------
     inner, outer : PointContact
-        Curvatures at the unloaded contact angle.
+        Contacts with curvatures at the unloaded contact angle.
     """
     across, gamma = 2.0 / row.diameter, pitch_ratio(row)
     inner, outer = (
@@ -217,22 +217,23 @@ def ball_contacts(
 def pressures(
     bearing: Bearing, displacements: ArrayLike, youngs_modulus: float = STEEL_E
 ) -> list[tuple[Floats, Floats]]:
-    """Largest Hertz pressure of each rolling element on the inner and on the outer race.
+    """Maximum Hertz pressure of each rolling element on the inner and on the outer race.
 
     Parameters
     ----------
     bearing : Bearing
         The bearing.
     displacements : array_like
-        (n, 5) [m, rad].
+        Displacements (n, 5) [m, rad].
     youngs_modulus : float
-        Of rolling elements and rings [Pa].
+        Young's modulus of rolling elements and rings [Pa].
 
     Returns
     -------
     pressures : list of tuple
-        For each row, (n, elements) on the inner and on the outer race [Pa]: line contact of the
-        most loaded lamina (a barrel roller counts as a cylinder), point contact of balls.
+        Pressures for each row, (n, elements) on the inner and on the outer race [Pa]: line contact
+        of the lamina with the maximum load (a barrel roller counts as a cylinder), point contact of
+        balls.
     """
     loads = by_row(bearing, elements(bearing, displacements)[0])
     return [
@@ -251,23 +252,23 @@ def pressures(
 def race_pressures(
     row: Row, loads: ArrayLike, laminae: int = 1, youngs_modulus: float = STEEL_E
 ) -> tuple[Floats, Floats]:
-    """Largest Hertz pressures on the inner and on the outer race under loads of laminae, or balls.
+    """Maximum Hertz pressures on inner and outer race under loads of laminae, or balls.
 
     Parameters
     ----------
     row : RollerRow or BallRow
-        The row.
+        Row of rollers or balls.
     loads : array_like
-        Of laminae, or of balls [N], any shape.
+        Loads of laminae, or of balls [N], any shape.
     laminae : int
-        In how many equal ones a roller is cut.
+        Number of equal laminae that a roller is cut into.
     youngs_modulus : float
-        Of rolling elements and rings [Pa].
+        Young's modulus of rolling elements and rings [Pa].
 
     Returns
     -------
     inner, outer : Floats
-        In the shape of the loads [Pa]: line contact of a lamina, point contact of a ball.
+        Pressures in the shape of the loads [Pa]: line contact of a lamina, point contact of a ball.
     """
     Q = np.asarray(loads, dtype=float)
     if isinstance(row, BallRow):
@@ -286,26 +287,26 @@ def truncations(
     shoulders: tuple[float, float] = (0.2, 0.2),
     youngs_modulus: float = STEEL_E,
 ) -> tuple[Floats, Floats]:
-    """How far the contact ellipse of each ball runs over the shoulder of its groove.
+    """Share of each ball's contact ellipse that runs over the shoulder of its groove.
 
     Parameters
     ----------
     row : BallRow
-        The row, as of a bearing of its own.
+        Row of balls, treated as a bearing of its own.
     displacements : array_like
-        (n, 5) or (5,) [m, rad].
+        Displacements (n, 5) or (5,) [m, rad].
     shoulders : tuple of float
         Height of the inner and of the outer ring's shoulder above the bottom of the groove, over
         the ball's diameter; catalogues do not give it, a fifth is assumed.
     youngs_modulus : float
-        Of balls and rings [Pa].
+        Young's modulus of balls and rings [Pa].
 
     Returns
     -------
     inner, outer : Floats
-        (n, balls) share of the ellipse's long axis beyond the shoulder: 0 where it ends in the
-        groove. Contact is that of whole ellipses all the same: a share that is not zero says that
-        pressure and deflection are too low, and that the edge is loaded.
+        Share (n, balls) of the ellipse's long axis beyond the shoulder: 0 where it ends in the
+        groove. Contact is still that of whole ellipses: a share that is not zero says that pressure
+        and deflection are too low, and that the edge is loaded.
 
     Raises
     ------
@@ -380,13 +381,13 @@ def secant_stiffness(bearing: Bearing, displacements: ArrayLike) -> Floats:
     bearing : Bearing
         The bearing.
     displacements : array_like
-        (n, 5) or (5,) [m, rad].
+        Displacements (n, 5) or (5,) [m, rad].
 
     Returns
     -------
     secants : Floats
-        (n, 5, 5): the mean of the tangent stiffness on the straight way to u; symmetric. At zero
-        clearance it is the tangent over the exponent of the contact law.
+        Secant stiffness (n, 5, 5): the mean of the tangent stiffness on the straight way to u;
+        symmetric. At zero clearance it is the tangent over the exponent of the contact law.
     """
     u = np.atleast_2d(np.asarray(displacements, dtype=float))
     x, w = np.polynomial.legendre.leggauss(_GAUSS_POINTS)  # type: ignore[no-untyped-call]

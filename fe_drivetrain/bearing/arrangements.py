@@ -35,24 +35,24 @@ def tapered_row(
     Parameters
     ----------
     rollers : int
-        How many.
+        Number of rollers.
     diameter, length, pitch_diameter : float
-        Of a roller, and of the circle of their middles [m].
+        Sizes of a roller, and diameter of the circle of their middles [m].
     contact_angle_deg : float
-        Mean of inner and outer race [deg], between 0 and 90.
+        Mean contact angle of inner and outer race [deg], between 0 and 90.
     place : float
-        x of the rollers' middles [m].
+        Axial place x of the rollers' middles [m].
     thrust : int
         1: it carries an inner ring that is pushed downwind; -1: upwind.
     law : ContactLaw, optional
-        `houpert` where left out.
+        Contact law of a roller; `houpert` where left out.
     **more : float
-        Of `RollerRow`: clearance, laminae, crown, phase.
+        Further fields of `RollerRow`: clearance, laminae, crown, phase.
 
     Returns
     -------
     row : RollerRow
-        The row.
+        Row of tapered rollers.
 
     Raises
     ------
@@ -90,26 +90,26 @@ def double_row_tapered(
     Parameters
     ----------
     name : str
-        Of the bearing.
+        Name of the bearing.
     rollers : int
-        In each row.
+        Number of rollers in each row.
     diameter, length, pitch_diameter : float
-        Of a roller, and of the circle of their middles [m].
+        Sizes of a roller, and diameter of the circle of their middles [m].
     contact_angle_deg : float
-        [deg], between 0 and 90.
+        Contact angle [deg], between 0 and 90.
     spread : float
         Distance of the rows' middles [m].
     arrangement : str
         "X": a push downwind loads the downwind row (TDI); "O": the upwind row (TDO).
     law : ContactLaw, optional
-        `houpert` where left out.
+        Contact law of a roller; `houpert` where left out.
     **more : float
-        Of `RollerRow`: clearance, laminae, crown, phase.
+        Further fields of `RollerRow`: clearance, laminae, crown, phase.
 
     Returns
     -------
     bearing : Bearing
-        Upwind row first.
+        Bearing with the upwind row first.
     """
     if arrangement not in ("X", "O"):
         raise InputError(f"arrangement {arrangement!r} of {name}: give X (face to face) or O")
@@ -151,23 +151,24 @@ def spherical_roller(
     Parameters
     ----------
     name : str
-        Of the bearing.
+        Name of the bearing.
     rollers : int
-        In each row.
+        Number of rollers in each row.
     diameter, length, pitch_diameter : float
-        Of a roller, and of the circle of their middles [m].
+        Sizes of a roller, and diameter of the circle of their middles [m].
     contact_angle_deg : float
-        [deg], between 0 and 90; the rows stand where their contact normals meet in the centre.
+        Contact angle [deg], between 0 and 90; the rows stand where their contact normals meet in
+        the centre.
     law : ContactLaw, optional
-        `iso_line` where left out: the conformity is close, and a roller under load touches along
-        its length.
+        Contact law of a roller; `iso_line` where left out: the conformity is close, and a roller
+        under load touches along its length.
     **more : float
-        Of `RollerRow`: clearance, laminae, crown, phase.
+        Further fields of `RollerRow`: clearance, laminae, crown, phase.
 
     Returns
     -------
     bearing : Bearing
-        Carries no moment: a load with one is refused.
+        Bearing that carries no moment: a load with one is refused.
     """
     alpha = _inclined("spherical roller bearing", contact_angle_deg)
     rows = tuple(
@@ -202,22 +203,22 @@ def cylindrical(
     Parameters
     ----------
     name : str
-        Of the bearing.
+        Name of the bearing.
     rollers : int
-        In each row.
+        Number of rollers in each row.
     diameter, length, pitch_diameter : float
-        Of a roller, and of the circle of their middles [m].
+        Sizes of a roller, and diameter of the circle of their middles [m].
     places : tuple of float
-        x of each row's middles [m].
+        Axial place x of each row's middles [m].
     law : ContactLaw, optional
-        `iso_line` where left out.
+        Contact law of a roller; `iso_line` where left out.
     **more : float
-        Of `RollerRow`: clearance, laminae, crown, phase.
+        Further fields of `RollerRow`: clearance, laminae, crown, phase.
 
     Returns
     -------
     bearing : Bearing
-        Carries no axial force: a load with one is refused.
+        Bearing that carries no axial force: a load with one is refused.
     """
     rows = tuple(
         RollerRow(
@@ -249,20 +250,20 @@ def toroidal(
     Parameters
     ----------
     name : str
-        Of the bearing.
+        Name of the bearing.
     rollers : int
-        How many.
+        Number of rollers.
     diameter, length, pitch_diameter : float
-        Of a roller, and of the circle of their middles [m].
+        Sizes of a roller, and diameter of the circle of their middles [m].
     law : ContactLaw, optional
-        `iso_line` where left out.
+        Contact law of a roller; `iso_line` where left out.
     **more : float
-        Of `RollerRow`: clearance, laminae, crown, phase.
+        Further fields of `RollerRow`: clearance, laminae, crown, phase.
 
     Returns
     -------
     bearing : Bearing
-        Carries radial force alone. What floating takes from its clearance is not in it: see
+        Bearing that carries radial force alone. Loss of its clearance by floating is not in it: see
         `toroidal_clearance_loss`.
     """
     row = RollerRow(
@@ -296,26 +297,27 @@ def ball_row(
     Parameters
     ----------
     balls : int
-        How many.
+        Number of balls.
     diameter, pitch_diameter : float
-        Of a ball, and of the circle of their centres [m].
+        Diameter of a ball, and of the circle of their centres [m].
     contact_angle_deg : float
-        [deg]: 0 is a deep groove; its sign says which push of the inner ring the row carries.
+        Contact angle [deg]: 0 is a deep groove; its sign says which push of the inner ring the row
+        carries.
     place : float
-        x of the balls' centres [m].
+        Axial place x of the balls' centres [m].
     inner_conformity, outer_conformity : float
         Radius of a groove over the diameter of a ball; the defaults are those of ISO/TS 16281.
     radial_clearance : float
         Radial internal clearance [m], of the diameter.
     youngs_modulus : float
-        Of balls and rings [Pa].
+        Young's modulus of balls and rings [Pa].
     phase : float
         Angle of the first ball [rad].
 
     Returns
     -------
     row : BallRow
-        The row.
+        Row of balls.
     """
     if not -90.0 < contact_angle_deg < 90.0:
         raise InputError(

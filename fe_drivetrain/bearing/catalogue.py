@@ -80,17 +80,17 @@ class Entry(BaseModel):
     kind: Kind = Field(description="kind of bearing")
     arrangement: Arrangement | None = Field(default=None, description="X or O")
     elements: int = Field(description="rolling elements of one row")
-    element_diameter: float = Field(description="of a roller in its middle, or a ball [m]")
+    element_diameter: float = Field(description="diameter of a roller's middle, or a ball [m]")
     element_length: float | None = Field(default=None, description="effective length [m]")
     pitch_diameter: float = Field(description="circle of the elements' middles [m]")
-    contact_angle: float | None = Field(default=None, description="[deg]")
+    contact_angle: float | None = Field(default=None, description="contact angle [deg]")
     spread: float | None = Field(default=None, description="distance of the rows' middles [m]")
-    bore: float | None = Field(default=None, gt=0, description="of the inner ring [m]")
+    bore: float | None = Field(default=None, gt=0, description="bore of the inner ring [m]")
     law: Literal["houpert", "iso"] | None = Field(default=None, description="contact law")
-    clearance: float = Field(default=0.0, description="along the contact normal [m]")
-    laminae: int = Field(default=LAMINAE, description="of a roller; 0 is the closed form")
+    clearance: float = Field(default=0.0, description="clearance along the contact normal [m]")
+    laminae: int = Field(default=LAMINAE, description="laminae of a roller; 0 is the closed form")
     crown: float = Field(default=0.0, description="profile factor over the diameter [-]")
-    ratings: Printed | None = Field(default=None, description="as printed in a catalogue")
+    ratings: Printed | None = Field(default=None, description="ratings as printed in a catalogue")
     limiting_speed_rpm: float | None = Field(
         default=None, gt=0, description="that the catalogue allows [1/min]"
     )
@@ -140,7 +140,7 @@ class Entry(BaseModel):
         Parameters
         ----------
         name : str
-            For messages and reports.
+            Name for messages and reports.
 
         Returns
         -------
@@ -235,7 +235,7 @@ def catalogue_bearing(name: str, *more: str | Path, **changes: Any) -> Bearing:
     Parameters
     ----------
     name : str
-        Of the entry.
+        Name of the entry.
     *more : str or Path
         Catalogue files beside the package's.
     **changes : Any
@@ -244,7 +244,7 @@ def catalogue_bearing(name: str, *more: str | Path, **changes: Any) -> Bearing:
     Returns
     -------
     bearing : Bearing
-        Named as the entry.
+        Bearing named as the entry.
 
     Raises
     ------
@@ -255,12 +255,12 @@ def catalogue_bearing(name: str, *more: str | Path, **changes: Any) -> Bearing:
 
 
 def catalogue_entry(name: str, *more: str | Path, **changes: Any) -> Entry:
-    """What a catalogue says of a bearing; see `catalogue_bearing`.
+    """Catalogue entry of a bearing; see `catalogue_bearing`.
 
     Parameters
     ----------
     name : str
-        Of the entry.
+        Name of the entry.
     *more : str or Path
         Catalogue files beside the package's.
     **changes : Any
@@ -269,7 +269,7 @@ def catalogue_entry(name: str, *more: str | Path, **changes: Any) -> Entry:
     Returns
     -------
     entry : Entry
-        With its changes, checked.
+        Entry with its changes, checked.
 
     Raises
     ------

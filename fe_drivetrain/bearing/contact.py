@@ -1,4 +1,4 @@
-"""How a rolling element pushes back: load over deflection, profiles, Hertz pressure.
+"""Contact of a rolling element: load over deflection, profiles, Hertz pressure.
 
 A law is Q = K delta^n, of both contacts of a rolling element (inner and outer) in series, delta the
 approach of the two races along the common normal; no load where they are apart.
@@ -57,7 +57,7 @@ def houpert(length: float, diameter: float) -> ContactLaw:
     Parameters
     ----------
     length, diameter : float
-        Of the roller [m].
+        Length and diameter of the roller [m].
 
     Returns
     -------
@@ -93,9 +93,9 @@ def palmgren_line(length: float, youngs_modulus: float = STEEL_E) -> ContactLaw:
     Parameters
     ----------
     length : float
-        Of the roller [m].
+        Length of the roller [m].
     youngs_modulus : float
-        Of rollers and rings [Pa], Poisson ratio 0.3.
+        Young's modulus of rollers and rings [Pa]; their Poisson ratio is 0.3.
 
     Returns
     -------
@@ -116,12 +116,12 @@ def linear(stiffness: float) -> ContactLaw:
     Parameters
     ----------
     stiffness : float
-        Of one rolling element with both its contacts [N/m].
+        Stiffness of one rolling element with both its contacts [N/m].
 
     Returns
     -------
     law : ContactLaw
-        n = 1.
+        Law with n = 1.
     """
     return ContactLaw(stiffness, 1.0)
 
@@ -142,7 +142,7 @@ class PointContact:
     half_axes: tuple[float, float]
 
     def pressure(self, load: Floats) -> Floats:
-        """Largest pressure [Pa] under a load [N]: 3 Q / (2 pi a b)."""
+        """Maximum pressure [Pa] under a load [N]: 3 Q / (2 pi a b)."""
         a, b = self.half_axes
         return 1.5 * np.cbrt(np.maximum(load, 0.0)) / (np.pi * a * b)
 
@@ -159,13 +159,13 @@ def point_contact(
     curvatures : tuple of float
         Sums of the curvatures of both bodies in the two principal planes [1/m], both positive.
     youngs_modulus, poisson_ratio : float
-        Of both bodies [Pa, -].
+        Young's modulus [Pa] and Poisson ratio of both bodies.
 
     Returns
     -------
     contact : PointContact
-        Exact, with complete elliptic integrals (Hertz 1882; Johnson 1985, Contact mechanics,
-        section 4.2).
+        Contact, exact, with complete elliptic integrals (Hertz 1882; Johnson 1985, Contact
+        mechanics, section 4.2).
 
     Raises
     ------
@@ -214,16 +214,16 @@ def in_series(*contacts: PointContact) -> ContactLaw:
 def line_pressure(
     load_per_length: Floats, curvature: float, youngs_modulus: float = STEEL_E
 ) -> Floats:
-    """Largest Hertz pressure of a line contact of two bodies of steel.
+    """Maximum Hertz pressure of a line contact of two bodies of steel.
 
     Parameters
     ----------
     load_per_length : Floats
-        [N/m], any shape.
+        Load per length [N/m], any shape.
     curvature : float
         Sum of the curvatures of both bodies [1/m].
     youngs_modulus : float
-        Of both [Pa], Poisson ratio 0.3.
+        Young's modulus of both bodies [Pa]; their Poisson ratio is 0.3.
 
     Returns
     -------
@@ -236,12 +236,12 @@ def line_pressure(
 
 
 def log_profile(places: Floats, length: float, drop: float) -> Floats:
-    """What a crowned roller leaves free of one race, at places along it.
+    """Gap that a crowned roller leaves to one race, at places along it.
 
     Parameters
     ----------
     places : Floats
-        From the middle of the roller [m].
+        Distances from the middle of the roller [m].
     length : float
         Effective length [m].
     drop : float
@@ -251,7 +251,7 @@ def log_profile(places: Floats, length: float, drop: float) -> Floats:
     Returns
     -------
     free : Floats
-        [m].
+        Gap at each place [m].
     """
     return -drop * np.log1p(-((2.0 * np.asarray(places) / length) ** 2))
 
@@ -262,14 +262,14 @@ def lamina_places(length: float, laminae: int) -> Floats:
     Parameters
     ----------
     length : float
-        Of the roller [m].
+        Length of the roller [m].
     laminae : int
-        How many.
+        Number of laminae.
 
     Returns
     -------
     places : Floats
-        (laminae,).
+        Places of the middles, (laminae,) [m].
     """
     return length * ((np.arange(laminae) + 0.5) / laminae - 0.5)
 
@@ -282,13 +282,13 @@ def straight_roller(
     Parameters
     ----------
     law : ContactLaw
-        Of the roller.
+        Contact law of the roller.
     length : float
-        Of the roller [m].
+        Length of the roller [m].
     middle : float
         Approach at the middle [m].
     slope : float
-        Its change along the roller [-].
+        Change of the approach along the roller [-].
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""What the inner ring and each rolling element feel at given displacements of the inner ring.
+"""Forces on the inner ring and each rolling element at given displacements of the inner ring.
 
 The inner ring moves by u = (u_x, u_y, u_z [m], theta_y, theta_z [rad]) against the fixed outer
 ring, under the loads (Fx, Fy, Fz [N], My, Mz [N m]) at the bearing's centre.
@@ -41,16 +41,16 @@ def forces(
     bearing : Bearing
         The bearing.
     displacements : array_like
-        (n, 5) or (5,): u_x, u_y, u_z [m], theta_y, theta_z [rad].
+        Displacements (n, 5) or (5,): u_x, u_y, u_z [m], theta_y, theta_z [rad].
     phases : array_like, optional
-        (n,) angle by which the rolling elements have moved on with the cage [rad].
+        Angle (n,) by which the rolling elements have moved on with the cage [rad].
 
     Returns
     -------
     loads : Floats
-        (n, 5) [N, N m].
+        Loads (n, 5) [N, N m].
     tangents : Floats
-        (n, 5, 5) their derivatives, symmetric.
+        Derivatives (n, 5, 5) of the loads, symmetric.
     """
     u = checked_motions(bearing, displacements)
     turned = u if phases is None else turn(u, -np.asarray(phases, dtype=float))
@@ -77,14 +77,14 @@ def roller_loads(
     bearing : Bearing
         The bearing.
     displacements : array_like
-        (n, 5) or (5,) [m, rad].
+        Displacements (n, 5) or (5,) [m, rad].
     phases : array_like, optional
-        (n,) angle by which the rolling elements have moved on with the cage [rad].
+        Angle (n,) by which the rolling elements have moved on with the cage [rad].
 
     Returns
     -------
     loads : Floats
-        (n, total) [N], row by row.
+        Loads (n, total) [N], row by row.
     """
     return elements(bearing, displacements, phases=phases)[0]
 
@@ -99,14 +99,14 @@ def elements(
     bearing : Bearing
         The bearing.
     displacements : array_like
-        (n, 5) or (5,) [m, rad].
+        Displacements (n, 5) or (5,) [m, rad].
     phases : array_like, optional
-        (n,) angle by which the rolling elements have moved on with the cage [rad].
+        Angle (n,) by which the rolling elements have moved on with the cage [rad].
 
     Returns
     -------
     loads, moments, contact_angles : Floats
-        (n, total) each, row by row [N, N m, rad].
+        Loads, moments and contact angles (n, total) each, row by row [N, N m, rad].
     """
     u = checked_motions(bearing, displacements)
     if phases is not None:
@@ -133,7 +133,7 @@ def packed(bearing: Bearing) -> kernels.Packed:
     Returns
     -------
     packed : kernels.Packed
-        For the compiled loops; not to be written to.
+        Values for the compiled loops; not to be written to.
     """
     data = np.zeros((len(bearing.rows), kernels.N_DATA))
     nodes, node_shares = np.zeros((2, len(bearing.rows), kernels.NODES))
@@ -218,14 +218,14 @@ def checked_loads(bearing: Bearing, loads: ArrayLike) -> Floats:
     Parameters
     ----------
     bearing : Bearing
-        For messages.
+        Bearing, for messages.
     loads : array_like
-        (n, 5) or (5,) [N, N m].
+        Loads (n, 5) or (5,) [N, N m].
 
     Returns
     -------
     loads : Floats
-        (n, 5).
+        Loads (n, 5) [N, N m].
 
     Raises
     ------

@@ -25,7 +25,7 @@ def sjovall(epsilon: float, exponent: float) -> tuple[float, float]:
     epsilon : float
         Loaded share of the diameter, positive.
     exponent : float
-        Of the contact law.
+        Exponent of the contact law.
 
     Returns
     -------
@@ -62,12 +62,12 @@ def load_zone_share(ratio: float, exponent: float) -> float:
     ratio : float
         F_a / (F_r tan(alpha)), above 1.
     exponent : float
-        Of the contact law.
+        Exponent of the contact law.
 
     Returns
     -------
     epsilon : float
-        At which J_a / J_r is the ratio.
+        Load zone epsilon at which J_a / J_r is the ratio.
 
     Raises
     ------
@@ -96,13 +96,13 @@ def superposed_peak(bearing: Bearing, load: Floats) -> Floats:
     bearing : Bearing
         Two equal rows of rollers about the centre, without clearance.
     load : Floats
-        (5,) Fx, Fy, Fz [N], My, Mz [N m].
+        Load (5,): Fx, Fy, Fz [N], My, Mz [N m].
 
     Returns
     -------
     peaks : Floats
-        (2,) a row [N]: axial F / (Z sin), radial (F / 2) / (Z cos J_r), moment M / (2 Z arm J_r),
-        J_r at epsilon 0.5; exact for one of the three alone, an estimate for more.
+        Peaks (2,) a row [N]: axial F / (Z sin), radial (F / 2) / (Z cos J_r), moment M / (2 Z arm
+        J_r), J_r at epsilon 0.5; exact for one of the three alone, an estimate for more.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What a rolling bearing is: rows of rollers or balls between rigid rings.
+"""Geometry of rolling bearings: rows of rollers or balls between rigid rings.
 
 Frame: x downwind along the shaft, z up, y = z cross x, origin at the bearing's centre. The angle of
 a rolling element is 0 on the right, looking downwind, 90 degrees on top (Stirling 2023, section
@@ -25,7 +25,7 @@ MOST_CLEARANCE = 0.01
 """Clearance or preload over the diameter of rolling elements from which no bearing is left."""
 
 LAMINAE = 30
-"""Laminae of a roller where nothing else is given, the least of ISO/TS 16281."""
+"""Laminae of a roller where nothing else is given, the minimum of ISO/TS 16281."""
 
 
 @dataclass(frozen=True)
@@ -35,26 +35,26 @@ class RollerRow:
     Attributes
     ----------
     rollers : int
-        How many.
+        Number of rollers.
     place : float
-        x of the rollers' middles [m].
+        Axial place x of the rollers' middles [m].
     radius : float
-        Of the rollers' middles from the axis: half the pitch diameter [m].
+        Distance of the rollers' middles from the axis: half the pitch diameter [m].
     angle : float
         Contact angle [rad]; the sign says which push of the inner ring the row carries.
     diameter, length : float
-        Of a roller: in its middle, and effective [m].
+        Diameter of a roller in its middle, and effective length [m].
     law : ContactLaw
-        Of one roller.
+        Contact law of one roller.
     clearance : float
-        Along the contact normal, both contacts together [m]; negative is a preload.
+        Clearance along the contact normal, both contacts together [m]; negative is a preload.
     laminae : int
-        Slices of a roller; 0 is the closed form along a straight roller.
+        Number of slices of a roller; 0 is the closed form along a straight roller.
     crown : float
         Factor of the logarithmic profile of one contact [m], both being crowned; 0 is straight.
     aligning : bool
-        The rollers carry no moment, as on a race that is a sphere about the bearing's centre, or in
-        a toroidal bearing.
+        Whether the rollers carry no moment, as on a race that is a sphere about the bearing's
+        centre, or in a toroidal bearing.
     phase : float
         Angle of the first roller [rad].
     """
@@ -106,7 +106,7 @@ class RollerRow:
 
     @property
     def free(self) -> Floats:
-        """What each lamina has to approach before it carries, without the clearance [m]."""
+        """Approach at which each lamina begins to carry, without the clearance [m]."""
         if not self.crown:
             return np.zeros(max(self.laminae, 1))
         return 2.0 * log_profile(self.places, self.length, self.crown)
@@ -119,20 +119,20 @@ class BallRow:
     Attributes
     ----------
     balls : int
-        How many.
+        Number of balls.
     place, radius : float
-        x and radius of the balls' centres [m].
+        Axial place x and radius of the balls' centres [m].
     angle : float
         Contact angle of the unloaded bearing without clearance [rad]: 0 is a deep groove.
     diameter : float
-        Of a ball [m].
+        Diameter of a ball [m].
     inner_groove, outer_groove : float
         Radii of the grooves [m].
     law : ContactLaw
-        Of one ball.
+        Contact law of one ball.
     clearance : float
-        Along the contact normal [m]: half of the radial internal clearance of a deep groove;
-        negative is a preload.
+        Clearance along the contact normal [m]: half of the radial internal clearance of a deep
+        groove; negative is a preload.
     phase : float
         Angle of the first ball [rad].
     """
@@ -186,9 +186,9 @@ class Bearing:
     Attributes
     ----------
     name : str
-        For messages and reports.
+        Name for messages and reports.
     rows : tuple
-        Of `RollerRow` and `BallRow`, upwind first.
+        Rows, each a `RollerRow` or a `BallRow`, upwind first.
     """
 
     name: str
@@ -205,11 +205,11 @@ class Bearing:
 
     @property
     def arm(self) -> float:
-        """The length that makes moments of forces: the largest pitch radius [m]."""
+        """Length that makes moments of forces: the maximum pitch radius [m]."""
         return max(row.radius for row in self.rows)
 
     def with_rows(self, **changes: float | int | ContactLaw) -> Bearing:
-        """The same bearing with the same change to every row, as ``with_rows(laminae=60)``."""
+        """Bearing with the same change to every row, as ``with_rows(laminae=60)``."""
         return replace(self, rows=tuple(replace(row, **changes) for row in self.rows))  # type: ignore[arg-type]
 
 

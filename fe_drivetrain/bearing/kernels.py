@@ -36,21 +36,21 @@ class Packed(NamedTuple):
     Attributes
     ----------
     data : Floats
-        (rows, N_DATA) numbers of each row.
+        Numbers (rows, N_DATA) of each row.
     first : Ints
-        (rows + 1,) where the rolling elements of each row begin.
+        Number (rows + 1,) at which the rolling elements of each row begin.
     sines, cosines : Floats
-        (total,) of the places of all rolling elements.
+        Sines and cosines (total,) of the places of all rolling elements.
     lam : Ints
-        (rows + 1,) where the laminae of each row begin.
+        Number (rows + 1,) at which the laminae of each row begin.
     xi, free, shares : Floats
-        (laminae,) their places along the roller, what each has to approach first [m], and its share
-        of the roller's stiffness.
+        Places (laminae,) along the roller, what each has to approach first [m], and its share of
+        the roller's stiffness.
     nodes, node_shares : Floats
-        (rows, NODES) places and shares that stand for all laminae of a straight roller which is
+        Places and shares (rows, NODES) that stand for all laminae of a straight roller which is
         loaded along all of its length: `gauss_of_laminae`.
     tables : Floats
-        (rows, POWERS) of `power_table`.
+        Tables (rows, POWERS) from `power_table`.
     """
 
     data: Floats
@@ -100,7 +100,7 @@ _TO_MIDDLE, _OF_MIDDLE, _SERIES = 2048, 2048 + 2**_BITS, 2048 + 2 * 2**_BITS
 
 
 def power_table(q: float) -> Floats:
-    """What `power` needs for the exponent q: (POWERS,)."""
+    """Constants that `power` needs for the exponent q: (POWERS,)."""
     table = np.zeros(POWERS)
     with np.errstate(over="ignore", under="ignore"):
         table[1:_TO_MIDDLE] = 2.0 ** (q * (np.arange(1.0, 2048.0) - 1023.0))
@@ -253,7 +253,7 @@ def roller_sums(
     table: Floats,
     s: Floats,
 ) -> None:
-    """The same along a roller, in the cheapest way that is exact."""
+    """The same along a roller, in the fastest way that is exact."""
     if d[EVEN] == 1.0 and abs(c) * d[LENGTH] <= b:
         even_sums(b, c, d[STIFF], d[EXPONENT], nodes, node_shares, table, s)
     elif d[KIND] == CLOSED:

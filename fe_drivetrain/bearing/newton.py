@@ -13,7 +13,7 @@ from fe_drivetrain.common.arrays import Floats, Ints
 MAX_STEPS = 100
 MAX_TRIALS = 80
 
-# Of the stiffness of all contacts, for what none carries yet, at the first step.
+# Share of the stiffness of all contacts, for what none carries yet, at the first step.
 FIRMEST = 1e-3
 
 
@@ -55,7 +55,7 @@ Bracket = tuple[float, float, float, float, float]
 def narrowed(
     low: float, high: float, slope_low: float, slope_high: float, step: float, slope: float
 ) -> Bracket:
-    """Where to look next for the zero of a slope, which along a line only grows: energy is convex.
+    """Narrow the bracket of the zero of a slope, which along a line only grows: energy is convex.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def narrowed(
 
 @njit(cache=True, error_model="numpy")
 def next_firmness(firm: float, step: float) -> float:
-    """How firmly to hold what no contact carries, after a step: softer where it was too short."""
+    """Firmness that holds what no contact carries, after a step: lower where that was too short."""
     if step > 1.0:
         return 0.1 * firm
     return min(10.0 * firm, FIRMEST) if step < 0.5 else firm
@@ -230,13 +230,13 @@ def solve_cases(
     Parameters
     ----------
     loads : Floats
-        (n, 5) on the inner ring.
+        Loads (n, 5) on the inner ring.
     bases : Floats
-        (1 or n, 5, m): the motions that are free, as columns.
+        Motions (1 or n, 5, m) that are free, as columns.
     guesses : Floats
-        (n, m) to start from where there is no case before.
+        Unknowns (n, m) to start from where there is no case before.
     soft, scales : Floats
-        (n or 1, m, m) stiffness by which singular tangents are held, and (n,) its factor.
+        Stiffness (n or 1, m, m) by which singular tangents are held, and its factor (n,).
     bearing : Packed
         The bearing.
     tolerance : float
@@ -244,7 +244,7 @@ def solve_cases(
     warm, damped : bool
         Start from the case before; damp the steps.
     displacements, steps, evaluations, residuals : arrays
-        (n, 5), (n,), (n,), (n,): filled.
+        Results (n, 5), (n,), (n,), (n,), overwritten.
     """
     m = bases.shape[2]
     start, F, K = np.zeros(m), np.empty(5), np.empty((5, 5))

@@ -1,4 +1,4 @@
-"""Newton's method on rollers between races that give way, case by case, in compiled loops.
+"""Newton's method on rollers between elastic races, case by case, in compiled loops.
 
 Unknowns are the motions of a body and the amplitudes of shapes that its races take. Rollers see an
 approach at their middles and a lean, both linear in the unknowns; the shapes store a quadratic
@@ -25,16 +25,16 @@ MAX_TRIALS = 60
 
 
 class Body(NamedTuple):
-    """What rollers touch, as these loops take it.
+    """Body that rollers touch, as these loops take it.
 
     Attributes
     ----------
     approach, lean : Floats
-        (total, m) of each roller for a unit of each unknown.
+        Approach and lean (total, m) of each roller for a unit of each unknown.
     stiffness : Floats
-        (m,) of each unknown by itself [N/m]; zero of rigid motions.
+        Stiffness (m,) of each unknown by itself [N/m]; zero of rigid motions.
     soft : Floats
-        (m, m) stiffness of all rollers as springs of K n: where to start from, and what holds up
+        Stiffness (m, m) of all rollers as springs of K n: where to start from, and what holds up
         singular tangents.
     """
 
@@ -201,18 +201,18 @@ def solve_cases(
     Parameters
     ----------
     loads : Floats
-        (n, m) on the unknowns.
+        Loads (n, m) on the unknowns.
     scales : Floats
-        (n,) factor of the soft stiffness under each load.
+        Factors (n,) of the soft stiffness under each load.
     body, bearing : Body, Packed
-        What the rollers touch, and what they are.
+        Body that the rollers touch, and the rollers.
     tolerance : float
         Residual over load.
     warm, damped, given : bool
         Start from the case before; damp the steps; start others from ``unknowns`` as they are, not
         from rollers that are springs.
     unknowns, rollers, moments, steps, evaluations, residuals : arrays
-        (n, m), (n, total) twice, and (n,): filled.
+        Results (n, m), (n, total) twice, and (n,), overwritten.
     """
     m, n = len(body.stiffness), len(body.approach)
     s, A = np.zeros((n, 5)), np.empty((m, m))

@@ -1,4 +1,4 @@
-"""Equilibrium of rollers between races that give way.
+"""Equilibrium of rollers between elastic races.
 
 A flexible ring takes back part of the approach of a roller: the middle of its line of contact
 recedes by r, and leans by s, along the contact normal. With C the compliance of the ring between
@@ -32,26 +32,26 @@ TYPICAL_APPROACH = 5e-5
 """An approach at which the stiffness of a contact is compared with that of the races [m]."""
 
 SOFTEST_LEFT_OUT = 0.05
-"""Of the softness of a contact: shapes of the races that give less are left out, which changes peak
+"""Share of a contact's compliance below which shapes of the races are left out, which changes peak
 rollers by about 1e-3."""
 
-# Of the largest share of a compliance: a negative one beyond it is no round-off.
+# Negative share of a compliance, over the maximum share, beyond which it is no round-off.
 _NEGATIVE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class Races:
-    """How the races of a bearing give way under its rollers.
+    """Compliance of a bearing's races under its rollers.
 
     Attributes
     ----------
     bearing : Bearing
-        Of rows of rollers.
+        Bearing with rows of rollers.
     compliance : Floats
-        (2 total, 2 total): recession of the races at each roller's middle along the contact normal
-        [m], then their lean along the roller [rad], for the load [N] and the moment [N m] of each
-        roller, row by row; moments and leans of a load that grows with x. What moves the outer
-        ring as a rigid body is part of it.
+        Compliance (2 total, 2 total): recession of the races at each roller's middle along the
+        contact normal [m], then their lean along the roller [rad], for the load [N] and the moment
+        [N m] of each roller, row by row; moments and leans of a load that grows with x. What moves
+        the outer ring as a rigid body is part of it.
     """
 
     bearing: Bearing
@@ -62,7 +62,7 @@ class Races:
         for row in self.bearing.rows:
             if not isinstance(row, RollerRow):
                 raise InputError(
-                    f"{self.bearing.name} has a row of balls: races that give way are for rollers; "
+                    f"{self.bearing.name} has a row of balls: elastic races are for rollers; "
                     "take the bearing with rigid rings"
                 )
         C = self.compliance
@@ -74,8 +74,8 @@ class Races:
         values = np.linalg.eigvalsh(self._scaled)
         if values[0] < -_NEGATIVE * max(values[-1], 0.0):
             raise InputError(
-                f"compliance of the races of {self.bearing.name} gives energy back: its least "
-                f"eigenvalue is {values[0]:.3g} m/N; check the signs of its columns"
+                f"compliance of the races of {self.bearing.name} must have no "
+                f"negative eigenvalue, but has {values[0]:.3g} m/N: check the signs of its columns"
             )
 
     @property
@@ -89,14 +89,14 @@ class Races:
         Parameters
         ----------
         count : int, optional
-            How many; all that give more than a twentieth of what a contact does, if left out.
+            Number of shapes; if left out, all with more than a twentieth of a contact's compliance.
 
         Returns
         -------
         shapes : Floats
-            (2 total, k) recession and lean of each roller, the softest first.
+            Recession and lean (2 total, k) of each roller, in descending order of compliance.
         compliances : Floats
-            (k,) [m/N]: shapes times these times shapes transposed is the compliance.
+            Compliances (k,) [m/N]: shapes times these times shapes transposed is the compliance.
         """
         values, vectors = np.linalg.eigh(self._scaled)
         values, vectors = values[::-1], vectors[:, ::-1]
@@ -112,24 +112,24 @@ class Races:
 
 @dataclass(frozen=True, eq=False)
 class RacesEquilibrium:
-    """Where the inner ring comes to rest on races that give way.
+    """Equilibrium of the inner ring on elastic races.
 
     Attributes
     ----------
     races : Races
         The bearing and its races.
     loads, displacements : Floats
-        (n, 5) on the inner ring [N, N m], and its motions [m, rad].
+        Loads (n, 5) on the inner ring [N, N m], and its motions [m, rad].
     rollers, moments : Floats
-        (n, total) load of each roller [N], and its moment about the roller's middle [N m].
+        Load (n, total) of each roller [N], and its moment about the roller's middle [N m].
     shapes, amplitudes : Floats
-        (2 total, k) shapes of the races that were taken, and (n, k) how much of each [m].
+        Shapes (2 total, k) of the races that were taken, and amplitude (n, k) of each [m].
     residuals : Floats
-        (n,) what is left of the balance, over what `converged` allows.
+        Residual (n,) of the balance, over what `converged` allows.
     converged : Bools
-        (n,).
+        Flags (n,): whether the case has converged.
     iterations, evaluations : Ints
-        (n,) Newton steps, and evaluations of all rollers.
+        Numbers (n,) of Newton steps, and of evaluations of all rollers.
     """
 
     races: Races
@@ -157,34 +157,34 @@ class RacesEquilibrium:
 
 
 def rigid_races(bearing: Bearing) -> Races:
-    """Races that do not give way.
+    """Races without compliance.
 
     Parameters
     ----------
     bearing : Bearing
-        Of rows of rollers.
+        Bearing with rows of rollers.
 
     Returns
     -------
     races : Races
-        Of no compliance.
+        Races whose compliance is zero.
     """
     size = 2 * sum(bearing.counts)
     return Races(bearing, np.zeros((size, size)))
 
 
 def roller_lengths(bearing: Bearing) -> Floats:
-    """What makes recessions of leans: the root mean square place on each roller.
+    """Lengths that make recessions of leans: the root mean square place on each roller.
 
     Parameters
     ----------
     bearing : Bearing
-        Of rows of rollers.
+        Bearing with rows of rollers.
 
     Returns
     -------
     lengths : Floats
-        (2 total,) 1 for each roller, then these [m].
+        Lengths (2 total,): 1 for each roller, then these [m].
     """
     along = [
         np.full(n, row.length / np.sqrt(12.0))
@@ -200,12 +200,12 @@ def roller_motions(bearing: Bearing) -> tuple[Floats, Floats]:
     Parameters
     ----------
     bearing : Bearing
-        Of rows of rollers.
+        Bearing with rows of rollers.
 
     Returns
     -------
     approach, lean : Floats
-        (total, 5) each, over u_x, u_y, u_z [m], theta_y, theta_z [rad].
+        Approach and lean (total, 5) each, over u_x, u_y, u_z [m], theta_y, theta_z [rad].
     """
     approach, lean = [], []
     for row in bearing.rows:
@@ -228,18 +228,19 @@ def equilibrium_on_races(
     warm: bool = True,
     damped: bool = True,
 ) -> RacesEquilibrium:
-    """The displacements that balance each load case, on races that give way.
+    """Displacements that balance each load case, on elastic races.
 
     Parameters
     ----------
     races : Races
         The bearing and its races.
     loads : array_like
-        (n, 5) or (5,): Fx, Fy, Fz [N], My, Mz [N m] on the inner ring at the bearing's centre.
+        Loads (n, 5) or (5,): Fx, Fy, Fz [N], My, Mz [N m] on the inner ring at the bearing's
+        centre.
     shapes : int, optional
-        How many shapes of the races to take, see `Races.shapes`.
+        Number of shapes of the races, see `Races.shapes`.
     tolerance : float
-        Largest residual over the load, moments divided by the pitch radius, of motions and shapes
+        Maximum residual over the load, moments divided by the pitch radius, of motions and shapes
         together.
     warm : bool
         Start each case from the one before it, where its load is near.
@@ -287,7 +288,7 @@ def equilibrium_on_races(
 
 
 class Solved(NamedTuple):
-    """What the compiled loops have found, see `race_newton.solve_cases`."""
+    """Results of the compiled loops, see `race_newton.solve_cases`."""
 
     unknowns: Floats
     rollers: Floats
@@ -321,14 +322,14 @@ def soft_springs(bearing: Bearing, approach: Floats, lean: Floats) -> Floats:
     Parameters
     ----------
     bearing : Bearing
-        Of rows of rollers.
+        Bearing with rows of rollers.
     approach, lean : Floats
-        (total, m) of each roller for a unit of each unknown.
+        Approach and lean (total, m) of each roller for a unit of each unknown.
 
     Returns
     -------
     stiffness : Floats
-        (m, m) for an approach of 1 m.
+        Stiffness (m, m) for an approach of 1 m.
     """
     k = np.repeat([r.law.stiffness * r.law.exponent for r in bearing.rows], bearing.counts)
     turning = k * np.repeat([_length(r) ** 2 / 12.0 for r in bearing.rows], bearing.counts)
@@ -349,15 +350,15 @@ def solve_on_body(
     Parameters
     ----------
     body : Body
-        What the rollers touch.
+        Body that the rollers touch.
     bearing : Bearing
         All rows of rollers.
     targets : Floats
-        (n, m) loads on the unknowns [N].
+        Loads (n, m) on the unknowns [N].
     tolerance : float
-        Largest residual over the load.
+        Maximum residual over the load.
     warm, damped : bool
-        As for `equilibrium_on_races`.
+        Options of `equilibrium_on_races`.
 
     Returns
     -------
@@ -424,7 +425,7 @@ def _run(
 def _continued(
     body: race_newton.Body, bearing: Bearing, targets: Floats, tolerance: float
 ) -> Solved:
-    """Down from larger loads, as of rigid rings: a clearance is small under them."""
+    """Solve from larger loads down, as of rigid rings: beside them a clearance is small."""
     free = max(max(abs(r.clearance) for r in bearing.rows), 1e-6)
     exponent = max(r.law.exponent for r in bearing.rows)
     most = max(free / max(float(_deflections(bearing, targets).min()), 1e-30), 10.0) ** exponent
@@ -470,7 +471,7 @@ def contact_softness(bearing: Bearing) -> float:
     Returns
     -------
     softness : float
-        [m/N].
+        Minimum compliance of a contact at a typical approach [m/N].
     """
     stiffest = max(
         r.law.stiffness * r.law.exponent * TYPICAL_APPROACH ** (r.law.exponent - 1.0)

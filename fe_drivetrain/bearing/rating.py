@@ -55,8 +55,8 @@ def ratings(bearing: Bearing, b_m: float = 1.1) -> Ratings:
     bearing : Bearing
         Equal rows of rollers.
     b_m : float
-        Of ISO 281: 1.1 for tapered and cylindrical rollers; 1.15 for spherical ones (from memory,
-        not verified).
+        Factor b_m of ISO 281: 1.1 for tapered and cylindrical rollers; 1.15 for spherical ones
+        (from memory, not verified).
 
     Returns
     -------
@@ -94,7 +94,7 @@ def capacity_factor(gamma: float) -> float:
     Returns
     -------
     f_c : float
-        For N and mm.
+        Factor for N and mm.
     """
     opening = ((1.0 - gamma) / (1.0 + gamma)) ** (143.0 / 108.0)
     return float(
@@ -115,7 +115,7 @@ def ball_dynamic_rating(bearing: Bearing, b_m: float = 1.3) -> float:
     bearing : Bearing
         Equal rows of balls.
     b_m : float
-        Of ISO 281: 1.3 for deep grooves and angular contact.
+        Factor b_m of ISO 281: 1.3 for deep grooves and angular contact.
 
     Returns
     -------
@@ -144,7 +144,7 @@ def ball_capacity_factor(gamma: float) -> float:
     Returns
     -------
     f_c : float
-        For N and mm.
+        Factor for N and mm.
 
     Raises
     ------

@@ -43,24 +43,24 @@ CARRIED = 1e-9
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """Where the inner ring comes to rest under each load case.
+    """Equilibrium of the inner ring under each load case.
 
     Attributes
     ----------
     bearing : Bearing
         The bearing.
     loads, displacements : Floats
-        (n, 5) on the inner ring [N, N m], and its motions [m, rad].
+        Loads (n, 5) on the inner ring [N, N m], and its motions [m, rad].
     residuals : Floats
-        (n,) what is left of the balance, over what `converged` allows.
+        Residual (n,) of the balance, over what `converged` allows.
     converged : Bools
-        (n,).
+        Flags (n,): whether the case has converged.
     iterations, evaluations : Ints
-        (n,) Newton steps, and evaluations of all rollers.
+        Numbers (n,) of Newton steps, and of evaluations of all rollers.
     unbalanced : Floats
-        (n, 5) loads less the forces of the bearing [N, N m]: of a reduction, what it leaves out.
+        Loads (n, 5) less the forces of the bearing [N, N m]: of a reduction, what it leaves out.
     phases : Floats or None
-        (n,) angle by which the rolling elements have moved on [rad]; None where they have not.
+        Angle (n,) by which the rolling elements have moved on [rad]; None where they have not.
     """
 
     bearing: Bearing
@@ -100,13 +100,14 @@ def equilibrium(
     bearing : Bearing
         The bearing.
     loads : array_like
-        (n, 5) or (5,): Fx, Fy, Fz [N], My, Mz [N m] on the inner ring at the bearing's centre.
+        Loads (n, 5) or (5,): Fx, Fy, Fz [N], My, Mz [N m] on the inner ring at the bearing's
+        centre.
     tolerance : float
-        Largest residual over the load, moments divided by the pitch radius.
+        Maximum residual over the load, moments divided by the pitch radius.
     start : array_like, optional
-        (n, 5) displacements to start from; the answer is the same.
+        Displacements (n, 5) to start from; the answer is the same.
     phases : array_like, optional
-        (n,) angle by which the rolling elements have moved on with the cage [rad].
+        Angle (n,) by which the rolling elements have moved on with the cage [rad].
     warm : bool
         Start each case from the one before it, where its load is near.
     damped : bool
@@ -150,9 +151,9 @@ def three_degrees(
     bearing : Bearing
         The bearing.
     loads : array_like
-        (n, 5) or (5,): Fx, Fy, Fz [N], My, Mz [N m].
+        Loads (n, 5) or (5,): Fx, Fy, Fz [N], My, Mz [N m].
     tolerance : float
-        Largest residual over the load, of the three components.
+        Maximum residual over the load, of the three components.
 
     Returns
     -------
@@ -184,7 +185,7 @@ def free_motions(bearing: Bearing) -> tuple[Floats, Bools]:
     """Motions that some contact resists, as columns with tilts over the pitch radius; and which."""
     H = _linear(bearing, np.diag([1.0, 1.0, 1.0, 1.0 / bearing.arm, 1.0 / bearing.arm]))
     values, vectors = np.linalg.eigh(H)
-    # Rounded to 1e-16 of the largest; a roller's length L resists tilt by (L / arm)^2 / 12 of it.
+    # Rounded to 1e-16 of the maximum; a roller's length L resists tilt by (L / arm)^2 / 12 of it.
     kept = values > 1e-12 * values[-1]
     B = vectors[:, kept]
     B[np.abs(B) < 1e-14] = 0.0
@@ -338,7 +339,7 @@ def _continued(
     deflection: Floats,
     tolerance: float,
 ) -> _Found:
-    """Down from larger loads, under which a clearance is small: each from the one before.
+    """Solve from larger loads down, under which a clearance is small: each from the one before.
 
     A load that just closes a clearance is nearly a problem of rigid contacts, whose few carrying
     rollers Newton's method alone finds slowly.
@@ -388,7 +389,7 @@ def refuse_mechanism(bearing: Bearing, loads: Floats, B: Floats, carried: Bools)
 
 
 def refuse_lifted(bearing: Bearing, loads: Floats, cases: Ints) -> None:
-    """Raise where no pushes of rollers add up to the load, as of a single row pushed open."""
+    """Raise where no pushes of rollers add up to the load, such as a single row pushed open."""
     rollers = [row for row in bearing.rows if isinstance(row, RollerRow)]
     if not len(loads) or len(rollers) < len(bearing.rows):
         return  # the normals of balls turn

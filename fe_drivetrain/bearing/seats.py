@@ -11,8 +11,8 @@ shaft: standard bores of main bearings follow each other by 4 to 10 % (ISO 15), 
 most, and diameters of scenes and bores that are assumed are in round numbers."""
 
 THINNEST = 0.7
-"""Least shaft in a bearing without a stated bore, over the circle inside its rolling elements: the
-bores of the catalogue are 0.86 to 0.9 of it."""
+"""Minimum shaft in a bearing without a stated bore, over the circle inside its rolling elements:
+the bores of the catalogue are 0.86 to 0.9 of it."""
 
 
 def check_seat(name: str, entry_name: str, entry: Entry, seat: float) -> str | None:
@@ -21,18 +21,19 @@ def check_seat(name: str, entry_name: str, entry: Entry, seat: float) -> str | N
     Parameters
     ----------
     name : str
-        Of the bearing in its scene.
+        Name of the bearing in its scene.
     entry_name : str
-        Of the bearing in its catalogue.
+        Name of the bearing in its catalogue.
     entry : Entry
-        What the catalogue says.
+        Catalogue entry.
     seat : float
         Diameter of the shaft at the seat [m].
 
     Returns
     -------
     sentence : str or None
-        What does not fit where the shaft is thinner, as one in a sleeve is; None where it fits.
+        Sentence that says what does not fit where the shaft is thinner, as one in a sleeve is; None
+        where it fits.
 
     Raises
     ------

@@ -1,8 +1,8 @@
 """Elastic energy of a bearing with rigid rings, whose gradient and Hessian are its forces.
 
-Of each lamina K w delta_+^(n+1) / (n+1), its share w and its approach delta as in the compiled
-loops; of a straight roller without laminae the integral of that along it; of a ball the same power
-of what the distance of the groove centres has grown by.
+For each lamina K w delta_+^(n+1) / (n+1), its share w and its approach delta as in the compiled
+loops; for a straight roller without laminae the integral of that along it; for a ball the same
+power of the growth of the distance between the groove centres.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ def energy_of(bearing: Bearing, displacements: ArrayLike) -> Floats:
     bearing : Bearing
         The bearing.
     displacements : array_like
-        (n, 5) or (5,): u_x, u_y, u_z [m], theta_y, theta_z [rad].
+        Displacements (n, 5) or (5,): u_x, u_y, u_z [m], theta_y, theta_z [rad].
 
     Returns
     -------
     energy : Floats
-        (n,) [J].
+        Energy (n,) [J].
     """
     u = checked_motions(bearing, displacements)
     pack = packed(bearing)

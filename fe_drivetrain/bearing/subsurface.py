@@ -2,8 +2,8 @@
 
 Races of slewing bearings are hardened at their surface alone: what fails first may be the softer
 core below the case (PROTEST 2010, section 7.1.1.2). Along the normal through the middle of a
-contact the principal directions stay those of the contact, so that the largest shear stress is half
-of the largest difference of the three normal stresses there (Johnson 1985, Contact mechanics,
+contact the principal directions stay those of the contact, so that the maximum shear stress is half
+of the maximum difference of the three normal stresses there (Johnson 1985, Contact mechanics,
 sections 3.4 and 4.2). It is compared, depth by depth, with the shear strength of the material
 there.
 """
@@ -34,18 +34,18 @@ def stresses_below_ellipse(
     Parameters
     ----------
     depths : array_like, (n,)
-        Above zero [m]; below a tenth of the short half axis the quadrature loses digits.
+        Depths, above zero [m]; below a tenth of the short half axis the quadrature loses digits.
     half_axes : tuple of float
-        Of the contact along x and y [m].
+        Half axes of the contact along x and y [m].
     pressure : float
-        Largest [Pa].
+        Maximum pressure [Pa].
     poisson_ratio : float
-        Of the body.
+        Poisson ratio of the body.
 
     Returns
     -------
     ndarray, (n, 3)
-        Along x, y and the normal [Pa], compression below zero.
+        Stresses along x, y and the normal [Pa], compression below zero.
 
     Raises
     ------
@@ -93,18 +93,18 @@ def stresses_below_line(
     Parameters
     ----------
     depths : array_like, (n,)
-        [m].
+        Depths [m].
     half_width : float
-        Of the contact [m].
+        Half width of the contact [m].
     pressure : float
-        Largest [Pa].
+        Maximum pressure [Pa].
     poisson_ratio : float
-        Of the body.
+        Poisson ratio of the body.
 
     Returns
     -------
     ndarray, (n, 3)
-        Across the line, along it, along the normal [Pa].
+        Stresses across the line, along it, along the normal [Pa].
 
     Raises
     ------
@@ -122,7 +122,7 @@ def stresses_below_line(
 
 
 def largest_shear(stresses: Floats) -> Floats:
-    """Half of the largest difference of the principal stresses [Pa].
+    """Half of the maximum difference of the principal stresses [Pa].
 
     Parameters
     ----------
@@ -142,9 +142,9 @@ class HardenedCase:
         Shear strength at the surface and in the core [Pa]; against yielding half of the yield
         stress.
     depth : float
-        To which the case is as hard as at the surface [m].
+        Depth to which the case is as hard as at the surface [m].
     transition : float
-        Over which the strength then falls to that of the core, straight [m].
+        Length over which the strength then falls to that of the core, straight [m].
 
     Raises
     ------
@@ -171,7 +171,7 @@ class HardenedCase:
         Parameters
         ----------
         depths : array_like
-            [m].
+            Depths [m].
         """
         ends = [self.depth, self.depth + max(self.transition, 1e-9 * self.depth)]
         return np.asarray(
@@ -181,14 +181,14 @@ class HardenedCase:
 
 @dataclass(frozen=True)
 class Exposure:
-    """How much of the strength a contact asks for.
+    """Share of the strength that a contact uses.
 
     Attributes
     ----------
     case, core : float
-        Largest shear stress over strength, down to the end of the case, and below it.
+        Maximum shear stress over strength, down to the end of the case, and below it.
     case_depth, core_depth : float
-        Where these are [m].
+        Depths of these maxima [m].
     """
 
     case: float
@@ -208,11 +208,11 @@ def exposure(depths: Floats, stresses: Floats, race: HardenedCase) -> Exposure:
     Parameters
     ----------
     depths : ndarray, (n,)
-        Rising, into the core [m].
+        Depths, ascending, into the core [m].
     stresses : ndarray, (n, 3)
-        As of `stresses_below_ellipse` [Pa].
+        Normal stresses from `stresses_below_ellipse` [Pa].
     race : HardenedCase
-        The material.
+        Material of the race.
 
     Returns
     -------
@@ -236,25 +236,25 @@ def exposure(depths: Floats, stresses: Floats, race: HardenedCase) -> Exposure:
 
 
 def shear_at_depth(contact: PointContact, loads: ArrayLike, depth: float) -> Floats:
-    """Largest shear stress below the middle of a contact at one depth, over its load.
+    """Maximum shear stress below the middle of a contact at one depth, for each of its loads.
 
     Half axes and pressure grow with the cube root of the load, so that the stress is the pressure
-    times one function of the depth over the half axis. Of a history of loads of the contact that
-    carries most, it is the history of stress at the end of a hardened case.
+    times one function of the depth over the half axis. For a history of loads of the contact that
+    carries the most, it is the history of stress at the end of a hardened case.
 
     Parameters
     ----------
     contact : PointContact
-        Of ball and race.
+        Contact of ball and race.
     loads : array_like, (n,)
-        From 0 on [N].
+        Loads from 0 on [N].
     depth : float
-        Above zero [m].
+        Depth, above zero [m].
 
     Returns
     -------
     ndarray, (n,)
-        [Pa].
+        Shear stress [Pa].
 
     Raises
     ------

@@ -33,11 +33,12 @@ class ReducedTable:
     Attributes
     ----------
     bearing : Bearing
-        Its bearing.
+        Bearing that the table is made for.
     exponent : float
-        Of its contact law.
+        Exponent of its contact law.
     interpolator : RegularGridInterpolator
-        Reduced load to displacements of a unit load, then the peak of each row.
+        Interpolator from the reduced load to displacements of a unit load, then the peak of each
+        row.
     """
 
     bearing: Bearing
@@ -50,13 +51,13 @@ class ReducedTable:
         Parameters
         ----------
         loads : array_like
-            (n, 5) or (5,) [N, N m].
+            Loads (n, 5) or (5,) [N, N m].
 
         Returns
         -------
         displacements, peaks : Floats
-            (n, 5) [m, rad], and (n, rows) largest rolling element of each row [N]; with the error
-            of the interpolation and the ripple of the rollers' number.
+            Displacements (n, 5) [m, rad], and maximum load (n, rows) of a rolling element in each
+            row [N]; with the error of the interpolation and the ripple of the rollers' number.
         """
         F = checked_loads(self.bearing, loads)
         radial = np.hypot(F[:, 1], F[:, 2])
@@ -84,7 +85,8 @@ def reduced_table(bearing: Bearing, nodes: tuple[int, int, int] = NODES) -> Redu
     bearing : Bearing
         Rollers without clearance, preload or profile, of one exponent; every load carried.
     nodes : tuple of int
-        Over the axial share, over moment against radial force, and round the circle.
+        Numbers of nodes over the axial share, over moment against radial force, and round the
+        circle.
 
     Returns
     -------

@@ -1,17 +1,7 @@
-from .advice_page import QUICK_BAND as QUICK_BAND
-from .advice_page import advised as advised
 from .app import main as main
 from .app import main_of_case as main_of_case
-from .loads_against import beside as beside
-from .loads_against import features as features
-from .loads_digest import Options as Options
-from .loads_digest import digest as digest
 from .progress import show_steps as show_steps
 from .run import run_and_print as run_and_print
 from .settings import parse_loads as parse_loads
 from .settings import parse_settings as parse_settings
 from .settings import parse_tolerance as parse_tolerance
-from .study_loads import own_loads as own_loads
-from .study_page import studied as studied
-from .uncertainty_page import bands as bands
-from .uncertainty_page import uncertain as uncertain

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fe_drivetrain.commands.options import Scheduler
-from fe_drivetrain.commands.scenes import named_scene
 from fe_drivetrain.commands.settings import (
     Loads,
     SceneSettings,
@@ -23,6 +22,7 @@ from fe_drivetrain.commands.studies import OutFolder, run_on_scene
 from fe_drivetrain.commands.terminal import guarded
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import hold_threads
+from fe_drivetrain.scene.named_scenes import named_scene
 
 if TYPE_CHECKING:
     from fe_drivetrain.scene.scene import Scene
@@ -83,9 +83,7 @@ def compare_command(
         from fe_drivetrain.response.model import scene_loads
         from fe_drivetrain.studies.design_comparison import compare
 
-        names = scene_loads(next(iter(designs.values())))
-        factors = parse_loads(load or (), names)
-        given = None if factors is None else dict(zip(names, factors.values.tolist(), strict=True))
+        given = parse_loads(load or (), scene_loads(next(iter(designs.values()))))
         asked = [Quantity(name) for name in quantity] if quantity else None
         for one in asked or ():
             for scene in designs.values():

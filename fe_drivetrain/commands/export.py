@@ -11,17 +11,17 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fe_drivetrain.commands.progress import show_steps
-from fe_drivetrain.commands.scenes import named_scene_or_component
 from fe_drivetrain.commands.settings import SceneSettings, parse_settings
 from fe_drivetrain.commands.terminal import PASSED, guarded, write
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import check_writable
 from fe_drivetrain.common.threads import hold_threads
+from fe_drivetrain.scene.named_scenes import named_scene_or_component
 
 if TYPE_CHECKING:
-    from fe_drivetrain.export.superelement import Superelement
     from fe_drivetrain.scene.component import Component
     from fe_drivetrain.scene.scene import Scene
+    from fe_drivetrain.studies.export_content import ExportResult, Kind
 
 _ENDINGS = (".inp", ".vtu", ".msh")
 _AUTO, _SHAFT, _SUMMARY = "auto", "shaft", "summary"
@@ -192,153 +192,95 @@ class Export:
             return None
         return [name.strip() for name in self.at.split(",") if name.strip()]
 
-    def level_number(self, automatic: int, known: str, of: str) -> int:
-        """The level as a number.
-
-        Parameters
-        ----------
-        automatic : int
-            The default.
-        known : str
-            A digit for each level there is.
-        of : str
-            What is exported, for the message.
-
-        Returns
-        -------
-        int
+    @property
+    def level_number(self) -> int | None:
+        """The level; None for the default.
 
         Raises
         ------
         InputError
-            There is no such level.
+            It is no number.
         """
         if self.level in (None, _AUTO):
-            return automatic
-        if self.level not in tuple(known):
+            return None
+        if not re.fullmatch("[0-9]+", self.level):
             raise InputError(
-                f"--level {self.level!r} of {of} is unknown: use {_AUTO}, "
-                f"{', '.join(known[:-1])} or {known[-1]}"
+                f"--level {self.level!r} must be {_AUTO} or a number: write it as in --level 2"
             )
         return int(self.level)
+
+    @property
+    def kind(self) -> Kind:
+        """What is written."""
+        if self.modes is not None:
+            return "modes"
+        if self.format is None:
+            return "model" if self.out.suffix == ".inp" else "mesh"
+        return "summary" if self.what == _SUMMARY else "superelement"
 
 
 def _written(found: Scene | Component, wanted: Export) -> str:
     """Write the file; returns what is in it."""
     from fe_drivetrain.scene.scene import Scene
+    from fe_drivetrain.studies.export_content import prepare_export
 
-    if wanted.modes is not None:
-        return _write_modes(found, wanted, wanted.modes)
-    if wanted.format is None:
-        return _write_model(found, wanted.out)
-    if wanted.what == _SUMMARY and isinstance(found, Scene):
-        return _write_summary(found, wanted)
-    return _write_superelement(found, wanted, wanted.format)
-
-
-def _write_model(found: Scene | Component, out: Path) -> str:
-    """Write the whole model, or the mesh, as the ending of the file says."""
-    from fe_drivetrain.export.calculix_deck import write_inp
-    from fe_drivetrain.fidelity.component_solid import component_mesh
-    from fe_drivetrain.mesh.files import write as write_mesh
-    from fe_drivetrain.response.model import build_model, mesh_scene
-    from fe_drivetrain.scene.scene import Scene
-
-    if not isinstance(found, Scene) and out.suffix == ".inp":
-        raise InputError(f"--out {out}: a component is written as .vtu or .msh, or with --format")
-    with show_steps() as report:
-        report("mesh")
-        mesh = mesh_scene(found) if isinstance(found, Scene) else component_mesh(found)[0]
-        if isinstance(found, Scene) and out.suffix == ".inp":
-            report("model")
-            model = build_model(found, mesh)
-            for warning in model.warnings:
-                report(f"warning: {warning}")
-            report("write")
-            write_inp(model, out)
-        else:
-            report("write")
-            write_mesh(mesh, out)
-    return f"{len(mesh.cells):,} elements, {len(mesh.points):,} nodes"
-
-
-def _write_superelement(found: Scene | Component, wanted: Export, format: str) -> str:
-    """Write the part, condensed to its points."""
-    from fe_drivetrain import export
-
-    with show_steps() as report:
-        report("condense")
-        element = _superelement(found, wanted)
-        report("write")
-        export.write(wanted.out, element, format, wanted.overwrite)
-    supports = "on its supports" if element.supported else "free"
-    return (
-        f"{element.name} at {', '.join(element.points)}, {supports}, level {element.origin.level}, "
-        f"{'with' if element.mass is not None else 'without'} mass"
-    )
-
-
-def _superelement(found: Scene | Component, wanted: Export) -> Superelement:
-    from fe_drivetrain.export.from_component import BODY, component_superelement
-    from fe_drivetrain.export.scene_export import superelement_of
-    from fe_drivetrain.scene.scene import Scene
-
-    if isinstance(found, Scene):
-        level = wanted.level or _AUTO
-        number = int(level) if re.fullmatch("[0-9]", level) else level
-        return superelement_of(found, wanted.what or _SHAFT, wanted.points, number)
-    level_number = wanted.level_number(3, "13", "a component")
-    return component_superelement(found, wanted.what or BODY, wanted.points, level_number)
-
-
-def _write_modes(found: Scene | Component, wanted: Export, modes: int) -> str:
-    """Write the free shaft with fixed-interface modes."""
-    from fe_drivetrain.export.craig_bampton import craig_bampton_shaft
-    from fe_drivetrain.export.formats.craig_bampton_json import write_craig_bampton
-    from fe_drivetrain.scene.scene import Scene
-
-    is_level_2_shaft = wanted.what in (None, _SHAFT) and wanted.level in (None, _AUTO, "2")
-    if not isinstance(found, Scene) or not is_level_2_shaft or wanted.format != "json":
-        raise InputError(_modes_fault(found, wanted))
-    with show_steps() as report:
-        report("condense")
-        body = craig_bampton_shaft(found, modes, wanted.points)
-        report("write")
-        write_craig_bampton(wanted.out, body)
-    return f"shaft at {', '.join(body.points)}, free, with {len(body.omega)} modes"
-
-
-def _modes_fault(found: Scene | Component, wanted: Export) -> str:
-    """Which option --modes cannot go with."""
-    from fe_drivetrain.scene.scene import Scene
-
-    if not isinstance(found, Scene):
-        return "--modes is for the shaft of a scene, not for a component: leave --modes out"
-    if wanted.what not in (None, _SHAFT):
-        return f"--modes is for the free shaft, not for --what {wanted.what}: leave --what out"
-    if wanted.format != "json":
-        return f"--modes is written in json, not as --format {wanted.format}: give --format json"
-    return f"--modes is for the shaft of level 2, not --level {wanted.level}: leave --level out"
-
-
-def _write_summary(scene: Scene, wanted: Export) -> str:
-    """Write the numbers of a drivetrain model."""
-    from fe_drivetrain.export.formats.summary import summary, write_summary
-
-    if wanted.format != "json":
-        raise InputError(f"--what summary is json, not {wanted.format}: give --format json")
-    if wanted.at is not None:
+    is_scene = isinstance(found, Scene)
+    kind = "superelement" if wanted.kind == "summary" and not is_scene else wanted.kind
+    if kind == "model" and not is_scene:
         raise InputError(
-            f"--at {wanted.at} is not used by --what summary, which has all points of the scene: "
-            "leave --at out"
+            f"--out {wanted.out}: a component is written as .vtu or .msh, or with --format"
         )
-    level = wanted.level_number(2, "1234", "a summary")
+    if is_scene:
+        _check_format(wanted, kind)
+    what = "" if kind == "summary" else wanted.what or ""
     with show_steps() as report:
-        report("condense")
-        content = summary(scene, level)
+        result = prepare_export(
+            found,
+            kind,
+            what,
+            wanted.points,
+            wanted.level_number,
+            wanted.modes or 0,
+            report=report,
+        )
+        for warning in result.notes:
+            report(f"warning: {warning}")
         report("write")
+        _write(result, wanted)
+    return result.answer[0]
+
+
+def _check_format(wanted: Export, kind: Kind) -> None:
+    """Refuse a format that cannot hold modes or a summary of a scene."""
+    if kind == "modes" and wanted.what in (None, _SHAFT) and wanted.format != "json":
+        raise InputError(
+            f"--modes is written in json, not as --format {wanted.format}: give --format json"
+        )
+    if kind == "summary" and wanted.format != "json":
+        raise InputError(f"--what summary is json, not {wanted.format}: give --format json")
+
+
+def _write(result: ExportResult, wanted: Export) -> None:
+    """Write the file in the format of its content."""
+    from fe_drivetrain import export
+    from fe_drivetrain.export.craig_bampton import CraigBampton
+    from fe_drivetrain.export.formats.craig_bampton_json import write_craig_bampton
+    from fe_drivetrain.export.formats.summary import SummaryFile, write_summary
+    from fe_drivetrain.export.superelement import Superelement
+    from fe_drivetrain.mesh.files import write as write_mesh
+    from fe_drivetrain.mesh.mesh import Mesh
+
+    content = result.content
+    if isinstance(content, Superelement):
+        export.write(wanted.out, content, wanted.format or "", wanted.overwrite)
+    elif isinstance(content, CraigBampton):
+        write_craig_bampton(wanted.out, content)
+    elif isinstance(content, SummaryFile):
         write_summary(wanted.out, content)
-    return f"summary of {', '.join(content.parts)}, reactions of level {content.reactions.level}"
+    elif isinstance(content, Mesh):
+        write_mesh(content, wanted.out)
+    else:
+        export.write_inp(content, wanted.out)
 
 
 def formats_table() -> str:

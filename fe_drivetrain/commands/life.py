@@ -22,13 +22,13 @@ from fe_drivetrain.commands.options import (
 )
 from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.run import results_text
-from fe_drivetrain.commands.scenes import named_scene
 from fe_drivetrain.commands.settings import SceneSettings, parse_settings, refuse_again
 from fe_drivetrain.commands.showing import shown
 from fe_drivetrain.commands.terminal import FAILED, PASSED, as_typed, guarded, write
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
+from fe_drivetrain.scene.named_scenes import named_scene
 from fe_drivetrain.studies.life_options import ASSUMED, LifeOptions
 
 if TYPE_CHECKING:

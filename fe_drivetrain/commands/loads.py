@@ -177,9 +177,7 @@ def loads_command(
 
     def work() -> int:
         hold_threads()
-        from fe_drivetrain.commands.loads_digest import Options
-        from fe_drivetrain.commands.loads_page import loaded
-        from fe_drivetrain.commands.loads_reactions import scene_reactions
+        from fe_drivetrain.commands.loads_page import show_loads
         from fe_drivetrain.commands.loads_tables import parquet_writer
         from fe_drivetrain.commands.loads_words import (
             parse_channels,
@@ -189,21 +187,22 @@ def loads_command(
             parse_ultimate,
             parse_winds,
         )
-        from fe_drivetrain.commands.scenes import named_scene
+        from fe_drivetrain.commands.showing import shown
         from fe_drivetrain.histories.cycles import RESIDUES
-        from fe_drivetrain.histories.damage import SLOPES, check_slope
+        from fe_drivetrain.histories.damage import SLOPES
         from fe_drivetrain.hub_loads.channel_map import read_channel_map
         from fe_drivetrain.hub_loads.recorded import OWN_NAMES, recorded_files
+        from fe_drivetrain.scene.named_scenes import named_scene
+        from fe_drivetrain.studies.load_digest import LoadOptions
+        from fe_drivetrain.studies.load_histories import loads
         from fe_drivetrain.suite.case import Case
         from fe_drivetrain.suite.ownership import check_result_folder
         from fe_drivetrain.suite.result_folders import run_case
 
         check_result_folder(out)
-        for exponent in slope or ():
-            check_slope(exponent)
         if residue not in RESIDUES:
             raise InputError(f"--residue {residue}: choose one of {', '.join(RESIDUES)}")
-        options = Options(
+        options = LoadOptions(
             parse_channels(channel or ()),
             skip,
             tuple(slope or SLOPES),
@@ -229,11 +228,9 @@ def loads_command(
         events = parse_transients(transient or ())
         if level not in ("1", "4"):
             raise InputError(f"--level {level}: choose 1, a beam, or 4, the assembly of solids")
-        reactions = None
         if scene is None:
             require_beside(context, {"level": "--level"}, "--scene", "is the model of a scene")
-        else:
-            reactions = scene_reactions(named_scene(scene, {}), int(level))
+        of_scene = None if scene is None else named_scene(scene, {})
         writer = parquet_writer() if parquet else None
         found = recorded_files(files)
         others = recorded_files(against or [])
@@ -242,8 +239,20 @@ def loads_command(
             "loads/histories",
             f"Load histories of {count} file{'s' * (count > 1)}",
             "the user's files",
-            lambda run, page: loaded(
-                run, page, found, options, wanted, place, events, others, resume, writer, reactions
+            shown(
+                lambda run: loads(
+                    found,
+                    options,
+                    wanted,
+                    site=place,
+                    transients=events,
+                    against=others,
+                    scene=of_scene,
+                    level=1 if level == "1" else 4,
+                    resume=resume,
+                    report=run.report,
+                ),
+                lambda run, page, result: show_loads(run, page, result, writer),
             ),
             command=as_typed(),
         )

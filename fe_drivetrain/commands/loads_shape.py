@@ -6,22 +6,18 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.commands.loads_digest import (
-    CHANNELS,
-    HIGHEST,
-    LOADS,
-    SECTORS,
-    SPEED_STEP,
-    UNITS,
-)
-from fe_drivetrain.commands.loads_together import Together
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.histories.spectra import MULTIPLES, NEAR, SEGMENT, WINDOW
+from fe_drivetrain.histories.spectra import MULTIPLES, NEAR, SEGMENT, WINDOW, Campbell
+from fe_drivetrain.histories.spectrum_sums import HIGHEST
 from fe_drivetrain.hub_loads.loops import LONGEST, ROUNDNESS, SHARE
 from fe_drivetrain.report.charts import heat_map, rounded, trace
 from fe_drivetrain.report.results import Chart
+from fe_drivetrain.studies.load_digest import LOADS, UNITS
+from fe_drivetrain.studies.load_histories import LoadsResult
+from fe_drivetrain.studies.load_planes import SECTORS
+from fe_drivetrain.studies.load_records import multiple_columns, shown_unit
+from fe_drivetrain.studies.load_totals import LoadTotals
 from fe_drivetrain.suite.page import Page
-from fe_drivetrain.suite.records import Record
 
 _SEEN = {
     "force": "it points from the origin ({}); right is 0 deg, up is 90 deg",
@@ -30,16 +26,25 @@ _SEEN = {
 }
 
 
-def shape(page: Page, found: Together) -> dict[str, list[Record]]:
-    """Add the sections; the tables that go to files, by name."""
-    _planes(page, found)
-    return {**_spectra(page, found), **_loops(page, found)}
+def shape(page: Page, result: LoadsResult) -> None:
+    """Add the sections.
+
+    Parameters
+    ----------
+    page : Page
+        Takes tables and charts.
+    result : LoadsResult
+        What was found.
+    """
+    _planes(page, result.hub)
+    _spectra(page, result.hub)
+    _loops(page, result)
 
 
-def _planes(page: Page, found: Together) -> None:
+def _planes(page: Page, found: LoadTotals) -> None:
     page.section("Direction of force and moment")
     for name, unit in (("force", "kN"), ("moment", "kN m")):
-        plane = found.classes[f"plane of {name}"]
+        plane = found.planes[name].positions
         with np.errstate(divide="ignore"):
             share = np.log10(100.0 * plane.amount / plane.amount.sum())
         share[np.isinf(share)] = np.nan
@@ -62,8 +67,8 @@ def _planes(page: Page, found: Together) -> None:
             origin = trace("origin", [0.0], [0.0], points=True, marker=cross, showlegend=False)
             chart.figure["data"] += [*_rings(across, above), origin]
         page.add(chart)
-    for name in found.directions:
-        page.add(_rose(name, found.directions[name]))
+    for name, of_plane in found.planes.items():
+        page.add(_rose(name, of_plane.directions))
 
 
 def _rings(across: Floats, above: Floats) -> list[Any]:
@@ -113,42 +118,25 @@ def _rose(name: str, seconds: Floats) -> Chart:
     )
 
 
-def _spectra(page: Page, found: Together) -> dict[str, list[Record]]:
+def _spectra(page: Page, found: LoadTotals) -> None:
     page.section("Spectra")
-    if not found.spectra:
+    frequency, density = found.spectra.frequency, found.spectra.density
+    if not len(frequency):
         page.text(f"No file lasts half of a segment of {SEGMENT:g} s, so there is no spectrum.")
-        return {}
-    lines = min(found.spectra)  # that all files have
-    total = sum(s[:, :lines] for s, _ in found.spectra.values())
-    density = np.asarray(total) / sum(seconds for _, seconds in found.spectra.values())
-    frequency = np.arange(lines) / SEGMENT
-    if len(found.spectra) > 1:
+        return
+    if found.spectra.rates > 1:
         page.text(
             f"Files are sampled at several rates; spectra end at {frequency[-1]:g} Hz, which the "
             "slowest has."
         )
-    hertz = _turning(found)
     for chosen, unit in ((("Fx", "Fy", "Fz"), "kN"), (("Mx", "My", "Mz"), "kN m")):
         traces = [
             trace(name, frequency[1:], density[LOADS.index(name), 1:] / 1e6) for name in chosen
         ]
-        if hertz is not None:
+        if found.rotor_frequency is not None:
             low, high = min(min(t["y"]) for t in traces), max(max(t["y"]) for t in traces)
-            traces += [
-                trace(
-                    f"{n}P",
-                    [n * hertz] * 2,
-                    [max(low, 1e-9 * high), high],
-                    line={"dash": "dot", "width": 1, "color": "#9aa5b1"},
-                    showlegend=False,
-                    mode="lines+text",
-                    text=["", f"{n}P"],
-                    textposition="top center",
-                    hovertext=f"{n}P at {n * hertz:.3g} Hz",
-                )
-                for n in MULTIPLES
-                if n * hertz <= frequency[-1]
-            ]
+            within = max(low, 1e-9 * high), high
+            traces += _multiple_lines(found.rotor_frequency, float(frequency[-1]), within)
         page.chart(
             f"Power spectral density, mean of all files; {WINDOW}, {SEGMENT:g} s. Dotted: "
             f"{', '.join(f'{n}P' for n in MULTIPLES)} of the mean rotor speed",
@@ -158,29 +146,32 @@ def _spectra(page: Page, found: Together) -> dict[str, list[Record]]:
             "xy",
         )
     _multiples(page, found)
-    _campbell(page, found)
-    rows = [
-        {
-            "frequency [Hz]": float(f),
-            **{
-                f"{name} [({unit})^2/Hz]": float(density[c, k])
-                for c, (name, unit) in enumerate(zip(LOADS, UNITS, strict=False))
-            },
-        }
-        for k, f in enumerate(frequency)
+    if found.spectra.by_speed is not None:
+        page.add(_campbell(found.spectra.by_speed))
+
+
+def _multiple_lines(hertz: float, last: float, within: tuple[float, float]) -> list[Any]:
+    """Dotted lines at multiples of the rotor's frequency, up to the last one that is shown."""
+    return [
+        trace(
+            f"{n}P",
+            [n * hertz] * 2,
+            list(within),
+            line={"dash": "dot", "width": 1, "color": "#9aa5b1"},
+            showlegend=False,
+            mode="lines+text",
+            text=["", f"{n}P"],
+            textposition="top center",
+            hovertext=f"{n}P at {n * hertz:.3g} Hz",
+        )
+        for n in MULTIPLES
+        if n * hertz <= last
     ]
-    return {"spectra": rows}
 
 
-def _turning(found: Together) -> float | None:
-    """Mean frequency of the rotor [Hz]."""
-    speed = found.overall()[CHANNELS.index("rotor speed"), 1]
-    return None if np.isnan(speed) else abs(float(speed)) / (2.0 * np.pi)
-
-
-def _multiples(page: Page, found: Together) -> None:
-    table = found.median_multiples()
-    if table is None:
+def _multiples(page: Page, found: LoadTotals) -> None:
+    amplitudes = found.spectra.multiples
+    if amplitudes is None:
         page.text(
             "No file has a rotor speed, so that multiples of it have no names: give --rotor-speed "
             "in rpm, or --channel 'rotor speed=NAME'."
@@ -190,50 +181,20 @@ def _multiples(page: Page, found: Together) -> None:
         f"Amplitude at multiples of each file's mean rotor speed, median of files: of the sine "
         f"with the power within {100 * NEAR:g} % of the frequency, turbulence there included",
         [
-            {
-                "channel": f"{name} [{'kN' if unit == 'N' else 'kN m'}]",
-                **{
-                    f"{n}P": None if np.isnan(v) else v / 1e3
-                    for n, v in zip(MULTIPLES, row.tolist(), strict=True)
-                },
-            }
-            for name, unit, row in zip(LOADS, UNITS, table, strict=False)
+            {"channel": f"{name} [{shown_unit(unit)}]", **multiple_columns(row / 1e3)}
+            for name, unit, row in zip(LOADS, UNITS, amplitudes, strict=False)
         ],
     )
-    for name, appears, step in found.aliased[:3]:
-        lost = [n for n, at in zip(MULTIPLES, appears, strict=True) if at < _speed(found, name) * n]
-        shown = ", ".join(
-            f"{n}P appears at {at:.3g} Hz"
-            for n, at in zip(MULTIPLES, appears, strict=True)
-            if n in lost
-        )
-        page.note(
-            f"{name} is sampled every {step:g} s, too slowly for its multiples of rotor speed: "
-            f"{shown}. What stands there in its spectra is not there in the load; sample faster."
-        )
 
 
-def _speed(found: Together, name: str) -> float:
-    """Mean frequency of the rotor in a file [Hz], less a little for round-off."""
-    row = next(row for row in found.files if row["file"] == name)
-    return float(row["mean rotor speed [rad/s]"]) / (2.0 * np.pi) * (1.0 - 1e-6)
-
-
-def _campbell(page: Page, found: Together) -> None:
-    if len(found.campbell) < 2:
-        return
-    places = sorted(found.campbell)
-    numbers = np.arange(places[0], places[-1] + 1)
-    lines = found.campbell_lines.astype(float)
-    density = np.full((len(numbers), len(lines)), np.nan)
-    for place, (total, number) in found.campbell.items():
-        density[place - places[0]] = total[: len(lines)] / number / 1e6
-    speed = SPEED_STEP * (numbers + 0.5)
+def _campbell(found: Campbell) -> Chart:
+    lines, density = found.frequency, found.density / 1e6
+    speed = 0.5 * (found.speed[1:] + found.speed[:-1])
     kept = (lines > 0.0) & (lines <= min(HIGHEST, 4.0))
     chart = heat_map(
         f"Campbell diagram of My: spectra of segments of {SEGMENT:g} s by their mean rotor speed; "
         f"dotted {', '.join(f'{n}P' for n in MULTIPLES)}",
-        speed.astype(np.float64),
+        speed,
         lines[kept],
         np.log10(density[:, kept].T),
         ("rotor speed [rad/s]", "frequency [Hz]", "log10 of (kN m)²/Hz"),
@@ -254,50 +215,14 @@ def _campbell(page: Page, found: Together) -> None:
         )
         for n in MULTIPLES
     ]
-    page.add(chart)
+    return chart
 
 
-def _loops(page: Page, found: Together) -> dict[str, list[Record]]:
+def _loops(page: Page, result: LoadsResult) -> None:
     page.section("Load loops")
-    rows: list[Record] = []
-    every: list[Record] = []
-    for name in found.loops:
-        number, seconds, whole, over = found.loops[name].tolist()
-        parts = found.each_loop[name]
-        durations, swept, ranges = np.concatenate([p.reshape(3, -1) for p in parts], axis=1)
-        rows.append(
-            {
-                "plane": name,
-                "loops": int(number),
-                "share of time [%]": 100.0 * seconds / whole,
-                "loops over blade passages (3P)": None if np.isnan(over) else over / whole,
-                "median duration [s]": _median(durations),
-                "median angle [deg]": _median(swept),
-                "largest angle [deg]": float(swept.max()) if number else None,
-                "median range [kN, kN\u00a0m]": _median(ranges / 1e3),
-                "largest range [kN, kN\u00a0m]": float(ranges.max()) / 1e3 if number else None,
-            }
-        )
-        for file, part in zip(found.names, parts, strict=True):
-            for duration, angle, size in part.reshape(3, -1).T.tolist():
-                every.append(
-                    {
-                        "file": file,
-                        "plane": name,
-                        "duration [s]": duration,
-                        "swept angle [deg]": angle,
-                        "range of magnitude [N, N m]": size,
-                    }
-                )
-    page.table("Loops of force and of moment at the hub, across the shaft", rows)
+    page.table("Loops of force and of moment at the hub, across the shaft", result.tables["loops"])
     page.text(
         f"A loop is a part of the path that closes within {LONGEST:g} s, leads away from where it "
         f"closes by {100 * SHARE:g} % of the mean magnitude or more, and has an area of "
         f"{ROUNDNESS:g} times that distance squared or more; the definition is this program's own."
     )
-    page.data("loops", rows)
-    return {"loops": every}
-
-
-def _median(values: Floats) -> float | None:
-    return float(np.median(values)) if len(values) else None

@@ -6,14 +6,14 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
-from fe_drivetrain.commands.loads_digest import LOADS, UNITS
-from fe_drivetrain.commands.loads_page import Target
 from fe_drivetrain.commands.settings import refuse_again
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.histories.sites import Site, site_of_class
 from fe_drivetrain.hub_loads.channel_map import NAMES
 from fe_drivetrain.hub_loads.channels import FORCE_UNITS, MOMENT_UNITS
 from fe_drivetrain.hub_loads.recorded import recorded_files
+from fe_drivetrain.studies.load_digest import LOADS, UNITS
+from fe_drivetrain.studies.load_winds import CaptureTarget
 
 
 def parse_channels(texts: Iterable[str]) -> dict[str, str]:
@@ -118,7 +118,7 @@ def parse_ultimate(texts: Iterable[str]) -> dict[str, float]:
     return found
 
 
-def parse_winds(text: str | None, windows: int) -> Target:
+def parse_winds(text: str | None, windows: int) -> CaptureTarget:
     """What the capture matrix should hold, of ``--winds LOW:HIGH`` and ``--target``.
 
     Parameters
@@ -134,14 +134,14 @@ def parse_winds(text: str | None, windows: int) -> Target:
         The range is none.
     """
     if text is None:
-        return Target(windows)
+        return CaptureTarget(windows)
     try:
         low, high = (float(part) for part in text.split(":"))
     except ValueError:
         low, high = 0.0, 0.0
     if not 0.0 < low < high <= 60.0:
         raise InputError(f"--winds {text}: give two wind speeds from 0 to 60 m/s, as in 4:24")
-    return Target(windows, low, high)
+    return CaptureTarget(windows, low, high)
 
 
 def parse_transients(texts: Iterable[str]) -> list[tuple[float, list[Path]]]:

@@ -12,9 +12,9 @@ from fe_drivetrain.commands.terminal import PASSED, guarded, write
 from fe_drivetrain.common.errors import InputError
 
 if TYPE_CHECKING:
+    from fe_drivetrain.export.superelement import Superelement
     from fe_drivetrain.foreign.survey import Survey
-
-_SUPERELEMENTS = {".json": "json", ".csv": "csv", ".bdf": "dmig", ".op4": "op4", ".h5": "hdf5"}
+    from fe_drivetrain.geometry import CondensedHousing
 
 
 def part_command(
@@ -48,40 +48,27 @@ def part_command(
     """
 
     def work() -> int:
-        _check_options(file, bore, held, picture, overwrite)
-        if file.suffix.lower() in _SUPERELEMENTS:
-            write(sys.stdout, _superelement(file, bore, [p for p in held.split(",") if p]))
-            return PASSED
-        from fe_drivetrain.foreign.survey import surveyed
+        from fe_drivetrain.studies.part_survey import SUPERELEMENTS, part
 
-        if picture is not None:
-            _check_picture(picture, overwrite)
-        found = surveyed(file)
-        write(sys.stdout, found.text)
-        if picture is not None and len(found.triangles):
-            _draw(found, picture)
-        return PASSED
-
-    raise typer.Exit(guarded(work, "nothing is changed"))
-
-
-def _check_options(file: Path, bore: str, held: str, picture: Path | None, overwrite: bool) -> None:
-    """Refuse options that say nothing of a file of this kind."""
-    if file.suffix.lower() in _SUPERELEMENTS:
-        if picture is not None:
+        if overwrite and picture is None:
+            raise InputError("--overwrite is for the file of --picture: give --picture PNG, too")
+        if picture is not None and file.suffix.lower() in SUPERELEMENTS:
             raise InputError(
                 f"--picture {picture} is of a STEP or mesh file, and {file} is a superelement, "
                 "which has no faces: leave --picture out"
             )
-    else:
-        for option, value in (("--bore", bore), ("--held", held)):
-            if value:
-                raise InputError(
-                    f"{option} {value} names points of a superelement, and {file} is none: leave "
-                    f"{option} out, or give a file that ends in {', '.join(_SUPERELEMENTS)}"
-                )
-    if overwrite and picture is None:
-        raise InputError("--overwrite is for the file of --picture: give --picture PNG, too")
+        if picture is not None:
+            _check_picture(picture, overwrite)
+        result = part(file, bore, [point for point in held.split(",") if point])
+        if result.survey is not None:
+            write(sys.stdout, result.survey.text)
+            if picture is not None and len(result.survey.triangles):
+                _draw(result.survey, picture)
+        elif result.element is not None and result.housing is not None:
+            write(sys.stdout, _stiffness_text(file, result.element, result.housing))
+        return PASSED
+
+    raise typer.Exit(guarded(work, "nothing is changed"))
 
 
 def _check_picture(picture: Path, overwrite: bool) -> None:
@@ -113,19 +100,14 @@ def _draw(found: Survey, picture: Path) -> None:
     write(sys.stdout, f"\npicture: {picture}\n")
 
 
-def _superelement(file: Path, bore: str, held: list[str]) -> str:
+def _stiffness_text(file: Path, element: Superelement, housing: CondensedHousing) -> str:
     """Points of a superelement, and the housing that it is in a scene."""
-    from fe_drivetrain.export.condensed_housing import condensed_housing
-    from fe_drivetrain.export.limited_reading import read_limited
-
-    element = read_limited(file, _SUPERELEMENTS[file.suffix.lower()])
     lines = [f"{file.name}: superelement {element.name}, its points [m]:"]
     lines += [
         f"  {name}  ({x:.6g}, {y:.6g}, {z:.6g})"
         for name, (x, y, z) in zip(element.points, element.positions.tolist(), strict=True)
     ]
     lines.append("on its supports" if element.supported else "free")
-    housing = condensed_housing(element, bore, held)
     lines += ["", "In a scene, for a bearing whose centre is the bore's point:", "    housing:"]
     lines += [f"      source: {housing.source}", "      stiffness:"]
     lines += [f"        - [{', '.join(f'{k:.15e}' for k in row)}]" for row in housing.stiffness]

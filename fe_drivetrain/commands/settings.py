@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Sequence
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from fe_drivetrain.common.errors import InputError
-
-if TYPE_CHECKING:
-    from fe_drivetrain.response.entering import Factors
 
 CaseSettings = Annotated[
     list[str] | None,
@@ -129,41 +126,35 @@ def _is_plain(value: object) -> bool:
     return value is None or isinstance(value, str | int | float | bool)
 
 
-def parse_loads(texts: Iterable[str], known: Sequence[str]) -> Factors | None:
-    """Factors of the unit loads from ``--load NAME=VALUE``.
+def parse_loads(texts: Iterable[str], known: Sequence[str]) -> dict[str, float] | None:
+    """Loads by name from ``--load NAME=VALUE``.
 
     Parameters
     ----------
     texts : iterable of str
         One "NAME=VALUE" for each option, in SI units.
     known : sequence of str
-        Names of the n unit loads, see `fe_drivetrain.response.model.scene_loads`.
+        Names of the unit loads, see `fe_drivetrain.response.model.scene_loads`.
 
     Returns
     -------
-    Factors or None
-        (n,) of these, those at the hub by their names; None if there are no texts.
+    dict or None
+        Those that are given; None if there are no texts.
 
     Raises
     ------
     InputError
         A name is unknown, a value is not a number, or all loads are zero.
     """
-    import numpy as np
-
-    from fe_drivetrain.response.entering import Factors
-
-    factors = np.zeros(len(known))
     values = parse_settings(texts, "--load")
     for name, value in values.items():
         if name not in known:
             raise InputError(f"--load {name!r} is unknown: use one of {', '.join(known)}")
         if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < 1e15:
             raise InputError(f"--load {name}: {value!r} must be a number, as in --load hub.Fz=-3e5")
-        factors[list(known).index(name)] = value
-    if values and not factors.any():
+    if values and not any(values.values()):
         raise InputError("--load: all loads are zero: give at least one that is not zero")
-    return Factors(factors) if values else None
+    return {name: float(value) for name, value in values.items()} or None
 
 
 def parse_tolerance(text: str) -> float:

@@ -20,7 +20,6 @@ from fe_drivetrain.commands.options import (
 )
 from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.run import Quick, results_text, tables_text
-from fe_drivetrain.commands.scenes import named_scene
 from fe_drivetrain.commands.settings import (
     Loads,
     SceneSettings,
@@ -34,10 +33,12 @@ from fe_drivetrain.commands.terminal import FAILED, PASSED, as_typed, guarded, w
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
+from fe_drivetrain.scene.named_scenes import named_scene
 from fe_drivetrain.suite.ownership import check_result_folder
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.results import Results
+    from fe_drivetrain.studies.input_uncertainty import UncertaintyResult
     from fe_drivetrain.suite.page import Page
     from fe_drivetrain.suite.run import Run
 
@@ -126,10 +127,11 @@ def study_command(
                 f"--skip {skip:g} leaves out the beginning of your own files, and there are none: "
                 "give them with --loads, or leave --skip out"
             )
-        from fe_drivetrain.commands.study_loads import own_loads
-        from fe_drivetrain.commands.study_page import studied
+        from fe_drivetrain.commands.study_page import show_study
         from fe_drivetrain.histories.damage import SLOPES, check_slope
         from fe_drivetrain.hub_loads.channel_map import read_channel_map
+        from fe_drivetrain.studies.scene_study import study
+        from fe_drivetrain.studies.study_loads import own_loads
 
         for exponent in slope or ():
             check_slope(exponent)
@@ -139,12 +141,18 @@ def study_command(
 
         # before the work: a fault in a file is reported at once
         own = None if loads is None else own_loads(loads, skip, found, names)
+        histories = () if own is None else own.histories
         return run_on_scene(
             "study",
             [scene],
             f"{found.title}: stiffness, reactions, and beams against FE",
             out,
-            lambda run, page: studied(run, page, found, own, slope or SLOPES, weight),
+            shown(
+                lambda run: study(
+                    found, own, slope or SLOPES, weight, run.quick, report=run.report
+                ),
+                lambda run, page, result: show_study(run, page, result, histories),
+            ),
             quick,
             scheduler,
         )
@@ -187,20 +195,24 @@ def advise_command(
     def work() -> int:
         hold_threads()
         found = named_scene(scene, parse_settings(set_ or ()))
-        from fe_drivetrain.commands.advice_page import advised
         from fe_drivetrain.fidelity.quantity import Quantity
+        from fe_drivetrain.pages.advice import show_advise
         from fe_drivetrain.response.model import scene_loads
+        from fe_drivetrain.studies.level_advice import advise
 
         name = quantity or f"{found.bearing_names[0]}.Fz"
-        asked = Quantity(name, parse_loads(load or (), scene_loads(found)))
-        asked.check(found)
+        loads = parse_loads(load or (), scene_loads(found))
+        Quantity(name).check(found)
         share = parse_tolerance(tolerance)
         return run_on_scene(
             "advise",
             [scene],
             f"{found.title}: the model level that {name} needs",
             out,
-            lambda run, page: advised(run, page, found, asked, share, to_the_top),
+            shown(
+                lambda run: advise(found, name, share, loads, to_the_top, report=run.report),
+                show_advise,
+            ),
         )
 
     raise typer.Exit(guarded(work))
@@ -268,34 +280,30 @@ def uncertainty_command(
     def work() -> int:
         hold_threads()
         found = named_scene(scene, parse_settings(set_ or ()))
-        from fe_drivetrain.commands.uncertainty_page import uncertain
+        from fe_drivetrain.pages.uncertainty import show_uncertainty
         from fe_drivetrain.response.model import scene_loads
+        from fe_drivetrain.studies.input_uncertainty import uncertainty
 
-        factors = parse_loads(load or (), scene_loads(found))
+        loads = parse_loads(load or (), scene_loads(found))
         share = parse_tolerance(tolerance)
         if level is not None and not left_out(context, "tolerance"):
             raise InputError(
                 f"--tolerance {tolerance} is for the adviser, which --level {level} leaves out: "
                 "give one of the two"
             )
-        sobol_samples = 2 ** (samples.bit_length() - 1) if sobol else 0
+        asked = tuple(quantity or ())
+
+        def study(run: Run) -> UncertaintyResult:
+            return uncertainty(
+                found, asked, loads, share, level, samples, seed, sobol, report=run.report
+            )
+
         return run_on_scene(
             "uncertainty",
             [scene],
             f"{found.title}: uncertainty of the results",
             out,
-            lambda run, page: uncertain(
-                run,
-                page,
-                found,
-                quantity or (),
-                factors,
-                share,
-                level,
-                samples,
-                seed,
-                sobol_samples,
-            ),
+            shown(study, show_uncertainty),
             scheduler=scheduler,
         )
 

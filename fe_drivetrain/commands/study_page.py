@@ -1,208 +1,82 @@
-"""A study of any scene on a page: K_R, reactions over load histories, and beams against FE."""
+"""A study of a scene on a page: K_R, reactions over load histories, and beams against FE."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from fe_drivetrain.commands.scene_page import describe
-from fe_drivetrain.commands.study_errors import errors
-from fe_drivetrain.commands.study_loads import StudyLoads, surrogate_loads
-from fe_drivetrain.commands.study_reactions import STATISTICS, reactions, write_reactions
-from fe_drivetrain.commands.uncertainty_page import bands, inputs
-from fe_drivetrain.commands.uncertainty_page import slopes as slopes_section
-from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.compare.time_weighted import weighted_statistics
-from fe_drivetrain.export.formats.stiffness_file import stiffness_matrix, write_stiffness_json
-from fe_drivetrain.export.formats.summary import summary, write_summary
-from fe_drivetrain.fidelity.foot_opening import foot_warnings
-from fe_drivetrain.fidelity.over_loads import (
-    Levels,
-    imbalance,
-    levels_of,
-    reaction_history,
+from fe_drivetrain.commands.study_files import (
+    STATISTICS,
+    STIFFNESS,
+    write_reactions,
+    write_statistics,
+    write_stiffness,
 )
-from fe_drivetrain.fidelity.quantities import UNIT, unit_numbers
-from fe_drivetrain.histories.damage import SLOPES
+from fe_drivetrain.commands.study_reactions import show_reactions
+from fe_drivetrain.export.formats.summary import summary, write_summary
+from fe_drivetrain.fidelity.judgement import Judgement
+from fe_drivetrain.fidelity.over_loads import COARSER_ASSEMBLY, Levels
+from fe_drivetrain.fidelity.quantities import unit_numbers
+from fe_drivetrain.fidelity.shaft_bands import COARSER
+from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.mesh.files import write
+from fe_drivetrain.pages.uncertainty import bands, inputs
+from fe_drivetrain.pages.uncertainty import slopes as slopes_section
 from fe_drivetrain.report.charts import trace
 from fe_drivetrain.report.pictures import NoPictureError, picture_of_model
 from fe_drivetrain.report.solid_view import deformed_shape
-from fe_drivetrain.response.cached import cached_response
-from fe_drivetrain.response.entering import Factors, entering, joined
-from fe_drivetrain.response.model import Model
-from fe_drivetrain.response.unit_loads import Response
-from fe_drivetrain.scene.left_out import left_out
-from fe_drivetrain.scene.scene import Scene
-from fe_drivetrain.scene.without_weight import weightless
-from fe_drivetrain.studies.scene_description import checked_model, description, quick_scene
+from fe_drivetrain.studies.level_errors import ENOUGH
+from fe_drivetrain.studies.scene_study import ASSEMBLY, StudyResult
 from fe_drivetrain.suite.page import Page
-from fe_drivetrain.suite.records import Record
 from fe_drivetrain.suite.run import Run
-from fe_drivetrain.uncertainty.input_study import study
-from fe_drivetrain.uncertainty.numbers import figures
-
-_SAMPLES, _QUICK_SAMPLES = 128, 40
-_SHOWN = 60.0  # seconds of a chart over time
 
 
-def studied(
-    run: Run,
-    page: Page,
-    scene: Scene,
-    own: StudyLoads | None,
-    slopes: Sequence[float] = SLOPES,
-    weight: bool = True,
+def show_study(
+    run: Run, page: Page, result: StudyResult, histories: Sequence[LoadHistory] = ()
 ) -> None:
-    """Stiffness of the bearing units, reactions over all loads, and levels against the assembly.
+    """Show the study of a scene, and write its files.
 
     Parameters
     ----------
     run : Run
-        The run; its folder takes pictures and CSV files.
+        Its folder takes pictures, CSV files, stiffnesses, summary and mesh.
     page : Page
         Takes tables and charts.
-    scene : Scene
-        Any scene that the library solves.
-    own : StudyLoads or None
-        The user's hub loads; the surrogate's where None.
-    slopes : sequence of float
-        Of S-N curves, for damage-equivalent loads.
-    weight : bool
-        Whether the reactions have the weight of all parts.
-
-    Raises
-    ------
-    InputError
-        The scene cannot be solved.
+    result : StudyResult
+        What was found.
+    histories : sequence of LoadHistory
+        Load histories whose reactions are written over time.
     """
-    page.about(scene)
-    scene = quick_scene(scene) if run.quick else scene
-    scene = scene if weight else weightless(scene)
-    model = checked_model(run, scene)
-    loads = surrogate_loads(run) if own is None else own
-    loads = loads if weight else replace(loads, gravity=0.0)
-    page.seed = None if loads.own else 1
-    with run.step("assembly of solids") as step:
-        response = cached_response(model)
-        if response.kept:
-            step.name += ", from the cache"
-    with run.step("levels 1 and 2"):
-        levels = levels_of(scene, response, run.report)
-    driving = joined([entering(scene, history) for history in loads.histories])
-    mean = weighted_statistics(driving.values, loads.weights)[:, 1]
-    factors = np.concatenate([mean[:6], [0.0, 0.0, -loads.gravity, scene.gearbox.weight], mean[6:]])
-    _check(page, scene, response, levels)
-
-    if run.quick:
-        page.answer(
-            "Quick: on a coarser mesh than the scene's, for a first look; figures will change."
-        )
-    opening = foot_warnings(scene, response, driving, loads.weights, loads.gravity)
-    page.answer(loads.statement, *model.warnings, *opening)
     page.section("Scene")
-    _pictures(run, page, model, response, factors)
-    page.assume_all(left_out(scene))
-    describe(page, description(model))
-    if scene.bearing_units:
+    _pictures(run, page, result)
+    describe(page, result.described)
+    if result.units:
         page.section("Stiffness of the bearing units")
-        _stiffness(run, page, model, response, levels)
-    with run.step("reactions of all load steps"):
-        reactions(run, page, model, loads, levels, slopes)
-    with run.step("beams against FE"):
-        level = errors(page, scene, levels, loads, slopes)
-        _series(page, scene, loads, levels)
-    if scene.uncertainty:
-        _uncertainty(run, page, scene, level, Factors(factors))
+        _stiffness(page, result)
+    page.section("Reactions")
+    show_reactions(page, result)
+    page.section("Beams against FE")
+    _errors(page, result)
+    page.section("Over time")
+    _series(page, result)
+    if result.uncertainty is not None:
+        spreads = result.uncertainty
+        page.sections += [bands(spreads), inputs(spreads), slopes_section(spreads)]
     with run.step("files"):
-        _files(run, page, model, response, loads, levels)
-    for assumption in loads.assumptions:
-        page.assume(*assumption)
+        _files(run, page, result, histories)
 
 
-def _uncertainty(run: Run, page: Page, scene: Scene, level: int, load: Factors) -> None:
-    """What the spreads that the scene states do to stiffnesses and bearing forces."""
-    asked = [f"{name}.Fz" for name in scene.bearing_names]
-    with run.step("uncertainty"):
-        found = study(
-            scene,
-            asked,
-            load,
-            level=level,
-            count=_QUICK_SAMPLES if run.quick else _SAMPLES,
-            report=run.report,
-        )
-    page.sections += [bands(found), inputs(found), slopes_section(found)]
-    page.data("uncertainty", figures(found))
-    page.seed = 0 if page.seed is None else page.seed
-
-
-def _files(
-    run: Run, page: Page, model: Model, response: Response, loads: StudyLoads, levels: Levels
-) -> None:
-    """Exports beside the page, and a list of them."""
-    if loads.own:
-        write_reactions(run.folder, model, loads, levels)
-    write_summary(run.folder / "summary.json", summary(model.scene, 2))
-    fields = {
-        f"displacement {load}": response.displacements[:, :, k]
-        for k, load in enumerate(model.loads)
-    }
-    write(model.mesh, run.folder / "mesh.vtu", fields)
-    page.section("Files")
-    page.table(
-        "Files of this study",
-        [
-            {"file": name, "content": content}
-            for name, content in (
-                (STATISTICS, "reactions of each history: statistics, bands, equivalent loads"),
-                *([("reactions_*.csv", "reactions over time")] if loads.own else []),
-                *(
-                    [("stiffness.json", "6x6 stiffness of each bearing unit, two bounds")]
-                    if levels.stiff
-                    else []
-                ),
-                ("summary.json", "shaft, bearing units, reactions, masses of a drivetrain model"),
-                ("mesh.vtu", "the assembly with its unit-load displacements, for ParaView"),
-            )
-        ],
-    )
-    page.text("'fe-drivetrain export' writes the model for other programs.")
-
-
-def _check(page: Page, scene: Scene, response: Response, levels: Levels) -> None:
-    page.vanishes(
-        "assembly: total equilibrium, applied less reacted",
-        response.equilibrium_error,
-        within=1e-8,
-        why="reactions come from the residual on constrained degrees of freedom: solver accuracy",
-        source="exact",
-    )
-    page.vanishes(
-        "assembly: linearity, a random load solved directly against superposed",
-        response.superposition_error,
-        within=1e-8,
-        why="the scene is linear: solver accuracy",
-        source="exact",
-    )
-    worst = max(imbalance(scene, model) for model in levels.models.values())
-    page.vanishes(
-        "every level: reactions to unit hub loads balance the load, the worst",
-        worst,
-        within=1e-6,
-        why="each level must be in equilibrium, whatever its stiffness",
-        source="statics",
-    )
-
-
-def _pictures(run: Run, page: Page, model: Model, response: Response, factors: Floats) -> None:
-    weights = " and all weights" if factors[8] else ""
+def _pictures(run: Run, page: Page, result: StudyResult) -> None:
+    model, mean = result.model, result.loads.mean
+    weights = " and all weights" if mean[8] else ""
     with run.step("pictures"):
         try:
             picture_of_model(model, run.folder / "model.png")
-            shape = deformed_shape(model, response, factors, run.folder, f"the mean load{weights}")
+            shape = deformed_shape(
+                model, result.response, mean, run.folder, f"the mean load{weights}"
+            )
         except NoPictureError as reason:
             page.text(f"No picture: {reason}")
             return
@@ -210,35 +84,16 @@ def _pictures(run: Run, page: Page, model: Model, response: Response, factors: F
     page.add(shape)
 
 
-def _stiffness(run: Run, page: Page, model: Model, response: Response, levels: Levels) -> None:
-    """K_R and the other stiffnesses of each unit between two bounds, on the page and as JSON."""
-    rows: list[Record] = []
-    for name, stiff in levels.stiff.items():
-        high, low = unit_numbers(stiff), unit_numbers(levels.soft[name])
-        for quantity, component in UNIT.items():
-            if high[quantity] == 0.0:
-                continue
-            rows.append(
-                {
-                    "bearing": name,
-                    "quantity": {"tilt": "K_R about y", "yaw": "K_R about z"}.get(
-                        quantity, quantity.replace("_", " along ")
-                    ),
-                    "unit": "MN/m" if component < 3 else "MN\u00a0m/rad",
-                    "face on average (soft)": low[quantity] / 1e6,
-                    "face in shape (stiff)": high[quantity] / 1e6,
-                    "range [%]": 100.0 * (high[quantity] / low[quantity] - 1.0),
-                    "mesh: less by up to [%]": 100.0 * levels.unit_mesh[name],
-                }
-            )
+def _stiffness(page: Page, result: StudyResult) -> None:
+    """K_R and the other stiffnesses of each unit between two bounds."""
     page.table(
         "Bearing, housing and bedplate without the shaft: the shaft keeps the face between them in "
         "shape, but not wholly, so that the truth is between two bounds (equal where the joint "
         "itself says how its faces move). The mesh makes both too stiff by up to the last column. "
         "Force over motion, all other loads zero",
-        rows,
+        result.tables["unit_stiffness"],
     )
-    free = {name: unit_numbers(stiff) for name, stiff in levels.stiff.items()}
+    free = {name: unit_numbers(bounds.stiff) for name, bounds in result.units.items()}
     aligning = [name for name, of in free.items() if of["tilt"] == of["yaw"] == 0.0]
     floating = [name for name, of in free.items() if of["axial"] == 0.0]
     if aligning:
@@ -248,47 +103,118 @@ def _stiffness(run: Run, page: Page, model: Model, response: Response, levels: L
             f"No axial stiffness of {', '.join(floating)}: the bearing floats, and leaves axial "
             "force to the others at every level."
         )
-    page.data("unit_stiffness", rows)
-    write_stiffness_json(
-        run.folder / "stiffness.json",
-        model.scene.title,
-        [
-            stiffness_matrix(
-                f"{name}, {bound}",
-                matrices[name],
-                response.positions[name],
-                "bearing, housing and bedplate in series at the bearing's centre",
-            )
-            for bound, matrices in (("stiff", levels.stiff), ("soft", levels.soft))
-            for name in matrices
-        ],
-        response.diagnostics.n_unknowns,
+    if result.secants:
+        page.table(
+            "K_R in the drivetrain, as a secant over load steps without the weight of shaft, "
+            "bearings and housings, and that of the unit alone",
+            result.tables["secants"],
+        )
+        for one in result.secants:
+            page.text(f"{one.bearing}: {one.statement}.")
+
+
+def _errors(page: Page, result: StudyResult) -> None:
+    """RMSE of each level against the assembly, and the cheapest level that is enough."""
+    levels, tables = result.levels, result.tables
+    page.table(
+        "Error of each reaction as a vector over all load steps: root mean square of the "
+        "difference to the assembly over that of the assembly's [%]",
+        tables["error_percent"],
     )
+    page.add(result.chart())
+    page.table("RMSE of each component against the assembly over all load steps", tables["rmse_kN"])
+    page.text(_notes(levels, result.judgement))
+    page.table(
+        f"The cheapest level that has each reaction within {100 * ENOUGH:g} % over these loads"
+        + (", for either bound of the housings" if levels.stiff else ""),
+        tables["advice"],
+    )
+    page.text(
+        "'fe-drivetrain advise' answers for one quantity and another tolerance, ranks the details "
+        "of the scene, and says what each level takes."
+    )
+    counted, count = result.measures.histories, len(result.loads.histories)
+    of_all = "" if counted == count else f" in {counted} of the {count} histories"
+    worse = ", the worse of both bounds of the housings" if levels.stiff else ""
+    page.table(
+        f"Error of each level by what a part is designed for{of_all}: the component across the "
+        f"shaft that varies most{worse}. Mean and load duration "
+        "over the mean size; extreme, and damage-equivalent load (DEL), over the assembly's",
+        tables["design_measures"],
+    )
+    if result.closed_forms:
+        page.table(
+            "Closed forms of one bearing on a uniform shaft (Stirling 2023, Eq 3.1, 3.18 and 3.19) "
+            "with K_R of the table above, against the assembly without the weight of shaft, "
+            "bearing and housing, which they do not have: resultant radial force on the bearing, "
+            "means over the histories. Mean error: |F_beam - F_FE| / |F_FE|; samples with a "
+            "reference below 0.1 % of its root mean square are left out",
+            tables["closed_forms"],
+        )
 
 
-def _series(page: Page, scene: Scene, loads: StudyLoads, levels: Levels) -> None:
+def _notes(levels: Levels, judgement: Judgement) -> str:
+    """Notes on the tables: bounds, what the mesh does, and what does not decide."""
+    notes = []
+    if levels.stiff:
+        notes.append("Stiff and soft housings are the two bounds of the bearing units.")
+    if COARSER_ASSEMBLY in levels.models:
+        notes.append(
+            f"The assembly on a mesh {COARSER:g} times coarser shows what the mesh does to the "
+            "reference: differences as small as that are not errors of a beam."
+        )
+    else:
+        notes.append(f"The mesh cannot be {COARSER:g} times coarser: its own error is not shown.")
+    if judgement.slight:
+        slight = "; ".join(q.words(judgement.largest[q.kind]) for q in judgement.slight)
+        notes.append(f"Too small beside the largest of their kind to judge a level by: {slight}.")
+    notes.append("Forces and moments that are the mesh's noise are left out.")
+    return " ".join(notes)
+
+
+def _series(page: Page, result: StudyResult) -> None:
     """The beginning of the middle history: radial force of each bearing, FE and beams."""
-    page.section("Over time")
-    history = loads.histories[len(loads.histories) // 2]
-    shown = history.time - history.time[0] <= _SHOWN
+    levels, shown = result.levels, result.loads.beginning
     (*_, beams) = [models for level, models in levels.bounds.items() if level.startswith("1")]
-    labels = ["assembly", *beams]
-    with_weights = " with all weights" if loads.gravity else ""
-    for name in scene.bearing_names:
+    labels = [ASSEMBLY, *beams]
+    found = {label: result.reactions(shown.loads, label) for label in labels}
+    with_weights = " with all weights" if result.loads.gravity else ""
+    for name in result.model.scene.bearing_names:
         traces = []
         for label, dash in zip(labels, ("solid", "dash", "dot"), strict=False):
-            reaction = reaction_history(
-                levels.models[label],
-                name,
-                entering(scene, history)[shown],
-                scene.gearbox.weight,
-                loads.gravity,
-            )
+            reaction = found[label][name]
             force = np.hypot(reaction[:, 1], reaction[:, 2]) / 1e3
-            traces.append(trace(label, history.time[shown], force, line={"dash": dash}))
+            traces.append(trace(label, shown.time, force, line={"dash": dash}))
         page.chart(
-            f"Radial force on {name}{with_weights}: the beginning of {history.name}",
+            f"Radial force on {name}{with_weights}: the beginning of {shown.name}",
             traces,
             "time [s]",
             "radial force [kN]",
         )
+
+
+def _files(run: Run, page: Page, result: StudyResult, histories: Sequence[LoadHistory]) -> None:
+    """Exports beside the page, and a list of them."""
+    model = result.model
+    write_statistics(run.folder / STATISTICS, result)
+    files = {STATISTICS: "reactions of each history: statistics, bands, equivalent loads"}
+    if histories:
+        write_reactions(run.folder, result, histories)
+        files["reactions_*.csv"] = "reactions over time"
+    if result.units:
+        write_stiffness(run.folder / STIFFNESS, result)
+        files[STIFFNESS] = "6x6 stiffness of each bearing unit, two bounds"
+    write_summary(run.folder / "summary.json", summary(model.scene, 2))
+    files["summary.json"] = "shaft, bearing units, reactions, masses of a drivetrain model"
+    fields = {
+        f"displacement {load}": result.response.displacements[:, :, k]
+        for k, load in enumerate(model.loads)
+    }
+    write(model.mesh, run.folder / "mesh.vtu", fields)
+    files["mesh.vtu"] = "the assembly with its unit-load displacements, for ParaView"
+    page.section("Files")
+    page.table(
+        "Files of this study",
+        [{"file": name, "content": content} for name, content in files.items()],
+    )
+    page.text("'fe-drivetrain export' writes the model for other programs.")

@@ -6,8 +6,8 @@ import shlex
 from collections.abc import Iterable
 from pathlib import Path
 
-from fe_drivetrain.commands.validate_steps import Standing
 from fe_drivetrain.procedure.project import Capture, Comparison, Project
+from fe_drivetrain.studies.project_validation import ValidateResult
 from fe_drivetrain.suite.case import Case, all_cases
 
 _MADE_AGAIN = frozenset({"missing", "edited", "stale", "quick", "of another drivetrain"})
@@ -17,12 +17,12 @@ _ON_SCENES = ("advise", "check", "study", "uncertainty")
 """Commands whose only argument is a scene."""
 
 
-def ready_commands(standing: Standing, path: Path) -> list[str]:
+def ready_commands(result: ValidateResult, path: Path) -> list[str]:
     """Commands to be copied, with all names and paths quoted; the last one validates again.
 
     Parameters
     ----------
-    standing : Standing
+    result : ValidateResult
         How the project stands.
     path : Path
         The project file, as the user named it.
@@ -32,9 +32,9 @@ def ready_commands(standing: Standing, path: Path) -> list[str]:
     list of str
         Empty where no run would change anything.
     """
-    project = standing.project
+    project = result.project
     reports = path.parent / project.reports
-    wanted = _missing(standing, path.parent, reports)
+    wanted = _missing(result, path.parent, reports)
     known = all_cases()
     machine = _machine(project, path.parent)
     cases = [known[name] for name in wanted if name in known]
@@ -56,15 +56,15 @@ def ready_commands(standing: Standing, path: Path) -> list[str]:
     return [*commands, shlex.join(["fe-drivetrain", "validate", str(path)])] if commands else []
 
 
-def _missing(standing: Standing, folder: Path, reports: Path) -> list[str]:
+def _missing(result: ValidateResult, folder: Path, reports: Path) -> list[str]:
     """Names of results that are to be made: of evidence, and beside files of channels."""
     found = [
         one.link.case
-        for state in standing.states
+        for state in result.states
         for one in state.evidence
         if one.state in _MADE_AGAIN and not one.counts
     ]
-    project = standing.project
+    project = result.project
     given: Iterable[str] = (
         *_files(project.campaign.capture if project.campaign else None),
         *_files(project.comparison),

@@ -4,71 +4,19 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from fe_drivetrain.histories.windows import CaptureMatrix
-from fe_drivetrain.procedure.assessment import Measured, StepState
 from fe_drivetrain.procedure.evidence import Found
-from fe_drivetrain.procedure.failure_modes import Catalogue
-from fe_drivetrain.procedure.project import InputValue, Project
+from fe_drivetrain.procedure.project import InputValue
 from fe_drivetrain.procedure.sensors import sampling_rates
 from fe_drivetrain.report.charts import heat_map
 from fe_drivetrain.report.number_text import formatted
-from fe_drivetrain.report.results import DrivetrainRecord, Table, expectation
+from fe_drivetrain.report.results import Table
+from fe_drivetrain.studies.project_validation import ValidateResult, as_record
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
-
-
-@dataclass(frozen=True)
-class Standing:
-    """A project, and how it stands.
-
-    Attributes
-    ----------
-    project : Project
-        As read.
-    catalogue : Catalogue
-        Its design loads.
-    states : tuple of StepState
-        The six steps.
-    matrix : CaptureMatrix or None
-        Of its campaign.
-    measured : Measured
-        What its files of channels gave.
-    drivetrain : DrivetrainRecord or None
-        What it is of; None before step 2.
-    """
-
-    project: Project
-    catalogue: Catalogue
-    states: tuple[StepState, ...]
-    matrix: CaptureMatrix | None
-    measured: Measured
-    drivetrain: DrivetrainRecord | None
-
-    @property
-    def complete(self) -> bool:
-        """Whether all six steps are."""
-        return all(state.complete for state in self.states)
-
-    def reasons(self, state: StepState) -> list[str]:
-        """Why a step is open, in sentences; what was not run yet in one of them, at the end.
-
-        Parameters
-        ----------
-        state : StepState
-            One of the six.
-        """
-        absent = [one for one in state.evidence if one.results is None]
-        said = {f"{one.claim.name}: {one.why}" for one in absent}
-        reasons = [text for text in state.lacks if text not in said]
-        if absent:
-            names = ", ".join(dict.fromkeys(one.link.case for one in absent))
-            reasons.append(f"its evidence is not there: run {names}")
-        return reasons
 
 
 def evidence_table(evidence: Sequence[Found], reports: Path, folder: Path) -> Table:
@@ -99,42 +47,10 @@ def evidence_table(evidence: Sequence[Found], reports: Path, folder: Path) -> Ta
     )
 
 
-def as_record(found: Found) -> Record:
-    """Evidence in words and numbers: what was shown of it, what was asked, whether it counts.
-
-    Parameters
-    ----------
-    found : Found
-        Of a link.
-    """
-    worst = found.worst
-    checks, unit, band = "none", "", None
-    if worst is not None:
-        passed = sum(verdict.passed for verdict in found.verdicts)
-        checks, unit, band = f"{passed} of {len(found.verdicts)} pass", worst.unit, worst.band
-    value = "" if worst is None else f"{formatted(worst.computed)} {unit}".strip()
-    if (answer := found.answer) is not None:
-        value, unit, band = answer.value, answer.unit, answer.band or None
-    return {
-        "case": found.link.case,
-        "state": found.state if found.counts else f"{found.state}, does not count",
-        "counts": "yes" if found.counts else "no",
-        "checks": checks,
-        "stands for": ", ".join(found.claim.loads) or "the step",
-        "quantity": answer.quantity if answer else worst.quantity if worst else found.link.check,
-        "computed": value,
-        "asked": answer.asked if answer else expectation(worst) if worst else "",
-        "limit from": found.link.limit_from,
-        "band": "none" if band is None else f"± {formatted(band)} {unit}".strip(),
-        "run": f"{found.date}, {found.version}" if found.date else "",
-        "why": found.why,
-    }
-
-
-def _failure_modes(page: Page, standing: Standing) -> None:
-    step = standing.project.failure_modes
+def _failure_modes(page: Page, result: ValidateResult) -> None:
+    step = result.project.failure_modes
     assert step is not None
-    known = {load.name: load for load in standing.catalogue.design_loads}
+    known = {load.name: load for load in result.catalogue.design_loads}
     rows: list[Record] = []
     for one in step.critical:
         load = known.get(one.load)
@@ -154,8 +70,8 @@ def _failure_modes(page: Page, standing: Standing) -> None:
         page.table("Critical failure modes and design variables", rows)
     answered = {gap.load: gap for gap in step.gaps}
     gaps: list[Record] = []
-    for load in standing.catalogue.uncovered:
-        if load.system not in standing.project.systems:
+    for load in result.catalogue.uncovered:
+        if load.system not in result.project.systems:
             continue
         gap = answered.get(load.name)
         run = ", ".join(link.case for link in gap.evidence) if gap else ""
@@ -171,8 +87,8 @@ def _failure_modes(page: Page, standing: Standing) -> None:
         page.table("What today's load cases leave out", gaps)
     others = [
         load.name
-        for load in standing.catalogue.design_loads
-        if load.system in standing.project.systems
+        for load in result.catalogue.design_loads
+        if load.system in result.project.systems
         and load.name not in {one.load for one in step.critical}
         and load.covered == "yes"
     ]
@@ -180,8 +96,8 @@ def _failure_modes(page: Page, standing: Standing) -> None:
         page.text(f"Of the catalogue, not held to be critical: {'; '.join(others)}.")
 
 
-def _model(page: Page, standing: Standing) -> None:
-    step = standing.project.model
+def _model(page: Page, result: ValidateResult) -> None:
+    step = result.project.model
     assert step is not None
     of = f"scene {step.scene}" if step.scene else f"machine {step.machine}"
     page.table(
@@ -194,8 +110,8 @@ def _model(page: Page, standing: Standing) -> None:
     )
 
 
-def _load_cases(page: Page, standing: Standing) -> None:
-    step = standing.project.load_cases
+def _load_cases(page: Page, result: ValidateResult) -> None:
+    step = result.project.load_cases
     assert step is not None
     page.table(
         "Load cases by standard and edition",
@@ -213,8 +129,8 @@ def _load_cases(page: Page, standing: Standing) -> None:
     )
 
 
-def _inputs(page: Page, standing: Standing) -> None:
-    step = standing.project.inputs
+def _inputs(page: Page, result: ValidateResult) -> None:
+    step = result.project.inputs
     assert step is not None
     page.table(
         "Inputs, and how certain each is",
@@ -223,7 +139,7 @@ def _inputs(page: Page, standing: Standing) -> None:
                 "input": value.name,
                 "value": "" if value.value is None else f"{value.value:g} {value.unit}".strip(),
                 "known by": value.known_by or "not stated",
-                "band ± [%]": _spread(value, standing),
+                "band ± [%]": _spread(value, result),
                 "source": value.source,
                 "measured by": value.measured_by or "none",
             }
@@ -238,14 +154,14 @@ def _inputs(page: Page, standing: Standing) -> None:
         )
 
 
-def _spread(value: InputValue, standing: Standing) -> float | None:
+def _spread(value: InputValue, result: ValidateResult) -> float | None:
     """Half width [%]: as stated, or as signals determine it."""
-    spread = value.band if value.band is not None else standing.measured.spreads.get(value.name)
+    spread = value.band if value.band is not None else result.measured.spreads.get(value.name)
     return None if spread is None else 100 * spread
 
 
-def _campaign(page: Page, standing: Standing) -> None:
-    step = standing.project.campaign
+def _campaign(page: Page, result: ValidateResult) -> None:
+    step = result.project.campaign
     assert step is not None
     rows: list[Record] = []
     for signal in step.signals:
@@ -263,7 +179,7 @@ def _campaign(page: Page, standing: Standing) -> None:
         )
     if rows:
         page.table("Signals", rows)
-    matrix, capture = standing.matrix, step.capture
+    matrix, capture = result.matrix, step.capture
     if matrix is None or capture is None:
         return
     winds = 0.5 * (matrix.wind[1:] + matrix.wind[:-1])
@@ -291,10 +207,10 @@ def _campaign(page: Page, standing: Standing) -> None:
     )
 
 
-def _comparison(page: Page, standing: Standing) -> None:
-    step = standing.project.comparison
+def _comparison(page: Page, result: ValidateResult) -> None:
+    step = result.project.comparison
     assert step is not None
-    if not standing.measured.verdicts:
+    if not result.measured.verdicts:
         return
     page.table(
         f"Computed against measured ({step.measured.file})",
@@ -307,7 +223,7 @@ def _comparison(page: Page, standing: Standing) -> None:
                 "allowed [%]": 100 * v.tolerance,
                 "how": v.source,
             }
-            for v in standing.measured.verdicts
+            for v in result.measured.verdicts
         ],
     )
 

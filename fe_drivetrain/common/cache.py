@@ -19,10 +19,11 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Any, Literal, TypeVar, get_args
 
 from numpy.typing import NDArray
 
+from fe_drivetrain.common.array_records import as_arrays, from_arrays
 from fe_drivetrain.common.files import atomic_path, remove_abandoned
 from fe_drivetrain.common.kept_files import SUFFIX, UnfitError, read_kept, write_kept
 
@@ -42,6 +43,8 @@ _OURS = re.compile(r"[0-9a-f]{32,64}\.(arrays|npz)")
 _UNFINISHED = r"\.[0-9a-f]{32,64}\.(arrays|npz)\.[0-9a-f]{32}\.tmp"
 
 _log = logging.getLogger(__name__)
+
+_T = TypeVar("_T")
 
 
 @dataclass(frozen=True)
@@ -82,7 +85,7 @@ class Cache:
         except FileNotFoundError:
             return None
         except (OSError, UnfitError) as error:
-            _log.info("kept %s are made again: %s of %s: %s", kind, file.name, file.parent, error)
+            _say_made_again(kind, file, error)
             return None
         with suppress(OSError):
             os.utime(file)  # used now: dropped last
@@ -103,6 +106,33 @@ class Cache:
             self._drop_oldest()
         except OSError:
             return
+
+    def load_record(self, kind: Kind, content: Mapping[str, Any], form: type[_T]) -> _T | None:
+        """The dataclass that is kept for this content, or None where there is nothing sound.
+
+        Parameters
+        ----------
+        kind : Kind
+            What it is.
+        content : Mapping[str, Any]
+            All that it depends on, as plain data that JSON can hold.
+        form : type
+            The dataclass: what is kept in another form is made again.
+        """
+        arrays = self.load(kind, content)
+        if arrays is None:
+            return None
+        try:
+            return from_arrays(form, arrays)
+        except UnfitError as error:
+            file = self._file(kind, content)
+            assert file is not None
+            _say_made_again(kind, file, error)
+            return None
+
+    def keep_record(self, kind: Kind, content: Mapping[str, Any], record: Any) -> None:
+        """Keep a dataclass for this content, as arrays; see `keep`."""
+        self.keep(kind, content, as_arrays(record))
 
     def _file(self, kind: Kind, content: Mapping[str, Any]) -> Path | None:
         if self.folder is None:
@@ -126,6 +156,10 @@ class Cache:
                 break
             Path(path).unlink(missing_ok=True)
             total -= size
+
+
+def _say_made_again(kind: Kind, file: Path, reason: Exception) -> None:
+    _log.info("kept %s are made again: %s of %s: %s", kind, file.name, file.parent, reason)
 
 
 def key(content: Mapping[str, Any]) -> str:

@@ -1,9 +1,3 @@
-from .calibration import Calibrated as Calibrated
-from .calibration import Surface as Surface
-from .calibration import calibrated as calibrated
-from .calibration import fitted as fitted
-from .calibration import hypercube as hypercube
-from .calibration import nearest as nearest
 from .comparison import Comparison as Comparison
 from .comparison import compare as compare
 from .comparison import compare_streamed as compare_streamed

@@ -10,11 +10,6 @@ from .newton import contact_stiffness as contact_stiffness
 from .newton import coupled_equilibrium as coupled_equilibrium
 from .of_scene import scene_body as scene_body
 from .on_races import body_on_races as body_on_races
-from .scenarios import SCENARIOS as SCENARIOS
-from .scenarios import TiltCurve as TiltCurve
-from .scenarios import best_fit as best_fit
-from .scenarios import displacement_scenarios as displacement_scenarios
-from .scenarios import tilt_curve as tilt_curve
 from .springs import OnSprings as OnSprings
 from .springs import StiffnessLoop as StiffnessLoop
 from .springs import on_springs as on_springs

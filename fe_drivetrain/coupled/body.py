@@ -27,10 +27,10 @@ from fe_drivetrain.response.model import LOADS
 from fe_drivetrain.scene.entrance import AT_HUB, Entrance
 from fe_drivetrain.solve.condensation import Condensed, on_supports
 
-#: Of the six motions of a point, those that a bearing may resist.
+#: Motions of a point, of six, that a bearing may resist.
 FIVE = np.array([0, 1, 2, 4, 5])
 
-# Of a stiffness with a unit diagonal: below it nothing holds the torque.
+# Stiffness on a unit diagonal below which nothing holds the torque.
 _FREE = 1e-13
 
 
@@ -43,24 +43,24 @@ class LinearBody:
     bearings : tuple of str
         Names of the k bearings.
     stiffness : Floats
-        (5 k, 5 k) of the body on its linear supports, over the bearings' deflections
+        Stiffness (5 k, 5 k) of the body on its linear supports, over the bearings' deflections
         [N/m, N, N m/rad].
     loads : Floats
-        (5 k, 10) what a unit of each load of `response.LOADS` puts on clamped bearings [N, N m];
+        Loads (5 k, 10) on clamped bearings for a unit of each load of `response.LOADS` [N, N m];
         six columns more for each load point.
     body : Condensed
         The free body.
     supports : Mapping
-        (6, 6) of the points on linear supports, inf on the diagonal for rigid.
+        Stiffness (6, 6) of the points on linear supports, inf on the diagonal for rigid.
     motions_of_loads, motions_of_bearings : Floats
-        (6 n, 10) and (6 n, 5 k) motions of all points of the body for unit loads with the bearings'
+        Motions (6 n, 10) and (6 n, 5 k) of all points of the body for unit loads with the bearings'
         centres held, and for unit motions of these.
     housings : Floats
-        (5 k, 5 k) compliance between the bearings' outer rings and the ground.
+        Compliance (5 k, 5 k) between the bearings' outer rings and the ground.
     load_points : tuple of str
         Points where other loads enter.
     entrance : Entrance
-        Where loads enter the scene.
+        Point where loads enter the scene.
     """
 
     bearings: tuple[str, ...]
@@ -80,12 +80,12 @@ class LinearBody:
         Parameters
         ----------
         factors, deflections : Floats
-            (n, 10) of the loads, and (n, k, 5) of the bearings [m, rad].
+            Factors (n, 10) of the loads, and deflections (n, k, 5) of the bearings [m, rad].
 
         Returns
         -------
         forces : Floats
-            (n, k, 5) [N, N m].
+            Forces (n, k, 5) [N, N m].
         """
         f = factors @ self.loads.T - deflections.reshape(len(factors), -1) @ self.stiffness
         return f.reshape(deflections.shape)
@@ -96,12 +96,12 @@ class LinearBody:
         Parameters
         ----------
         factors, forces, deflections : Floats
-            (n, 10) of the loads, and (n, k, 5) of the bearings.
+            Factors (n, 10) of the loads, and forces and deflections (n, k, 5) of the bearings.
 
         Returns
         -------
         motions : Floats
-            (n, points, 6) [m, rad].
+            Motions (n, points, 6) [m, rad].
         """
         n = len(factors)
         q = deflections.reshape(n, -1) + forces.reshape(n, -1) @ self.housings
@@ -109,17 +109,17 @@ class LinearBody:
         return found.reshape(n, -1, 6)
 
     def reactions(self, factors: Floats, forces: Floats, deflections: Floats) -> dict[str, Floats]:
-        """What the body puts on its linear supports, (n, 6) by name [N, N m].
+        """Reactions (n, 6) of the body on its linear supports, by name [N, N m].
 
         Parameters
         ----------
         factors, forces, deflections : Floats
-            (n, 10) of the loads, and (n, k, 5) of the bearings.
+            Factors (n, 10) of the loads, and forces and deflections (n, k, 5) of the bearings.
 
         Returns
         -------
         reactions : dict
-            At the supports' own points.
+            Reactions at the supports' own points.
         """
         u = self.motions(factors, forces, deflections).reshape(len(factors), -1)
         carried = factors @ applied(self.body, self.load_points).T - u @ self.body.stiffness
@@ -131,12 +131,12 @@ class LinearBody:
         Parameters
         ----------
         factors, forces, deflections : Floats
-            (n, 10) of the loads, and (n, k, 5) of the bearings.
+            Factors (n, 10) of the loads, and forces and deflections (n, k, 5) of the bearings.
 
         Returns
         -------
         sums : Floats
-            (n, 6) [N, N m].
+            Sums (n, 6) [N, N m].
         """
         body = self.body
         about = body.positions[body.names.index("hub")]
@@ -169,14 +169,14 @@ def linear_body(
     bearings : Sequence[str]
         Points where bearings hold it.
     supports : Mapping
-        (6,) or (6, 6) linear stiffness to ground of other points by name; inf is rigid.
+        Linear stiffness (6,) or (6, 6) to ground of other points by name; inf is rigid.
     load_points : Sequence[str]
         Points where other loads enter.
 
     Returns
     -------
     found : LinearBody
-        What the bearings feel.
+        Body as the bearings feel it.
 
     Raises
     ------
@@ -233,9 +233,9 @@ def in_housings(body: LinearBody, housings: Mapping[str, ArrayLike]) -> LinearBo
     Parameters
     ----------
     body : LinearBody
-        In rigid housings.
+        Body in rigid housings.
     housings : Mapping
-        (6, 6) stiffness between outer ring and ground of some bearings by name [N/m, N, N m/rad];
+        Stiffness (6, 6) between outer ring and ground of some bearings by name [N/m, N, N m/rad];
         rigid where not given.
 
     Returns
@@ -280,7 +280,7 @@ def applied(body: Condensed, load_points: Sequence[str] = ()) -> Floats:
     Parameters
     ----------
     body : Condensed
-        With the points "hub" and "gearbox".
+        Body with the points "hub" and "gearbox".
     load_points : Sequence[str]
         Other points where loads enter.
 
@@ -319,17 +319,17 @@ def factors_of(
     Parameters
     ----------
     hub_loads : PointLoads or array_like
-        As `response.entering` makes them of a history and a scene. An array, (n, 6) or (6,), has
-        Fx, Fy, Fz [N], Mx, My, Mz [N m] on the shaft at the hub; then, six more each, at the load
+        Loads from `response.entering` of a history and a scene. An array, (n, 6) or (6,), has Fx,
+        Fy, Fz [N], Mx, My, Mz [N m] on the shaft at the hub; then, six more each, at the load
         points of a body that has such, with their weights.
     gearbox_weight, gravity : float
-        [N] and [m/s^2], both along -z.
+        Weight [N] and acceleration [m/s^2], both along -z.
 
     Returns
     -------
     factors : Factors or Floats
-        (n, 10), or (n, 10 + 6 m) for m load points; an array of an array, which a scene refuses
-        that states another point than its front face.
+        Factors (n, 10), or (n, 10 + 6 m) for m load points; an array for an array, which a scene
+        refuses that states another point than its front face.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""From hub loads to the laminae of one bearing in a shaft, at any level of the model."""
+"""Loads of the laminae of one bearing in a shaft from hub loads, at any level of the model."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ PINNED = 0.0
 
 @dataclass(frozen=True, eq=False)
 class LoadPath:
-    """How hub loads reach the rollers of a bearing.
+    """Path of hub loads to the rollers of a bearing.
 
     Attributes
     ----------
@@ -39,14 +39,14 @@ class LoadPath:
     name : str
         The one whose life is asked for.
     rollers : callable
-        How its load is shared by its laminae: `rigid_rings`, `three_degree_rings` or
+        Function that shares its load between its laminae: `rigid_rings`, `three_degree_rings` or
         `flexible_rings` of `fe_drivetrain.life`; rigid rings where not given.
     tilt_stiffness : float or None
         None: all bearings are in equilibrium with the shaft, rollers and all. A number: they are
         springs, rigid along the axes, with this K_R [N m/rad] at the named bearing and none at the
         others; `PINNED` leaves out its moment, too.
     gearbox_weight, gravity : float
-        [N] and [m/s^2], along -z.
+        Weight [N] and acceleration [m/s^2], along -z.
     """
 
     body: LinearBody
@@ -72,15 +72,16 @@ class LoadPath:
         Parameters
         ----------
         hub_loads : LoadHistory, PointLoads or array_like
-            As `response.entering` takes them; an array is (n, 6) Fx, Fy, Fz [N], Mx, My, Mz [N m]
-            of the rotor on the shaft at the hub; six columns more for each load point of the body.
+            Loads as `response.entering` takes them; an array is (n, 6) Fx, Fy, Fz [N], Mx, My, Mz
+            [N m] of the rotor on the shaft at the hub; six columns more for each load point of the
+            body.
 
         Returns
         -------
         loads : Floats
-            (n, 5) Fx, Fy, Fz [N], My, Mz [N m] at its centre.
+            Loads (n, 5) Fx, Fy, Fz [N], My, Mz [N m] at its centre.
         converged : Bools
-            (n,) whether there is equilibrium.
+            Flags (n,): whether there is equilibrium.
 
         Raises
         ------
@@ -107,16 +108,16 @@ class LoadPath:
         Parameters
         ----------
         hub_loads : LoadHistory, PointLoads or array_like
-            (n, 6) [N, N m], as of `bearing_loads`.
+            Loads (n, 6) [N, N m], see `bearing_loads`.
         speed_rpm, seconds : array_like
-            (n,) or one for all: of the shaft [1/min], and how long each lasts [s].
+            Speed of the shaft [1/min], (n,) or one for all, and duration of each step [s].
         chunk : int
             Steps at a time.
 
         Yields
         ------
         steps : Steps
-            In order.
+            Load steps, in order.
         """
         hub = _steps(self.body, hub_loads)
         turns, lasting = (
@@ -138,27 +139,27 @@ def damage_of_hub_loads(
     rules: LifeRules,
     report: Progress = silent,
 ) -> Damage:
-    """Damage that a history of hub loads does to a bearing.
+    """Damage by a history of hub loads to a bearing.
 
     Parameters
     ----------
     path : LoadPath
-        From the hub to its laminae.
+        Load path from the hub to the bearing's laminae.
     hub_loads : LoadHistory, PointLoads or array_like
-        (n, 6) [N, N m], as of `LoadPath.bearing_loads`.
+        Loads (n, 6) [N, N m], see `LoadPath.bearing_loads`.
     speed_rpm, seconds : array_like
-        (n,) or one for all: of the shaft [1/min], and how long each step lasts [s].
+        Speed of the shaft [1/min], (n,) or one for all, and duration of each step [s].
     rated : RatedBearing
-        The named bearing with its ratings.
+        Named bearing with its ratings.
     rules : LifeRules
-        Choices.
+        Choices of the rating.
     report : Progress
-        Told how many steps are done.
+        Function that is told how many steps are complete.
 
     Returns
     -------
     damage : Damage
-        Of the whole history, in memory that does not grow with it.
+        Damage of the whole history, in memory that does not grow with it.
 
     Raises
     ------

@@ -29,7 +29,7 @@ MAX_TRIALS = 60
 #: An approach of all contacts at which their stiffness is taken as the size of a bearing's [m].
 TYPICAL_APPROACH = 5e-5
 
-#: Share of the largest stiffness below which a motion is free: round-off of the condensation.
+#: Share of the maximum stiffness below which a motion is free: round-off of the condensation.
 FREE = 1e-12
 
 #: Share of a load that may act on a free motion: round-off of who made it.
@@ -47,27 +47,28 @@ _CONTINUED, _TIMES = 4.0, 8
 
 @dataclass(frozen=True, eq=False)
 class CoupledEquilibrium:
-    """Where a body comes to rest on its bearings under each load case.
+    """Equilibrium of a body on its bearings under each load case.
 
     Attributes
     ----------
     body : LinearBody
         The body.
     bearings : tuple of Bearing
-        In the order of the body's.
+        Bearings in the order of the body's.
     factors : Floats
-        (n, 10) of the loads of `response.LOADS`.
+        Factors (n, 10) of the loads of `response.LOADS`.
     deflections : Floats
-        (n, k, 5) of inner against outer ring of each bearing [m, rad].
+        Deflection (n, k, 5) of inner against outer ring of each bearing [m, rad].
     forces : Floats
-        (n, k, 5) on each bearing [N, N m], from its rollers.
+        Forces (n, k, 5) on each bearing [N, N m], from its rollers.
     residuals : Floats
-        (n,) what is left of the balance over the load, moments over the largest pitch radius.
+        Residual (n,) of the balance over the load, moments over the maximum pitch radius.
     converged : Bools
-        (n,) whether that is within the tolerance, or within 1e-13 of the forces inside the body and
-        its bearings, which small loads on a preload or in a clearance do not exceed.
+        Flags (n,): whether the residual is within the tolerance, or within 1e-13 of the forces
+        inside the body and its bearings, which small loads on a preload or in a clearance do not
+        exceed.
     iterations : Ints
-        (n,).
+        Number (n,) of Newton steps.
     """
 
     body: LinearBody
@@ -96,7 +97,7 @@ class CoupledEquilibrium:
         return self.body.bearings.index(name)
 
     def reactions(self) -> dict[str, Floats]:
-        """What the body puts on its linear supports, (n, 6) by name [N, N m]."""
+        """Reactions (n, 6) of the body on its linear supports, by name [N, N m]."""
         return self.body.reactions(self.factors, self.forces, self.deflections)
 
     def imbalance(self) -> Floats:
@@ -121,10 +122,10 @@ def coupled_equilibrium(
         Bearing by name, one for each of the body's. One that does not resist a motion, as a
         toroidal one along the axis, leaves it to its neighbours.
     factors : Factors or array_like
-        (n, 10) of the loads of `response.LOADS`, six more for each load point of the body, see
-        `factors_of`.
+        Factors (n, 10) of the loads of `response.LOADS`, six more for each load point of the body,
+        see `factors_of`.
     tolerance : float
-        Largest residual over the load.
+        Maximum residual over the load.
 
     Returns
     -------
@@ -230,12 +231,12 @@ def contact_stiffness(bearing: Bearing, approach: float = TYPICAL_APPROACH) -> F
     bearing : Bearing
         The bearing; its own clearance is not used.
     approach : float
-        Of every contact along its normal [m].
+        Approach of every contact along its normal [m].
 
     Returns
     -------
     stiffness : Floats
-        (5, 5) [N/m, N, N m/rad]; zero for motions that no contact resists.
+        Stiffness (5, 5) [N/m, N, N m/rad]; zero for motions that no contact resists.
     """
     return np.asarray(forces(bearing.with_rows(clearance=-approach), np.zeros(5))[1][0])
 
@@ -281,7 +282,7 @@ def _refuse_lifted(body: LinearBody, deflections: Floats, converged: Bools) -> N
 
 
 def _first(problem: _Problem, F: Floats) -> Floats:
-    """Where all contacts are approached equally: a linear solution."""
+    """Linear solution with all contacts approached equally."""
     B = problem.basis
     H = B.T @ (problem.K + problem.soft) @ B
     return np.asarray(np.linalg.solve(H, (F @ B).T).T @ B.T)
@@ -364,7 +365,7 @@ def _search(
 
 
 def _continued(problem: _Problem, F: Floats, tolerance: float) -> _Found:
-    """Down from larger loads, under which a clearance is small: each from the one before."""
+    """Solve from larger loads down, under which a clearance is small: each from the one before."""
     most = _CONTINUED**_TIMES
     found = _newton(problem, most * F, _first(problem, most * F), tolerance)
     steps = found.iterations

@@ -23,16 +23,16 @@ def scene_body(
     scene : Scene
         The scene; the joints of its bearings are not used.
     level : int
-        Of the shaft: 1 beam, 2 meridian, 3 solid. With the housings solved as solids the last is
-        the assembly of level 4, but for what the faces at the rollers do to each other's shape.
+        Model of the shaft: 1 beam, 2 meridian, 3 solid. With the housings solved as solids the last
+        is the assembly of level 4, but for what the faces at the rollers do to each other's shape.
     housings : Mapping, optional
-        (6, 6) stiffness of housings by bearing [N/m, N, N m/rad], as of
-        `fidelity.unit_stiffness` with the bearing bonded; rigid where not given.
+        Stiffness (6, 6) of housings by bearing [N/m, N, N m/rad], from `fidelity.unit_stiffness`
+        with the bearing bonded; rigid where not given.
 
     Returns
     -------
     body : LinearBody
-        The shaft, its weight, and the gearbox's springs; with the scene's load points.
+        Body: the shaft, its weight, and the gearbox's springs; with the scene's load points.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A linear body on a bearing whose races give way: its rollers, as those of an assembly of solids.
+"""Linear body on a bearing with elastic races: its rollers, as those of an assembly of solids.
 
 The middle of a roller approaches by z = A q - C p: A q is from the motion of the inner ring, C p is
 what the races give under all contact loads p. The body has K q + A^T p = L f for its loads f.
@@ -16,11 +16,11 @@ from fe_drivetrain.coupled.body import LinearBody
 from fe_drivetrain.rings.assembly import RollerAssembly
 
 LEAST = 1e-6
-"""Of the softness of a contact: races stiffer than that are given it, to have an inverse."""
+"""Minimum compliance of races over that of a contact: stiffer ones get it, to have an inverse."""
 
 
 def body_on_races(body: LinearBody, races: Races) -> RollerAssembly:
-    """Put a body with one bearing on races that give way.
+    """Put a body with one bearing on elastic races.
 
     Parameters
     ----------
@@ -33,8 +33,8 @@ def body_on_races(body: LinearBody, races: Races) -> RollerAssembly:
     Returns
     -------
     assembly : RollerAssembly
-        For `fe_drivetrain.rings.assembly_equilibrium`; the inner ring is rigid, and reference
-        points are not in it.
+        Assembly for `fe_drivetrain.rings.assembly_equilibrium`; the inner ring is rigid, and
+        reference points are not in it.
 
     Raises
     ------

@@ -26,7 +26,7 @@ FIRST = 145e6
 
 MAX_ROUNDS = 50
 
-# Share of the largest stiffness below which a bearing does not resist a motion.
+# Share of the maximum stiffness below which a bearing does not resist a motion.
 _FREE = 1e-12
 
 
@@ -37,7 +37,7 @@ class OnSprings:
     Attributes
     ----------
     deflections, forces : Floats
-        (n, k, 5) of the springs [m, rad], and on them [N, N m].
+        Deflections (n, k, 5) of the springs [m, rad], and forces on them [N, N m].
     """
 
     deflections: Floats
@@ -51,15 +51,15 @@ class StiffnessLoop:
     Attributes
     ----------
     forces : Floats
-        (n, k, 5) on the bearings, by the body on springs [N, N m].
+        Forces (n, k, 5) on the bearings, by the body on springs [N, N m].
     displacements : Floats
-        (n, k, 5) of the bearings' inner rings under these [m, rad].
+        Displacements (n, k, 5) of the bearings' inner rings under these [m, rad].
     stiffness : Floats
-        (n, k) K_R that the body had in the end [N m/rad].
+        Stiffness K_R (n, k) that the body had in the end [N m/rad].
     rounds : Ints
-        (n,).
+        Number (n,) of rounds.
     converged : Bools
-        (n,) whether K_R changed by less than allowed.
+        Flags (n,): whether K_R changed by less than allowed.
     """
 
     forces: Floats
@@ -75,12 +75,12 @@ def on_springs(body: LinearBody, factors: Factors | ArrayLike, springs: ArrayLik
     Parameters
     ----------
     body : LinearBody
-        With or without housings in series.
+        Body, with or without housings in series.
     factors : Factors or array_like
-        (n, 10) of the loads of `response.LOADS`.
+        Factors (n, 10) of the loads of `response.LOADS`.
     springs : array_like
-        (k, 5) or (n, k, 5) against u_x, u_y, u_z, theta_y, theta_z; inf is rigid, in the same
-        places in all load cases.
+        Stiffness (k, 5) or (n, k, 5) against u_x, u_y, u_z, theta_y, theta_z; inf is rigid, in the
+        same places in all load cases.
 
     Returns
     -------
@@ -128,12 +128,12 @@ def tilt_springs(
     tilt_stiffness : float
         K_R [N m/rad].
     translations : array_like
-        (3,) against u_x, u_y, u_z [N/m].
+        Springs (3,) against u_x, u_y, u_z [N/m].
 
     Returns
     -------
     springs : Floats
-        (5,).
+        Stiffness (5,) of the springs.
     """
     found = np.array([*np.asarray(translations, dtype=float), tilt_stiffness, tilt_stiffness])
     resisted = np.diag(contact_stiffness(bearing)) / np.array([1, 1, 1, *2 * [bearing.arm**2]])
@@ -151,14 +151,14 @@ def tilting_stiffness(
     bearing : Bearing
         The bearing.
     displacements : Floats
-        (n, 5) [m, rad].
+        Displacements (n, 5) [m, rad].
     kind : str
         "tangent", dM / d theta with all displacements held (Eq 4.20), or "secant", M / theta.
 
     Returns
     -------
     stiffness : Floats
-        (n,) [N m/rad]; without tilt the mean of the tangents about y and z.
+        Tilting stiffness (n,) [N m/rad]; without tilt the mean of the tangents about y and z.
     """
     F, K = forces(bearing, displacements)
     theta = displacements[:, 3:]
@@ -192,26 +192,26 @@ def stiffness_loop(
     Parameters
     ----------
     body : LinearBody
-        With or without housings in series.
+        Body, with or without housings in series.
     bearings : Mapping
-        Bearing by name.
+        Bearings by name.
     factors : Factors or array_like
-        (n, 10) of the loads of `response.LOADS`, in the order of time.
+        Factors (n, 10) of the loads of `response.LOADS`, in the order of time.
     change : float
         Relative change of K_R that ends a loop.
     first : float
         K_R that the first load case starts from [N m/rad].
     translations : array_like
-        (3,) springs against u_x, u_y, u_z [N/m]: rigid in the thesis.
+        Springs (3,) against u_x, u_y, u_z [N/m]: rigid in the thesis.
     kind : str
-        See `tilting_stiffness`; "tangent" in the thesis. A secant may be negative, for axial and
-        radial displacements make a moment without tilt: no spring has that, and the load case is
-        flagged.
+        Kind of stiffness, see `tilting_stiffness`; "tangent" in the thesis. A secant may be
+        negative, for axial and radial displacements make a moment without tilt: no spring has that,
+        and the load case is flagged.
 
     Returns
     -------
     found : StiffnessLoop
-        Of each load case the last round.
+        Last round of each load case.
 
     Raises
     ------

@@ -22,14 +22,14 @@ from fe_drivetrain.torsion.system import natural_modes
 
 @dataclass(frozen=True)
 class Operation:
-    """What a drivetrain carries while it is asked.
+    """Loads of a drivetrain for which the questions are asked.
 
     Attributes
     ----------
     torque : float
-        On the rotor about x [N m].
+        Torque on the rotor about x [N m].
     moment : float
-        On the rotor about y, tilting it [N m].
+        Moment on the rotor about y, tilting it [N m].
     """
 
     torque: float
@@ -43,11 +43,11 @@ class Rung:
     Attributes
     ----------
     level : Level
-        What may move.
+        Level of the model: what may move.
     flexible : Flexible
         Carriers and housing that give.
     name : str
-        In words.
+        Name of the rung, in words.
     """
 
     level: Level
@@ -66,7 +66,7 @@ class Asked:
     Attributes
     ----------
     machine : Machine
-        Its table.
+        Table of the machine.
     rung : Rung
         Level, and what gives.
     operation : Operation
@@ -79,12 +79,12 @@ class Asked:
 
     @cached_property
     def modes(self) -> SystemModes:
-        """At rest."""
+        """Modes of the system at rest."""
         return system_modes(self.system)
 
     @cached_property
     def system(self) -> System:
-        """With the generator free to turn."""
+        """System with the generator free to turn."""
         return machine_system(self.machine, self.rung.level, flexible=self.rung.flexible)
 
     @cached_property
@@ -132,7 +132,7 @@ def torsional_frequency(number: int) -> Question:
 
 
 def planet_bearing_load(of: Asked) -> float | None:
-    """Largest radial load of a bearing of the first stage's planets [kN]."""
+    """Maximum radial load of a bearing of the first stage's planets [kN]."""
     stage = of.machine.stages[0]
     if of.loaded is None or not isinstance(stage, PlanetaryData):
         return None
@@ -153,7 +153,7 @@ def pin_loads(found: Static, stage: PlanetaryData, number: int) -> dict[str, flo
 
 
 def planet_sharing(of: Asked) -> float | None:
-    """Load of the ring's mesh that has most, over the mean of the first stage's."""
+    """Maximum load of a ring's mesh over the mean of the first stage's."""
     stage = of.machine.stages[0]
     if of.loaded is None or not isinstance(stage, PlanetaryData):
         return None
@@ -162,7 +162,7 @@ def planet_sharing(of: Asked) -> float | None:
 
 
 def face_load(of: Asked) -> float | None:
-    """Largest load of a slice over the mean, of the last parallel stage's mesh."""
+    """Maximum load of a slice over the mean, of the last parallel stage's mesh."""
     stages = of.machine.stages
     numbers = [k for k, stage in enumerate(stages, 1) if isinstance(stage, ParallelData)]
     if of.loaded is None or not numbers or stages[numbers[-1] - 1].slices == 1:
@@ -171,10 +171,10 @@ def face_load(of: Asked) -> float | None:
 
 
 def contact_stress(of: Asked) -> float:
-    """Largest contact stress of a gear: one pair of teeth at the pitch point [MPa].
+    """Maximum contact stress of a gear: one pair of teeth at the pitch point [MPa].
 
-    Hertz pressure of the slice of the planet that has most. A torsional level has an answer, too:
-    planets share equally there, and so does the face width.
+    Hertz pressure of the slice and planet with the maximum load. A torsional level has an answer,
+    too: planets share equally there, and so does the face width.
     """
     largest = 0.0
     for mesh, contact in pitch_contacts(of.machine).items():
@@ -202,7 +202,7 @@ QUESTIONS: Mapping[str, Question] = {
     "face load of the last gear pair": face_load,
     "largest contact stress of a gear [MPa]": contact_stress,
 }
-"""What is asked most, by its name and unit."""
+"""Questions that are asked most often, by name and unit."""
 
 
 @dataclass(frozen=True)
@@ -212,13 +212,13 @@ class Answer:
     Attributes
     ----------
     name : str
-        Of the level.
+        Name of the level.
     degrees : int
         Number of degrees of freedom.
     seconds : float
-        Taken for all questions.
+        Time taken for all questions [s].
     values : Mapping[str, float or None]
-        By question; None where the level has no answer.
+        Answers by question; None where the level has no answer.
     """
 
     name: str
@@ -238,13 +238,13 @@ def ladder(
     Parameters
     ----------
     machine : Machine
-        With a rotor that has a mass.
+        Machine with a rotor that has a mass.
     operation : Operation
         Torque and moment of the statics.
     rungs : sequence of Rung
-        From the simplest level to the finest.
+        Rungs, from the simplest level to the finest.
     questions : mapping
-        By name.
+        Questions by name.
     """
     found = []
     for rung in rungs:
@@ -262,9 +262,9 @@ def needed_level(answers: Sequence[Answer], question: str, tolerance: float) -> 
     Parameters
     ----------
     answers : sequence of Answer
-        Of `ladder`, from the simplest level to the finest.
+        Answers from `ladder`, from the simplest level to the finest.
     question : str
-        One of those that were asked.
+        Question, one of those that were asked.
     tolerance : float
         Relative difference, such as 0.05.
 

@@ -16,7 +16,7 @@ ALL = frozenset(MOTIONS)
 """All six degrees of freedom of a body."""
 
 PLANE = frozenset({"uy", "uz", "rx"})
-"""Of a gear that stays in its plane."""
+"""Degrees of freedom of a gear that stays in its plane."""
 
 
 @dataclass(frozen=True)
@@ -30,13 +30,13 @@ class Body:
     position : tuple[float, float, float]
         Centre of mass [m].
     mass : float
-        [kg].
+        Mass of the body [kg].
     polar : float
         Inertia about x through the centre [kg m^2].
     transverse : float
         Inertia about any axis across, through the centre [kg m^2].
     speed : float
-        At which it spins about x, over the reference speed of the system.
+        Speed at which it spins about x, over the reference speed of the system.
     free : frozenset[str]
         Degrees of freedom that it has of its own; others are held, or those of `tied_to`.
     tied_to : str or None
@@ -66,15 +66,15 @@ class Superelement:
     Attributes
     ----------
     name : str
-        In messages.
+        Name of the superelement in messages.
     bodies : tuple[str, ...]
-        (k,) that it joins.
+        Names (k,) of the bodies that it joins.
     stiffness : Floats
-        (6 k, 6 k) [N/m, N, N m/rad].
+        Stiffness (6 k, 6 k) [N/m, N, N m/rad].
     mass : Floats or None
-        (6 k, 6 k) [kg, kg m, kg m^2]; none where it has no mass.
+        Mass (6 k, 6 k) [kg, kg m, kg m^2]; none where it has no mass.
     weight : Floats or None
-        (6 k, 3) forces and moments of its mass under a unit acceleration along x, y, z.
+        Forces and moments (6 k, 3) of its mass under a unit acceleration along x, y, z.
     """
 
     name: str
@@ -100,13 +100,13 @@ def assemble(
     Parameters
     ----------
     bodies : Sequence[Body]
-        With names of their own; a tied body's host comes before it.
+        Bodies with names of their own; a tied body's host comes before it.
     springs : Sequence[Spring]
-        With names of their own.
+        Springs with names of their own.
     superelements : Sequence[Superelement]
         Dense stiffness and mass beside them.
     frame_speed : float
-        Of the frame, over the reference speed: 1 for that of the carrier, 0 at rest.
+        Speed of the frame, over the reference speed: 1 for that of the carrier, 0 at rest.
 
     Raises
     ------

@@ -50,11 +50,12 @@ class Brake:
     Attributes
     ----------
     row : Floats
-        (n,) speed of the disc by the velocities.
+        Row (n,) from the velocities to the speed of the disc.
     torque : float
-        Of friction, at full size [N m].
+        Friction torque, at full size [N m].
     start, rise : float
-        When it is applied, and how long its torque takes to grow to full size, evenly [s].
+        Time at which it is applied, and time that its torque takes to grow to full size, evenly
+        [s].
     """
 
     row: Floats
@@ -63,7 +64,7 @@ class Brake:
     rise: float = 0.0
 
     def size(self, t: float) -> float:
-        """Largest torque at a time [N m]."""
+        """Maximum torque at a time [N m]."""
         if t < self.start:
             return 0.0
         return self.torque * (min((t - self.start) / self.rise, 1.0) if self.rise > 0.0 else 1.0)
@@ -88,9 +89,9 @@ class Transient:
     motion : Motion
         A record at each step, and at each event.
     brake : Floats
-        (k,) torque of the brake on the disc [N m].
+        Torque (k,) of the brake on the disc [N m].
     held : Bools
-        (k,) whether the disc stands.
+        Flags (k,): whether the disc stands.
     events : tuple of (float, str)
         Times [s] at which the disc "stops", "sticks" and "slips".
     """
@@ -104,18 +105,18 @@ class Transient:
 def transient(
     phases: Sequence[Phase], dt: float, start: State, scheme: Scheme = AVERAGE
 ) -> Transient:
-    """Integrate phases one after the other.
+    """Integrate a series of phases, each from the end of the one before.
 
     Parameters
     ----------
     phases : Sequence[Phase]
-        With the same degrees of freedom, and as many springs.
+        Phases with the same degrees of freedom, and as many springs.
     dt : float
-        Step [s]; the last one before an event is shorter.
+        Length of a step [s]; the last one before an event is shorter.
     start : State
-        At the beginning of the first.
+        State at the beginning of the first phase.
     scheme : Scheme
-        Of the steps.
+        Time integration scheme of the steps.
 
     Returns
     -------
@@ -156,7 +157,7 @@ def transient(
 
 
 class _Run:
-    """What has been found so far, and the factors of the matrices."""
+    """Results so far, and the factors of the matrices."""
 
     def __init__(self, dt: float, scheme: Scheme, start: State) -> None:
         self.dt, self.scheme, self.state = dt, scheme, start
@@ -179,7 +180,7 @@ class _Run:
         brake: Brake | None = None,
         side: float = 0.0,
     ) -> bool:
-        """To a time, or until a disc that turns to one side stops: whether it has."""
+        """Integrate to a time, or until a disc that turns to one side stops: whether it has."""
         stop = Stop(np.zeros(len(equations.mass)) if brake is None else brake.row, side)
 
         def torque(motion: Motion) -> Floats:
@@ -210,8 +211,8 @@ class _Run:
         equations, loads = phase.equations, phase.loads
         if equations.springs.turns.any():
             raise InputError(
-                "a brake acts beside a stiffness that varies with an angle, which is not done: let "
-                "it vary with time"
+                "a brake acts beside a stiffness that varies with an angle, which is not possible: "
+                "let it vary with time"
             )
         side = float(np.sign(brake.row @ self.state.velocity))
         while self.state.time < phase.until * (1.0 - 1e-12):
@@ -291,7 +292,7 @@ class _Run:
 
 
 def _shortened(motion: Motion, before: State) -> Motion:
-    """Without the last step."""
+    """Motion without the last step."""
     return replace(
         motion,
         times=motion.times[:-1],

@@ -32,15 +32,15 @@ class Rim:
     Attributes
     ----------
     radius : float
-        Mean [m].
+        Mean radius [m].
     thickness : float
-        Radial [m].
+        Radial thickness [m].
     width : float
-        Along x [m].
+        Width along x [m].
     material : Material
-        Of the rim.
+        Material of the rim.
     radial, tangential : float
-        Foundation, such as of bolts, over the length of the rim [N/m^2].
+        Stiffness of a foundation, such as bolts, per length of the rim [N/m^2].
     """
 
     radius: float
@@ -73,7 +73,7 @@ class Rim:
         n : int
             Harmonic.
         psi, radius : float
-            Where the point is [rad, m]; it goes with the section at its angle.
+            Angle and radius of the point [rad, m]; it goes with the section at its angle.
         """
         c, s = cos(n * psi), sin(n * psi)
         out = (radius - self.radius) / self.radius * (n - 1 / n)
@@ -91,13 +91,13 @@ def with_rim(
     Parameters
     ----------
     stage : PlanetarySet
-        The stage.
+        Planetary stage whose ring it is.
     springs : sequence of Spring
-        Of `springs_of`.
+        Springs of the stage, from `springs_of`.
     rim : Rim
-        The ring's.
+        Rim of the stage's ring.
     harmonics : sequence of int
-        From 2 on.
+        Numbers of waves round the rim, from 2 on.
 
     Returns
     -------

@@ -42,17 +42,18 @@ class SpringLaws:
         (m,) elongations of the flanks: force between them is zero; both 0 of a spring that pulls
         as it pushes, lower of minus infinity where there is but one flank.
     exponent : Floats
-        (m,) of the distance from the flank: 1, 10/9 of rollers, 3/2 of balls.
+        Exponents (m,) of the distance from the flank: 1, 10/9 of rollers, 3/2 of balls.
     offset : Floats
         (m,) elongation of the row at which the spring is free.
     wave : Ints
         (m,) number of the wave by which the stiffness varies, or `CONSTANT`.
     phase, frequency : Floats
-        (m,) of the wave: periods at t = 0, and periods a second.
+        Periods (m,) of the wave at t = 0, and periods a second.
     turns : Floats
         (m, n) periods of the wave for each degree of freedom.
     power, speed : Floats
-        (m,) of machines that draw constant power [W] at the speed ``speed + h . q'``; 0 of others.
+        Power (m,) of machines that draw it constantly [W] at the speed ``speed + h . q'``; 0 of
+        others.
     waves : Floats
         (w, p, 4) stiffness over its mean in a period: polynomials of p even intervals.
     error : Ints
@@ -125,13 +126,13 @@ def spring_laws(
     stiffness, damping : array_like
         (m,), or one for all.
     lower, upper, exponent, offset, wave, phase, frequency, turns, power, speed : array_like
-        As in `SpringLaws`, or one for all.
+        Values of each spring, or one for all, see `SpringLaws`.
     waves : array_like, optional
-        (w, p, 4), by `wave_table` or `fourier_wave`, stacked.
+        Waves (w, p, 4), by `wave_table` or `fourier_wave`, stacked.
     error, error_phase, error_turns : array_like
-        As in `SpringLaws`, or one for all.
+        Values of each spring, or one for all, see `SpringLaws`.
     errors : array_like, optional
-        (e, p, 4), by `wave_table` of lengths [m], stacked.
+        Waves (e, p, 4) of errors, by `wave_table` of lengths [m], stacked.
 
     Returns
     -------
@@ -240,14 +241,15 @@ def fourier_wave(cosines: ArrayLike, sines: ArrayLike, intervals: int = 256) -> 
     Parameters
     ----------
     cosines, sines : array_like
-        (l,) of cos(2 pi l psi) and sin(2 pi l psi), l from 1, over the mean stiffness.
+        Coefficients (l,) of cos(2 pi l psi) and sin(2 pi l psi), l from 1, over the mean stiffness.
     intervals : int
-        Of the spline: its error falls with the fourth power of intervals over harmonics.
+        Number of intervals of the spline: its error falls with the fourth power of intervals over
+        harmonics.
 
     Returns
     -------
     wave : Floats
-        (p, 4) as of `wave_table`.
+        Wave (p, 4), as `wave_table` makes it.
     """
     a, b = np.asarray(cosines, dtype=np.float64), np.asarray(sines, dtype=np.float64)
     angle = 2.0 * np.pi * np.outer(np.arange(intervals) / intervals, np.arange(1, len(a) + 1))
@@ -265,7 +267,7 @@ class Loads:
     times : Floats
         (s,) ascending [s]; before the first and after the last the load stays.
     histories : Floats
-        (s, r) of each pattern.
+        Histories (s, r) of each pattern.
     """
 
     patterns: Floats
@@ -319,11 +321,11 @@ class Equations:
     Attributes
     ----------
     mass : Floats
-        (n, n), symmetric, positive.
+        Mass matrix (n, n), symmetric, positive.
     springs : SpringLaws
-        On the n degrees of freedom.
+        Springs on the n degrees of freedom.
     damping : Floats
-        (n, n) beside the dampers of the springs: gyroscopic, proportional.
+        Damping (n, n) beside the dampers of the springs: gyroscopic, proportional.
     extra : Floats
         (n, n) stiffness beside the springs: superelements.
     """

@@ -23,7 +23,7 @@ from fe_drivetrain.dynamics.planetary import PlanetarySet
 from fe_drivetrain.dynamics.springs import Place
 from fe_drivetrain.solve.condensation import Condensed
 
-#: Of the length: where a pin of a carrier may be, from where its planet is.
+#: Allowed distance of a carrier's pin from its planet, over the length.
 PLACED = 1e-6
 
 
@@ -34,11 +34,11 @@ class Housing:
     Attributes
     ----------
     position : tuple[float, float, float]
-        Of the point where its stiffness is given [m].
+        Position of the point where the stiffness is given [m].
     stiffness : Floats
-        (6, 6) of its supports and arms there [N/m, N, N m/rad].
+        Stiffness (6, 6) of supports and arms at that point [N/m, N, N m/rad].
     mass, polar, transverse : float
-        [kg], about x and across it [kg m^2].
+        Mass [kg], and inertias about x and across it [kg m^2].
     """
 
     position: tuple[float, float, float]
@@ -58,11 +58,11 @@ class ElasticHousing:
         Names of bearings of the machine, and "stage 1 ring" and so on; what has no point of its own
         is held at the nearest one, as if rigidly joined to it.
     positions : Floats
-        (p, 3) of the points [m].
+        Positions (p, 3) of the points [m].
     stiffness : Floats
-        (6 p, 6 p) with its supports [N/m, N, N m/rad].
+        Stiffness (6 p, 6 p) with the supports [N/m, N, N m/rad].
     mass : Floats or None
-        (6 p, 6 p) [kg, kg m, kg m^2].
+        Mass (6 p, 6 p) [kg, kg m, kg m^2].
     """
 
     points: tuple[str, ...]
@@ -71,7 +71,7 @@ class ElasticHousing:
     mass: Floats | None = None
 
     def holds(self, name: str, at: ArrayLike) -> Place:
-        """What holds a ring or bearing of a name at a place (3,) [m]."""
+        """Place that holds a ring or bearing of a name at a place (3,) [m]."""
         away = np.linalg.norm(self.positions - np.asarray(at, dtype=float), axis=1)
         k = self.points.index(name) if name in self.points else int(away.argmin())
         x, y, z = self.positions[k]
@@ -80,21 +80,21 @@ class ElasticHousing:
 
 @dataclass(frozen=True)
 class Flexible:
-    """What of a machine gives beside shafts and bearings.
+    """Flexible bodies of a machine beside shafts and bearings.
 
     Attributes
     ----------
     carriers : Mapping[int, Condensed]
-        By the number of the planetary stage, from 1: a free body with the points "hub", "pin_1" and
-        so on.
+        Condensed carriers by the number of the planetary stage, from 1: a free body with the points
+        "hub", "pin_1" and so on.
     housing : Housing or ElasticHousing or None
-        That rings and bearings are in; none where they are in the ground.
+        Housing that rings and bearings are in; none where they are in the ground.
     shafts : Mapping[str, Condensed]
-        By the name of a shaft, in place of its beam: a free body with its points in the order of x,
-        the first and the last at its ends, others at its bearings.
+        Condensed shafts by name, in place of their beams: a free body with its points in the order
+        of x, the first and the last at its ends, others at its bearings.
     rims : Mapping[int, tuple[Rim, tuple[int, ...]]]
-        By the number of the planetary stage: the rim of its ring and the harmonics that it bends
-        in, from 2 on.
+        Rims of rings by the number of the planetary stage, and the harmonics that each bends in,
+        from 2 on.
     """
 
     carriers: Mapping[int, Condensed] = field(default_factory=dict)
@@ -176,7 +176,7 @@ def housing_bodies(housing: Housing | ElasticHousing) -> tuple[list[Body], Super
 
 
 def held_by(housing: Housing | ElasticHousing | None, name: str, at: ArrayLike) -> Place | None:
-    """What holds a ring or bearing of a name at a place (3,): the housing, or none, the ground."""
+    """Place that holds a ring or bearing of a name at a place (3,); none is the ground."""
     if isinstance(housing, ElasticHousing):
         return housing.holds(name, at)
     return None if housing is None else Place("housing", housing.position)
@@ -195,13 +195,13 @@ def shaft_element(
     Parameters
     ----------
     name : str
-        Of the shaft.
+        Name of the shaft.
     body : Condensed
-        Free, at its ends and bearings.
+        Condensed body, free, at its ends and bearings.
     begin : tuple of float
-        Where the shaft begins [m].
+        Position of the shaft's beginning [m].
     length : float
-        Of the shaft [m].
+        Length of the shaft [m].
     ends : tuple of Place
         Bodies that its ends are fixed to.
     with_mass : bool
@@ -210,7 +210,7 @@ def shaft_element(
     Returns
     -------
     points : list of Place
-        In the order of x, those of both ends among them.
+        Points in the order of x, those of both ends among them.
     element : Superelement
 
     Raises

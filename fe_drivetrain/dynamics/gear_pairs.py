@@ -30,13 +30,13 @@ def machine_pairs(machine: Machine) -> dict[str, Pair]:
     Parameters
     ----------
     machine : Machine
-        Its table, with a module, teeth and profile shifts of each stage.
+        Table of the machine, with a module, teeth and profile shifts of each stage.
 
     Returns
     -------
     pairs : dict[str, Pair]
-        By "stage 1 sun-planet", "stage 1 ring-planet", "stage 3 mesh" and so on; the pinion of a
-        parallel stage first.
+        Pairs by "stage 1 sun-planet", "stage 1 ring-planet", "stage 3 mesh" and so on; the pinion
+        of a parallel stage first.
 
     Raises
     ------
@@ -51,12 +51,12 @@ def machine_pairs(machine: Machine) -> dict[str, Pair]:
 
 
 def contact_ratios(machine: Machine) -> dict[str, float]:
-    """Pairs of teeth in contact on average, of all meshes, as `machine_meshing` takes them.
+    """Mean number of pairs of teeth in contact, of all meshes, as `machine_meshing` takes them.
 
     Parameters
     ----------
     machine : Machine
-        As of `machine_pairs`.
+        Table of the machine, as `machine_pairs` takes it.
     """
     return {name: pair.contact_ratio for name, pair in machine_pairs(machine).items()}
 
@@ -67,30 +67,31 @@ def mesh_courses(machine: Machine, law: Callable[[Pair], Law]) -> dict[str, Stif
     Parameters
     ----------
     machine : Machine
-        As of `machine_pairs`.
+        Table of the machine, as `machine_pairs` takes it.
     law : callable
-        From a pair of gears to the law of one pair of teeth, such as `parabolic_law`.
+        Function from a pair of gears to the law of one pair of teeth, such as `parabolic_law`.
 
     Returns
     -------
     courses : dict[str, StiffnessTable]
-        By the names of `machine_pairs` [N/m].
+        Stiffness tables by the names of `machine_pairs` [N/m].
     """
     return {name: mesh_stiffness(pair, law(pair)) for name, pair in machine_pairs(machine).items()}
 
 
 def with_iso_stiffness(machine: Machine) -> Machine:
-    """The machine with the mean mesh stiffness of ISO 6336-1, method B, in place of its own.
+    """Machine with the mean mesh stiffness of ISO 6336-1, method B, in place of its own.
 
     Parameters
     ----------
     machine : Machine
-        As of `machine_pairs`.
+        Table of the machine, as `machine_pairs` takes it.
 
     Returns
     -------
     machine : Machine
-        Each mesh as stiff as c_gamma_alpha times the face width, along its line of action.
+        Machine with each mesh as stiff as c_gamma_alpha times the face width, along its line of
+        action.
     """
     data = machine.model_dump(exclude_none=True)
     keys = {"sun-planet": "sun_planet", "ring-planet": "ring_planet", "mesh": "stiffness"}
@@ -104,20 +105,20 @@ def with_iso_stiffness(machine: Machine) -> Machine:
 
 @dataclass(frozen=True)
 class MeshStress:
-    """What a torque on the rotor does to the teeth of a mesh, by ISO 6336.
+    """Stresses of a mesh under a torque on the rotor, by ISO 6336.
 
     Attributes
     ----------
     pair : Pair
-        Its gears.
+        Gears of the mesh.
     torque : float
-        On the first gear in this mesh [N m].
+        Torque on the first gear in this mesh [N m].
     contact : ContactStress
         Hertz pressure of both flanks.
     roots : tuple of RootStress, or None
-        Of both gears; none of a ring whose cutter is not known.
+        Root stresses of both gears; none of a ring whose cutter is not known.
     assumed : tuple of str
-        What was not given and counts here: load factors, and keys of the stage.
+        Names of what was not given and counts here: load factors, and keys of the stage.
     """
 
     pair: Pair
@@ -138,19 +139,19 @@ def mesh_stresses(
     Parameters
     ----------
     machine : Machine
-        As of `machine_pairs`.
+        Table of the machine, as `machine_pairs` takes it.
     torque : float
-        On the rotor [N m].
+        Torque on the rotor [N m].
     factors : mapping of str to LoadFactors, optional
-        By the names of `machine_pairs`; all 1 where left out. Planets share the torque equally but
-        for K_gamma.
+        Load factors by the names of `machine_pairs`; all 1 where left out. Planets share the torque
+        equally but for K_gamma.
     materials : tuple of GearMaterial
-        Of both gears of each pair, of which the elasticity counts here.
+        Materials of both gears of each pair, of which the elasticity counts here.
 
     Returns
     -------
     stresses : dict[str, MeshStress]
-        By the names of `machine_pairs`.
+        Stresses by the names of `machine_pairs`.
     """
     given, found = factors or {}, {}
     for name, pair in machine_pairs(machine).items():
@@ -176,7 +177,7 @@ def mesh_stresses(
 
 
 def silent_keys(stage: PlanetaryData | ParallelData) -> list[str]:
-    """What of a stage's gears is not given and is taken all the same, a phrase each."""
+    """Assumed keys of a stage's gears, a phrase each."""
     of_gears = ("pressure_angle", *OF_TEETH)
     silent = [row for row in stage.assumptions() if row.is_assumed]
     return [f"{row.name}: {row.source}" for row in silent if row.name in of_gears]
@@ -191,7 +192,7 @@ class PitchContact:
     mesh : Mesh
         Angles and face width.
     radius : float
-        Of relative curvature, in the normal plane [m].
+        Relative radius of curvature, in the normal plane [m].
     """
 
     mesh: Mesh
@@ -203,14 +204,14 @@ class PitchContact:
         Parameters
         ----------
         force : float
-            Normal to the flanks, in space [N].
+            Force normal to the flanks, in space [N].
         share : float
-            Of the face width that carries it, such as 1/5 of one of five slices.
+            Share of the face width that carries the force, such as 1/5 of one of five slices.
 
         Returns
         -------
         LineContact
-            The face in contact is longer than the width by 1 / cos(beta_b) of inclined lines.
+            Contact whose length is the width over cos(beta_b), along the inclined lines.
         """
         length = share * self.mesh.face_width / cos(self.mesh.base_helix)
         return LineContact(abs(force) / length, self.radius, reduced_modulus())
@@ -222,12 +223,12 @@ def pitch_contacts(machine: Machine) -> dict[str, PitchContact]:
     Parameters
     ----------
     machine : Machine
-        Its table; profile shifts are not needed.
+        Table of the machine; profile shifts are not needed.
 
     Returns
     -------
     contacts : dict[str, PitchContact]
-        By the names of `machine_pairs`.
+        Contacts by the names of `machine_pairs`.
     """
     found = {}
     for number, stage in enumerate(machine.stages, start=1):

@@ -32,7 +32,7 @@ from fe_drivetrain.dynamics.time_steps import (
 )
 
 TOLERANCE = 1e-10
-"""Of Newton's method: change of an elongation over the largest so far."""
+"""Tolerance of Newton's method: change of an elongation over its maximum so far."""
 
 
 @dataclass(frozen=True)
@@ -42,9 +42,9 @@ class Scheme:
     Attributes
     ----------
     name : str
-        For charts.
+        Name for charts.
     beta, gamma : float
-        Of Newmark; Park et al. 2021 call them alpha and beta.
+        Newmark's parameters; Park et al. 2021 call them alpha and beta.
     alpha_m, alpha_f : float
         Shares of the step's beginning in the balance of inertia and of other forces.
     """
@@ -90,7 +90,7 @@ def generalised_alpha(spectral_radius: float) -> Scheme:
     Returns
     -------
     scheme : Scheme
-        Of second order, with the least damping of low frequencies for that of high ones.
+        Scheme of second order, with the minimum damping of low frequencies for that of high ones.
 
     Raises
     ------
@@ -106,14 +106,14 @@ def generalised_alpha(spectral_radius: float) -> Scheme:
 
 @dataclass(frozen=True)
 class State:
-    """Where a system is.
+    """State of a system at a time.
 
     Attributes
     ----------
     q, velocity, acceleration : Floats
-        (n,) displacements and their rates.
+        Displacements (n,) and their rates.
     time : float
-        [s].
+        Time [s].
     """
 
     q: Floats
@@ -129,22 +129,23 @@ class Motion:
     Attributes
     ----------
     times : Floats
-        (k,) [s].
+        Times (k,) [s].
     q, velocity : Floats
-        (k, w) of the rows that were watched: of all degrees of freedom where none were named.
+        Values (k, w) of the rows that were watched, and their rates: of all degrees of freedom
+        where none were named.
     forces : Floats
-        (k, m) of all springs with their dampers: [N], or [N m].
+        Forces (k, m) of all springs with their dampers: [N], or [N m].
     energies : Floats
         (k, 5): kinetic and strain energy, and since the beginning work of the loads, what dampers
         and machines took out, and what the clock of varying stiffnesses put in [J].
     iterations : int
         Newton steps, all.
     most_iterations : int
-        In one time step.
+        Maximum number of Newton steps in one time step.
     not_converged : int
         Time steps in which Newton's method did not converge.
     end : State
-        At the last step.
+        State at the last step.
     """
 
     times: Floats
@@ -179,7 +180,7 @@ class Motion:
 
     @property
     def relative_imbalance(self) -> float:
-        """Largest imbalance over the largest of the energies."""
+        """Maximum imbalance over the maximum of the energies."""
         return float(np.abs(self.imbalance).max() / max(np.abs(self.energies).max(), 1e-300))
 
 
@@ -190,11 +191,11 @@ class Stepper:
     Attributes
     ----------
     equations : Equations
-        What moves.
+        Equations of motion of the system.
     matrices : Matrices
-        With the inverse.
+        Matrices of the step, with the inverse.
     laws : Laws
-        Of springs that are more than a constant stiffness.
+        Laws of springs that are more than a constant stiffness.
     """
 
     equations: Equations
@@ -210,11 +211,11 @@ def prepared(
     Parameters
     ----------
     equations : Equations
-        What moves.
+        Equations of motion of the system.
     dt : float
-        Step [s].
+        Length of a step [s].
     scheme : Scheme
-        How.
+        Time integration scheme.
     driven : bool
         Whether a stiffness that varies with an angle acts on that angle; without, as Park et al.
         2021 have it, energy is not conserved.
@@ -305,11 +306,11 @@ def integrate(
     Parameters
     ----------
     equations : Equations
-        What moves.
+        Equations of motion of the system.
     loads : Loads
-        On it.
+        Loads on the system.
     duration, dt : float
-        Of all and of a step [s]; the number of steps is rounded up.
+        Duration of the whole motion and length of a step [s]; the number of steps is rounded up.
     scheme : Scheme
         `AVERAGE`, `LINEAR`, or one of `generalised_alpha`.
     start : State, optional
@@ -318,11 +319,11 @@ def integrate(
     every : int
         Steps from record to record.
     watch : array_like, optional
-        (w, n) rows whose values and rates are recorded in place of all degrees of freedom.
+        Rows (w, n) whose values and rates are recorded in place of all degrees of freedom.
     driven : bool
-        As of `prepared`.
+        Whether a stiffness that varies with an angle acts on that angle, see `prepared`.
     tolerance : float
-        Of Newton's method.
+        Tolerance of Newton's method: change of an elongation over its maximum so far.
 
     Returns
     -------
@@ -365,26 +366,26 @@ def run_steps(
     Parameters
     ----------
     stepper : Stepper
-        By `prepared`.
+        Equations, scheme and step, from `prepared`.
     loads : Loads
-        On the system.
+        Loads on the system.
     begin : State
-        With its accelerations.
+        State at the beginning, with its accelerations.
     steps, every : int
-        As of `march`.
+        Number of steps, and of steps from record to record, see `march`.
     watch : array_like or None
-        As of `integrate`.
+        Rows whose values and rates are recorded, see `integrate`.
     stop : Stop
-        The event.
+        Event that ends the steps.
     tolerance : float
-        Of Newton's method.
+        Tolerance of Newton's method: change of an elongation over its maximum so far.
 
     Returns
     -------
     motion : Motion
-        Up to the last record.
+        Motion up to the last record.
     before : State
-        Before the last step.
+        State before the last step.
     stopped : bool
         Whether the event came in it.
     """

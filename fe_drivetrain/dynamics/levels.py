@@ -47,11 +47,11 @@ from fe_drivetrain.solve.condensation import Condensed
 from fe_drivetrain.torsion.system import Element, Inertia, Torsional
 
 TURNS = frozenset({"rx"})
-"""What moves in a torsional model."""
+"""Degree of freedom of a body in a torsional model."""
 
 
 class Level(Enum):
-    """What of a drivetrain may move."""
+    """Level of a drivetrain's model: what may move."""
 
     TORSIONAL = "torsional"
     """Each body turns about its axis; planets go with their carrier."""
@@ -63,20 +63,20 @@ class Level(Enum):
 
 @dataclass(frozen=True)
 class Assembly:
-    """What a machine is made of at one level, before it is one system.
+    """Parts of a machine at one level, before it is one system.
 
     Attributes
     ----------
     bodies : list[Body]
-        From the rotor on.
+        Bodies, from the rotor on.
     springs : list[Spring]
         Shafts, meshes, pins and bearings.
     seats : dict[str, tuple[str, tuple[float, float, float]]]
         Body that each bearing holds, and its place [m].
     superelements : list[Superelement]
-        Of flexible carriers, of shafts and of the housing.
+        Superelements of flexible carriers, of shafts and of the housing.
     holders : dict[str, Place | None]
-        What each bearing is held by; none is the ground.
+        Place that each bearing is held by; none is the ground.
     """
 
     bodies: list[Body]
@@ -103,16 +103,16 @@ def machine_system(
     Parameters
     ----------
     machine : MachineTable
-        Its table.
+        Table of the machine.
     level : Level
-        What may move.
+        Level of the model: what may move.
     azimuth : float or mapping of int to float
-        Of the rotor's shaft [rad], carriers behind it turning at their own ratios; or of carriers
-        by the number of their stage, from 1, others being at 0.
+        Azimuth of the rotor's shaft [rad], carriers behind it turning at their own ratios; or
+        azimuths of carriers by the number of their stage, from 1, others being at 0.
     elements : int
-        Of each flexible shaft, beside the stations of its bearings.
+        Number of beam elements of each flexible shaft, beside the stations of its bearings.
     held_generator : bool
-        For statics: a generator that does not turn.
+        Whether the generator does not turn, for statics.
     flexible : Flexible, optional
         Carriers and housing that give.
     """
@@ -128,7 +128,7 @@ def assembly(
     held_generator: bool = False,
     flexible: Flexible | None = None,
 ) -> Assembly:
-    """Bodies and springs of a machine; arguments as of `machine_system`."""
+    """Bodies and springs of a machine; arguments as in `machine_system`."""
     free = TURNS if level is Level.TORSIONAL else ALL
     gives = flexible or Flexible()
     bodies: list[Body] = []
@@ -472,11 +472,11 @@ def steady_load(machine: MachineTable, system: System, torque: float, hub: Float
     Parameters
     ----------
     machine : MachineTable
-        Whose rotor it is.
+        Table of the machine whose rotor it is.
     system : System
-        Of it.
+        System of the machine.
     torque : float
-        On the rotor about x [N m].
+        Torque on the rotor about x [N m].
     hub : ndarray, (6,)
         Other forces and moments on the rotor.
     """

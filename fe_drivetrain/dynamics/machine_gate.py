@@ -15,9 +15,9 @@ from fe_drivetrain.dynamics.planetary import transverse_angle
 from fe_drivetrain.dynamics.stage_gears import stage_pairs
 from fe_drivetrain.gear.functions import involute_of
 
-#: Of the centre distance: how far radii of three digits may be from it.
+#: Distance of radii of three digits from the centre distance, over it, that is allowed.
 ROUNDED = 1e-3
-#: Largest sum of two profile shifts [modules].
+#: Maximum sum of two profile shifts [modules].
 MOST_SHIFTS = 3.0
 #: Play of teeth along the line of action [modules] that is no play any more.
 MOST_PLAY = 0.5
@@ -25,7 +25,7 @@ MOST_PLAY = 0.5
 WIDEST = 5.0
 #: Radius of gyration of a gear over its own radius: it carries part of its shaft, or is a point.
 GYRATION = (1e-3, 1e2)
-#: Largest radius of gyration of a rotor, and of a generator [m].
+#: Maximum radius of gyration of a rotor, and of a generator [m].
 ROTOR_GYRATION, GENERATOR_GYRATION = 150.0, 20.0
 #: Names that the program gives to bodies and springs.
 RESERVED = ("rotor", "generator", "grid", "housing")
@@ -135,7 +135,7 @@ def _check_face(stage: GearData, radius: float, name: str) -> None:
 
 
 def _check_distance(stage: GearData, teeth: int, name: str) -> None:
-    """Whether the centre distance is one of so many teeth, negative of an internal pair."""
+    """Whether the centre distance fits the numbers of teeth, negative of an internal pair."""
     if stage.module is None:
         return
     helix, normal = radians(stage.helix), radians(stage.pressure_angle)
@@ -149,7 +149,7 @@ def _check_distance(stage: GearData, teeth: int, name: str) -> None:
         raise InputError(
             f"{name}: a centre distance of {stage.centre_distance:g} m asks for profile shifts of "
             f"{shifts:.3g} modules in sum (a working pressure angle of {degrees(working):.3g} deg) "
-            f"but {MOST_SHIFTS:g} is the most: correct the teeth, module, helix or distance"
+            f"but the maximum is {MOST_SHIFTS:g}: correct the teeth, module, helix or distance"
         )
 
 

@@ -1,4 +1,4 @@
-"""What moves in a machine without any spring that feels it: found, and named, before it is solved.
+"""Motions of a machine that no spring feels: found, and named, before it is solved.
 
 A drivetrain turns freely as its teeth say, where no grid holds its generator. Every other free
 motion is a mechanism, and a spring that feels the turning belongs to another geometry than the
@@ -17,7 +17,7 @@ from fe_drivetrain.dynamics.modes import spring_frequencies, system_modes
 from fe_drivetrain.dynamics.system import System, without_massless
 from fe_drivetrain.torsion.system import resolved
 
-#: Of what a spring's parts do to its length: turning that winds it by less is round-off.
+#: Share of what a spring's parts do to its length below which turning that winds it is round-off.
 WOUND = 1e-9
 #: Motions that are named in one message.
 NAMED = 3
@@ -39,7 +39,7 @@ def check_held(machine: MachineTable) -> None:
 
 
 def free_count(machine: MachineTable) -> int:
-    """How many free motions a drivetrain has: it turns, where no grid holds its generator."""
+    """Number of free motions of a drivetrain: it turns, where no grid holds its generator."""
     return 0 if machine.generator.stiffness > 0 else 1
 
 

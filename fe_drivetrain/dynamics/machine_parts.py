@@ -1,4 +1,4 @@
-"""What a machine is made of: bodies, shafts and bearings, in their ranges."""
+"""Parts of a machine: bodies, shafts and bearings, in their ranges."""
 
 from math import pi
 from typing import Annotated, Literal, Self
@@ -15,7 +15,7 @@ STEEL = Material(youngs_modulus=2.06e11, poisson_ratio=0.3, density=7850.0)
 
 #: What no machine's inertia [kg m^2], mass [kg], stiffness [N/m, N m/rad] or damping is beyond.
 MOST_INERTIA, MOST_MASS, MOST_STIFFNESS, MOST_DAMPING = 1e10, 1e7, 1e20, 1e12
-#: Least inertia [kg m^2]: where a table has none, a body may turn with so little.
+#: Minimum inertia [kg m^2]: where a table has none, a body may turn with so little.
 LEAST_INERTIA = 1e-9
 #: What no shaft is longer than, no centre distance, face or diameter larger than [m].
 LONGEST, LARGEST_GEAR = 100.0, 20.0
@@ -69,7 +69,7 @@ class RotorBody(Part):
         Parameters
         ----------
         radius, width : float
-            Of the disc [m].
+            Radius and width of the disc [m].
         """
         mass = 2 * self.inertia / radius**2 if self.mass is None else self.mass
         across = self.inertia / 2 + mass * width**2 / 12

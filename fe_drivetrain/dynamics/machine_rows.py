@@ -46,7 +46,7 @@ def _of_each(of: str, source: str) -> Any:
 
 
 class GearData(Part):
-    """What both kinds of stages have in common."""
+    """Fields that both kinds of stages have in common."""
 
     name: str = Field(default="", description="any")
     teeth: tuple[Teeth, ...] | None = Field(default=None, description="as the kind of stage says")
@@ -111,7 +111,7 @@ class GearData(Part):
         default=1,
         ge=1,
         le=99,
-        description="of each mesh over the face width",
+        description="slices of each mesh over the face width",
         json_schema_extra={
             "unit": "-",
             "source": "assumed: each mesh in one point, without stiffness against tilt",
@@ -193,7 +193,7 @@ class PlanetaryData(GearData):
     planet: RotorBody = Field(description="one planet")
     sun: RotorBody = Field(description="sun")
     ring: RotorBody | None = Field(default=None, description="ring, where it is not held")
-    ring_support: Six | None = Field(default=None, description="of a ring that is not held")
+    ring_support: Six | None = Field(default=None, description="support of a ring that is not held")
     cutter: int | None = Field(
         default=None,
         ge=5,
@@ -389,7 +389,7 @@ class MachineTable(Part):
 
     @property
     def axes(self) -> tuple[tuple[float, float, float], ...]:
-        """Where each shaft begins [m]."""
+        """Positions where each shaft begins [m]."""
         x = y = z = 0.0
         found = [(x, y, z)]
         for shaft, stage in zip(self.shafts, self.stages, strict=False):
@@ -401,7 +401,7 @@ class MachineTable(Part):
         return tuple(found)
 
     def assumptions(self) -> list[Assumption]:
-        """What the table does not give and is taken all the same, of all of its rows."""
+        """Assumptions of all rows: what the table does not give."""
         named: list[tuple[str, Part]] = [("rotor", self.rotor)]
         named += [(f"shaft {shaft.name}", shaft) for shaft in self.shafts]
         for number, stage in enumerate(self.stages, start=1):

@@ -14,7 +14,7 @@ def slip_line(
     Parameters
     ----------
     row : array_like
-        (n,) its speed w by the velocities.
+        Row (n,) from the velocities to the speed w.
     torque, speed : float
         A point of the line [N m, rad/s].
     slope : float
@@ -25,7 +25,7 @@ def slip_line(
     law : SpringLaws
         A damper.
     load : Loads
-        What it does at speed 0.
+        Load of the machine at speed 0.
     """
     h = np.asarray(row, dtype=np.float64)
     return spring_laws(h[None], 0.0, slope), steady((slope * speed - torque) * h)
@@ -44,16 +44,16 @@ def grid_spring(
     Parameters
     ----------
     row : array_like
-        (n,) its angle by the displacements.
+        Row (n,) from the displacements to its angle.
     stiffness : float
-        Between armature and field [N m/rad].
+        Stiffness between armature and field [N m/rad].
     speed, duration : float
-        Of the field [rad/s], and for how long from time 0 [s].
+        Speed of the field [rad/s], and the time for which it turns, from 0 [s].
 
     Returns
     -------
     law : SpringLaws
-        To the ground.
+        Spring to the ground.
     load : Loads
         The field's part of its torque.
     """

@@ -18,7 +18,7 @@ from fe_drivetrain.dynamics.equations import wave_table
 from fe_drivetrain.gear.loaded_error import TransmissionError
 
 INTERVALS = 256
-"""Of an error's spline in its period."""
+"""Number of intervals of an error's spline in its period."""
 
 
 @dataclass(frozen=True)
@@ -28,12 +28,12 @@ class MeshError:
     Attributes
     ----------
     values : ndarray, (p,)
-        At even phases of its period from 0 [m].
+        Error at even phases of its period from 0 [m].
     turns : float
         Periods of the error for each of the mesh: 1 of a form that each tooth has, 1/z of the
         run-out and pitch errors of a gear with z teeth.
     phase : float
-        At phase 0 of the mesh [periods of the error].
+        Phase of the error at phase 0 of the mesh [periods of the error].
     """
 
     values: Floats
@@ -56,7 +56,7 @@ class MeshError:
         Parameters
         ----------
         order : int
-            From 1.
+            Number of the harmonic, from 1.
 
         Raises
         ------
@@ -91,9 +91,9 @@ def harmonic_error(
     Parameters
     ----------
     cosines, sines : array_like
-        (l,) of cos(2 pi l psi) and sin(2 pi l psi), l from 1 [m].
+        Coefficients (l,) of cos(2 pi l psi) and sin(2 pi l psi), l from 1 [m].
     turns, phase : float
-        As of `MeshError`.
+        Periods of the error per period of the mesh, and its phase, see `MeshError`.
 
     Returns
     -------
@@ -112,9 +112,9 @@ def error_of_slices(
     Parameters
     ----------
     found : TransmissionError
-        By `gear.transmission_error`.
+        Transmission error, from `gear.transmission_error`.
     base_helix : float
-        Of the gears [rad]: errors in the transverse plane are longer by 1 / cos.
+        Base helix angle of the gears [rad]: errors in the transverse plane are longer by 1 / cos.
     loaded : bool
         Static error under load, for a mesh of constant stiffness; or the free place of the flanks,
         for one whose stiffness varies as the slices do (`found.stiffness`). Both with their mean

@@ -30,10 +30,10 @@ from fe_drivetrain.gear.meshes import MeshStiffness, StiffnessTable, square_wave
 from fe_drivetrain.gear.planets import ring_phases, sun_phases
 
 HARMONICS = 8
-"""Of the square wave, as in Park et al. 2021, Eq 10."""
+"""Number of harmonics of the square wave, as in Park et al. 2021, Eq 10."""
 
 INTERVALS = 256
-"""Of a wave's spline in a period."""
+"""Number of intervals of a wave's spline in a period."""
 
 
 def contact_wave(contact_ratio: float, harmonics: int = HARMONICS) -> Floats:
@@ -42,14 +42,14 @@ def contact_wave(contact_ratio: float, harmonics: int = HARMONICS) -> Floats:
     Parameters
     ----------
     contact_ratio : float
-        C, at least 1; a whole number is without variation.
+        Contact ratio C, at least 1; a whole number is without variation.
     harmonics : int
-        Of the series, whose peaks pass the levels by some 9 %.
+        Number of harmonics of the series, whose peaks pass the levels by some 9 %.
 
     Returns
     -------
     wave : Floats
-        Rising in the middle of the jump at phase 0.
+        Wave that rises in the middle of the jump at phase 0.
 
     Raises
     ------
@@ -67,19 +67,19 @@ def wave_of(stiffness: MeshStiffness | StiffnessTable) -> Floats:
 
 @dataclass(frozen=True)
 class Meshing:
-    """How a mesh varies.
+    """Variation of a mesh's stiffness.
 
     Attributes
     ----------
     contact_ratio : float
-        Pairs in contact on average.
+        Mean number of pairs of teeth in contact.
     frequency : float
-        Of the mesh [Hz].
+        Mesh frequency [Hz].
     phase : float
-        At t = 0 [periods].
+        Phase at t = 0 [periods].
     course : MeshStiffness or StiffnessTable, optional
-        Of `fe_drivetrain.gear`, whose course over its mean is taken in place of the square wave;
-        the mean is that of the system's spring.
+        Stiffness of `fe_drivetrain.gear`, whose course over its mean is taken in place of the
+        square wave; the mean is that of the system's spring.
     error : MeshError, optional
         Transmission error without load, along the normal of the teeth.
     """
@@ -96,7 +96,7 @@ class Meshing:
         Parameters
         ----------
         harmonics : int
-            Of the square wave, where no course is given.
+            Number of harmonics of the square wave, where no course is given.
         """
         if self.course is None:
             return contact_wave(self.contact_ratio, harmonics)
@@ -117,20 +117,20 @@ def machine_meshing(
     Parameters
     ----------
     machine : Machine
-        With teeth.
+        Table of the machine, with teeth.
     speed : float
-        Of the rotor [rad/s].
+        Speed of the rotor [rad/s].
     contact_ratios : Mapping[str, float]
-        By "stage 1 sun-planet", "stage 1 ring-planet", "stage 2 mesh" and so on.
+        Contact ratios by "stage 1 sun-planet", "stage 1 ring-planet", "stage 2 mesh" and so on.
     courses : Mapping[str, MeshStiffness or StiffnessTable], optional
-        By the same names, of meshes that vary otherwise than as a square wave.
+        Courses by the same names, of meshes that vary otherwise than as a square wave.
     errors : Mapping[str, MeshError], optional
-        By the same names, transmission errors: of planets all with the phase of their mesh.
+        Transmission errors by the same names: of planets all with the phase of their mesh.
 
     Returns
     -------
     meshing : dict[str, Meshing]
-        By the names of the meshes of the machine's system.
+        Variations by the names of the meshes of the machine's system.
 
     Raises
     ------
@@ -181,18 +181,19 @@ def varying_equations(
     Parameters
     ----------
     system : System
-        In a frame at rest.
+        System in a frame at rest.
     meshing : Mapping[str, Meshing]
-        By the name of a mesh; all of its slices vary together.
+        Variations by the name of a mesh; all of its slices vary together.
     speed : float
-        Of reference, for gyroscopic terms [rad/s].
+        Reference speed, for gyroscopic terms [rad/s].
     backlash : float, optional
-        Of all these meshes along their lines of action [m]: teeth part, and touch with their other
-        flanks; without, meshes pull as they push.
+        Backlash of all these meshes along their lines of action [m]: teeth part, and touch with
+        their other flanks; without, meshes pull as they push.
     damping : float
-        Of the system: C is this time [s] times the stiffness of the springs, beside their dampers.
+        Damping of the system: C is this time [s] times the stiffness of the springs, beside their
+        dampers.
     harmonics : int
-        Of the waves.
+        Number of harmonics of the waves.
 
     Returns
     -------

@@ -24,13 +24,13 @@ class SystemModes:
     Attributes
     ----------
     names : tuple[str, ...]
-        (n,) of the degrees of freedom.
+        Names (n,) of the degrees of freedom.
     bodies, springs : tuple[str, ...]
-        (b,) and (m,), in the order of the shares.
+        Names (b,) and (m,), in the order of the shares.
     frequencies : Floats
-        (n,) ascending [Hz]; exactly 0 where the system moves freely.
+        Frequencies (n,), ascending [Hz]; exactly 0 where the system moves freely.
     shapes : Floats
-        (n, n) a mode a column, ``shapes.T @ mass @ shapes`` is 1.
+        Mode shapes (n, n), a mode a column, ``shapes.T @ mass @ shapes`` is 1.
     strain_shares : Floats
         (m, n) share of each spring in the strain energy of each mode; 0 of free motion. What is
         left to 1 is in superelements.
@@ -164,7 +164,7 @@ class TurningModes(Oscillations):
     Attributes
     ----------
     shapes : Complex
-        (n, k) each of unit length.
+        Mode shapes (n, k), each of unit length.
     growing : Floats
         (j,) real eigenvalues above zero, of what diverges without oscillating [1/s].
     """
@@ -179,11 +179,11 @@ def turning_modes(system: System, speed: float = 0.0, damped: bool = True) -> Tu
     Parameters
     ----------
     system : System
-        With a mass for each degree of freedom.
+        System with a mass for each degree of freedom.
     speed : float
         Reference speed W [rad/s].
     damped : bool
-        With the damping of the springs.
+        Whether the damping of the springs counts.
     """
     root = _mass_root(system)
 
@@ -285,13 +285,13 @@ def planetary_kinds(
     Parameters
     ----------
     system : System
-        With the stage's bodies.
+        System with the stage's bodies.
     modes : SystemModes
-        Of it.
+        Modes of the system.
     central : sequence of str
         Names of carrier, ring and sun.
     within : float
-        Share of kinetic energy that counts as none.
+        Share of kinetic energy below which a body counts as standing still.
     """
     energy = modes.shapes * (system.mass @ modes.shapes)
     shares: dict[bool, Floats] = {}

@@ -29,9 +29,9 @@ class Inertias:
     Attributes
     ----------
     mass : float
-        [kg].
+        Mass [kg].
     polar, transverse : float
-        About x and across it, through the centre of mass [kg m^2].
+        Inertias about x and across it, through the centre of mass [kg m^2].
     """
 
     mass: float
@@ -46,13 +46,13 @@ class PinBearing:
     Attributes
     ----------
     stiffness : ArrayLike
-        (6,) along and about (x, radial, tangential) of the planet [N/m, N m/rad].
+        Stiffness (6,) along and about (x, radial, tangential) of the planet [N/m, N m/rad].
     offset : float
         x from the planet's centre [m].
     name : str
-        After the planet's number in the names of its springs, such as "upwind"; may be empty.
+        Name after the planet's number in the names of its springs, such as "upwind"; may be empty.
     damping : ArrayLike
-        (6,) or one for all [N s/m, N m s/rad].
+        Damping (6,), or one for all [N s/m, N m s/rad].
     """
 
     stiffness: ArrayLike
@@ -68,9 +68,9 @@ class PlanetarySet:
     Attributes
     ----------
     name : str
-        Before the names of its bodies, "NAME sun", "NAME planet 1" and so on; may be empty.
+        Prefix of the names of its bodies, "NAME sun", "NAME planet 1" and so on; may be empty.
     centre_distance : float
-        Of the planets from the axis [m].
+        Distance of the planets from the axis [m].
     sun_radius : float
         Working pitch radius of the sun [m].
     sun_mesh, ring_mesh : Mesh
@@ -78,25 +78,25 @@ class PlanetarySet:
     angles : tuple[float, ...]
         psi of each planet [rad].
     carrier, ring, sun, planet : Inertias
-        Of the bodies, the carrier without planets, all planets the same.
+        Inertias of the bodies, the carrier without planets, all planets the same.
     sun_stiffness, ring_stiffness : float
-        Of one planet's mesh along the line of action [N/m].
+        Stiffness of one planet's mesh along the line of action [N/m].
     bearings : tuple[PinBearing, ...]
-        Between each planet and the carrier.
+        Bearings between each planet and the carrier.
     hand : int
-        Of the sun's teeth: 1 right, -1 left, 0 spur.
+        Hand of the sun's teeth: 1 right, -1 left, 0 spur.
     driving : int
         1 where the carrier drives the sun as it turns about +x (speed up); -1 where the sun drives.
     slices : int
-        Of each mesh over its face width.
+        Number of slices of each mesh over its face width.
     position : tuple[float, float, float]
-        Of the centre of sun, ring and carrier [m].
+        Position of the centre of sun, ring and carrier [m].
     free : frozenset[str]
         Degrees of freedom of the bodies; `PLANE` of a stage that stays in its plane.
     pins : tuple[Place, ...]
         Bodies that the planets are on, of a flexible carrier; the carrier where there are none.
     mesh_damping : float
-        Along the lines of action of each mesh [N s/m].
+        Damping of each mesh along its line of action [N s/m].
     """
 
     name: str
@@ -141,12 +141,12 @@ class PlanetarySet:
 
     @property
     def sun_base_radius(self) -> float:
-        """In the transverse section [m]."""
+        """Base radius of the sun in the transverse section [m]."""
         return self.sun_radius * cos(self.sun_mesh.pressure_angle)
 
     @property
     def planet_base_radius(self) -> float:
-        """In the transverse section [m]."""
+        """Base radius of the planet in the transverse section [m]."""
         return (self.centre_distance - self.sun_radius) * cos(self.sun_mesh.pressure_angle)
 
     @property
@@ -156,7 +156,7 @@ class PlanetarySet:
 
     @property
     def ring_base_radius(self) -> float:
-        """In the transverse section [m]."""
+        """Base radius of the ring in the transverse section [m]."""
         turned = self.centre_distance * cos(self.ring_mesh.pressure_angle)
         return turned + self.planet_base_radius
 
@@ -189,9 +189,9 @@ def bodies_of(stage: PlanetarySet, carrier_speed: float = 1.0) -> list[Body]:
     Parameters
     ----------
     stage : PlanetarySet
-        With the ring standing.
+        Planetary stage with its ring at rest.
     carrier_speed : float
-        Of the carrier, over the reference speed.
+        Speed of the carrier, over the reference speed.
     """
     planet_ratio = 1 - stage.ring_base_radius / stage.planet_base_radius
     found = []
@@ -308,7 +308,7 @@ def check_assembly(name: str, sun_teeth: int, ring_teeth: int, planets: int) -> 
 
 
 def excited_motion(teeth: int, planets: int, harmonic: int = 1) -> str:
-    """What a harmonic of the mesh does to a sun with equal, equally spaced planets.
+    """Effect of a harmonic of the mesh on a sun with equal, equally spaced planets.
 
     Its forces sum to a torque alone where l z_s mod N is 0, to a force alone where it is 1 or
     N - 1, and to nothing otherwise (Kahraman and Blankenship 1994; Ambarisha and Parker 2006).
@@ -316,11 +316,11 @@ def excited_motion(teeth: int, planets: int, harmonic: int = 1) -> str:
     Parameters
     ----------
     teeth : int
-        Of the sun.
+        Number of teeth of the sun.
     planets : int
-        N.
+        Number of planets N.
     harmonic : int
-        l of the mesh frequency.
+        Harmonic l of the mesh frequency.
 
     Returns
     -------
@@ -342,11 +342,11 @@ def working_angle(
     teeth : int
         Sum of an external pair, difference of an internal one.
     centre_distance : float
-        [m].
+        Centre distance [m].
     pressure_angle : float
         Normal, of the rack [rad].
     helix : float
-        At the reference circle [rad].
+        Helix angle at the reference circle [rad].
 
     Raises
     ------

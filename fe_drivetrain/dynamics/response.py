@@ -23,18 +23,18 @@ def frequency_response(
     Parameters
     ----------
     system : System
-        With the damping of its springs.
+        System with the damping of its springs.
     load : ndarray, (n,)
         Amplitude [N, N m].
     frequencies : array_like, (s,)
-        [Hz]; none of them that of an undamped mode.
+        Frequencies [Hz]; none of them that of an undamped mode.
     speed : float
         Reference speed [rad/s].
 
     Returns
     -------
     ndarray, (s, n)
-        [m, rad].
+        Complex amplitudes of the degrees of freedom [m, rad].
     """
     omega = 2 * np.pi * np.atleast_1d(np.asarray(frequencies, dtype=float))[:, None, None]
     K = system.K - speed**2 * system.centripetal
@@ -47,18 +47,18 @@ def frequency_response(
 def modal_response(
     modes: SystemModes, load: Floats, frequencies: ArrayLike, ratio: float, count: int | None = None
 ) -> Complex:
-    """The same by modes, with one damping ratio for all and the highest modes left out.
+    """Frequency response by modes, with one damping ratio for all and the highest modes left out.
 
     Parameters
     ----------
     modes : SystemModes
-        Of the system at rest.
+        Modes of the system at rest.
     load : ndarray, (n,)
-        Amplitude [N, N m].
+        Amplitude of the load [N, N m].
     frequencies : array_like, (s,)
-        Above zero [Hz].
+        Frequencies, above zero [Hz].
     ratio : float
-        Of critical damping.
+        Damping over critical damping.
     count : int, optional
         Number of modes from the lowest; all where left out.
     """
@@ -76,11 +76,12 @@ class MeshResponse:
     Attributes
     ----------
     frequencies : ndarray, (s,)
-        Of the vibration [Hz].
+        Frequencies of the vibration [Hz].
     motions : ndarray, (s, n)
         Complex amplitudes of the degrees of freedom [m, rad].
     forces : ndarray, (s, m)
-        Of all springs with their dampers [N, N m], beside those of the mean load.
+        Complex amplitudes of the forces of all springs with their dampers [N, N m], beside those of
+        the mean load.
     """
 
     frequencies: Floats
@@ -107,22 +108,22 @@ def mesh_response(
     Parameters
     ----------
     system : System
-        Meshes as stiff as on average.
+        System whose meshes have their mean stiffness.
     meshing : Mapping[str, Meshing]
         Meshes of one frequency that excite, with their phases and errors; their own frequencies do
         not count.
     frequencies : array_like, (s,)
-        Of these meshes [Hz].
+        Frequencies of these meshes [Hz].
     order : int
-        Which harmonic.
+        Number of the harmonic.
     still : ndarray, (n,), optional
-        Motions under the mean load, as of `wind_up`: courses of stiffness count; without, errors
+        Motions under the mean load, see `wind_up`: courses of stiffness count; without, errors
         alone excite.
     speed : float
         Reference speed, for gyroscopic terms [rad/s].
     damping : float
-        As of `varying_equations`: C is this time [s] times the stiffness of the springs, beside
-        their dampers.
+        Damping as in `varying_equations`: C is this time [s] times the stiffness of the springs,
+        beside their dampers.
 
     Returns
     -------
@@ -139,8 +140,8 @@ def mesh_response(
     turns |= set() if still is None else {1.0}
     if len(turns) != 1 or (still is None and any(m.error is None for m in meshing.values())):
         raise InputError(
-            "meshes of one frequency response must all have errors of one number of periods for "
-            "each of the mesh, 1 beside courses of stiffness: leave the others out"
+            "meshes of one frequency response must all have errors with the same number of periods "
+            "per mesh period, 1 where stiffness varies, too: leave the others out"
         )
     each = turns.pop()
     e, kappa = (np.zeros(len(s.spring_names), dtype=complex) for _ in range(2))
@@ -167,7 +168,7 @@ def mesh_response(
 
 @dataclass(frozen=True)
 class Crossing:
-    """Where a harmonic of an order meets a natural frequency.
+    """Crossing of a harmonic of an order with a natural frequency.
 
     Attributes
     ----------
@@ -176,7 +177,7 @@ class Crossing:
     harmonic : int
         Multiple of it.
     frequency : float
-        [Hz].
+        Frequency [Hz].
     speed : float
         Speed of the rotor [rad/s].
     mode : int
@@ -205,7 +206,7 @@ def crossings(
     orders : mapping of str to float
         Cycles in a turn of the rotor.
     speeds : tuple of float
-        Least and largest of the rotor [rad/s].
+        Minimum and maximum speed of the rotor [rad/s].
     harmonics : iterable of int
         Multiples of each order.
     """

@@ -32,7 +32,7 @@ TOLERANCE = 1e-9
 """Residual over load, both on a unit diagonal of the stiffness."""
 
 ROUND_OFF = 1e-13
-"""Residual over the largest force inside, where the loads are small beside it."""
+"""Residual over the maximum force inside, where the loads are small beside it."""
 
 FIVE = ("ux", "uy", "uz", "ry", "rz")
 """Motions of a bearing's inner ring."""
@@ -45,11 +45,11 @@ class Seat:
     Attributes
     ----------
     name : str
-        Of the bearing: its springs "NAME ux", "NAME uy" and so on carry until the rollers do.
+        Name of the bearing: its springs "NAME ux", "NAME uy" and so on carry until the rollers do.
     bearing : Bearing
-        With the inner ring on the body that moves positive.
+        Bearing with the inner ring on the body that moves positive.
     motions : tuple[Spring, ...]
-        (5,) rows of the inner ring's motion against the outer one, `FIVE`; their stiffness is 0.
+        Rows (5,) of the inner ring's motion against the outer one, `FIVE`; their stiffness is 0.
     """
 
     name: str
@@ -78,16 +78,16 @@ def seat(
     Parameters
     ----------
     name : str
-        Of the springs in whose place it is.
+        Name of the springs in whose place it is.
     bearing : Bearing
         Rollers and rings.
     inner, outer : Place, Place or None
         Bodies of its rings; none is the ground.
     point : array_like, (3,)
-        Its centre [m].
+        Centre of the bearing [m].
     angle : float
-        From y to z, by which the bearing's own y is turned about x [rad], as that of a planet's pin
-        is, whose inner ring turns with the carrier.
+        Angle from y to z, by which the bearing's own y is turned about x [rad], as that of a
+        planet's pin is, whose inner ring turns with the carrier.
     """
     y, z = np.array([0.0, cos(angle), sin(angle)]), np.array([0.0, -sin(angle), cos(angle)])
     directions = np.zeros((5, 6))
@@ -112,18 +112,19 @@ def planet_seats(
     Parameters
     ----------
     machine : Machine
-        Its table, with the bearings' places under ``pins``.
+        Table of the machine, with the bearings' places under ``pins``.
     number : int
-        Of the planetary stage, from 1.
+        Number of the planetary stage, from 1.
     bearing : Bearing
-        Of each place.
+        Bearing at each place.
     azimuth, flexible : float, Flexible
-        As of `machine_system`.
+        Azimuth of the rotor's shaft [rad] and flexible bodies, see `machine_system`.
 
     Returns
     -------
     seats : list[Seat]
-        "stage 1 pin 1 upwind" and so on, y along the radius of the planet, z along the tangent.
+        Seats "stage 1 pin 1 upwind" and so on, y along the radius of the planet, z along the
+        tangent.
     """
     stage = planetary_set(machine, number, turned=azimuth * machine.speeds[number - 1])
     on_pins = flexible is not None and number in flexible.carriers
@@ -147,9 +148,9 @@ def machine_seat(found: Assembly, name: str, bearing: Bearing) -> Seat:
     Parameters
     ----------
     found : Assembly
-        Of the machine.
+        Assembly of the machine.
     name : str
-        One of its bearings.
+        Name of one of its bearings.
     bearing : Bearing
         Rollers and rings.
 
@@ -188,12 +189,12 @@ class OnRollers:
     static : Static
         Motions and the forces of springs; those in whose place rollers are carry nothing.
     seats : tuple[Seat, ...]
-        (b,) bearings.
+        Seats (b,) of the bearings.
     motions, loads : Floats
-        (b, 5) of each inner ring against the outer one [m, rad], and the load that it carries there
-        [N, N m], along and about the axes of its seat.
+        Motion (b, 5) of each inner ring against the outer one [m, rad], and the load that it
+        carries there [N, N m], along and about the axes of its seat.
     residual : float
-        What is left of the balance, over what is allowed: at most 1 where it has converged.
+        Residual of the balance over what is allowed: at most 1 where it has converged.
     converged : bool
         Whether it has.
     iterations : int
@@ -235,20 +236,20 @@ def static_on_rollers(
     Parameters
     ----------
     system : System
-        With the springs of all bearings, from whose equilibrium the iteration starts.
+        System with the springs of all bearings, from whose equilibrium the iteration starts.
     load : ndarray, (n,)
-        Generalised [N, N m].
+        Generalised load [N, N m].
     seats : sequence of Seat
         Rolling bearings. Springs of the motions that their rollers resist are taken out; others, as
         the axial one of a cylindrical bearing, stay: they are its flanges and guides.
     gaps, contacts : mapping, sequence
-        As of `static`.
+        Gaps of springs by name, and names of springs that only press, see `static`.
 
     Returns
     -------
     found : OnRollers
-        Converged, or flagged: a body that nothing holds but bearings inside their clearances may
-        have no equilibrium, or more than one.
+        Equilibrium, converged or flagged: a body that nothing holds but bearings inside their
+        clearances may have no equilibrium, or more than one.
 
     Raises
     ------
@@ -291,14 +292,14 @@ def without_bearings(system: System, seats: Sequence[Seat]) -> System:
     Parameters
     ----------
     system : System
-        With the springs of all bearings.
+        System with the springs of all bearings.
     seats : sequence of Seat
         Rolling bearings in their place.
 
     Returns
     -------
     system : System
-        With as many springs, those of a stiffness of zero.
+        System with the same number of springs, those of the bearings with a stiffness of zero.
 
     Raises
     ------
@@ -326,9 +327,9 @@ class Rollers:
     Attributes
     ----------
     kinds : tuple[Bearing, ...]
-        (b,) bearings.
+        Bearings (b,).
     rows : Floats
-        (b, 5, n) motion of each inner ring against the outer one.
+        Motion (b, 5, n) of each inner ring against the outer one.
     """
 
     kinds: tuple[Bearing, ...]

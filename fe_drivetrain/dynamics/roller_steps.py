@@ -43,13 +43,13 @@ class RollerMotion:
     Attributes
     ----------
     motion : Motion
-        With what the bearings store in the strain energy, and what they damp in the losses; forces
-        of springs without them.
+        Motion with what the bearings store in the strain energy, and what they damp in the losses;
+        forces of springs without them.
     seats : tuple[Seat, ...]
-        (b,) bearings.
+        Seats (b,) of the bearings.
     motions, loads : Floats
-        (k, b, 5) of each inner ring against the outer one [m, rad], and the load that it carries
-        there, with its damper [N, N m].
+        Motion (k, b, 5) of each inner ring against the outer one [m, rad], and the load that it
+        carries there, with its damper [N, N m].
     """
 
     motion: Motion
@@ -92,30 +92,32 @@ def integrate_on_rollers(
     Parameters
     ----------
     equations : Equations
-        Of the system without the springs of these bearings: `without_bearings`.
+        Equations of the system without the springs of these bearings: `without_bearings`.
     system : System
-        Whose degrees of freedom they have.
+        System whose degrees of freedom the equations have.
     seats : sequence of Seat
         Rolling bearings.
     loads : Loads
-        On the system.
+        Loads on the system.
     duration, dt : float
-        Of all and of a step [s]; the number of steps is rounded up.
+        Duration of the whole motion and length of a step [s]; the number of steps is rounded up.
     scheme : Scheme
-        As of `integrate`.
+        Time integration scheme, see `integrate`.
     start : State, optional
         Displacements, velocities and time, at rest where left out; such as `static_on_rollers`.
     damping : float
-        Of each bearing: this time [s] times its tangent stiffness at the beginning of a step.
+        Damping of each bearing: this time [s] times its tangent stiffness at the beginning of a
+        step.
     every : int
         Steps from record to record.
     tolerance : float
-        Of Newton's method.
+        Tolerance of Newton's method: change of an elongation or a bearing's motion over its maximum
+        so far.
 
     Returns
     -------
     motion : RollerMotion
-        Converged in every step, or it says in how many it did not.
+        Motion, converged in every step, or it says in how many it did not.
 
     Raises
     ------
@@ -160,7 +162,7 @@ class _Run:
         self.S = self.R @ self.columns
         self.phases = np.zeros(len(self.R), dtype=bool)
         self.phases[self.laws.angle[self.laws.angle >= 0]] = True
-        # the largest translation and rotation of all bearings so far
+        # the maximum translation and rotation of all bearings so far
         self.turns = np.zeros(len(self.R), dtype=bool)
         self.turns[self.first :] = np.tile([False] * 3 + [True] * 2, len(rollers.kinds))
         self.moves = ~self.turns
@@ -186,7 +188,7 @@ class _Run:
         return _At(d, T, spring, damper, resisted, K, energy, power, followed)
 
     def sizes(self, z: Floats, before: Floats) -> Floats:
-        """What a change of each row is measured by."""
+        """Scale by which a change of each row is measured."""
         found = np.maximum(before, np.abs(z))
         moved = found[self.moves].max(initial=0.0)
         found[self.moves] = moved
@@ -301,7 +303,7 @@ class _Run:
 
 @dataclass(frozen=True)
 class _At:
-    """Forces d beyond the constant matrices and what belongs to them, as of `law_forces`."""
+    """Forces d beyond the constant matrices and what belongs to them, see `law_forces`."""
 
     d: Floats
     T: Floats
@@ -315,7 +317,7 @@ class _At:
 
 
 class _Records:
-    """What is kept of a run."""
+    """Records of a run."""
 
     def __init__(self) -> None:
         self.rows: list[tuple[Floats, ...]] = []

@@ -49,7 +49,7 @@ class Place:
     body : str
         Name.
     centre : tuple[float, float, float]
-        [m].
+        Position of the body's centre [m].
     """
 
     body: str
@@ -76,17 +76,17 @@ def directed(
     Parameters
     ----------
     name : str
-        Of the spring.
+        Name of the spring.
     one : Place
         Body whose motion counts positive.
     other : Place or None
         Body whose motion is taken off; none is the ground.
     point : array_like, (3,)
-        Where the two meet [m].
+        Point where the two meet [m].
     direction : ndarray, (6,)
-        Of the translation, then of the rotation, that stretches it.
+        Direction of the translation, then of the rotation, that stretches the spring.
     stiffness, damping : float
-        As in `Spring`.
+        Stiffness [N/m, N m/rad] and damping [N s/m, N m s/rad], see `Spring`.
     """
     by = {one.body: _row(direction, point, one.centre)}
     if other is not None:
@@ -111,19 +111,19 @@ def bushing(
     name : str
         Springs are called after it, "NAME ux" and so on.
     one, other : Place, Place or None
-        As in `directed`.
+        Body whose motion counts positive, and body whose motion is taken off; none is the ground.
     point : array_like, (3,)
-        Where the stiffness is given [m].
+        Point where the stiffness is given [m].
     stiffness : array_like, (6,) or (6, 6)
-        Along and about x, y, z [N/m, N, N m/rad]; a matrix is symmetric and has no negative
-        eigenvalue.
+        Stiffness along and about x, y, z [N/m, N, N m/rad]; a matrix is symmetric and has no
+        negative eigenvalue.
     damping : array_like, (6,) or scalar
-        Of the same springs [N s/m, N m s/rad]; of a matrix, must be 0.
+        Damping of the same springs [N s/m, N m s/rad]; must be 0 with a matrix.
 
     Returns
     -------
-    Of a matrix, springs along its eigenvectors, "NAME 1" and so on, scaled to a unit diagonal first
-    since metres and radians do not compare.
+    Six springs along and about the axes; for a matrix, springs along its eigenvectors, "NAME 1" and
+    so on, scaled to a unit diagonal first since metres and radians do not compare.
 
     Raises
     ------
@@ -177,11 +177,11 @@ def uniform_shaft(
     one, other : Place
         Bodies that its ends are fixed to.
     ends : tuple of array_like, (3,)
-        Where it begins and ends [m], along x.
+        Points where it begins and ends [m], along x.
     section : CrossSection
-        With the same stiffness about y and z.
+        Cross-section with the same stiffness about y and z.
     material : Material
-        Of the shaft.
+        Material of the shaft.
 
     Raises
     ------
@@ -208,9 +208,9 @@ class Mesh:
     pressure_angle : float
         Transverse, working [rad].
     base_helix : float
-        [rad]; positive where the first gear has right-hand teeth.
+        Base helix angle [rad]; positive where the first gear has right-hand teeth.
     face_width : float
-        In contact [m]; slices are spread over it.
+        Face width in contact [m]; slices are spread over it.
     """
 
     pressure_angle: float
@@ -224,10 +224,10 @@ def line_of_action(mesh: Mesh, to_pitch: ArrayLike, flank: int = 1) -> Floats:
     Parameters
     ----------
     mesh : Mesh
-        Angles.
+        Angles and face width of the mesh.
     to_pitch : array_like, (3,)
-        From the centre of the first gear to the pitch point: to the second gear if external, away
-        from the second one's centre if that is a ring.
+        Vector from the centre of the first gear to the pitch point: to the second gear if external,
+        away from the second one's centre if that is a ring.
     flank : int
         1 where the first gear pushes as it turns about +x, -1 where it does turning back.
     """
@@ -261,19 +261,20 @@ def gear_mesh(
     Parameters
     ----------
     name : str
-        Of the mesh; slices are "NAME slice 1" and so on where there are more than one.
+        Name of the mesh; slices are "NAME slice 1" and so on where there are more than one.
     one, other : Place
         The gears; the first is the external one where the other is a ring.
     pitch_point : array_like, (3,)
-        At the middle of the face [m].
+        Pitch point at the middle of the face [m].
     mesh : Mesh
         Angles and width.
     stiffness, damping : float
-        Of the whole mesh along the line of action [N/m, N s/m].
+        Stiffness and damping of the whole mesh along the line of action [N/m, N s/m].
     flank : int
-        As in `line_of_action`.
+        Flank in contact: 1 where the first gear pushes as it turns about +x, -1 where it does
+        turning back.
     slices : int
-        Over the face width.
+        Number of slices over the face width.
     """
     pitch = np.asarray(pitch_point, dtype=float)
     to_pitch = pitch - np.asarray(one.centre)

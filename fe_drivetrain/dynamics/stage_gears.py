@@ -13,9 +13,9 @@ def stage_pairs(stage: PlanetaryData | ParallelData, name: str) -> dict[str, Pai
     Parameters
     ----------
     stage : PlanetaryData or ParallelData
-        With teeth, module and profile shifts.
+        Stage with teeth, module and profile shifts.
     name : str
-        Of it, in messages.
+        Name of the stage in messages.
 
     Raises
     ------
@@ -37,7 +37,7 @@ def stage_pairs(stage: PlanetaryData | ParallelData, name: str) -> dict[str, Pai
 
 
 def _gears(stage: PlanetaryData | ParallelData, name: str) -> list[Gear]:
-    """In the order of the teeth."""
+    """Gears of a stage in the order of the teeth."""
     if stage.teeth is None or stage.module is None or stage.shifts is None:
         raise InputError(f"{name} has no full data of its gears: give teeth, module and shifts")
     count = len(stage.teeth)

@@ -10,7 +10,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
 from fe_drivetrain.dynamics.system import System, springs_named
 
-#: Of the stiffness on a unit diagonal: an eigenvalue below is that of a free motion.
+#: Eigenvalue of the stiffness on a unit diagonal below which a motion is free.
 FREE = 1e-12
 
 
@@ -21,13 +21,14 @@ class Static:
     Attributes
     ----------
     system : System
-        That it is of.
+        System that it is the equilibrium of.
     q : Floats
-        (n,) [m, rad].
+        Displacements (n,) [m, rad].
     forces : Floats
-        (m,) of the springs, positive where they are stretched, which presses a mesh [N, N m].
+        Forces (m,) of the springs, positive where they are stretched, which presses a mesh [N, N
+        m].
     closed : Bools
-        (m,) the springs that carry; False of contacts that are apart.
+        Flags (m,): springs that carry; False of contacts that are apart.
     """
 
     system: System
@@ -61,11 +62,11 @@ def static(
     Parameters
     ----------
     system : System
-        With springs that hold every motion.
+        System with springs that hold every motion.
     load : ndarray, (n,)
-        Generalised [N, N m].
+        Generalised load [N, N m].
     gaps : mapping of str to float
-        Of springs by name [m, rad]; negative of one that presses before the load comes.
+        Gaps of springs by name [m, rad]; negative for one that presses before the load comes.
     contacts : sequence of str
         Names of the springs that only press.
 
@@ -99,7 +100,7 @@ def static(
 def gaps_and_contacts(
     system: System, gaps: Mapping[str, float] | None, contacts: Sequence[str]
 ) -> tuple[Floats, Bools]:
-    """(m,) gaps of all springs [m, rad], and whether each only presses; as of `static`."""
+    """(m,) gaps of all springs [m, rad], and whether each only presses; arguments of `static`."""
     short = np.zeros(len(system.spring_names))
     for name, gap in (gaps or {}).items():
         short[system.changeable(name)] = gap
@@ -132,11 +133,11 @@ class Turn:
     Attributes
     ----------
     azimuths : Floats
-        (s,) of the carrier [rad].
+        Azimuths (s,) of the carrier [rad].
     spring_names : tuple[str, ...]
-        (m,).
+        Names (m,) of the springs.
     forces : Floats
-        (s, m) of the springs [N, N m].
+        Forces (s, m) of the springs [N, N m].
     """
 
     azimuths: Floats
@@ -171,18 +172,18 @@ def over_a_turn(
     gaps: Mapping[str, float] | None = None,
     contacts: Sequence[str] = (),
 ) -> Turn:
-    """Equilibria with the carrier at one azimuth after the other, inertia left out.
+    """Equilibria with the carrier at a series of azimuths, inertia left out.
 
     Parameters
     ----------
     at : callable
-        From the azimuth [rad] to the system in the frame that stands still.
+        Function from the azimuth [rad] to the system in the frame that stands still.
     loads : callable
-        From that system to its load (n,), such as gravity, torque and hub moments.
+        Function from that system to its load (n,), such as gravity, torque and hub moments.
     azimuths : ndarray, (s,)
         Equally spaced over a turn, its end left out [rad].
     gaps, contacts : mapping, sequence
-        As of `static`.
+        Gaps of springs by name, and names of springs that only press, see `static`.
     """
     forces, names = [], None
     for azimuth in azimuths:
@@ -193,5 +194,5 @@ def over_a_turn(
 
 
 def load_sharing(forces: Floats) -> float:
-    """K_gamma: the largest load of a planet over the mean."""
+    """K_gamma: the maximum load of a planet over the mean."""
     return float(np.max(forces) / np.mean(forces))

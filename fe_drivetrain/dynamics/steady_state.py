@@ -1,4 +1,4 @@
-"""Where a drivetrain stands under steady loads: wound up, and turning freely as a whole."""
+"""State of a drivetrain under steady loads: wound up, and turning freely as a whole."""
 
 from dataclasses import dataclass
 
@@ -19,7 +19,7 @@ class SpringsAt:
     Attributes
     ----------
     elastic, resisting : Floats
-        Of the spring, and of its damper and machine, along its row [N, N m].
+        Forces of the spring, and of its damper and machine, along its row [N, N m].
     stiff, damped : Floats
         Derivatives by the elongation and by its rate.
     mixed, own, on_phase : Floats
@@ -28,7 +28,7 @@ class SpringsAt:
     followed : Floats
         Derivative of the damper's force by the phase, at a constant rate of it.
     energy, lost, clock : Floats
-        Stored [J]; power taken out, and put in by time alone [W].
+        Energy stored [J]; power taken out, and put in by time alone [W].
     """
 
     elastic: Floats
@@ -57,13 +57,13 @@ def springs_at(
     Parameters
     ----------
     equations : Equations
-        Whose springs.
+        Equations whose springs are meant.
     t : float
         Time [s].
     q, velocity : Floats
-        (n,).
+        Displacements and velocities, (n,).
     drift : Floats or float
-        (m,) rate of the elongations at constant displacements, of rows that turn.
+        Rate (m,) of the elongations at constant displacements, of rows that turn.
     """
     s = equations.springs
     factor, slope, bend = waves_at(equations, t, q)
@@ -109,20 +109,20 @@ def restoring(
     Parameters
     ----------
     equations : Equations
-        What moves.
+        Equations of motion of the system.
     t : float
         Time [s].
     q, velocity : Floats
-        (n,).
+        Displacements and velocities, (n,).
     driven : bool
-        As of `prepared`.
+        Whether a stiffness that varies with an angle acts on that angle, see `prepared`.
 
     Returns
     -------
     force : Floats
-        (n,).
+        Forces, (n,).
     tangent : Floats
-        (n, n), at constant velocity.
+        Derivative of the forces by q, (n, n), at constant velocity.
     """
     return gathered(equations, springs_at(equations, t, q, velocity), q, velocity, driven)
 
@@ -187,11 +187,11 @@ class WoundUp:
     Attributes
     ----------
     q : Floats
-        (n,) displacements, at right angles (by mass) to motions that wind nothing up.
+        Displacements (n,), at right angles (by mass) to motions that wind nothing up.
     acceleration : Floats
-        (n,) of what turns freely under loads that do not balance.
+        Accelerations (n,) of what turns freely under loads that do not balance.
     residual : float
-        Largest force out of balance, over the largest load.
+        Maximum force out of balance, over the maximum load.
     iterations : int
         Newton steps.
     """
@@ -211,23 +211,23 @@ def wind_up(
     guess: ArrayLike | None = None,
     tolerance: float = 1e-9,
 ) -> WoundUp:
-    """The state without vibration: what turns freely is accelerated by what is not balanced.
+    """State without vibration: what turns freely is accelerated by what is not balanced.
 
     Parameters
     ----------
     equations : Equations
-        What moves.
+        Equations of motion of the system.
     load : array_like
-        (n,).
+        Load, (n,).
     velocity : array_like, optional
-        (n,), for dampers and machines that draw power; zero where left out.
+        Velocities (n,), for dampers and machines that draw power; zero where left out.
     time : float
-        At which stiffnesses that vary with time are taken [s].
+        Time at which stiffnesses that vary with time are taken [s].
     guess : array_like, optional
-        (n,) displacements to begin from; where left out those of springs on the flanks that are
+        Displacements (n,) to begin from; where left out those of springs on the flanks that are
         loaded with closed gaps.
     tolerance : float
-        Of the residual.
+        Tolerance of the residual over the maximum load.
 
     Returns
     -------
@@ -319,6 +319,6 @@ def _bordered(K: Floats, MZ: Floats, force: Floats) -> Floats:
     border = border / np.linalg.norm(border, axis=0) if f else border
     whole = np.block([[scaled, border], [border.T, np.zeros((f, f))]])
     right = np.concatenate([force / root, np.zeros(f)])
-    # a tangent in which contacts are open may be singular: the least change then
+    # a tangent in which contacts are open may be singular: the minimum change then
     solution = np.linalg.lstsq(whole, right, rcond=1e-14)[0]
     return np.asarray(solution[:n] / root)

@@ -41,9 +41,9 @@ class Adaptive:
     motion : Motion
         A record at each accepted step.
     steps : Floats
-        (accepted,) lengths [s].
+        Lengths (accepted,) of the steps [s].
     errors : Floats
-        (accepted,) estimate of each step, over the largest elongation so far.
+        Error estimate (accepted,) of each step, over the maximum elongation so far.
     rejected : int
         Steps that were tried and made again shorter.
     matrices : int
@@ -75,25 +75,25 @@ def integrate_adaptively(
     Parameters
     ----------
     equations : Equations
-        What moves.
+        Equations of motion of the system.
     loads : Loads
-        On it.
+        Loads on the system.
     duration, first : float
-        Of all, and of the first step tried [s].
+        Duration of the whole motion, and length of the first step tried [s].
     tolerance : float
-        Of the error's strain over the largest strain so far, or that of the loads at rest, both by
-        the energy of the springs.
+        Allowed error of a step over the maximum motion so far, or that under the loads at rest,
+        both as roots of the springs' energy.
     scheme : Scheme
-        With a beta other than 1/6, whose estimate is zero.
+        Scheme with a beta other than 1/6, whose estimate is zero.
     start : State, optional
-        At rest where left out.
+        State at the beginning, at rest where left out.
     longest : float, optional
-        Longest step [s]: below that of the fastest load and stiffness, which the estimate does not
-        see between its steps.
+        Maximum length of a step [s]: below that of the fastest load and stiffness, which the
+        estimate does not see between its steps.
     watch : array_like, optional
-        As of `integrate`.
+        Rows whose values and rates are recorded, see `integrate`.
     driven : bool
-        As of `prepared`.
+        Whether a stiffness that varies with an angle acts on that angle, see `prepared`.
 
     Returns
     -------
@@ -150,7 +150,7 @@ def integrate_adaptively(
 
 
 def _static_strain(equations: Equations, loads: Loads) -> float:
-    """Twice the strain energy of the largest loads, put on slowly: a scale from the first step."""
+    """Twice the strain energy of the maximum loads, put on slowly: a scale from the first step."""
     mass = equations.mass.diagonal()
     scaled = scaled_to_unit_diagonal(equations.K, mass)
     flexible = np.linalg.pinv(scaled, rcond=1e-12, hermitian=True)

@@ -37,7 +37,7 @@ from fe_drivetrain.torsion.system import Torsional, damped
 
 @dataclass(frozen=True)
 class StopSequence:
-    """When what happens.
+    """Times of the events of a shutdown.
 
     Attributes
     ----------
@@ -46,11 +46,11 @@ class StopSequence:
     pitched : float
         The aerodynamic torque has fallen, evenly, to `left` [s].
     left : float
-        Over rated torque.
+        Remaining torque over rated torque.
     braked : float
         The disc brake is applied [s].
     end : float
-        Of all [s].
+        End of the sequence [s].
     rise : float
         Time in which the brake grows to full size [s].
     back : float or None
@@ -68,16 +68,16 @@ class StopSequence:
 
 @dataclass(frozen=True)
 class Shutdown:
-    """What a drivetrain did.
+    """Response of a drivetrain to a shutdown.
 
     Attributes
     ----------
     system : Torsional
-        Its masses.
+        Masses of the drivetrain, with the springs between them.
     speeds : dict[str, float]
-        Of each mass, over that of the rotor.
+        Speed of each mass, over that of the rotor.
     torque : float
-        Rated, at the rotor [N m].
+        Rated torque at the rotor [N m].
     transient : Transient
         Angles, speeds, torques; springs are the elements of the system, and the generator.
     """
@@ -157,30 +157,30 @@ def shutdown(
     ratios: tuple[float, float] | None = None,
     backlash: float = 0.0,
 ) -> Shutdown:
-    """Let a drivetrain stop.
+    """Compute how a drivetrain stops.
 
     Parameters
     ----------
     table : Drivetrain
         Inertias and stiffnesses.
     torque, rotor_speed : float
-        Rated [N m, rad/s].
+        Rated torque and speed of the rotor [N m, rad/s].
     brake : float
-        Torque of the brake on the generator's shaft, over the generator's rated torque; 0 of none.
+        Torque of the brake on the generator's shaft, over the generator's rated torque; 0 for none.
     sequence : StopSequence, optional
-        When what happens.
+        Times of the events.
     dt : float
-        Step [s].
+        Length of a step [s].
     lumped : bool
-        Two masses, in place of one for each gear.
+        Whether two masses stand in place of one for each gear.
     slip : float
-        Of the generator at rated torque.
+        Slip of the generator at rated torque.
     ratios : tuple of float, optional
-        Damping ratios of shafts and of meshes, as of `damped_by_ratio`, in place of the dampers of
+        Damping ratios of shafts and of meshes, see `damped_by_ratio`, in place of the dampers of
         the table.
     backlash : float
-        Of all meshes, about the axis that their stiffness is about [rad]: where torque is reversed,
-        teeth part and touch with their other flanks.
+        Backlash of all meshes, about the axis that their stiffness is about [rad]: where torque is
+        reversed, teeth part and touch with their other flanks.
 
     Returns
     -------

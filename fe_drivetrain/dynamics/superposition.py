@@ -25,13 +25,13 @@ class Superposed:
     Attributes
     ----------
     times : Floats
-        (k,) [s].
+        Times (k,) [s].
     q, velocity : Floats
-        (k, n).
+        Displacements and velocities (k, n).
     frequencies : Floats
-        (modes,) of what was superposed [Hz].
+        Frequencies (modes,) of what was superposed [Hz].
     coupling : float
-        Largest damping between two modes over the geometric mean of their own, which is left out.
+        Maximum damping between two modes over the geometric mean of their own, which is left out.
     """
 
     times: Floats
@@ -56,17 +56,17 @@ def modal_superposition(
     Parameters
     ----------
     equations : Equations
-        Without laws.
+        Equations of motion without laws.
     loads : Loads
-        On them.
+        Loads on the system.
     duration, dt : float
-        Of all, a whole number of steps, and of a step [s].
+        Duration of the whole motion, a whole number of steps, and length of a step [s].
     start : State, optional
-        At rest where left out.
+        State at the beginning, at rest where left out.
     modes : int, optional
         Number of the lowest modes; all where left out.
     ratios : array_like, optional
-        (modes,) damping ratios; from the diagonal of the modal damping where left out.
+        Damping ratios (modes,); from the diagonal of the modal damping where left out.
 
     Returns
     -------
@@ -125,20 +125,20 @@ def exact_steps(
     Parameters
     ----------
     equations : Equations
-        Without laws.
+        Equations of motion without laws.
     loads : Loads
-        On them, kinks at steps.
+        Loads on the system, with kinks at steps only.
     duration, dt : float
-        Of all, a whole number of steps, and of a step [s].
+        Duration of the whole motion, a whole number of steps, and length of a step [s].
     start : State, optional
-        At rest where left out.
+        State at the beginning, at rest where left out.
 
     Returns
     -------
     times : Floats
-        (k,) [s].
+        Times of the steps, (k,) [s].
     q, velocity : Floats
-        (k, n).
+        Displacements and velocities, (k, n).
 
     Raises
     ------
@@ -173,7 +173,7 @@ def exact_steps(
 def energy_error(
     equations: Equations, loads: Loads, times: Floats, q: Floats, velocity: Floats
 ) -> float:
-    """Energy that appears from nowhere in a history of a linear system, over the largest.
+    """Energy that appears from nowhere in a history of a linear system, over its maximum.
 
     Apart from how the history was made: work of the loads and losses are integrals of the recorded
     motion, by trapezia corrected with their slopes at the ends (Euler and Maclaurin), whose error
@@ -182,9 +182,9 @@ def energy_error(
     Parameters
     ----------
     equations : Equations
-        Without laws.
+        Equations of motion without laws.
     loads : Loads
-        On them, kinks at records.
+        Loads on the system, with kinks at records only.
     times : ndarray, (k,)
         Times of the records [s].
     q, velocity : ndarray, (k, n)
@@ -193,7 +193,7 @@ def energy_error(
     Returns
     -------
     error : float
-        As of `Motion.relative_imbalance`.
+        Relative imbalance of energy, see `Motion.relative_imbalance`.
 
     Raises
     ------

@@ -25,11 +25,11 @@ def springs_named(names: Sequence[str], name: str, what: str = "spring") -> list
     Parameters
     ----------
     names : sequence of str
-        Of all springs.
+        Names of all springs.
     name : str
-        Of a spring or a mesh.
+        Name of a spring or a mesh.
     what : str
-        Which of both it is, for the message.
+        Word for either in the message.
 
     Raises
     ------
@@ -49,31 +49,32 @@ class System:
     Attributes
     ----------
     names : tuple[str, ...]
-        (n,) of the degrees of freedom, body and motion: "sun ux", ..., "sun rx".
+        Names (n,) of the degrees of freedom, body and motion: "sun ux", ..., "sun rx".
     mass : Floats
-        (n, n) [kg, kg m, kg m^2].
+        Mass matrix (n, n) [kg, kg m, kg m^2].
     gyroscopic : Floats
-        (n, n), skew, for a reference speed of 1 rad/s [kg, kg m, kg m^2].
+        Gyroscopic matrix (n, n), skew, for a reference speed of 1 rad/s [kg, kg m, kg m^2].
     centripetal : Floats
-        (n, n) for a reference speed of 1 rad/s, taken off the stiffness [kg, kg m, kg m^2].
+        Centripetal matrix (n, n) for a reference speed of 1 rad/s, taken off the stiffness [kg, kg
+        m, kg m^2].
     rows : Floats
-        (m, n) elongation of each spring [m, or rad] by the degrees of freedom.
+        Elongation (m, n) of each spring [m, or rad] by the degrees of freedom.
     stiffness : Floats
-        (m,) of each spring [N/m, or N m/rad].
+        Stiffness (m,) of each spring [N/m, or N m/rad].
     damping : Floats
-        (m,) of each spring [N s/m, or N m s/rad].
+        Damping (m,) of each spring [N s/m, or N m s/rad].
     spring_names : tuple[str, ...]
-        (m,) of each spring.
+        Name (m,) of each spring.
     extra : Floats
-        (n, n) stiffness of superelements, dense.
+        Stiffness (n, n) of superelements, dense.
     bodies : tuple[str, ...]
-        (b,) names of all bodies, those that are held or tied, too.
+        Names (b,) of all bodies, those that are held or tied, too.
     expansion : Floats
-        (6 b, n) motions of all bodies by the degrees of freedom.
+        Motions (6 b, n) of all bodies by the degrees of freedom.
     body_mass : Floats
-        (b,) [kg].
+        Masses (b,) of the bodies [kg].
     weight : Floats
-        (n, 3) load of superelements under a unit acceleration along x, y, z.
+        Load (n, 3) of superelements under a unit acceleration along x, y, z.
     unchangeable : tuple[str, ...]
         Springs by whose stiffness motions without mass have been eliminated.
     """
@@ -205,7 +206,7 @@ def with_proportional_damping(system: System, seconds: float) -> System:
     Parameters
     ----------
     system : System
-        Without superelements, which have no dampers.
+        System without superelements, which have no dampers.
     seconds : float
         Damping over stiffness [s].
 

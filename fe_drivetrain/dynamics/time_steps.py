@@ -178,28 +178,28 @@ def law_forces(
     Parameters
     ----------
     laws : Laws
-        Of q springs on r rows.
+        Laws of q springs on r rows.
     t : float
         Time [s].
     z, rate : Floats
-        (r,) elongations and phases, and their rates.
+        Elongations and phases (r,), and their rates.
     damps : Floats
-        (q,) 1 where a damper works, else 0.
+        Flags (q,): 1 where a damper works, else 0.
     by_rate : float
         Change of a rate by the change of its value, in a step.
     extra, tangent : Floats
-        (r,) and (r, r), overwritten: d, and its derivative by z at that `by_rate`.
+        Vector d (r,), and its derivative by z (r, r) at that `by_rate`, overwritten.
     forces : Floats
-        (q,), overwritten: of each spring along its row.
+        Forces of each spring along its row (q,), overwritten.
     damper : Floats
-        (q,), overwritten: the part of d that damper and machine have.
+        Part of d that damper and machine have (q,), overwritten.
 
     Returns
     -------
     energy, power, followed : float
-        Of the springs beyond the constant stiffness; that which the clock of stiffnesses and errors
-        that vary with time puts in; and power of the dampers along the errors, which they do not
-        take out.
+        Energy of the springs beyond the constant stiffness; power that the clock of stiffnesses and
+        errors that vary with time puts in; and power of the dampers along the errors, which they do
+        not take out.
     """
     extra[:] = 0.0
     tangent[:] = 0.0
@@ -333,18 +333,20 @@ def march(
     begin : float
         Time of the beginning [s].
     matrices, laws, drive, stop : NamedTuple
-        What moves.
+        Step, springs, loads and stop event, in the form of the compiled loop.
     tolerance : float
-        Of Newton's method: change of an elongation over the largest so far, and periods of phases.
+        Tolerance of Newton's method: change of an elongation over its maximum so far, and of a
+        phase in periods.
     state : Floats
-        (6, n) displacements, velocities and accelerations, overwritten by those of the end; behind
+        Displacements, velocities and accelerations (6, n), overwritten by those of the end; behind
         them the same before the last step, where the steps may stop at an event.
     watch : Floats
-        (w, n) rows whose values and rates are recorded.
+        Rows (w, n) whose values and rates are recorded.
     times, places, rates, forces, energies : Floats
-        (k,), (k, w), (k, w), (k, q) and (k, 5) records; energies as `KINETIC` ...
+        Records (k,), (k, w), (k, w), (k, q) and (k, 5); energies as `KINETIC` ...
     counts : Ints
-        (3,) of Newton steps: all, the most in a step; and steps that have not converged.
+        Numbers (3,) of Newton steps: in all, and the maximum in a step; and of steps that have not
+        converged.
 
     Returns
     -------

@@ -44,25 +44,25 @@ from fe_drivetrain.dynamics.tables import Machine
 from fe_drivetrain.dynamics.time_steps import MOST_STEPS
 
 EXACT = 1e-9
-"""Of the largest entry: what coefficients may miss a system at another azimuth by."""
+"""Allowed error of the coefficients at another azimuth, over the maximum entry of the system."""
 
 
 @dataclass(frozen=True)
 class Turning:
-    """What turns with one carrier, as cosines and sines of its azimuth from degree 1 on.
+    """Terms that turn with one carrier, as cosines and sines of its azimuth from degree 1 on.
 
     Attributes
     ----------
     carrier : int
-        Its number.
+        Number of the carrier.
     ratio : float
-        Its speed over that of reference.
+        Speed of the carrier over that of reference.
     rows : Floats
-        (2 d, m, n) change of the springs' rows: cosine and sine of degree 1, of degree 2, ...
+        Change (2 d, m, n) of the springs' rows: cosine and sine of degree 1, of degree 2, ...
     extra : Floats
-        (2 d', n, n) of the stiffness of superelements.
+        Change (2 d', n, n) of the stiffness of superelements.
     bearings : Floats
-        (2 d, b, 5, n) of the rows of rolling bearings.
+        Change (2 d, b, 5, n) of the rows of rolling bearings.
     """
 
     carrier: int
@@ -79,11 +79,11 @@ class Travelling:
     Attributes
     ----------
     system : System
-        With all carriers at azimuth 0.
+        System with all carriers at azimuth 0.
     turning : tuple[Turning, ...]
         One for each carrier.
     rows, extra, bearings : Floats
-        (m, n), (n, n), (b, 5, n) means over the azimuths.
+        Means (m, n), (n, n), (b, 5, n) over the azimuths.
     seats : tuple[Seat, ...]
         Rolling bearings, at azimuth 0; their springs are taken out of the system.
     """
@@ -101,7 +101,7 @@ class Travelling:
         Parameters
         ----------
         angle : float
-            Of what the ratios are over [rad].
+            Angle that the ratios refer to [rad].
         """
         parts = [self.rows, self.extra, self.bearings]
         for one in self.turning:
@@ -143,12 +143,12 @@ def travelling_of(
     Parameters
     ----------
     at : callable
-        From azimuths of carriers by number [rad], 0 of those that are left out, to the system in
-        the frame that stands still, and its rolling bearings.
+        Function from azimuths of carriers by number [rad], 0 of those that are left out, to the
+        system in the frame that stands still, and its rolling bearings.
     ratios : mapping of int to float
         Speed of each carrier over that of reference.
     degree : int
-        Of the rows in the azimuth: 1, and n + 1 of a ring with harmonics up to n.
+        Degree of the rows in the azimuth: 1, and n + 1 of a ring with harmonics up to n.
 
     Returns
     -------
@@ -172,7 +172,7 @@ def travelling_of(
         ):
             raise InputError(
                 f"masses of the system change with the azimuth of carrier {number}, which is not "
-                "done: let its planets move by themselves"
+                "possible: let its planets move by themselves"
             )
         samples = [np.array(part) for part in zip(*(_parts(*one) for one in found), strict=True)]
         waves = []
@@ -220,9 +220,9 @@ def travelling(
     Parameters
     ----------
     machine : Machine
-        Its table.
+        Table of the machine.
     level, elements, held_generator, flexible : Level, int, bool, Flexible
-        As of `machine_system`.
+        Level and its options, see `machine_system`.
     rollers : mapping of int to Bearing, optional
         Rolling bearings of the planets by the number of their stage, in place of their springs.
 
@@ -265,11 +265,11 @@ class Travelled:
     motion : Motion
         Displacements in space, and forces of springs.
     azimuth : Floats
-        (k,) angle of reference, such as that of the rotor [rad].
+        Reference angle (k,), such as that of the rotor [rad].
     seats : tuple[Seat, ...]
-        (b,) rolling bearings.
+        Seats (b,) of the rolling bearings.
     loads : Floats
-        (k, b, 5) that they carry, as of `OnRollers` [N, N m].
+        Loads (k, b, 5) that they carry, see `OnRollers` [N, N m].
     """
 
     motion: Motion
@@ -296,28 +296,28 @@ def integrate_travelling(
     Parameters
     ----------
     equations : Equations
-        Of `carriers.system`, as `varying_equations` makes them: meshes that vary, gaps, errors.
+        Equations of `carriers.system`, from `varying_equations`: meshes that vary, gaps, errors.
     carriers : Travelling
-        By `travelling`.
+        System whose carriers travel, from `travelling`.
     speed : float
-        Of reference [rad/s]; the angle is 0 at t = 0.
+        Reference speed [rad/s]; the angle is 0 at t = 0.
     loads : Loads
-        On the system, in space.
+        Loads on the system, in space.
     duration, dt : float
-        Of all and of a step [s]; the number of steps is rounded up.
+        Duration of the whole motion and length of a step [s]; the number of steps is rounded up.
     scheme : Scheme
-        As of `integrate`.
+        Time integration scheme, see `integrate`.
     start : State, optional
         Displacements, velocities and time, at rest where left out.
     every : int
         Steps from record to record.
     tolerance : float
-        Of Newton's method: residual over the forces, both on a unit diagonal.
+        Tolerance of Newton's method: residual over the forces, both on a unit diagonal.
 
     Returns
     -------
     found : Travelled
-        Converged in every step, or it says in how many it did not.
+        Motion, converged in every step, or it says in how many it did not.
 
     Raises
     ------

@@ -29,9 +29,6 @@ from .from_scene import unit_superelement as unit_superelement
 from .lumped_shaft import lumped_superelement as lumped_superelement
 from .modes import assembly_frequencies as assembly_frequencies
 from .modes import natural_frequencies as natural_frequencies
-from .programs.calculix_runs import compliance_by_calculix as compliance_by_calculix
-from .programs.calculix_runs import frequencies_by_calculix as frequencies_by_calculix
-from .programs.calculix_runs import held as held
 from .programs.ccx import find_calculix as find_calculix
 from .programs.ccx import run_calculix as run_calculix
 from .scene_export import SEATS as SEATS

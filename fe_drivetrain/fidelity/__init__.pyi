@@ -31,11 +31,6 @@ from .designs import Difference as Difference
 from .designs import Value as Value
 from .designs import compare_designs as compare_designs
 from .designs import scene_changes as scene_changes
-from .energy_sensitivities import compliance as compliance
-from .energy_sensitivities import energy_slopes as energy_slopes
-from .energy_sensitivities import hub_elasticities as hub_elasticities
-from .energy_sensitivities import moment_elasticities as moment_elasticities
-from .energy_sensitivities import total as total
 from .foot_opening import foot_warnings as foot_warnings
 from .ladder import LevelModel as LevelModel
 from .ladder import assembly_level as assembly_level

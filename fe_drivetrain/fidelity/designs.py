@@ -22,10 +22,9 @@ from fe_drivetrain.fidelity.adviser import assembly_series
 from fe_drivetrain.fidelity.change_bands import OnMeshes, OnSprings, change_band
 from fe_drivetrain.fidelity.ladder import housing_springs, shaft_level, statics_level
 from fe_drivetrain.fidelity.quantities import NOISE
-from fe_drivetrain.fidelity.quantity import Quantity
+from fe_drivetrain.fidelity.quantity import Quantity, named_load
 from fe_drivetrain.fidelity.shafts import condensed_shaft
 from fe_drivetrain.response.entering import Factors
-from fe_drivetrain.response.model import scene_loads
 from fe_drivetrain.scene.scene import Scene, coarser_scene
 
 
@@ -193,7 +192,7 @@ def compare_designs(
     }
     asked: dict[str, Sequence[Quantity]] = {}
     for name, scene in designs.items():
-        factors = None if load is None else _factors(scene, load)
+        factors = None if load is None else named_load(scene, load)
         if quantities is None:
             asked[name] = all_quantities(scene, factors)
         else:
@@ -229,14 +228,6 @@ def scene_changes(before: Scene, after: Scene) -> list[tuple[str, Any, Any]]:
     """What two scenes state differently: dotted key, and both values (None where there is none)."""
     found = value_changes(before.model_dump(mode="json"), after.model_dump(mode="json"))
     return [change for change in found if change[0] != "title"]
-
-
-def _factors(scene: Scene, load: Mapping[str, float]) -> Factors:
-    names = scene_loads(scene)
-    unknown = [name for name in load if name not in names]
-    if unknown:
-        raise InputError(f"load {unknown[0]!r} is unknown: use one of {', '.join(names)}")
-    return Factors(np.array([load.get(name, 0.0) for name in names]))
 
 
 def _named(report: Callable[[str], object], name: str) -> Callable[[str], object]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,7 @@ from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.fidelity.ladder import LevelModel
 from fe_drivetrain.response.entering import Factors, factor_values
+from fe_drivetrain.response.model import scene_loads
 from fe_drivetrain.scene.scene import Scene
 
 
@@ -82,3 +84,28 @@ class Quantity:
             # 0 times what is not known is 0
             return np.array([row[load != 0] @ load[load != 0]])
         return np.asarray(row[:6] * np.array([1.0, 1.0, 1.0, length, length, length]))
+
+
+def named_load(scene: Scene, load: Mapping[str, float]) -> Factors:
+    """Factors of the unit loads of a scene, of a load that is given by their names.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    load : mapping of str to float
+        By names of `fe_drivetrain.response.scene_loads` [N, N m, m/s^2], those at the hub about the
+        point where loads enter; those left out are zero.
+
+    Raises
+    ------
+    InputError
+        A name is unknown, or a value is no finite number.
+    """
+    names = scene_loads(scene)
+    for name, value in load.items():
+        if name not in names:
+            raise InputError(f"load {name!r} is unknown: use one of {', '.join(names)}")
+        if not np.isfinite(value):
+            raise InputError(f"load {name!r} is {value} but must be finite: give a number")
+    return Factors(np.array([load.get(name, 0.0) for name in names]))

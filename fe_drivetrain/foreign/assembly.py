@@ -57,14 +57,14 @@ def mesh_parts(
     sizes : MeshSizes
         Element sizes.
     bands : Mapping[str, Band]
-        As of `fe_drivetrain.geometry.build`.
+        Bands of the mesh, see `fe_drivetrain.geometry.build`.
     cache : Cache or None
-        Where meshes may come from; the user's if not given.
+        Cache that meshes may come from; the user's if not given.
 
     Returns
     -------
     Mesh
-        Housings from files share no nodes with their bearings, see `tied`.
+        Mesh in which housings from files share no nodes with their bearings, see `tied`.
 
     Raises
     ------
@@ -101,10 +101,10 @@ class Tied(NamedTuple):
     Attributes
     ----------
     mesh : Mesh
-        Nodes of tied outer faces are where the tie sees the housing, so that every rigid motion
-        passes, see `fe_drivetrain.interfaces.mortar.settled`.
+        Mesh whose nodes of tied outer faces are where the tie sees the housing, so that every rigid
+        motion passes, see `fe_drivetrain.interfaces.mortar.settled`.
     ties : tuple[Constraint, ...]
-        Of three degrees of freedom a node of the mesh.
+        Ties in three degrees of freedom for each node of the mesh.
     """
 
     mesh: Mesh
@@ -138,7 +138,7 @@ def tied(units: Sequence[BearingUnit], mesh: Mesh, rings: Collection[str] | None
     units : Sequence[BearingUnit]
         The bearing units.
     mesh : Mesh
-        As `mesh_parts` made it.
+        Mesh from `mesh_parts`.
     rings : Collection[str] or None
         Names of the bearings that are tied, too, beside further parts; all where not given.
     """
@@ -200,7 +200,7 @@ def bolt_springs(unit: BearingUnit, mesh: Mesh, n_dofs: int) -> list[tuple[Refer
     unit : BearingUnit
         The bearing unit.
     mesh : Mesh
-        With its housing.
+        Mesh with the housing.
     n_dofs : int
         Degrees of freedom of the model.
 
@@ -247,17 +247,17 @@ def bolt_stiffness(
     Parameters
     ----------
     diameter : float
-        Of its shank [m].
+        Diameter of the bolt's shank [m].
     head, foot : Floats
-        (3,) its ends [m].
+        Positions (3,) of its ends [m].
     material : Material
-        Of the bolt.
+        Material of the bolt.
 
     Returns
     -------
     Floats
-        (6, 6) at the head, in the global frame [N/m, N, N m/rad]. Its compliance is that of a
-        cantilever (Cowper 1966 for the shear coefficient of a full circle).
+        Stiffness (6, 6) at the head, in the global frame [N/m, N, N m/rad]. Its compliance is that
+        of a cantilever (Cowper 1966 for the shear coefficient of a full circle).
     """
     axis = np.asarray(head - foot, dtype=np.float64)
     length = float(np.linalg.norm(axis))
@@ -282,14 +282,15 @@ def bolt_stiffness(
 
 
 def base_centre(unit: BearingUnit, mesh: Mesh) -> Floats:
-    """Where a housing stands (3,) [m]: under the bearing, in the mean height of its held faces.
+    """Position (3,) at which a housing stands [m]: under the bearing, in the mean height of its
+    held faces.
 
     Parameters
     ----------
     unit : BearingUnit
         The bearing unit.
     mesh : Mesh
-        With its housing.
+        Mesh with the housing.
     """
     if unit.foreign is None and not unit.parts:
         return np.array([unit.bearing.x, 0.0, -unit.block.centre_height])
@@ -304,9 +305,9 @@ def solids_of_unit(unit: BearingUnit, bore_diameter: float, sizes: MeshSizes) ->
     unit : BearingUnit
         The bearing unit; a housing that is a stiffness alone is no solid.
     bore_diameter : float
-        Of the bearing [m].
+        Bore diameter of the bearing [m].
     sizes : MeshSizes
-        Of the scene; parts from files are measured on their meshes.
+        Element sizes of the scene; parts from files are measured on their meshes.
     """
     name, bearing = unit.bearing.name, unit.bearing
     found = {name: bearing_solid(bearing, bore_diameter)}

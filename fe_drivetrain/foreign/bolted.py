@@ -30,16 +30,16 @@ def opened(mesh: Mesh, open_: Ints, pressed: Ints) -> Mesh:
     Parameters
     ----------
     mesh : Mesh
-        Of solids that share nodes where they touch; one part, "body".
+        Mesh of solids that share nodes where they touch; one part, "body".
     open_, pressed : Ints
-        (nf, 6) facets between solids that shall be open, and those that stay joined.
+        Facets (nf, 6) between solids that shall be open, and those that stay joined.
 
     Returns
     -------
     Mesh
-        Nodes of open facets stand twice, once for each side, but for those that the pressed ones
-        have, too; a facet with such corners alone stays joined. "body.joint 1" and "body.joint 2"
-        are the two sides.
+        Mesh in which nodes of open facets stand twice, once for each side, but for those that the
+        pressed ones have, too; a facet with such corners alone stays joined. "body.joint 1" and
+        "body.joint 2" are the two sides.
     """
     n, cells = len(mesh.points), mesh.cells
     # a facet between rims alone would be divided in its middle nodes, not at its corners
@@ -84,9 +84,9 @@ def joined_between_rims(mesh: Mesh, open_: Ints, pressed: Ints) -> float:
     Parameters
     ----------
     mesh : Mesh
-        As of `opened`.
+        Mesh as `opened` takes it.
     open_, pressed : Ints
-        (nf, 6) facets.
+        Facets (nf, 6), see `opened`.
     """
     areas = facet_points(mesh.points, open_).areas.sum(axis=1)
     rims = np.isin(open_[:, :3], pressed).all(axis=1)

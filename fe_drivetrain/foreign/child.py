@@ -1,4 +1,4 @@
-"""What the limited process does: it reads one file and writes arrays, or one sentence.
+"""Main of the limited process: it reads one file and writes arrays, or one sentence.
 
 Started by `reading.read_in_process` as ``python -m fe_drivetrain.foreign.child REQUEST RESULT``.
 """

@@ -15,8 +15,8 @@ from fe_drivetrain.mesh.facets import facet_points
 from fe_drivetrain.mesh.mesh import Mesh, boundary
 from fe_drivetrain.scene.bearing_unit import BearingUnit
 
-# Of a radius: nodes of seats may lie so far within their bearing's raceway; and facets of a mesh
-# whose edges are chords, six round a turn.
+# Distance over the radius that nodes of seats may lie within their bearing's raceway; and facets
+# of a mesh whose edges are chords, six round a turn.
 _NODES, _CHORDS = 2e-3, 0.15
 _DEGREE = 8  # of the places on a facet: 16 of them
 
@@ -31,7 +31,7 @@ def check_clear(shaft: Shaft | None, units: Sequence[BearingUnit], mesh: Mesh) -
     units : Sequence[BearingUnit]
         The bearing units.
     mesh : Mesh
-        With all parts from files in their places.
+        Mesh with all parts from files in their places.
 
     Raises
     ------

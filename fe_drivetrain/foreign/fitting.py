@@ -19,14 +19,14 @@ class Fit(NamedTuple):
     Attributes
     ----------
     centre : Floats
-        (3,) a point on a plane or on a cylinder's axis, in the mean of the points; of a sphere its
+        Point (3,) on a plane or on a cylinder's axis, in the mean of the points; of a sphere its
         centre.
     axis : Floats
-        (3,) normal of a plane, direction of a cylinder; zeros of a sphere.
+        Normal (3,) of a plane, direction of a cylinder; zeros of a sphere.
     radius : float
-        Of cylinder or sphere; 0 of a plane.
+        Radius of cylinder or sphere; 0 of a plane.
     off : float
-        Largest distance of a point from it.
+        Maximum distance of a point from the surface.
     """
 
     centre: Floats
@@ -41,7 +41,7 @@ def fitted_plane(at: Floats) -> Fit:
     Parameters
     ----------
     at : Floats
-        (n, 3) points, n at least 3.
+        Points (n, 3), n at least 3.
     """
     middle = at.mean(axis=0)
     normal = np.linalg.svd(at - middle, full_matrices=False)[2][2]
@@ -54,7 +54,7 @@ def fitted_sphere(at: Floats) -> Fit:
     Parameters
     ----------
     at : Floats
-        (n, 3) points, n at least 4.
+        Points (n, 3), n at least 4.
     """
     middle = at.mean(axis=0)
     away = at - middle
@@ -81,9 +81,9 @@ def fitted_cylinder(at: Floats, axis: Floats) -> Fit:
     Parameters
     ----------
     at : Floats
-        (n, 3) points, n at least 5.
+        Points (n, 3), n at least 5.
     axis : Floats
-        (3,) direction to begin with, as of the normals' smallest principal direction.
+        Direction (3,) to begin with, such as the minimum principal direction of the normals.
     """
     middle = at.mean(axis=0)
     axis = axis / np.linalg.norm(axis)
@@ -115,9 +115,9 @@ def fitted_circle(at: Floats, axis: Floats) -> tuple[Floats, float]:
     Parameters
     ----------
     at : Floats
-        (n, 3) points.
+        Points (n, 3).
     axis : Floats
-        (3,) unit vector.
+        Unit vector (3,) along the axis.
     """
     across = np.linalg.svd(axis[None])[2][1:]
     middle = at.mean(axis=0)
@@ -135,7 +135,7 @@ def from_axis(at: Floats, centre: Floats, axis: Floats) -> Floats:
     at : Floats
         (..., 3) points.
     centre, axis : Floats
-        (3,) a point on it, and its unit vector.
+        Point (3,) on the axis, and its unit vector.
     """
     away = at - centre
     away = away - (away @ axis)[..., None] * axis

@@ -30,10 +30,10 @@ from fe_drivetrain.mesh.facets import MEANS, face_weights
 from fe_drivetrain.mesh.mesh import Mesh
 
 MOST_PATCHES = 400
-"""Of a foot: its contact is a dense problem."""
+"""Maximum number of patches of a foot: its contact is a dense problem."""
 
 _LEAST_AREA = 0.2  # of the mean area of patches: smaller ones join their neighbours
-_NOTHING = 1e-9  # of the largest force or lift: round-off, no change of contact
+_NOTHING = 1e-9  # of the maximum force or lift: round-off, no change of contact
 _TOGETHER = 30  # passes in which all wrong patches change at once, then one by one
 _MOST_PASSES = 2000
 
@@ -62,18 +62,18 @@ def foot_patches(mesh: Mesh, name: str, size: float, n_dofs: int) -> Patches:
     Parameters
     ----------
     mesh : Mesh
-        With the face "NAME.housing.base".
+        Mesh with the face "NAME.housing.base".
     name : str
-        Of the bearing.
+        Name of the bearing.
     size : float
-        Most of a patch's sides [m].
+        Maximum length of a patch's sides [m].
     n_dofs : int
         Degrees of freedom of the model.
 
     Returns
     -------
     Patches
-        Points "NAME.foot 1", ... at the centroids.
+        Patches with points "NAME.foot 1", ... at the centroids.
 
     Raises
     ------
@@ -144,17 +144,17 @@ class FootState(NamedTuple):
     Attributes
     ----------
     motion : Floats
-        (6,) of the seat since the bolts were tightened [m, rad].
+        Motion (6,) of the seat since the bolts were tightened [m, rad].
     closed : Bools
-        (P,) which patches are pressed.
+        Flags (P,): patches that are pressed.
     forces : Floats
-        (P, 3) of the ground on the patches: pressing, and two across [N].
+        Forces (P, 3) of the ground on the patches: pressing, and two across [N].
     lifts : Floats
-        (P,) of the patches off the ground [m].
+        Distances (P,) of the patches off the ground [m].
     bolts : Floats
-        (B, 6) forces and moments of the bolts on the housing at their heads [N, N m].
+        Forces and moments (B, 6) of the bolts on the housing at their heads [N, N m].
     tension : Floats
-        (B,) of the bolts [N].
+        Tension (B,) of the bolts [N].
     """
 
     motion: Floats
@@ -184,23 +184,23 @@ class ClampedFoot:
     Attributes
     ----------
     compliance : Floats
-        (n, n) of the foot, the seat held [m/N, 1/N, rad/(N m)].
+        Compliance (n, n) of the foot, the seat held [m/N, 1/N, rad/(N m)].
     rigid : Floats
-        (n, 6) motions of the foot with the seat, where nothing strains.
+        Motions (n, 6) of the foot with the seat, where nothing strains.
     areas : Floats
-        (P,) of the patches [m^2].
+        Areas (P,) of the patches [m^2].
     places : Floats
-        (P, 3) their centroids [m].
+        Centroids (P, 3) of the patches [m].
     directions : Floats
         (P, 3, 3) rows: out of the ground, and two across.
     bolts : Floats
         (B, 6, 6) stiffness of each bolt at its head, its end in the ground held.
     axes : Floats
-        (B, 3) from the ground to the head.
+        Vectors (B, 3) from the ground to the head.
     preload : Floats
-        (B,) tension after tightening [N].
+        Tension (B,) after tightening [N].
     ground : float
-        Stiffness of the ground over its area, along and across [N/m^3]; inf where it does not give.
+        Stiffness of the ground over its area, along and across [N/m^3]; inf where it is rigid.
     """
 
     compliance: Floats
@@ -277,7 +277,7 @@ class ClampedFoot:
 
     @cached_property
     def _tightened(self) -> _Tightened:
-        """What the bolts alone do; the foot slides while they are tightened."""
+        """State under the bolts alone; the foot slides while they are tightened."""
         free = np.zeros(len(self.areas), dtype=np.bool_)
 
         def solved(pressed: Bools) -> tuple[Floats, Floats]:
@@ -320,12 +320,12 @@ class ClampedFoot:
         return self.linear(np.zeros(6))
 
     def state(self, wrench: Floats) -> FootState:
-        """What a load at the seat does, contact and all.
+        """State under a load at the seat, contact and all.
 
         Parameters
         ----------
         wrench : Floats
-            (6,) force and moment on the seat, at the bearing's centre [N, N m].
+            Force and moment (6,) on the seat, at the bearing's centre [N, N m].
 
         Raises
         ------
@@ -347,12 +347,12 @@ class ClampedFoot:
             stuck = stuck & pressed
 
     def linear(self, wrench: Floats) -> FootState:
-        """The same where every patch stays as it is after tightening: the levels' answer.
+        """State where every patch stays as it is after tightening: the levels' answer.
 
         Parameters
         ----------
         wrench : Floats
-            (6,) force and moment on the seat, at the bearing's centre [N, N m].
+            Force and moment (6,) on the seat, at the bearing's centre [N, N m].
         """
         pressed = self._tightened.pressed
         return self._state(pressed, pressed, self._loads(wrench))
@@ -387,7 +387,7 @@ class ClampedFoot:
         return scaled_solve(0.5 * (C + C.T), np.eye(6))
 
     def slopes(self) -> tuple[Floats, Floats]:
-        """What unit loads at the seat change while the foot stays as it is after tightening.
+        """Changes by unit loads at the seat while the foot stays as it is after tightening.
 
         Returns
         -------
@@ -402,19 +402,19 @@ class ClampedFoot:
         return forces[:, 0], self._tension(u, np.zeros((len(self.axes), 6)))
 
     def opening(self, wrench: Floats) -> tuple[float, int]:
-        """The least factor on a load at which a pressed patch opens, and its number.
+        """Minimum factor on a load at which a pressed patch opens, and the number of the patch.
 
         Parameters
         ----------
         wrench : Floats
-            (6,) force and moment on the seat, at the bearing's centre [N, N m].
+            Force and moment (6,) on the seat, at the bearing's centre [N, N m].
 
         Returns
         -------
         float
             inf where none ever opens.
         int
-            From 0.
+            Number of the patch, from 0.
         """
         pressed = self.tightened
         change = self.slopes()[0] @ wrench
@@ -425,12 +425,12 @@ class ClampedFoot:
         return float(factors[first]), first
 
     def opened_by(self, wrenches: Floats) -> Bools:
-        """Under which of many loads the linear answer pulls on a patch.
+        """Flags (N,): whether the linear answer pulls on a patch, for each of many loads.
 
         Parameters
         ----------
         wrenches : Floats
-            (N, 6) at the seat [N, N m].
+            Wrenches (N, 6) at the seat [N, N m].
         """
         pressed = self.tightened
         forces = pressed.forces[:, 0] + wrenches @ self.slopes()[0].T
@@ -443,8 +443,8 @@ class ClampedFoot:
         Parameters
         ----------
         wrench : Floats
-            (6,) force and moment on the seat, at the bearing's centre [N, N m].
+            Force and moment (6,) on the seat, at the bearing's centre [N, N m].
         factors : Sequence[float]
-            On it.
+            Factors on the wrench.
         """
         return [self.state(factor * np.asarray(wrench)) for factor in factors]

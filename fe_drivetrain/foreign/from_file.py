@@ -38,9 +38,9 @@ class PlacedPart(NamedTuple):
     Attributes
     ----------
     mesh : Mesh
-        Of this one part, with its named faces.
+        Mesh of this one part, with its named faces.
     facts : Mapping[str, Any]
-        What was found in the file: volumes before and after healing [m^3], solids, faces removed.
+        Facts found in the file: volumes before and after healing [m^3], solids, faces removed.
     """
 
     mesh: Mesh
@@ -61,18 +61,18 @@ def kept_part(
     source : ForeignFile
         The part.
     part : str
-        Its name in the mesh.
+        Name of the part in the mesh.
     content : Mapping[str, Any]
-        What its mesh depends on beside the file.
+        Values that its mesh depends on beside the file.
     make : callable
-        Arrays as of `named_arrays`.
+        Function that makes the arrays, see `named_arrays`.
     cache : Cache or None
-        Where the mesh may come from; the user's if not given.
+        Cache that the mesh may come from; the user's if not given.
 
     Returns
     -------
     PlacedPart
-        In the frame of its arrays.
+        Part in the frame of its arrays.
     """
     used = user_cache() if cache is None else cache
     whole = {
@@ -127,20 +127,20 @@ def meshed_step(
     Parameters
     ----------
     action : str
-        Of the process that meshes them, see `read_in_process`.
+        Action of the process that meshes them, see `read_in_process`.
     source : ForeignFile
-        The part.
+        File of the part.
     request : dict
-        What the action needs; "size" and "per_turn" are those of the first attempt.
+        Values that the action needs; "size" and "per_turn" are those of the first attempt.
     shift : callable
-        From what is known of the solids to how far they are moved [m].
+        Function from the survey of the solids to the distance that they are moved by [m].
 
     Returns
     -------
     Mesh
-        One part, "body", and its faces.
+        Mesh of one part, "body", and its faces.
     dict
-        What is known of the solids.
+        Survey of the solids.
     """
     for _ in range(ATTEMPTS):
         found = read_step(action, source.file, request)
@@ -169,14 +169,14 @@ def meshed_step(
 
 
 def step_facts(survey: Mapping[str, Any], scale: float) -> dict[str, Any]:
-    """What was found in a STEP file.
+    """Facts found in a STEP file.
 
     Parameters
     ----------
     survey : Mapping
-        Of `fe_drivetrain.foreign.step_solid.opened`.
+        Survey from `fe_drivetrain.foreign.step_solid.opened`.
     scale : float
-        Metres in its unit.
+        Length of the file's unit [m].
     """
     before, after = survey["before"], survey["after"]
     return {
@@ -221,7 +221,7 @@ def body_of_mesh(source: ForeignFile) -> tuple[Mesh, Surface]:
     Mesh
         One part, "body", without faces, in the file's frame and unit.
     Surface
-        Its outside.
+        Outside of the mesh.
 
     Raises
     ------
@@ -261,12 +261,12 @@ def body_of_mesh(source: ForeignFile) -> tuple[Mesh, Surface]:
 
 
 def mesh_facts(mesh: Mesh) -> dict[str, Any]:
-    """What is known of a part from a mesh file, as of one from STEP.
+    """Facts of a part from a mesh file, in the form of those from STEP.
 
     Parameters
     ----------
     mesh : Mesh
-        In its place.
+        Mesh in its place.
     """
     size = volume(mesh)
     return {
@@ -280,16 +280,16 @@ def mesh_facts(mesh: Mesh) -> dict[str, Any]:
 
 
 def named_arrays(name: str, mesh: Mesh, facts: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
-    """A mesh and facts as arrays to be kept, of a mesh without faults.
+    """A mesh without faults and its facts, as arrays to be kept.
 
     Parameters
     ----------
     name : str
-        Of the file, for messages.
+        Name of the file, for messages.
     mesh : Mesh
-        One part, "body".
+        Mesh of one part, "body".
     facts : Mapping[str, Any]
-        Plain data.
+        Facts as plain data.
 
     Raises
     ------

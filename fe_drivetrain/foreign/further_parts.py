@@ -53,17 +53,17 @@ def placed_part(
     part : FurtherPart
         The part.
     bearing : Bearing
-        Of its unit.
+        Bearing of the part's unit.
     sizes : MeshSizes
-        Of the scene; "housing" and "elements_per_turn" are used of a STEP file.
+        Element sizes of the scene; "housing" and "elements_per_turn" are used for a STEP file.
     cache : Cache or None
-        Where the mesh may come from; the user's if not given.
+        Cache that the mesh may come from; the user's if not given.
 
     Returns
     -------
     PlacedPart
-        In the scene's frame, in m: "BEARING.PART", with the faces "tie 1", "tie 2" ... as picked,
-        or where they are bolted round their bolts and "open 1" ... elsewhere, and "held".
+        Part in the scene's frame, in m: "BEARING.PART", with the faces "tie 1", "tie 2" ... as
+        picked, or where they are bolted round their bolts and "open 1" ... elsewhere, and "held".
 
     Raises
     ------
@@ -132,21 +132,21 @@ def _of_mesh(part: FurtherPart, shift: Floats) -> dict[str, NDArray[Any]]:
 
 
 def touching(name: str, points: Floats, face: Ints, outside: Ints) -> Ints:
-    """What a face of a part lies on: facets of another part's outside.
+    """Facets of another part's outside that a face of a part lies on.
 
     Parameters
     ----------
     name : str
-        What is tied to what, for messages.
+        Names of what is tied, for messages.
     points : Floats
-        (n, 3) nodes [m].
+        Nodes (n, 3) [m].
     face, outside : Ints
-        (nf, 6) facets of the part's face, and of the other part's whole outside.
+        Facets (nf, 6) of the part's face, and of the other part's whole outside.
 
     Returns
     -------
     Ints
-        (m, 6) of the outside: they cover the face whole, or are covered whole by it.
+        Facets (m, 6) of the outside: they cover the face whole, or are covered whole by it.
 
     Raises
     ------
@@ -186,9 +186,9 @@ def slave_first(points: Floats, one: Ints, two: Ints) -> tuple[Ints, Ints]:
     Parameters
     ----------
     points : Floats
-        (n, 3) nodes [m].
+        Nodes (n, 3) [m].
     one, two : Ints
-        (nf, 6) facets.
+        Facets (nf, 6) of both faces.
     """
     first, second = (float(facet_points(points, f).areas.sum()) for f in (one, two))
     if abs(first - second) > _WHOLE * max(first, second):
@@ -202,7 +202,7 @@ def tie_faces(unit: BearingUnit) -> list[tuple[str, str]]:
     Parameters
     ----------
     unit : BearingUnit
-        With its parts.
+        Bearing unit with its parts.
     """
     name = unit.bearing.name
     return [
@@ -221,7 +221,7 @@ def open_faces(unit: BearingUnit) -> list[tuple[str, str]]:
     Parameters
     ----------
     unit : BearingUnit
-        With its parts; where bolts press all of a tied face, a mesh has no such faces.
+        Bearing unit with its parts; where bolts press all of a tied face, a mesh has no such faces.
     """
     bolted = [tie.bolted for part in unit.parts for tie in part.tied]
     pairs = zip(tie_faces(unit), bolted, strict=True)
@@ -238,7 +238,7 @@ def open_sides(units: Iterable[BearingUnit]) -> list[tuple[str, str]]:
     Parameters
     ----------
     units : Iterable[BearingUnit]
-        Of a scene; where bolts press all of a joint, a mesh has no such faces.
+        Bearing units of a scene; where bolts press all of a joint, a mesh has no such faces.
     """
     found = []
     for unit in units:
@@ -255,15 +255,15 @@ def joined(mesh: Mesh, unit: BearingUnit) -> Mesh:
     Parameters
     ----------
     mesh : Mesh
-        With the housing and all parts of the unit, and housings of others that stand on these.
+        Mesh with the housing and all parts of the unit, and housings of others that stand on these.
     unit : BearingUnit
         The unit.
 
     Returns
     -------
     Mesh
-        With the faces of `tie_faces` and `open_faces`; "NAME.housing.base" is all that the ground
-        holds, and there is none where that holds nothing.
+        Mesh with the faces of `tie_faces` and `open_faces`; "NAME.housing.base" is all that the
+        ground holds, and there is none where that holds nothing.
 
     Raises
     ------
@@ -299,16 +299,16 @@ def joined(mesh: Mesh, unit: BearingUnit) -> Mesh:
 
 
 def tie_of(name: str, points: Floats, one: Ints, two: Ints) -> Constraint:
-    """The tie of two faces that touch, see `fe_drivetrain.interfaces.mortar.mortar_tie`.
+    """Tie of two faces that touch, see `fe_drivetrain.interfaces.mortar.mortar_tie`.
 
     Parameters
     ----------
     name : str
-        Of the tie.
+        Name of the tie.
     points : Floats
-        (n, 3) nodes [m].
+        Nodes (n, 3) [m].
     one, two : Ints
-        (nf, 6) facets, of which one covers the other.
+        Facets (nf, 6), of which one face covers the other.
 
     Raises
     ------

@@ -32,9 +32,9 @@ class Hole(NamedTuple):
     Attributes
     ----------
     foot, up : Floats
-        (3,) middle of its rim on the held face, and direction into the part.
+        Middle (3,) of its rim on the held face, and direction into the part.
     length : float
-        Of its wall.
+        Length of its wall, in the file's unit.
     """
 
     foot: Floats
@@ -53,9 +53,9 @@ class Cylinder(NamedTuple):
     Attributes
     ----------
     radius, length : float
-        In the file's unit.
+        Radius and length in the file's unit.
     centre, axis : Floats
-        (3,) middle and direction.
+        Middle and direction (3,).
     hole : bool
         Whether the solid is outside of it.
     """
@@ -73,11 +73,11 @@ def bolt_holes(surface: Surface, held: Ints, radius: float) -> list[Hole]:
     Parameters
     ----------
     surface : Surface
-        Of the mesh.
+        Surface of the mesh.
     held : Ints
         Numbers of the held facets.
     radius : float
-        Of the holes, in the file's unit.
+        Radius of the holes, in the file's unit.
     """
     corners = surface.points[surface.facets[:, :3]]
     found = []
@@ -108,22 +108,22 @@ def washers(
     Parameters
     ----------
     surface : Surface
-        Of the mesh.
+        Surface of the mesh.
     held : Ints
         Numbers of the held facets.
     bolts : Bolts
-        Of the housing.
+        Bolts of the housing.
     unit : str
-        Of the file.
+        Unit of length of the file.
 
     Returns
     -------
     Ints
         Numbers of facets: under washers, or all that are held where bolts clamp them.
     dict
-        "head 1", "foot 1", ... of bolts as bodies.
+        Facets of "head 1", "foot 1", ... of bolts as bodies.
     int
-        Holes.
+        Number of holes.
 
     Raises
     ------
@@ -159,13 +159,13 @@ def pressed_facets(surface: Surface, face: Ints, bolted: BoltedJoint, unit: str)
     Parameters
     ----------
     surface : Surface
-        Of the mesh.
+        Surface of the mesh.
     face : Ints
-        Numbers of its facets.
+        Numbers of the face's facets.
     bolted : BoltedJoint
         The bolts.
     unit : str
-        Of the file.
+        Unit of length of the file.
 
     Raises
     ------
@@ -182,7 +182,7 @@ def cylinders(surface: Surface) -> list[Cylinder]:
     Parameters
     ----------
     surface : Surface
-        Of the mesh.
+        Surface of the mesh.
 
     Returns
     -------
@@ -206,12 +206,12 @@ def cylinders(surface: Surface) -> list[Cylinder]:
 
 
 def planes(surface: Surface) -> list[tuple[float, Floats, Floats]]:
-    """Plane faces: area, a point on each, outward normal; the largest first.
+    """Plane faces: area, a point on each, outward normal; in descending order of area.
 
     Parameters
     ----------
     surface : Surface
-        Of the mesh.
+        Surface of the mesh.
     """
     areas = facet_points(surface.points, surface.facets).areas.sum(axis=1)
     patches = _smooth_patches(surface, 1.0 - _FLAT, np.ones(len(surface.facets), dtype=np.bool_))
@@ -243,7 +243,7 @@ def _off(at: Floats, centre: Floats, axis: Floats, radius: float) -> float:
 
 
 def _reached(corners: Ints, facets: Ints, start: Ints) -> Ints:
-    """Those of some facets that hang together with some nodes."""
+    """Facets, of some, that hang together with some nodes."""
     if not len(facets):
         return facets
     nodes, local = np.unique(corners, return_inverse=True)

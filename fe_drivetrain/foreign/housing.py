@@ -42,18 +42,18 @@ def placed_housing(
     housing : ForeignHousing
         The housing.
     bearing : Bearing
-        Its bearing.
+        Bearing of the housing.
     sizes : MeshSizes
-        Of the scene; "housing" and "elements_per_turn" are used of a STEP file.
+        Element sizes of the scene; "housing" and "elements_per_turn" are used for a STEP file.
     cache : Cache or None
-        Where the mesh may come from; the user's if not given.
+        Cache that the mesh may come from; the user's if not given.
 
     Returns
     -------
     PlacedPart
-        In the scene's frame, in m: "NAME.housing", with the faces "bore" under the bearing, "seat"
-        all over the seat, "base" where it is held, "head 1", "foot 1" ... at both ends of bolts as
-        beams, and "joint 1", "joint 2", both sides of a bolted joint where it is open.
+        Part in the scene's frame, in m: "NAME.housing", with the faces "bore" under the bearing,
+        "seat" all over the seat, "base" where it is held, "head 1", "foot 1" ... at both ends of
+        bolts as beams, and "joint 1", "joint 2", both sides of a bolted joint where it is open.
 
     Raises
     ------

@@ -24,11 +24,11 @@ def read_step(action: str, path: str | Path, request: Mapping[str, Any]) -> Arra
     Parameters
     ----------
     action : str
-        Of `read_in_process`.
+        Action of `read_in_process`.
     path : str or Path
-        The file.
+        Path of the STEP file.
     request : Mapping[str, Any]
-        What else the action needs.
+        Further values that the action needs.
 
     Returns
     -------
@@ -38,7 +38,7 @@ def read_step(action: str, path: str | Path, request: Mapping[str, Any]) -> Arra
     Raises
     ------
     InputError
-        As of `read_in_process`.
+        The file cannot be read, see `read_in_process`.
     """
     content = {
         "healing of": file_digest(str(path)),

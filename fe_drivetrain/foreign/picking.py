@@ -25,13 +25,13 @@ class Surface:
     Parameters
     ----------
     name : str
-        Of the file, for messages.
+        Name of the file, for messages.
     points : Floats
-        (n, 3) nodes, in the file's unit.
+        Nodes (n, 3), in the file's unit.
     facets : Ints
-        (k, 6) of the outside, turned outward.
+        Facets (k, 6) of the outside, turned outward.
     sets : Mapping[str, NDArray]
-        "face LABEL" (m, 3) corners and "nodes LABEL" of the file.
+        Sets of the file: "face LABEL" (m, 3) corners and "nodes LABEL".
     """
 
     def __init__(

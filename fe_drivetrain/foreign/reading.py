@@ -30,18 +30,18 @@ Arrays = dict[str, NDArray[Any]]
 
 @dataclass(frozen=True)
 class Limits:
-    """What reading one file may take.
+    """Limits on reading one file.
 
     Attributes
     ----------
     file : int
-        Most bytes of the file.
+        Maximum size of the file [bytes].
     memory : int
         Address space of the process [bytes].
     seconds : int
-        Of its processor time; the wall time may be twice as long.
+        Processor time of the process [s]; the wall time may be twice as long.
     result : int
-        Most bytes of what it hands back.
+        Maximum size of what it hands back [bytes].
     """
 
     file: int = MOST_BYTES
@@ -66,9 +66,9 @@ def read_in_process(
     path : str or Path
         The file.
     request : Mapping[str, Any]
-        What else the action needs, as plain data.
+        Further values that the action needs, as plain data.
     limits : Limits
-        What it may take.
+        Limits on the process.
 
     Returns
     -------

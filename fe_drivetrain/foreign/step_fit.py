@@ -30,22 +30,23 @@ _STRAIGHT = 1e-3  # cosine of the angle between a cylinder's normals and its axi
 
 
 def recognised(tag: int, kind: str) -> dict[str, Any]:
-    """What a face is that is described as a spline or by a curve.
+    """Recognise a plane, cylinder or sphere in a face that is described as a spline or by a curve.
 
     Parameters
     ----------
     tag : int
-        Of the face in the open gmsh model.
+        Tag of the face in the open gmsh model.
     kind : str
-        As gmsh calls its surface.
+        Kind of its surface, as gmsh calls it.
 
     Returns
     -------
     dict
-        Empty of a face that is described as what it is. Else "off", how far its points are from
-        the surface that fits best [mm], and "described", as what; of one that fits "kind" and, as
-        of faces described as such, "normal", or "radius", "centre", "axis", "length" and "hole";
-        of a hollow one that does not quite fit "nearly", the radius of the cylinder or sphere.
+        Facts by name; none of a face that is described as what it is. Else "off", the maximum
+        distance of its points from the surface that fits best [mm], and "described", as what; of
+        one that fits "kind" and, as of faces described as such, "normal", or "radius", "centre",
+        "axis", "length" and "hole"; of a hollow one that does not quite fit "nearly", the radius of
+        the cylinder or sphere.
     """
     if kind in _EXACT:
         return {}
@@ -115,11 +116,12 @@ def lies_on(tag: int, face: dict[str, Any], size: float) -> bool:
     Parameters
     ----------
     tag : int
-        Of the face that may be a piece.
+        Tag of the face that may be a piece.
     face : dict
-        As `recognised`, or described as such: "radius", "centre", "axis", "length".
+        Facts of the other face, from `recognised` or as described: "radius", "centre", "axis",
+        "length".
     size : float
-        Of all solids together [mm].
+        Size of all solids together [mm].
     """
     allowed = 2.0 * face.get("off", 0.0) + _SAME * size
     axis, centre = np.array(face.get("axis", (0.0, 0.0, 0.0))), np.array(face["centre"])
@@ -143,7 +145,7 @@ def on_edges(tag: int) -> Floats:
     Parameters
     ----------
     tag : int
-        Of the face.
+        Tag of the face.
 
     Returns
     -------
@@ -167,14 +169,14 @@ def area_and_middle(tag: int) -> tuple[float, Floats]:
     Parameters
     ----------
     tag : int
-        Of the face.
+        Tag of the face.
 
     Returns
     -------
     float
-        [mm^2].
+        Area [mm^2].
     Floats
-        (3,) [mm].
+        Centroid (3,) [mm].
     """
     occ = gmsh.model.occ
     area, middle = float(occ.getMass(2, tag)), np.array(occ.getCenterOfMass(2, tag))

@@ -1,8 +1,8 @@
-"""Healing of a STEP file's solids in the open gmsh model, in mm: only where needed, least first.
+"""Healing of a STEP file's solids in the open gmsh model, in mm: only where needed.
 
 Healing can lose a sound solid: sewing takes a torus, one face without an edge, for no shell. So a
 file is taken as it is where its shells are closed and gmsh meshes their faces; else the steps of
-healing are tried from least to most, each from the file as it was read.
+healing are tried from the smallest to the largest, each from the file as it was read.
 
 This runs in a process of its own, see `reading`; it imports little else than gmsh and numpy.
 """
@@ -31,12 +31,12 @@ _DELAUNAY, _HXT = 1, 10  # gmsh's numbers: HXT is ten times as fast, Delaunay sa
 
 
 class Step(NamedTuple):
-    """What one step of healing does.
+    """One step of healing.
 
     Attributes
     ----------
     words : str
-        What was done, for users.
+        Sentence that says what was done, for users.
     flags : tuple[bool, bool, bool, bool, bool]
         Degenerated edges, small edges and small faces repaired; faces sewn, solids made of shells.
     """
@@ -56,14 +56,14 @@ _REMOVING = [step for step in _STEPS if step.flags[2]]  # where small details ar
 
 
 class Healed(NamedTuple):
-    """What is in the model now, and what it took.
+    """Contents of the model after healing, and the step that it took.
 
     Attributes
     ----------
     after : dict[str, Any]
-        Of `counted`.
+        Counts after healing, from `counted`.
     words : str
-        What was done, in a sentence.
+        Sentence that says what was done.
     step : int or None
         Place of the step of healing among those tried; None where there was none.
     """
@@ -93,7 +93,7 @@ def size_of_all() -> float:
 
 
 def fault() -> str:
-    """What is wrong with the solids, in words; "" where they are sound.
+    """Sentence on what is wrong with the solids; "" where they are sound.
 
     They are where each encloses a volume, no edge of its shells ends in free air, and gmsh can
     mesh their faces.
@@ -107,12 +107,12 @@ def fault() -> str:
 
 
 def free_edges(faces: list[int]) -> str:
-    """Where the shells of faces are open, in words; "" where they are closed.
+    """Sentence on where the shells of faces are open; "" where they are closed.
 
     Parameters
     ----------
     faces : list of int
-        Their tags; each edge must bound an even number of them, a seam the same face twice.
+        Tags of the faces; each edge must bound an even number of them, a seam the same face twice.
     """
     count = Counter(
         edge
@@ -134,7 +134,7 @@ def surface_mesh(finer: float = 1.0) -> None:
     Parameters
     ----------
     finer : float
-        How many times finer.
+        Factor by which elements are smaller.
     """
     size = size_of_all() / finer
     gmsh.option.setNumber("Mesh.MeshSizeMax", size / _COARSE)
@@ -179,7 +179,7 @@ def _unfilled(mesher: int) -> str:
 
 
 def reason(error: Exception) -> str:
-    """What gmsh says of its failure, in one line."""
+    """Reason of gmsh's failure, in one line."""
     found = str(gmsh.logger.getLastError() or error or "no reason given")
     return " ".join(found.split())[:200].rstrip(".")
 
@@ -191,20 +191,22 @@ def heal(
     smallest_detail: float,
     known: Mapping[str, Any] | None = None,
 ) -> Healed:
-    """Leave sound solids in the model: as they are read, or with the least healing that they need.
+    """Leave sound solids in the model: as they are read, or with the minimum healing that they
+    need.
 
     Parameters
     ----------
     name : str
-        Of the file, for messages.
+        Name of the file, for messages.
     before : dict[str, Any]
-        Of `counted`, of what is in the model now.
+        Counts from `counted`, of what is in the model now.
     read : callable
-        Puts what is in the file into an empty model.
+        Function that puts what is in the file into an empty model.
     smallest_detail : float
-        Edges and small faces below it are removed; none are if 0 [mm].
+        Size below which edges and small faces are removed; none are if 0 [mm].
     known : Mapping[str, Any] or None
-        "words" and "step" of `Healed`, as found before for the same file: it is not tried again.
+        Values "words" and "step" of `Healed`, as found before for the same file: it is not tried
+        again.
 
     Returns
     -------
@@ -253,7 +255,7 @@ def heal(
 
 
 def _tried(read: Callable[[], None], step: Step, smallest_detail: float) -> dict[str, Any]:
-    """What is there after one step, of the file as it was read."""
+    """Contents after one step, of the file as it was read."""
     gmsh.clear()
     read()
     occ, there = gmsh.model.occ, gmsh.model.getEntities(3)
@@ -288,7 +290,7 @@ def sewn(read: Callable[[], None], sound: bool) -> str:
     Parameters
     ----------
     read : callable
-        Puts what is in the file into an empty model.
+        Function that puts what is in the file into an empty model.
     sound : bool
         Whether the solids are known to be sound; else that is found out.
     """

@@ -25,9 +25,9 @@ def annulus(place: Sequence[float], axis: Sequence[float], inner: float, outer: 
     Parameters
     ----------
     place, axis : Sequence[float]
-        (3,) its middle and normal.
+        Middle and normal (3,) of the annulus.
     inner, outer : float
-        Its radii.
+        Radii of the annulus.
     """
     occ = gmsh.model.occ
     ring, _ = occ.cut(
@@ -46,9 +46,9 @@ def rings_round_bolts(
     Parameters
     ----------
     survey : dict
-        Of `fe_drivetrain.foreign.step_solid.opened`.
+        Survey from `fe_drivetrain.foreign.step_solid.opened`.
     bolted : dict
-        "hole_radius" and "pressed_diameter".
+        Sizes "hole_radius" and "pressed_diameter" [mm].
     faces : Iterable[int]
         Tags of faces of the joint; holes end on planes.
     what : str
@@ -103,7 +103,7 @@ def open_joint(name: str, pressed: set[int]) -> dict[str, list[int]]:
     Parameters
     ----------
     name : str
-        Of the file, for messages.
+        Name of the file, for messages.
     pressed : set of int
         Tags of faces round the bolts; those that solids have in common count.
 

@@ -31,7 +31,7 @@ from fe_drivetrain.foreign.step_solids import Place, all_placed, became, common,
 from fe_drivetrain.foreign.words import nearly
 
 LARGEST_MESH = 400_000
-"""Most elements of a part."""
+"""Maximum number of elements of a part."""
 
 
 def cut(survey: dict[str, Any], request: dict[str, Any]) -> dict[str, list[int]]:
@@ -40,10 +40,10 @@ def cut(survey: dict[str, Any], request: dict[str, Any]) -> dict[str, list[int]]
     Parameters
     ----------
     survey : dict
-        Of `opened`.
+        Survey from `opened`.
     request : dict
-        "seat", "held" and "bolts" as in the scene, "low" and "high", distances of the bearing's
-        sides from the seat's middle along "along", the direction of x [mm].
+        Values "seat", "held" and "bolts" as in the scene, "low" and "high", distances of the
+        bearing's sides from the seat's middle along "along", the direction of x [mm].
 
     Returns
     -------
@@ -159,7 +159,7 @@ def cut(survey: dict[str, Any], request: dict[str, Any]) -> dict[str, list[int]]
 
 
 def seat_of(survey: dict[str, Any], request: dict[str, Any]) -> dict[str, Any]:
-    """The bore that is picked as the seat, as of `seat_cylinders`.
+    """Bore that is picked as the seat, see `seat_cylinders`.
 
     Raises
     ------
@@ -221,7 +221,8 @@ def _has_heads(request: dict[str, Any]) -> bool:
 def name_faces(survey: dict[str, Any], request: dict[str, Any]) -> None:
     """Name the tied and held faces of a part without a seat, "body.tie 1" ... and "body.held".
 
-    Of a tied face round whose bolts alone the part is joined, "body.open 1" ... is the rest.
+    Where a part is joined round the bolts of a tied face alone, "body.open 1" ... is the rest of
+    it.
     """
     name = survey["name"]
     faces = {

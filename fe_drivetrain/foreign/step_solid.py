@@ -40,20 +40,20 @@ def opened(
     part: str | None = None,
     known: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
-    """Import and heal the solids of a STEP file, or one of them; what is known, for `Survey`.
+    """Import and heal the solids of a STEP file, or one of them; returns its survey, for `Survey`.
 
     Several solids are glued: they share the faces in which they touch.
 
     Parameters
     ----------
     path : str
-        The file.
+        Path of the file.
     smallest_detail : float
-        Of `heal` [mm].
+        Size below which details are removed, see `heal` [mm].
     part : str or None
-        The name of the solid that is wanted alone.
+        Name of the solid that is wanted alone.
     known : Mapping[str, Any] or None
-        "healed" of an earlier result for the same file, detail and part.
+        Value "healed" of an earlier result for the same file, detail and part.
     """
     name = Path(path).name
     for option in ("FixDegenerated", "FixSmallEdges", "FixSmallFaces", "SewFaces", "MakeSolids"):
@@ -197,7 +197,7 @@ def _labels(path: str) -> list[tuple[str, str]]:
 
 
 def face_data(tag: int) -> dict[str, Any]:
-    """What is known of a face: kind, area and middle, and what describes its surface."""
+    """Facts of a face: kind, area and middle, and what describes its surface."""
     kind = gmsh.model.getType(2, tag)
     area, middle = area_and_middle(tag)
     face: dict[str, Any] = {"tag": tag, "kind": kind, "area": area, "middle": middle.tolist()}
@@ -306,7 +306,7 @@ def _meant(face: dict[str, Any], pick: dict[str, Any], size: float) -> bool:
 
 
 def _nearest(faces: Sequence[dict[str, Any]], pick: dict[str, Any]) -> str:
-    """What there is instead, in words."""
+    """Sentence on what there is instead."""
     given = " and ".join(f"{key} {value}" for key, value in pick.items())
     if "radius" in pick:
         radii = sorted({round(f["radius"], 4) for f in faces if f.get("hole")})

@@ -15,7 +15,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.foreign.step_fit import area_and_middle
 
 MOST_SOLIDS = 100
-"""Most solids of a file."""
+"""Maximum number of solids of a file."""
 
 _TOUCH = 1e-6  # of the size: faces of two solids that are closer are one
 _SAME = 1e-5  # of area and of size: faces that are the same
@@ -65,16 +65,16 @@ def glue(file: str, size: float, looks: dict[int, str]) -> dict[int, str]:
     Parameters
     ----------
     file : str
-        Its name, for messages.
+        Name of the file, for messages.
     size : float
-        Of all solids together [mm].
+        Size of all solids together [mm].
     looks : dict
         Colours of faces by tag.
 
     Returns
     -------
     dict
-        Colours of the faces that are left, by their tags now.
+        Colours of the faces that are left, by their new tags.
 
     Raises
     ------
@@ -121,12 +121,12 @@ def became(
     Parameters
     ----------
     old : Place
-        What it was, see `placed`.
+        Place of the face before, see `placed`.
     piece : list of tuple of int
-        Its history from gmsh. Of a face that stays whole that may be its old tag, which another
-        face has now; so faces count only where they have its area and its middle.
+        History of the face from gmsh. Of a face that stays whole that may be its old tag, which
+        another face has now; so faces count only where they have its area and its middle.
     size : float
-        Of all solids together [mm].
+        Size of all solids together [mm].
     now : dict of int to Place
         All faces that there are, see `all_placed`.
     """

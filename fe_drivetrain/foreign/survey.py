@@ -1,4 +1,4 @@
-"""What is in a STEP or mesh file: what a user looks at first, to pick a seat and held faces."""
+"""Contents of a STEP or mesh file: what a user looks at first, to pick a seat and held faces."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ class Mark(NamedTuple):
     Attributes
     ----------
     name : str
-        As the text has it.
+        Name as in the text.
     place : tuple[float, float, float]
-        Where it is, in the file's unit; of a bore its middle.
+        Position, in the file's unit; of a bore its middle.
     reach : tuple[float, float, float]
-        From the middle of a bore to one of its ends.
+        Vector from the middle of a bore to one of its ends.
     normal : tuple[float, float, float]
-        Outward, of a plane; zeros of a bore.
+        Outward normal of a plane; zeros of a bore.
     """
 
     name: str
@@ -46,25 +46,85 @@ class Mark(NamedTuple):
     normal: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
+class Bore(NamedTuple):
+    """A face that may be a seat.
+
+    Attributes
+    ----------
+    name : str
+        As the text has it.
+    kind : str
+        "cylinder" or "sphere".
+    hole : bool
+        Whether it is hollow; else it is the outside of something round.
+    radius, length : float
+        In the file's unit; of a sphere its diameter is the length.
+    centre, axis : tuple[float, float, float]
+        Middle, in the file's unit, and direction; zeros of a sphere.
+    """
+
+    name: str
+    kind: str
+    hole: bool
+    radius: float
+    length: float
+    centre: tuple[float, float, float]
+    axis: tuple[float, float, float]
+
+
+class Plane(NamedTuple):
+    """A plane by which the part may be held.
+
+    Attributes
+    ----------
+    name : str
+        As the text has it.
+    area : float
+        In the square of the file's unit.
+    point, normal : tuple[float, float, float]
+        A point of it, in the file's unit, and its outward direction.
+    """
+
+    name: str
+    area: float
+    point: tuple[float, float, float]
+    normal: tuple[float, float, float]
+
+
 class Survey(NamedTuple):
-    """What is in a file.
+    """Contents of a file.
 
     Attributes
     ----------
     text : str
-        In words and numbers, for the terminal.
+        Text in words and numbers, for the terminal.
     points : Floats
-        (n, 3) of its surface, in the file's unit.
+        Points (n, 3) of its surface, in the file's unit.
     triangles : Ints
-        (k, 3) of its surface.
+        Triangles (k, 3) of its surface.
     marks : tuple[Mark, ...]
         Seats and planes by the names that the text gives them.
+    unit : str
+        Of its lengths: "mm" of a STEP file; empty of a mesh, which does not say.
+    volume : float or None
+        In the cube of that unit; None where elements fold over.
+    volume_band : float or None
+        How far it may be wrong, where faces are splines; else None.
+    bores : tuple[Bore, ...]
+        The widest first; of a mesh holes before the outside of what is round.
+    planes : tuple[Plane, ...]
+        The largest first, as many as the text has.
     """
 
     text: str
     points: Floats
     triangles: Ints
     marks: tuple[Mark, ...]
+    unit: str
+    volume: float | None
+    volume_band: float | None
+    bores: tuple[Bore, ...]
+    planes: tuple[Plane, ...]
 
 
 def surveyed(path: str | Path) -> Survey:
@@ -102,12 +162,13 @@ def _of_step(path: Path) -> Survey:
     if len(found["triangles"]):
         low, high = found["points"].min(axis=0), found["points"].max(axis=0)
     rows: list[tuple[str, ...]]
-    size, area = f"{after['volume'] / 1e6:.6g} dm^3", after["area"]
+    volume, area, apart = after["volume"], after["area"], None
+    size = f"{volume / 1e6:.6g} dm^3"
     splines = "curved_triangles" in found  # of which OpenCASCADE's integrals are inexact
     if splines:
         curved = found["curved_points"], found["curved_triangles"]
         volume, area = enclosed_volume(*curved), facet_points(*curved).areas.sum()
-        apart = abs(volume - after["volume"])
+        apart = float(abs(volume - after["volume"]))
         size = f"{volume / 1e6:.5g} +- {apart / 1e6:.2g} dm^3"
     lines = [
         f"{path.name}: {after['words']}, {after['faces']} faces, {after['edges']} edges, "
@@ -176,7 +237,28 @@ def _of_step(path: Path) -> Survey:
     lines += _table(rows, len(planes))
     if data["seats"] and planes:
         lines += _proposal(path, data["seats"], planes)
-    return Survey("\n".join(lines) + "\n", found["points"], found["triangles"], tuple(marks))
+    return Survey(
+        "\n".join(lines) + "\n",
+        found["points"],
+        found["triangles"],
+        tuple(marks),
+        "mm",
+        float(volume),
+        apart,
+        tuple(_bore(f"S{k}", seat) for k, seat in enumerate(data["seats"], 1)),
+        tuple(_plane(f"P{k}", plane) for k, plane in enumerate(planes[:_MOST_ROWS], 1)),
+    )
+
+
+def _bore(name: str, seat: Mapping[str, Any]) -> Bore:
+    numbers = float(seat["radius"]), float(seat["length"])
+    at = _triple(np.array(seat["centre"])), _triple(np.array(seat["axis"]))
+    return Bore(name, seat["kind"].lower(), True, *numbers, *at)
+
+
+def _plane(name: str, plane: Mapping[str, Any]) -> Plane:
+    at = _triple(np.array(plane["middle"])), _triple(np.array(plane["normal"]))
+    return Plane(name, float(plane["area"]), *at)
 
 
 def _planes(faces: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
@@ -228,7 +310,7 @@ def _of_mesh(path: Path) -> Survey:
     points, cells = found["points"], found["cells"]
     worst = float(scaled_jacobians(points, cells).min())
     sound = worst > 0.0
-    volume = f"{mass_moments(points, cells)[0]:.6g}" if sound else "unknown"
+    volume = float(mass_moments(points, cells)[0]) if sound else None
     used = points[np.unique(cells)]
     body = Mesh(points, cells, np.zeros(len(cells), dtype=np.int64), ("body",), {}, {})
     outside = boundary(body)
@@ -236,7 +318,8 @@ def _of_mesh(path: Path) -> Survey:
     kind = "of 4 nodes, which get straight edges" if found["linear"] else "of 10 nodes"
     lines = [
         f"{path.name}: {len(cells)} tetrahedra {kind}, {len(used)} nodes",
-        f"box: {_xyz(low)} to {_xyz(high)}, volume {volume}, in the file's unit",
+        f"box: {_xyz(low)} to {_xyz(high)}, "
+        f"volume {'unknown' if volume is None else f'{volume:.6g}'}, in the file's unit",
         f"worst scaled Jacobian: {worst:.3g}" + (": elements fold over" if worst <= 0 else ""),
     ]
     surface = Surface(path.name, points, outside, {})
@@ -275,7 +358,31 @@ def _of_mesh(path: Path) -> Survey:
         names = sorted(key.removeprefix(prefix) for key in found if key.startswith(prefix))
         more = f" and {len(names) - _MOST_ROWS} more" if len(names) > _MOST_ROWS else ""
         lines.append(f"{what} by label: {', '.join(names[:_MOST_ROWS]) or 'none'}{more}")
-    return Survey("\n".join(lines) + "\n", points, outside[:, :3], tuple(marks))
+    return Survey(
+        "\n".join(lines) + "\n",
+        points,
+        outside[:, :3],
+        tuple(marks),
+        "",
+        volume,
+        None,
+        tuple(
+            Bore(
+                f"S{number}",
+                "cylinder",
+                one.hole,
+                float(one.radius),
+                float(one.length),
+                _triple(one.centre),
+                _triple(one.axis),
+            )
+            for number, one in enumerate(round_faces, 1)
+        ),
+        tuple(
+            Plane(f"P{number}", float(size), _triple(middle), _triple(normal))
+            for number, (size, middle, normal) in enumerate(flat[:_MOST_ROWS], 1)
+        ),
+    )
 
 
 def _triple(values: Floats) -> tuple[float, float, float]:

@@ -1,7 +1,7 @@
 """Folded elements unfolded: nodes follow the curved outside of a part as those of an elastic solid.
 
 Curving the edges of a coarse mesh to its surface folds elements whose other nodes stay where they
-were. Here these give way.
+were. Here these follow.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES
 from fe_drivetrain.mesh.shared_facets import are_among
 from fe_drivetrain.operator.elasticity import assemble
 
-_LAYERS = 2  # of elements round those that are folded, which give way, too
+_LAYERS = 2  # of elements round those that are folded, which deform, too
 _STIFFER = 10.0
 _ROUNDS = 6
-_LAME = (9.0, 1.0)  # nearly incompressible: volumes, and with them Jacobians, give way least
+_LAME = (9.0, 1.0)  # nearly incompressible: volumes, and with them Jacobians, change least
 _FLAT = 1e-6  # how far nodes of a plane facet may be from its plane, relative to its size
 
 
@@ -38,14 +38,14 @@ def unfolded(mesh: Mesh, floor: float = 0.1) -> Mesh:
     Parameters
     ----------
     mesh : Mesh
-        As it was curved.
+        Mesh as it was curved.
     floor : float
-        Cells of a smaller scaled Jacobian shall be unfolded.
+        Scaled Jacobian below which cells shall be unfolded.
 
     Returns
     -------
     Mesh
-        With the same cells.
+        Mesh with the same cells.
 
     Notes
     -----
@@ -95,7 +95,7 @@ def unfolded(mesh: Mesh, floor: float = 0.1) -> Mesh:
 
 
 def _missing(points: Floats, cells: Ints, floor: float) -> Floats:
-    """What each cell's scaled Jacobian lacks to the floor."""
+    """Difference of each cell's scaled Jacobian to the floor, where it is below."""
     return np.asarray(np.maximum(floor - scaled_jacobians(points, cells), 0.0))
 
 

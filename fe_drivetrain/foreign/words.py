@@ -1,4 +1,4 @@
-"""What the messages of several modules say of faces."""
+"""Words of several modules' messages about faces."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ from collections.abc import Mapping
 from typing import Any
 
 ROUND = 1e-4
-"""Of its radius: a face that deviates more from a cylinder or sphere is none."""
+"""Deviation over the radius beyond which a face is no cylinder or sphere."""
 
 
 def nearly(face: Mapping[str, Any]) -> str:
-    """What a face is nearly, in words, with its deviation.
+    """Name a surface that a face nearly is, with its deviation.
 
     Parameters
     ----------
     face : Mapping
-        Of `fe_drivetrain.foreign.step_fit.recognised`, with "nearly".
+        Face from `fe_drivetrain.foreign.step_fit.recognised`, with "nearly".
     """
     off, radius = face["off"], face["nearly"]
     x, y, z = face["middle"]

@@ -19,7 +19,7 @@ class Coupling:
     Attributes
     ----------
     length : float
-        Over which a load of one slice spreads to its neighbours [m].
+        Length over which a load of one slice spreads to its neighbours [m].
     hertz : float
         Stiffness of the contact alone per face width [N/m^2], in series with the teeth:
         1 / `yang_sun_contact()`, say.
@@ -37,7 +37,7 @@ def loaded_with_coupling(
     motion: ArrayLike | None = None,
     steps: int = 60,
 ) -> Loaded:
-    """The loaded mesh as of `loaded`, with slices of a pair of teeth that hold each other.
+    """The loaded mesh of `loaded`, with slices of a pair of teeth that hold each other.
 
     The teeth are an elastic layer that resists being bent over the face: c w - c l^2 w'' = p with
     the load p per face width, free at the ends; the contact is a spring on it. Without a length,
@@ -46,22 +46,22 @@ def loaded_with_coupling(
     Parameters
     ----------
     mesh : SlicedMesh
-        Of the pair.
+        Pair of gears, its teeth in slices.
     phase : float
-        In periods of the mesh.
+        Phase of the mesh, in periods.
     torque : float
-        On the first gear [N m], positive.
+        Torque on the first gear [N m], positive.
     coupling : Coupling
-        Of the slices.
+        Stiffness of the contact and length of the coupling between slices.
     motion : array_like, (12,), optional
-        Where the gears are.
+        Position of both gears [m, rad].
     steps : int
-        Of Newton's method at most.
+        Maximum number of Newton steps.
 
     Returns
     -------
     Loaded
-        With `converged` false where it has not.
+        Load of the slices, with `converged` false where Newton's method has not converged.
     """
     free = loaded(mesh, phase, torque, motion)
     all_of, driving = free.contacts, free.contacts.driving
@@ -73,8 +73,8 @@ def loaded_with_coupling(
     local = np.full(m, coupling.hertz * width)
     if not (local > touching.stiffness).all():
         raise InputError(
-            f"the contact of teeth is {1e-9 * coupling.hertz:.4g} N/(mm um) stiff, less than the "
-            "teeth with it: give more"
+            f"the stiffness of the teeth's contact is {1e-9 * coupling.hertz:.4g} N/(mm um) but "
+            "must be above that of teeth and contact in series: raise it"
         )
     bending = 1.0 / (1.0 / touching.stiffness - 1.0 / local)
     B = np.diag(bending)

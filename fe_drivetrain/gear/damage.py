@@ -30,7 +30,7 @@ class PlanetaryStage:
     sun, planet, ring : int
         Teeth, counted positive.
     planets : int
-        How many.
+        Number of planets.
     """
 
     sun: int
@@ -64,19 +64,20 @@ class ParallelStage:
 
 
 def loads_per_turn(stages: Sequence[PlanetaryStage | ParallelStage]) -> dict[str, float]:
-    """How often one flank of a tooth is loaded per turn of the first shaft.
+    """Number of loads of one flank of a tooth per turn of the first shaft.
 
     Parameters
     ----------
     stages : sequence
-        From the slow shaft to the fast one.
+        Stages, from the slow shaft to the fast one.
 
     Returns
     -------
     dict
-        Of "stage 1 ring" and so on: of the ring once by each planet, of the sun by each planet as
-        it turns against the carrier, of a planet z_r / z_p times on the flank that meets the sun,
-        as often on the one that meets the ring: these are two flanks.
+        Loads of one flank per turn, by name ("stage 1 ring" and so on): the ring's once by each
+        planet, the sun's by each planet as it turns against the carrier, a planet's z_r / z_p times
+        on the flank that meets the sun, and as often on the one that meets the ring: these are two
+        flanks.
 
     Raises
     ------
@@ -108,15 +109,15 @@ class RatedTooth:
     Attributes
     ----------
     name : str
-        Of the gear, or of its flank.
+        Name of the gear, or of its flank.
     loads_per_turn : float
-        Of one flank, per turn of the reference shaft.
+        Loads of one flank, per turn of the reference shaft.
     torque : float
-        Of that shaft [N m].
+        Torque of the reference shaft [N m].
     contact : float
-        sigma_H under it, with a safety factor if one is asked for [Pa].
+        Contact stress sigma_H under the torque, with a safety factor if one is asked for [Pa].
     root : float
-        sigma_F under it [Pa].
+        Root stress sigma_F under the torque [Pa].
     contact_curve, root_curve : LifeCurve
         Stresses endured over loads of one flank.
     """
@@ -145,9 +146,9 @@ class ToothDamage:
     Attributes
     ----------
     flank, back : float
-        Of the flank that a positive torque loads, and of the other.
+        Damage of the flank that a positive torque loads, and of the other.
     root, root_back : float
-        Of the fillets on either side.
+        Damage of the fillets on either side.
     """
 
     flank: float
@@ -157,11 +158,11 @@ class ToothDamage:
 
     @property
     def largest(self) -> float:
-        """The largest of the four."""
+        """Maximum of the four damages."""
         return max(self.flank, self.back, self.root, self.root_back)
 
     def __add__(self, other: ToothDamage) -> ToothDamage:
-        """Damage of both, one after the other."""
+        """Sum of the damages of both."""
         return ToothDamage(*(getattr(self, n) + getattr(other, n) for n in vars(self)))
 
     def times(self, count: float) -> ToothDamage:
@@ -170,7 +171,7 @@ class ToothDamage:
         Parameters
         ----------
         count : float
-            How often.
+            Number of times.
 
         Returns
         -------
@@ -186,17 +187,17 @@ def damage_of_turns(tooth: RatedTooth, torques: ArrayLike, turns: ArrayLike) -> 
     Parameters
     ----------
     tooth : RatedTooth
-        Of a gear.
+        Gear tooth, with its stresses and life curves.
     torques : array_like, (n,)
-        [N m]; negative ones load the other flank.
+        Torques of the reference shaft [N m]; negative ones load the other flank.
     turns : array_like, (n,)
-        Of the shaft at each.
+        Turns of the reference shaft at each torque.
 
     Returns
     -------
     ToothDamage
-        With contact stress that goes with the root of the torque, and root stress with the torque:
-        load factors stay as they are at the torque of the rating.
+        Damage with contact stress that goes with the root of the torque, and root stress with the
+        torque: load factors stay as they are at the torque of the rating.
     """
     load = np.asarray(torques, dtype=np.float64) / tooth.torque
     counts = np.asarray(turns, dtype=np.float64) * tooth.loads_per_turn
@@ -216,14 +217,14 @@ def damage_of_levels(tooth: RatedTooth, levels: Levels) -> ToothDamage:
     Parameters
     ----------
     tooth : RatedTooth
-        Of a gear.
+        Gear tooth, with its stresses and life curves.
     levels : Levels
         Turns of the reference shaft at levels of its torque (`histories.revolutions_at_level`).
 
     Returns
     -------
     ToothDamage
-        With every level at its middle.
+        Damage with every level at its middle.
     """
     return damage_of_turns(tooth, levels.middles, levels.amount)
 
@@ -236,18 +237,18 @@ def damage_of_history(
     Parameters
     ----------
     tooth : RatedTooth
-        Of a gear.
+        Gear tooth, with its stresses and life curves.
     torque : array_like, (n,)
-        Of the reference shaft [N m].
+        Torque of the reference shaft [N m].
     speed : array_like, (n,) or float
-        Of it [rad/s].
+        Speed of the reference shaft [rad/s].
     step : float
-        Between two samples [s].
+        Time between two samples [s].
 
     Returns
     -------
     ToothDamage
-        Of the history.
+        Damage of the whole history.
     """
     turns = np.abs(np.asarray(speed, dtype=np.float64)) * step / (2.0 * np.pi)
     return damage_of_turns(tooth, torque, np.broadcast_to(turns, np.shape(torque)))
@@ -265,11 +266,11 @@ def torque_exponent(curve: LifeCurve, root: bool = False, segment: int = 0) -> f
     Parameters
     ----------
     curve : LifeCurve
-        Of contact or root stress.
+        Life curve of contact or root stress.
     root : bool
         Whether stress goes with the torque, as in the root; with its root in contact.
     segment : int
-        Which part, from the first.
+        Index of the straight part, from the first.
 
     Returns
     -------

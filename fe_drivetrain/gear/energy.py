@@ -27,9 +27,9 @@ class Steel:
     Attributes
     ----------
     youngs_modulus : float
-        [Pa].
+        Young's modulus of both gears [Pa].
     poisson_ratio : float
-        Of both.
+        Poisson ratio of both gears.
     """
 
     youngs_modulus: float = 206e9
@@ -57,14 +57,14 @@ BODY_RANGE = (1.4, 7.0)
 
 @dataclass(frozen=True)
 class ToothCompliance:
-    """What gives way under a line load on one tooth, by part [m^2/N].
+    """Compliance of one tooth under a line load, by part [m^2/N].
 
     Attributes
     ----------
     bending, shear, axial : (n,) array
-        Of the tooth as a beam.
+        Compliance of the tooth as a beam [m^2/N].
     body : (n,) array
-        Of the gear below it.
+        Compliance of the gear body below the tooth [m^2/N].
     """
 
     bending: Floats
@@ -90,7 +90,7 @@ def tooth_compliance(
     curvature : (n,) array
         Radii of curvature of the flank where it is loaded [m].
     hub_radius : float
-        Where the gear body is held [m].
+        Radius at which the gear body is held [m].
     steel : Steel
         Elastic constants.
 
@@ -154,7 +154,7 @@ def _body(gear: Gear, h: float, crossing: float, slope: float, along: float) -> 
 
 
 def contact_depths(gear: Gear, curvature: Floats) -> Floats:
-    """From the flank along the line of action to the tooth's centre line.
+    """Depths from the flank to the tooth's centre line, along the line of action.
 
     Parameters
     ----------
@@ -166,7 +166,7 @@ def contact_depths(gear: Gear, curvature: Floats) -> Floats:
     Returns
     -------
     (n,) array
-        [m].
+        Depths [m].
     """
     points, pushes = flank_points(gear, curvature), flank_normals(gear, curvature)
     return np.asarray(-points[:, 0] / pushes[:, 0], dtype=np.float64)
@@ -200,11 +200,11 @@ def line_contact(
     Parameters
     ----------
     load : float
-        On a length of face [N/m].
+        Load per length of face [N/m].
     curvatures : tuple of two (n,) arrays
         Radii of both flanks [m], negative if concave.
     depths : tuple of two (n,) arrays
-        Of both points, as those of the centre lines [m].
+        Depths of both points below the surfaces, such as those of the centre lines [m].
     steel : Steel
         Elastic constants.
 
@@ -227,7 +227,7 @@ def contact_half_width(
     Parameters
     ----------
     load : float
-        On a length of face [N/m].
+        Load per length of face [N/m].
     curvatures : tuple of two (n,) arrays
         Radii of both flanks [m], negative if concave.
     steel : Steel
@@ -252,16 +252,17 @@ def energy_law(
     pair : Pair
         External spur gears.
     hub_radii : tuple of two floats
-        Where each gear body is held [m].
+        Radius at which each gear body is held [m].
     load : float, optional
-        On a length of face [N/m], for `line_contact`; without one `yang_sun_contact`.
+        Load per length of face [N/m], for `line_contact`; without one `yang_sun_contact`.
     steel : Steel
         Elastic constants.
 
     Returns
     -------
     Law
-        Of the place of contact.
+        Stiffness of one pair of teeth per length of face [N/m^2], as a function of the place of
+        contact.
     """
 
     def law(place: Floats) -> Floats:

@@ -26,9 +26,9 @@ def reduced_modulus(youngs_modulus: float = 206e9, poisson_ratio: float = 0.3) -
     Parameters
     ----------
     youngs_modulus : float
-        Of both [Pa].
+        Young's modulus of both bodies [Pa].
     poisson_ratio : float
-        Of both.
+        Poisson ratio of both bodies.
 
     Returns
     -------
@@ -44,11 +44,11 @@ def half_width(load: float, radius: float | Floats, modulus: float) -> Floats:
     Parameters
     ----------
     load : float
-        On a length of face [N/m].
+        Load per length of face [N/m].
     radius : float or ndarray
         Relative radius of curvature [m].
     modulus : float
-        As of `reduced_modulus` [Pa].
+        Reduced modulus E_R, see `reduced_modulus` [Pa].
     """
     return np.asarray(np.sqrt(4.0 * load * radius / (pi * modulus)), dtype=np.float64)
 
@@ -60,9 +60,9 @@ class LineContact:
     Attributes
     ----------
     load : float
-        Per length [N/m].
+        Load per length [N/m].
     radius : float
-        Of relative curvature, 1 / (1/R1 + 1/R2) [m]; R2 negative of a hollow.
+        Relative radius of curvature, 1 / (1/R1 + 1/R2) [m]; R2 negative of a hollow.
     modulus : float
         E_R [Pa].
     """
@@ -86,7 +86,7 @@ class LineContact:
 
     @property
     def pressure(self) -> float:
-        """Largest pressure, p_0 = sqrt(q E_R / (pi R)) [Pa]."""
+        """Maximum pressure, p_0 = sqrt(q E_R / (pi R)) [Pa]."""
         return sqrt(self.load * self.modulus / (pi * self.radius))
 
     def pressure_at(self, x: ArrayLike) -> Floats:
@@ -95,7 +95,7 @@ class LineContact:
         Parameters
         ----------
         x : array_like, (n,)
-            From its middle [m].
+            Distance from the middle of the strip [m].
 
         Returns
         -------
@@ -111,11 +111,11 @@ class LineContact:
         Parameters
         ----------
         x : array_like, (n,)
-            From the middle of the strip [m].
+            Distance from the middle of the strip [m].
         z : array_like, (n,)
             Depth [m], above 0.
         poisson_ratio : float
-            Of both bodies.
+            Poisson ratio of both bodies.
 
         Returns
         -------
@@ -136,56 +136,56 @@ class LineContact:
 
     @property
     def largest_shear(self) -> tuple[float, float]:
-        """Largest shear stress in the plane of x and z, and its depth [Pa, m]."""
+        """Maximum shear stress in the plane of x and z, and its depth [Pa, m]."""
         stress, depth = _largest("shear", 0.3)
         return stress * self.pressure, depth * self.half_width
 
     def largest_von_mises(self, poisson_ratio: float = 0.3) -> tuple[float, float]:
-        """Largest von Mises stress and its depth.
+        """Maximum von Mises stress and its depth.
 
         Parameters
         ----------
         poisson_ratio : float
-            Of both bodies.
+            Poisson ratio of both bodies.
 
         Returns
         -------
         tuple of float
-            [Pa, m]; 0.5575 p_0 at 0.704 a with 0.3.
+            Stress and depth [Pa, m]; 0.5575 p_0 at 0.704 a with 0.3.
         """
         stress, depth = _largest("von Mises", poisson_ratio)
         return stress * self.pressure, depth * self.half_width
 
 
 def shear_stress(stresses: Floats) -> Floats:
-    """Largest shear stress in the plane of x and z.
+    """Maximum shear stress in the plane of x and z.
 
     Parameters
     ----------
     stresses : ndarray, (..., 4)
-        As of `LineContact.stresses` [Pa].
+        Stresses from `LineContact.stresses` [Pa].
 
     Returns
     -------
     ndarray, (...)
-        [Pa].
+        Shear stress [Pa].
     """
     xx, _, zz, xz = np.moveaxis(stresses, -1, 0)
     return np.asarray(np.hypot(0.5 * (xx - zz), xz), dtype=np.float64)
 
 
 def von_mises(stresses: Floats) -> Floats:
-    """Von Mises stress.
+    """Von Mises stress of a plane state of strain.
 
     Parameters
     ----------
     stresses : ndarray, (..., 4)
-        As of `LineContact.stresses` [Pa].
+        Stresses from `LineContact.stresses` [Pa].
 
     Returns
     -------
     ndarray, (...)
-        [Pa].
+        Von Mises stress [Pa].
     """
     xx, yy, zz, xz = np.moveaxis(stresses, -1, 0)
     squares = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2 + 6.0 * xz**2
@@ -194,7 +194,7 @@ def von_mises(stresses: Floats) -> Floats:
 
 @cache
 def _largest(kind: str, poisson_ratio: float) -> tuple[float, float]:
-    """Largest stress under the middle of a strip over p_0, and its depth over a."""
+    """Maximum stress under the middle of a strip over p_0, and its depth over a."""
     unit = LineContact(1.0, 1.0, 1.0)
     measure = shear_stress if kind == "shear" else von_mises
 

@@ -33,7 +33,7 @@ def inverse_involute(value: float) -> float:
     Parameters
     ----------
     value : float
-        Of the involute function [rad], zero or positive.
+        Value of the involute function [rad], zero or positive.
 
     Returns
     -------
@@ -68,16 +68,16 @@ def spare_angle_of_tips(
     Parameters
     ----------
     teeth : tuple of two ints
-        Of the pinion and the internal gear, both positive.
+        Numbers of teeth of the pinion and the internal gear, both positive.
     bases, tips : tuples of two floats
-        Their base and tip radii [m].
+        Base and tip radii of both [m].
     centres : float
         Centre distance [m].
 
     Returns
     -------
     float
-        [rad]; 0 where the tip circles do not cross, negative where teeth are cut.
+        Spare angle [rad]; 0 where the tip circles do not cross, negative where teeth are cut.
     """
     one, two = tips
     if two - one >= centres:

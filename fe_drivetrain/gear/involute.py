@@ -29,9 +29,9 @@ class Rack:
     Attributes
     ----------
     addendum : float
-        Of the gear's teeth.
+        Addendum of the gear's teeth.
     dedendum : float
-        Of the gear's teeth.
+        Dedendum of the gear's teeth.
     fillet : float
         Radius of the rack's tip, which makes the roots of an external gear.
     """
@@ -48,11 +48,11 @@ class Gear:
     Attributes
     ----------
     teeth : int
-        How many; negative for an internal gear.
+        Number of teeth; negative for an internal gear.
     normal_module : float
-        [m].
+        Normal module [m].
     face_width : float
-        [m].
+        Face width [m].
     helix : float
         Angle on the reference cylinder [rad], positive for a right hand.
     shift : float
@@ -62,7 +62,7 @@ class Gear:
     rack : Rack
         Basic rack.
     tip_diameter : float, optional
-        [m]; without one that of the rack's addendum.
+        Tip diameter [m]; without one that of the rack's addendum.
     """
 
     teeth: int
@@ -154,7 +154,7 @@ class Gear:
     def form_curvature(self) -> float:
         """Radius of curvature where the involute begins [m].
 
-        Of an external gear cut by its rack: where the straight flank of the rack ends. An internal
+        For an external gear cut by its rack: where the straight flank of the rack ends. An internal
         gear is cut by a pinion that is not known, so that its root circle stands in its place.
         """
         if self.internal:
@@ -187,12 +187,12 @@ class Gear:
         Parameters
         ----------
         radius : float
-            Of the circle [m], not below the base circle.
+            Radius of the circle [m], not below the base circle.
 
         Returns
         -------
         float
-            [m].
+            Arc length [m].
         """
         half = (0.5 * pi + 2.0 * self.shift * tan(self.pressure_angle)) / self.teeth
         here = acos(self.base_radius / radius)
@@ -249,7 +249,7 @@ class Pair:
     second : Gear
         External or internal.
     centre_distance : float
-        Between parallel axes [m], positive for both kinds.
+        Distance between parallel axes [m], positive for both kinds.
     """
 
     first: Gear
@@ -298,7 +298,7 @@ class Pair:
 
     @property
     def reference_centre_distance(self) -> float:
-        """Without profile shifts [m]."""
+        """Centre distance without profile shifts [m]."""
         return abs(self.first.reference_radius + self.second.sign * self.second.reference_radius)
 
     @property
@@ -351,7 +351,8 @@ class Pair:
         Returns
         -------
         tuple of two arrays
-            Of the first and of the second gear [m]; the concave one of an internal gear negative.
+            Radii of the first and of the second gear's flank [m]; an internal gear's (concave) is
+            negative.
         """
         first = np.asarray(place, dtype=np.float64)
         total = self.second.sign * self.centre_distance * sin(self.working_angle)
@@ -368,7 +369,7 @@ class Pair:
         Returns
         -------
         tuple of two arrays
-            From the axes of the first and of the second gear [m].
+            Radii from the axes of the first and of the second gear [m].
         """
         one, two = self.curvatures(place)
         return np.hypot(self.first.base_radius, one), np.hypot(self.second.base_radius, two)
@@ -379,12 +380,12 @@ class Pair:
         Parameters
         ----------
         torque : float
-            On the first gear in this mesh [N m].
+            Torque on the first gear in this mesh [N m].
 
         Returns
         -------
         float
-            [N].
+            Tangential force [N].
         """
         return torque / self.first.reference_radius
 
@@ -394,12 +395,12 @@ class Pair:
         Parameters
         ----------
         torque : float
-            On the first gear in this mesh [N m].
+            Torque on the first gear in this mesh [N m].
 
         Returns
         -------
         float
-            [N].
+            Normal force [N].
         """
         return torque / (self.first.base_radius * cos(self.first.base_helix))
 

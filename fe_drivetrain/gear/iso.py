@@ -35,7 +35,7 @@ class IsoStiffness:
     theoretical : float
         c'_th, of one pair of solid discs, without corrections.
     single : float
-        c', of one pair, its greatest over the path of contact.
+        c', maximum stiffness of one pair over the path of contact.
     mesh : float
         c_gamma_alpha, mean of all pairs in contact.
     misaligned : float
@@ -60,7 +60,7 @@ def theoretical_stiffness(pair: Pair) -> float:
     Returns
     -------
     float
-        [N/m^2].
+        Stiffness per face width [N/m^2].
     """
     first, second = sorted((pair.first, pair.second), key=lambda gear: abs(gear.teeth))
     one = 1.0 / first.virtual_teeth
@@ -116,7 +116,7 @@ def rack_factor(gear: Gear) -> float:
     Parameters
     ----------
     gear : Gear
-        Whose rack it is.
+        Gear whose rack it is.
 
     Returns
     -------
@@ -145,7 +145,7 @@ def iso_stiffness(
     blank : float
         C_R, mean of both gears: see `blank_factor`.
     youngs_modulus : float
-        Of both gears [Pa]; other than steel's by E / E_steel.
+        Young's modulus of both gears [Pa]; other than steel's by E / E_steel.
 
     Returns
     -------

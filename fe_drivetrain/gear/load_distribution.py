@@ -1,4 +1,4 @@
-"""How a torque is shared by slices of a mesh: face load factor, transmission error, wrenches."""
+"""Share of a torque between slices of a mesh: face load factor, transmission error, wrenches."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ class Loaded:
     contacts : Contacts
         Slices that can touch.
     forces : ndarray, (m,)
-        Of each, along the line of action in the transverse plane [N].
+        Force of each slice, along the line of action in the transverse plane [N].
     slices : int
-        Over the face width.
+        Number of slices over the face width.
     converged : bool
         Whether forces are in balance, to 1e-9 of the load.
     """
@@ -45,7 +45,7 @@ class Loaded:
 
     @property
     def face_factor(self) -> float:
-        """Largest over mean load per face width, at this position; see `peak_over_mean`."""
+        """Maximum over mean load per face width, at this position; see `peak_over_mean`."""
         return peak_over_mean(self.over_face)
 
     @property
@@ -60,18 +60,18 @@ class Loaded:
 
 
 def peak_over_mean(load: Floats) -> float:
-    """Largest over mean load per face width.
+    """Maximum over mean load per face width.
 
     Parameters
     ----------
     load : ndarray, (n,)
-        Of equal slices [N].
+        Load of equal slices over the face [N].
 
     Returns
     -------
     float
-        The largest of the slices, and of the ends of the face, to which the last two slices go on
-        in a straight line: a misaligned gear carries most at its very end.
+        The maximum of the slices, and of the ends of the face, to which the last two slices go on
+        in a straight line: a misaligned gear carries the most at its very end.
     """
     if len(load) < 2:
         return 1.0
@@ -87,13 +87,13 @@ def loaded(
     Parameters
     ----------
     mesh : SlicedMesh
-        Of the pair.
+        Pair of gears, its teeth in slices.
     phase : float
-        In periods of the mesh.
+        Phase of the mesh, in periods.
     torque : float
-        On the first gear [N m]; negative loads the other flanks.
+        Torque on the first gear [N m]; negative loads the other flanks.
     motion : array_like, (12,), optional
-        Where the gears are, tilts among it: of the first and of the second gear [m, rad].
+        Position of the first and of the second gear, with tilts [m, rad].
 
     Returns
     -------
@@ -113,7 +113,7 @@ def loaded(
 
 
 def _approach(side: Floats, stiffness: Floats, away: Floats, load: float) -> float:
-    """Where springs that begin at side * away sum to a load: by the places of their beginnings."""
+    """Approach at which springs that begin at side * away sum to a load, by their beginnings."""
     begins, order = np.sort(side * away), np.argsort(side * away)
     # springs of one side are pressed beyond their beginning, those of the other before it
     up = np.where(side > 0.0, stiffness, 0.0)[order]
@@ -142,15 +142,15 @@ class Period:
     Attributes
     ----------
     phases : ndarray, (n,)
-        In periods.
+        Phases of the mesh, in periods.
     approach : ndarray, (n,)
         Transmission error [m].
     over_face : ndarray, (n, slices)
         Load of each slice [N].
     wrenches : ndarray, (n, 12)
-        On both gears [N, N m].
+        Forces and moments on both gears [N, N m].
     converged : bool
-        At all phases.
+        Whether forces are in balance at all phases.
     """
 
     phases: Floats
@@ -161,12 +161,12 @@ class Period:
 
     @property
     def face_factor(self) -> float:
-        """K_Hbeta: largest over mean load per face width, of means over the period."""
+        """K_Hbeta: maximum over mean load per face width, of means over the period."""
         return peak_over_mean(self.over_face.mean(axis=0))
 
     @property
     def ripple(self) -> float:
-        """Transmission error from its least to its largest value [m]."""
+        """Peak-to-peak transmission error [m]."""
         return float(np.ptp(self.approach))
 
 
@@ -178,18 +178,18 @@ def over_period(
     Parameters
     ----------
     mesh : SlicedMesh
-        Of the pair.
+        Pair of gears, its teeth in slices.
     torque : float
-        On the first gear [N m].
+        Torque on the first gear [N m].
     motion : array_like, (12,), optional
-        Where the gears are, as of `loaded`.
+        Position of the first and of the second gear, see `loaded` [m, rad].
     phases : int
-        Evenly spaced.
+        Number of phases, evenly spaced.
 
     Returns
     -------
     Period
-        Of all phases.
+        Loads and approaches at all phases.
     """
     at = (np.arange(phases) + 0.5) / phases
     found = [loaded(mesh, float(phase), torque, motion) for phase in at]
@@ -210,23 +210,23 @@ def supported(
     Parameters
     ----------
     mesh : SlicedMesh
-        Of the pair.
+        Pair of gears, its teeth in slices.
     phase : float
-        In periods of the mesh.
+        Phase of the mesh, in periods.
     load : array_like, (12,)
         Forces and moments on both gears, about the middles of their axes [N, N m].
     support : ndarray, (12, 12)
         Stiffness of their supports, with a spring that holds the turn of one of them [N/m, N,
         N m/rad].
     steps : int
-        Of Newton's method at most.
+        Maximum number of Newton steps.
 
     Returns
     -------
     loaded : Loaded
-        With `converged` false where the residual stays above 1e-9 of the load.
+        Load of the slices, with `converged` false where the residual stays above 1e-9 of the load.
     motion : ndarray, (12,)
-        Of both gears [m, rad].
+        Motion of both gears [m, rad].
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What makes the load of a tooth larger than its share of the torque: ISO 6336-1, method B.
+"""Factors of a tooth's load over its share of the torque: ISO 6336-1, method B.
 
 Deviations of the teeth, running-in, resonance of a pair, misalignment over the face width. The
 standard itself was not read: equations stand in public programs and in IACS UR M56, and the cases
@@ -22,15 +22,15 @@ class LoadFactors:
     Attributes
     ----------
     K_A : float
-        Application: what the machine does to the torque.
+        Application factor: what the machine does to the torque.
     K_gamma : float
-        Of the planet, or path, that carries most.
+        Mesh load factor of the planet, or path, with the maximum load.
     K_v : float
-        Dynamic, from within the mesh.
+        Dynamic factor, from within the mesh.
     K_Hbeta, K_Fbeta : float
-        Largest over mean load per face width: of the flank, of the root.
+        Maximum over mean load per face width: of the flank, of the root.
     K_Halpha, K_Falpha : float
-        Largest load of a pair of teeth over that of teeth without deviations.
+        Maximum load of a pair of teeth over that of teeth without deviations.
     """
 
     K_A: float = 1.0
@@ -65,9 +65,9 @@ def relative_mass(gear: Gear, inner_diameter: float, density: float) -> float:
     gear : Gear
         External or internal.
     inner_diameter : float
-        Of its bore; of an internal gear the outer diameter [m].
+        Diameter of the gear's bore; of an internal gear the outer diameter [m].
     density : float
-        [kg/m^3].
+        Density of the gear [kg/m^3].
 
     Returns
     -------
@@ -87,9 +87,9 @@ def reduced_mass(first: float, second: float, meshes: int = 1) -> float:
     first : float
         Relative mass of the pinion, or of the sun [kg/m].
     second : float
-        Of the wheel, or of one planet; infinite for a gear that is fixed [kg/m].
+        Relative mass of the wheel, or of one planet; infinite for a gear that is fixed [kg/m].
     meshes : int
-        Planets round the sun.
+        Number of planets round the sun.
 
     Returns
     -------
@@ -107,29 +107,29 @@ def resonance_speed(stiffness: float, mass: float, teeth: int) -> float:
     stiffness : float
         Mean mesh stiffness per face width, c_gamma_alpha [N/m^2].
     mass : float
-        Reduced one, per face width [kg/m].
+        Reduced mass, per face width [kg/m].
     teeth : int
-        Of the gear.
+        Number of teeth of the gear.
 
     Returns
     -------
     float
-        [rad/s]; n_E1 of ISO 6336-1 is 30 / pi times that.
+        Resonance speed [rad/s]; n_E1 of ISO 6336-1 is 30 / pi times that.
     """
     return sqrt(stiffness / mass) / abs(teeth)
 
 
 def running_in(material: GearMaterial, deviation: float, speed: float) -> float:
-    """How much of a deviation of pitch or profile a gear loses by running in.
+    """Part of a deviation of pitch or profile that a gear loses by running in.
 
     Parameters
     ----------
     material : GearMaterial
-        Of the gear.
+        Material of the gear.
     deviation : float
         Base pitch or profile form deviation [m].
     speed : float
-        At the pitch circle [m/s].
+        Speed at the pitch circle [m/s].
 
     Returns
     -------
@@ -150,7 +150,7 @@ def running_in_relief(first: GearMaterial, second: GearMaterial) -> float:
     Parameters
     ----------
     first, second : GearMaterial
-        Of both gears.
+        Materials of both gears.
 
     Returns
     -------
@@ -199,16 +199,16 @@ def dynamic_factor(
     line_load : float
         F_t K_A K_gamma / b [N/m].
     stiffness : float
-        Of one pair per face width, c' [N/m^2].
+        Stiffness of one pair of teeth per face width, c' [N/m^2].
     contact_ratio : float
-        Total one, epsilon_gamma.
+        Total contact ratio, epsilon_gamma.
     deviations : Deviations
-        Of the pair.
+        Deviations of pitch and profile, and the relief, of the pair.
 
     Returns
     -------
     float
-        At least 1 below resonance: ranges up to N_S, to 1.15, to 1.5, and above.
+        Dynamic factor, at least 1 below resonance: ranges up to N_S, to 1.15, to 1.5, and above.
     """
     B_p = stiffness * deviations.pitch / line_load
     B_f = stiffness * deviations.profile / line_load
@@ -265,7 +265,7 @@ def root_face_factor(K_Hbeta: float, face_width: float, tooth_height: float) -> 
     Parameters
     ----------
     K_Hbeta : float
-        Of the flank.
+        Face load factor of the flank.
     face_width : float
         b [m].
     tooth_height : float
@@ -292,14 +292,14 @@ def transverse_factors(
     stiffness : float
         Mean mesh stiffness per face width, c_gamma_alpha [N/m^2].
     deviation : float
-        Largest base pitch or profile form deviation less running in [m].
+        Maximum base pitch or profile form deviation less running in [m].
     line_load : float
         F_t K_A K_gamma K_v K_Hbeta / b [N/m].
 
     Returns
     -------
     tuple of float
-        Between 1 and what one pair alone would have to carry.
+        K_Halpha and K_Falpha, between 1 and what one pair alone would have to carry.
     """
     gamma, alpha = pair.contact_ratio, pair.transverse_ratio
     spread = stiffness * deviation / line_load

@@ -1,4 +1,4 @@
-"""Transmission error of a mesh in slices: under load, and what of it is left without.
+"""Transmission error of a mesh in slices: under load, and the part that remains without load.
 
 Under the torque T the first gear is ahead by delta(psi), the static transmission error (Harris
 1958). About that state the mesh is a spring of the stiffness k(psi) of all slices in contact with
@@ -27,12 +27,12 @@ class TransmissionError:
     Attributes
     ----------
     force : float
-        Of the mesh [N].
+        Force of the mesh [N].
     static : ndarray, (n,)
         Transmission error under load at phases 0, 1/n, ... from the loaded flank without load and
         modifications [m].
     stiffness : StiffnessTable
-        Of the slices in contact [N/m].
+        Stiffness of the slices in contact [N/m].
     unloaded : ndarray, (n,)
         Free place e at the same phases [m].
     """
@@ -44,7 +44,7 @@ class TransmissionError:
 
     @property
     def ripple(self) -> float:
-        """Static transmission error from its least to its largest value [m]."""
+        """Peak-to-peak static transmission error [m]."""
         return float(np.ptp(self.static))
 
 
@@ -56,13 +56,13 @@ def transmission_error(
     Parameters
     ----------
     mesh : SlicedMesh
-        Of the pair, with its modifications.
+        Pair of gears, its teeth in slices, with its modifications.
     torque : float
-        On the first gear [N m], above zero.
+        Torque on the first gear [N m], above zero.
     motion : array_like, (12,), optional
-        Where the gears are, as of `loaded`.
+        Position of the first and of the second gear, see `loaded` [m, rad].
     phases : int
-        Evenly spaced over a period, from 0.
+        Number of phases, evenly spaced over a period, from 0.
 
     Returns
     -------

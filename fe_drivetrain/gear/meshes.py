@@ -26,9 +26,9 @@ class MeshStiffness:
     Attributes
     ----------
     mean : float
-        Over a period [N/m].
+        Mean stiffness over a period [N/m].
     contact_ratio : float
-        Of the gears; total pairs in contact, on average.
+        Contact ratio of the gears: mean number of pairs in contact.
     cosines, sines : (n,) array
         Coefficients of orders 1 to n [N/m]; empty for a constant stiffness.
     """
@@ -44,12 +44,12 @@ class MeshStiffness:
         Parameters
         ----------
         phase : float or array
-            In periods.
+            Phase in periods.
 
         Returns
         -------
         array
-            [N/m].
+            Stiffness [N/m].
         """
         angle = self._angles(phase)
         return np.asarray(self.mean + np.cos(angle) @ self.cosines + np.sin(angle) @ self.sines)
@@ -60,12 +60,12 @@ class MeshStiffness:
         Parameters
         ----------
         phase : float or array
-            In periods.
+            Phase in periods.
 
         Returns
         -------
         array
-            [N/m per period].
+            Slope [N/m per period].
         """
         angle, orders = self._angles(phase), 2.0 * pi * np.arange(1, len(self.sines) + 1)
         return np.asarray(
@@ -73,17 +73,17 @@ class MeshStiffness:
         )
 
     def delayed(self, phase: float) -> MeshStiffness:
-        """The same mesh, later: its stiffness at t is this one's at t - phase.
+        """Delay the mesh: its stiffness at t is that of this one at t - phase.
 
         Parameters
         ----------
         phase : float
-            In periods.
+            Delay in periods.
 
         Returns
         -------
         MeshStiffness
-            With turned coefficients.
+            Series with turned coefficients.
         """
         turn = 2.0 * pi * phase * np.arange(1, len(self.sines) + 1)
         c, s = np.cos(turn), np.sin(turn)
@@ -105,9 +105,9 @@ class StiffnessTable:
     Attributes
     ----------
     values : (n,) array
-        At phases 0, 1/n, ... (n-1)/n [N/m].
+        Stiffness at phases 0, 1/n, ... (n-1)/n [N/m].
     contact_ratio : float
-        Of the gears.
+        Contact ratio of the gears.
     """
 
     values: Floats
@@ -115,12 +115,12 @@ class StiffnessTable:
 
     @property
     def mean(self) -> float:
-        """Over a period [N/m]."""
+        """Mean stiffness over a period [N/m]."""
         return float(np.mean(self.values))
 
     @property
     def phases(self) -> Floats:
-        """Where the values are [periods]."""
+        """Phases of the values [periods]."""
         return np.arange(len(self.values)) / len(self.values)
 
     def at(self, phase: float | Floats) -> Floats:
@@ -129,12 +129,12 @@ class StiffnessTable:
         Parameters
         ----------
         phase : float or array
-            In periods.
+            Phase in periods.
 
         Returns
         -------
         array
-            [N/m].
+            Stiffness [N/m].
         """
         return np.asarray(np.interp(phase, self.phases, self.values, period=1.0))
 
@@ -144,17 +144,17 @@ class StiffnessTable:
         Parameters
         ----------
         orders : int
-            How many, at most (n - 1) // 2 of n values.
+            Number of orders, at most (n - 1) // 2 of n values.
 
         Returns
         -------
         MeshStiffness
-            With the same mean.
+            Series with the same mean.
 
         Raises
         ------
         InputError
-            If the table has too few values for so many orders.
+            The table has too few values for this number of orders.
         """
         n = len(self.values)
         if not 0 <= orders <= (n - 1) // 2:
@@ -172,11 +172,11 @@ def square_wave(pair_stiffness: float, contact_ratio: float, phase: float | Floa
     Parameters
     ----------
     pair_stiffness : float
-        Of one pair [N/m].
+        Stiffness of one pair of teeth [N/m].
     contact_ratio : float
-        1 or more.
+        Contact ratio, 1 or more.
     phase : float or array
-        In periods; at 0 a pair comes into contact.
+        Phase in periods; at 0 a pair comes into contact.
 
     Returns
     -------
@@ -199,16 +199,16 @@ def square_wave_series(pair_stiffness: float, contact_ratio: float, orders: int)
     Parameters
     ----------
     pair_stiffness : float
-        Of one pair, k / C of the paper [N/m].
+        Stiffness of one pair of teeth, k / C of the paper [N/m].
     contact_ratio : float
-        1 or more.
+        Contact ratio, 1 or more.
     orders : int
-        How many.
+        Number of orders.
 
     Returns
     -------
     MeshStiffness
-        Of mean C times the pair's stiffness.
+        Series whose mean is C times the pair's stiffness.
 
     Raises
     ------
@@ -242,7 +242,7 @@ def mesh_stiffness(pair: Pair, law: Law, points: int = 200, along: int = 2000) -
     pair : Pair
         Spur or helical.
     law : Law
-        Of one pair [N/m^2].
+        Stiffness of one pair of teeth per length of face [N/m^2].
     points : int
         Phases of the table.
     along : int
@@ -251,7 +251,7 @@ def mesh_stiffness(pair: Pair, law: Law, points: int = 200, along: int = 2000) -
     Returns
     -------
     StiffnessTable
-        [N/m].
+        Stiffness of the mesh at `points` phases [N/m].
     """
     path, pitch = pair.path, pair.first.base_pitch
     lag = pair.face_width * abs(tan(pair.first.base_helix))  # of the last slice along the path
@@ -278,7 +278,7 @@ def planet_meshes(
     Parameters
     ----------
     sun, ring : MeshStiffness
-        Of one planet, each with phase 0 where a pair comes into contact.
+        Meshes of one planet, each with phase 0 where a pair comes into contact.
     behind : float
         Delay of a planet's mesh with the ring against that with the sun, `ring_after_sun`.
     phases : (n,) array

@@ -29,12 +29,12 @@ def constant_law(stiffness: float) -> Law:
     Parameters
     ----------
     stiffness : float
-        [N/m^2].
+        Stiffness of a pair of teeth per length of face [N/m^2].
 
     Returns
     -------
     Law
-        Of the place of contact.
+        Stiffness per length of face [N/m^2], as a function of the place of contact.
     """
     return lambda place: np.full(np.shape(place), stiffness)
 
@@ -51,14 +51,14 @@ def parabolic_law(pair: Pair, ratio: float, greatest: float = DIN_3990) -> Law:
     pair : Pair
         Gears in mesh.
     ratio : float
-        SR, least over greatest stiffness, above 0 and up to 1; the thesis prints none.
+        SR, minimum over maximum stiffness, above 0 and up to 1; the thesis prints none.
     greatest : float
         k_max per length of face [N/m^2], 14e9 E / 2.1e11 times a shape factor in the thesis.
 
     Returns
     -------
     Law
-        Of the place of contact.
+        Stiffness per length of face [N/m^2], as a function of the place of contact.
 
     Raises
     ------
@@ -84,9 +84,9 @@ def parabolic_mean(pair: Pair, ratio: float, greatest: float = DIN_3990) -> floa
     pair : Pair
         Gears in mesh.
     ratio : float
-        SR of `parabolic_law`.
+        Ratio SR of `parabolic_law`.
     greatest : float
-        Its k_max [N/m^2].
+        Stiffness k_max of `parabolic_law` [N/m^2].
 
     Returns
     -------
@@ -118,7 +118,7 @@ def cai_law(pair: Pair, greatest: float) -> Law:
     Returns
     -------
     Law
-        Of the place of contact.
+        Stiffness per length of face [N/m^2], as a function of the place of contact.
     """
     path, gear = pair.path, pair.first
     height = abs(gear.tip_radius - gear.root_radius)
@@ -157,12 +157,12 @@ def kuang_yang_tooth(gear: Gear, radius: Floats) -> Floats:
     gear : Gear
         External; a helical one by its virtual teeth.
     radius : (n,) array
-        Where the load acts [m].
+        Radius at which the load acts [m].
 
     Returns
     -------
     (n,) array
-        [N/m^2].
+        Stiffness of the tooth per face width [N/m^2].
 
     Raises
     ------
@@ -192,7 +192,7 @@ def kuang_yang_law(pair: Pair) -> Law:
     Returns
     -------
     Law
-        Of the place of contact.
+        Stiffness per length of face [N/m^2], as a function of the place of contact.
     """
 
     def law(place: Floats) -> Floats:

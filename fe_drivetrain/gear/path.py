@@ -42,9 +42,9 @@ def check_meshing(ratio: float, play: float, teeth: tuple[int, int]) -> None:
     ratio : float
         Total contact ratio, over the path and over the face.
     play : float
-        Along the line of action, in normal modules.
+        Play along the line of action, in normal modules.
     teeth : tuple of int
-        Of the first gear, and of the second with the sign reversed, for the message.
+        Teeth of the first gear, and of the second with the sign reversed, for the message.
 
     Raises
     ------

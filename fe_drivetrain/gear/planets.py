@@ -1,4 +1,4 @@
-"""What the teeth of a planetary stage fix: where planets fit, and the phases of their meshes.
+"""Phases of a planetary stage's meshes, and positions where planets fit, as its teeth fix them.
 
 Phases are delays in periods of the mesh, between 0 and 1, against the first planet: the stiffness
 of planet n's mesh at the time t is that of the first planet's at t - phase (Parker and Lin 2004).
@@ -28,7 +28,7 @@ def equally_spaced(sun: int, ring: int, planets: int) -> bool:
     ring : int
         Teeth of the ring, counted positive.
     planets : int
-        How many.
+        Number of planets.
 
     Returns
     -------
@@ -49,7 +49,7 @@ def assembly_positions(sun: int, ring: int, planets: int) -> Floats:
     ring : int
         Teeth of the ring, counted positive.
     planets : int
-        How many.
+        Number of planets.
 
     Returns
     -------
@@ -122,8 +122,8 @@ def ring_after_sun(sun: Pair, ring: Pair) -> float:
     Returns
     -------
     float
-        By how much the ring's mesh is behind, in periods, between 0 and 1 (gamma_rs of Parker and
-        Lin 2004, there as a lead).
+        Delay of the ring's mesh, in periods, between 0 and 1 (gamma_rs of Parker and Lin 2004,
+        there as a lead).
 
     Raises
     ------
@@ -158,7 +158,7 @@ def sequence(sun: int, ring: int, planets: int) -> str:
     ring : int
         Teeth of the ring, counted positive.
     planets : int
-        How many.
+        Number of planets.
 
     Returns
     -------

@@ -24,12 +24,12 @@ def flank_points(gear: Gear, curvature: Floats) -> Floats:
     gear : Gear
         External.
     curvature : (n,) array
-        [m], that of the form circle to that of the tip circle.
+        Radii of curvature [m], that of the form circle to that of the tip circle.
 
     Returns
     -------
     (n, 2) array
-        [m].
+        Points [m].
     """
     rho = np.asarray(curvature, dtype=np.float64)
     radius = np.hypot(gear.base_radius, rho)
@@ -45,7 +45,7 @@ def flank_normals(gear: Gear, curvature: Floats) -> Floats:
     gear : Gear
         External.
     curvature : (n,) array
-        [m].
+        Radii of curvature [m].
 
     Returns
     -------
@@ -69,12 +69,12 @@ def fillet_points(gear: Gear, count: int = 30) -> Floats:
     gear : Gear
         External spur gear.
     count : int
-        How many points, 2 or more.
+        Number of points, 2 or more.
 
     Returns
     -------
     (count, 2) array
-        [m]: the first on the root circle, the last where the involute begins.
+        Points [m]: the first on the root circle, the last where the involute begins.
 
     Raises
     ------
@@ -121,7 +121,7 @@ def tooth_outline(gear: Gear, count: int = 30) -> Floats:
     Returns
     -------
     (2 count - 1, 2) array
-        [m].
+        Points [m].
     """
     involute = flank_points(gear, np.linspace(gear.form_curvature, gear.tip_curvature, count))
     return np.concatenate([fillet_points(gear, count)[:-1], involute])

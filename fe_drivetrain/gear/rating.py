@@ -34,16 +34,16 @@ from fe_drivetrain.gear.strength import (
 
 @dataclass(frozen=True)
 class Running:
-    """Under what a pair runs.
+    """Operating conditions of a pair.
 
     Attributes
     ----------
     torque : float
-        On the first gear in this mesh [N m].
+        Torque on the first gear in this mesh [N m].
     speed : float
-        Of the first gear, against the carrier in a planetary stage [rad/s].
+        Speed of the first gear, against the carrier in a planetary stage [rad/s].
     viscosity : float
-        Of the oil at 40 degrees [m^2/s].
+        Kinematic viscosity of the oil at 40 degrees Celsius [m^2/s].
     flank_roughness : tuple of float
         R_z of both flanks [m], such as 4.8e-6.
     root_roughness : tuple of float
@@ -84,7 +84,7 @@ class ContactStress:
     nominal : float
         sigma_H0 at the pitch point [Pa].
     at_pitch_point : float
-        With all load factors, sigma_Hw [Pa].
+        Pressure at the pitch point with all load factors, sigma_Hw [Pa].
     stress : tuple of float
         sigma_H of both gears [Pa].
     """
@@ -106,7 +106,7 @@ class RootStress:
     Attributes
     ----------
     root : ToothRoot
-        Its section, with Y_F and Y_S.
+        Root section, with Y_F and Y_S.
     Y_beta, Y_B : float
         Helix and rim factor.
     nominal : float
@@ -162,12 +162,12 @@ def elasticity_factor(first: GearMaterial, second: GearMaterial) -> float:
     Parameters
     ----------
     first, second : GearMaterial
-        Of both gears.
+        Materials of both gears.
 
     Returns
     -------
     float
-        [sqrt(Pa)]; 189.8 sqrt(MPa) of steel on steel.
+        Elasticity factor [sqrt(Pa)]; 189.8 sqrt(MPa) of steel on steel.
     """
     yields = sum((1.0 - m.poisson_ratio**2) / m.youngs_modulus for m in (first, second))
     return sqrt(1.0 / (pi * yields))
@@ -206,11 +206,11 @@ def contact_stress(
     pair : Pair
         Two gears.
     torque : float
-        On the first gear in this mesh [N m].
+        Torque on the first gear in this mesh [N m].
     factors : LoadFactors
-        Of this mesh.
+        Load factors of this mesh.
     materials : tuple of GearMaterial
-        Of both gears.
+        Materials of both gears.
 
     Returns
     -------
@@ -247,7 +247,7 @@ def helix_factor(gear: Gear, overlap_ratio: float) -> float:
     gear : Gear
         One of the pair.
     overlap_ratio : float
-        Of the pair; counts up to 1, the helix angle up to 30 degrees.
+        Overlap ratio of the pair; counts up to 1, the helix angle up to 30 degrees.
 
     Returns
     -------
@@ -307,11 +307,11 @@ def root_stress(
     pair : Pair
         Two gears.
     torque : float
-        On the first gear in this mesh [N m].
+        Torque on the first gear in this mesh [N m].
     factors : LoadFactors
-        Of this mesh.
+        Load factors of this mesh.
     cutter : Cutter, optional
-        Of an internal gear.
+        Tool that makes an internal gear.
     rims : tuple of float or None
         Thickness of the rims [m].
 
@@ -335,7 +335,7 @@ def root_stress(
 
 @dataclass(frozen=True)
 class Endured:
-    """What one gear of a pair endures.
+    """Strength of one gear of a pair.
 
     Attributes
     ----------
@@ -362,7 +362,7 @@ def endured_contact(
     running : Running
         Speed, oil and roughness.
     materials : tuple of GearMaterial
-        Of both gears.
+        Materials of both gears.
     endless : bool
         Whether less than the stress of 1e10 cycles is endured for ever.
 
@@ -411,9 +411,9 @@ def endured_root(
     gear : Gear
         One of the pair.
     root : ToothRoot
-        Its root.
+        Root of the gear.
     material : GearMaterial
-        Its steel.
+        Steel of the gear.
     roughness : float
         R_z of the fillet [m].
     mean_stress : float

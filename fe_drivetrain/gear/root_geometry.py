@@ -1,4 +1,4 @@
-"""Where a tooth would break: critical section, lever arm and fillet by ISO 6336-3, method B.
+"""Critical section, lever arm and fillet of a tooth, where it would break: ISO 6336-3, method B.
 
 Everything is in the normal section, in normal modules. The section is where tangents of 30 degrees
 (internal gears 60) to the tooth's middle touch the fillet that the rack, or the cutter, leaves; the
@@ -44,7 +44,7 @@ class ToothRoot:
     fillet : float
         Radius of the fillet at the critical section, rho_F.
     load_angle : float
-        Between the load and the normal to the tooth's middle, alpha_Fen [rad].
+        Angle between the load and the normal to the tooth's middle, alpha_Fen [rad].
     pressure_angle : float
         Normal one of the rack [rad].
     """
@@ -84,7 +84,7 @@ def tooth_root(gear: Gear, transverse_ratio: float, cutter: Cutter | None = None
     transverse_ratio : float
         Transverse contact ratio of the pair.
     cutter : Cutter, optional
-        Of an internal gear; its tip radius is the fillet of the gear's rack.
+        Tool that makes an internal gear; its tip radius is the fillet of the gear's rack.
 
     Returns
     -------

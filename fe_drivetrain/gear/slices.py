@@ -24,25 +24,25 @@ from fe_drivetrain.gear.involute import Pair
 from fe_drivetrain.gear.pair_stiffness import Law
 
 SLICES = 35
-"""Over the face width, where nothing else is asked for (LaCava; Al-Hamadani 2018, section 5.1)."""
+"""Default number of slices over the face width (LaCava; Al-Hamadani 2018, section 5.1)."""
 
 
 @dataclass(frozen=True)
 class Modifications:
-    """What is taken off the flanks of a pair, along the line of action [m].
+    """Material taken off the flanks of a pair, along the line of action [m].
 
     Attributes
     ----------
     tip_relief : tuple of float
-        At the tips of the first and of the second gear, straight from where it begins.
+        Relief at the tips of the first and of the second gear, straight from where it begins.
     relief_length : tuple of float
-        From where it begins to the tip, along the line of action.
+        Length from where the tip relief begins to the tip, along the line of action.
     crowning : float
-        At both ends of the face, a parabola about its middle.
+        Crowning at both ends of the face, a parabola about its middle.
     end_relief : float
-        At both ends, straight from where it begins.
+        Relief at both ends of the face, straight from where it begins.
     end_length : float
-        From where that begins to the end.
+        Length from where the end relief begins to the end.
     slope : float
         Helix deviation: gap of the driving flank at the end at +x less that at -x; the other flank
         has as much less.
@@ -56,7 +56,7 @@ class Modifications:
     slope: float = 0.0
 
     def gap(self, pair: Pair, place: Floats, x: Floats, driving: bool = True) -> Floats:
-        """Gap that they leave.
+        """Gap that the modifications leave.
 
         Parameters
         ----------
@@ -65,14 +65,14 @@ class Modifications:
         place : ndarray, (n,)
             Distances from T1 along the line of action [m].
         x : ndarray, (n,)
-            From the middle of the face [m].
+            Distances from the middle of the face [m].
         driving : bool
-            Of the driving flank, or of the other.
+            Whether the gap is that of the driving flank, or of the other.
 
         Returns
         -------
         ndarray, (n,)
-            [m].
+            Gap [m].
         """
         path, half = pair.path, 0.5 * pair.face_width
         slope = self.slope if driving else -self.slope
@@ -97,11 +97,12 @@ class SlicedMesh:
     pair : Pair
         Two gears; the sign of the first one's helix counts.
     stiffness : Law
-        Of one pair of teeth per face width, in the transverse plane [N/m^2], of distances from T1.
+        Stiffness of one pair of teeth per face width, in the transverse plane [N/m^2], as a
+        function of distances from T1.
     modifications : Modifications
-        Of both flanks.
+        Modifications of both flanks.
     slices : int
-        Over the face width.
+        Number of slices over the face width.
     backlash : float, optional
         Play along the line of action in the transverse plane [m]; that of the pair's profile shifts
         where left out.
@@ -141,17 +142,17 @@ class Contacts:
     Attributes
     ----------
     rows : ndarray, (m, 12)
-        h of each.
+        Row h of each slice: its approach per motion of the gears, see `contact_rows`.
     stiffness : ndarray, (m,)
-        Along the line of action [N/m].
+        Stiffness of each slice along the line of action [N/m].
     gap : ndarray, (m,)
-        That modifications and half the backlash leave [m].
+        Gap that modifications and half the backlash leave [m].
     place : ndarray, (m,)
         Distance from T1 of its own line of action [m].
     slice : ndarray, (m,)
-        Which slice.
+        Number of the slice.
     tooth : ndarray, (m,)
-        Which pair of teeth, by number.
+        Number of the pair of teeth.
     driving : ndarray, (m,)
         Whether it is the driving flank.
     """
@@ -171,15 +172,14 @@ def contacts(mesh: SlicedMesh, phase: float) -> Contacts:
     Parameters
     ----------
     mesh : SlicedMesh
-        Of the pair.
+        Pair of gears, its teeth in slices.
     phase : float
-        How far the mesh has turned, in periods: at 0 a pair of teeth begins at the middle of the
-        face.
+        Phase of the mesh, in periods: at 0 a pair of teeth begins at the middle of the face.
 
     Returns
     -------
     Contacts
-        Of the flanks that point either way, half the backlash from each.
+        Contacts of the flanks that point either way, half the backlash from each.
     """
     pair, x = mesh.pair, mesh.x
     first, path, pitch = pair.first, pair.path, pair.first.base_pitch
@@ -205,7 +205,7 @@ def contacts(mesh: SlicedMesh, phase: float) -> Contacts:
 
 
 def contact_rows(pair: Pair, place: Floats, x: Floats, driving: bool = True) -> Floats:
-    """How far the flanks approach each other at points of contact, per motion of the gears.
+    """Approach of the flanks at points of contact, per motion of the gears.
 
     Parameters
     ----------
@@ -214,15 +214,15 @@ def contact_rows(pair: Pair, place: Floats, x: Floats, driving: bool = True) -> 
     place : ndarray, (n,)
         Distances from T1 along the line of action [m].
     x : ndarray, (n,)
-        From the middle of the face [m].
+        Distances from the middle of the face [m].
     driving : bool
         Whether the driving flanks touch.
 
     Returns
     -------
     ndarray, (n, 12)
-        Along the line of action in the transverse plane: the base radius stands at the turn of the
-        first gear about its axis. With the base helix, the force has its axial part.
+        Approach along the line of action in the transverse plane: the base radius stands at the
+        turn of the first gear about its axis. With the base helix, the force has its axial part.
     """
     side = 1.0 if driving else -1.0
     angle, r_w = pair.working_angle, pair.working_radii[0]

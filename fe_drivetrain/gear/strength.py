@@ -1,4 +1,4 @@
-"""What gear steels endure: limits, life curves, influence of oil, roughness, hardness and size.
+"""Strength of gear steels: limits, life curves, influence of oil, roughness, hardness and size.
 
 ISO 6336-2 (flanks), -3 (roots) and -5 (limits). The standards were not read: equations stand in
 IACS UR M56 and in public programs, and reproduce factors that KISSsoft 03/2017 prints for
@@ -36,16 +36,17 @@ class GearMaterial:
     root_limit : float
         Nominal root stress endured at the knee, sigma_Flim [Pa]; twice that is sigma_FE.
     yield_strength : float
-        [Pa]; the notch sensitivity of through-hardened steel follows it, which must have it.
+        Yield strength [Pa]; the notch sensitivity of through-hardened steel follows it, which must
+        have it.
     brinell : float
         Hardness of the flank [HB]; counts where a through-hardened gear meets a hard one, which
         must have it.
     youngs_modulus : float
-        [Pa].
+        Young's modulus [Pa].
     poisson_ratio : float
-        [-].
+        Poisson ratio [-].
     density : float
-        [kg/m^3].
+        Density [kg/m^3].
     """
 
     kind: Kind
@@ -110,7 +111,7 @@ class LifeCurve:
         Parameters
         ----------
         cycles : float
-            Of load.
+            Number of load cycles.
 
         Returns
         -------
@@ -128,7 +129,7 @@ class LifeCurve:
         Parameters
         ----------
         stresses : array_like, (n,)
-            In the unit of the curve.
+            Stresses in the unit of the curve.
 
         Returns
         -------
@@ -159,14 +160,14 @@ CONTACT_LIFE: dict[str, tuple[float, float, float]] = {
     "through-hardened": (1e5, 1.6, 5e7),
     "nitrided": (1e5, 1.3, 2e6),
 }
-"""Of Z_NT, where no pitting is allowed: last cycles of the static value, that value, the knee."""
+"""Z_NT, where no pitting is allowed: last cycles of the static value, that value, the knee."""
 
 ROOT_LIFE: dict[str, tuple[float, float, float]] = {
     "case-hardened": (1e3, 2.5, 3e6),
     "through-hardened": (1e4, 2.5, 3e6),
     "nitrided": (1e3, 1.6, 3e6),
 }
-"""Of Y_NT, as `CONTACT_LIFE`."""
+"""Y_NT, with the same three values as `CONTACT_LIFE`."""
 
 
 def life_factor(material: GearMaterial, cycles: float, root: bool = False) -> float:
@@ -175,9 +176,9 @@ def life_factor(material: GearMaterial, cycles: float, root: bool = False) -> fl
     Parameters
     ----------
     material : GearMaterial
-        Of the gear.
+        Material of the gear.
     cycles : float
-        Of load on one flank of a tooth.
+        Load cycles of one flank of a tooth.
     root : bool
         Whether the root is asked for.
 
@@ -198,7 +199,7 @@ def lubricant_factor(contact_limit: float, viscosity: float) -> float:
     contact_limit : float
         sigma_Hlim of the softer gear [Pa].
     viscosity : float
-        Of the oil at 40 degrees [m^2/s].
+        Kinematic viscosity of the oil at 40 degrees Celsius [m^2/s].
 
     Returns
     -------
@@ -217,7 +218,7 @@ def velocity_factor(contact_limit: float, speed: float) -> float:
     contact_limit : float
         sigma_Hlim of the softer gear [Pa].
     speed : float
-        At the reference circle [m/s].
+        Speed at the reference circle [m/s].
 
     Returns
     -------
@@ -238,7 +239,7 @@ def roughness_factor(contact_limit: float, roughness: float, radius: float) -> f
     roughness : float
         Mean R_z of both flanks [m].
     radius : float
-        Of relative curvature at the pitch point, rho_red [m].
+        Radius of relative curvature at the pitch point, rho_red [m].
 
     Returns
     -------
@@ -263,7 +264,7 @@ def hardness_factor(
     Parameters
     ----------
     brinell : float
-        Of the softer gear [HB].
+        Brinell hardness of the softer gear [HB].
     equivalent_roughness : float
         R_zH of the hard one [m], counted from 3 to 16 um.
     static : bool
@@ -272,7 +273,7 @@ def hardness_factor(
     Returns
     -------
     float
-        At least 1.
+        Work hardening factor, at least 1.
     """
     hard = (min(max(brinell, 130.0), 470.0) - 130.0) / 1700.0
     if static:
@@ -291,23 +292,23 @@ def equivalent_roughness(
     hard, soft : float
         R_z of both flanks [m].
     radius : float
-        Of relative curvature [m].
+        Radius of relative curvature [m].
     viscosity : float
-        Of the oil at 40 degrees [m^2/s].
+        Kinematic viscosity of the oil at 40 degrees Celsius [m^2/s].
     speed : float
-        At the reference circle [m/s].
+        Speed at the reference circle [m/s].
 
     Returns
     -------
     float
-        [m].
+        Equivalent roughness R_zH [m].
     """
     film = (1e6 * viscosity * speed / 1500.0) ** 0.33
     return float(hard * (0.01 / radius) ** 0.33 * (hard / soft) ** 0.66 / film)
 
 
 SLIP_LAYERS = ((500e6, 600e6, 800e6, 1000e6), (0.0281, 0.0194, 0.0064, 0.0014))
-"""Of through-hardened steel: yield strength [Pa], slip layer thickness rho' [mm]."""
+"""Yield strength [Pa] and slip layer thickness rho' [mm] of through-hardened steel."""
 
 
 def notch_factor(material: GearMaterial, notch: float) -> float:
@@ -316,7 +317,7 @@ def notch_factor(material: GearMaterial, notch: float) -> float:
     Parameters
     ----------
     material : GearMaterial
-        Of the gear.
+        Material of the gear.
     notch : float
         Notch parameter q_s.
 
@@ -337,7 +338,7 @@ def surface_factor(material: GearMaterial, roughness: float) -> float:
     Parameters
     ----------
     material : GearMaterial
-        Of the gear; through-hardened with a tensile strength of 800 MPa at least.
+        Material of the gear; through-hardened with a tensile strength of 800 MPa at least.
     roughness : float
         R_z of the fillet [m], counted from 1 to 40 um.
 
@@ -358,9 +359,9 @@ def size_factor(material: GearMaterial, normal_module: float) -> float:
     Parameters
     ----------
     material : GearMaterial
-        Of the gear.
+        Material of the gear.
     normal_module : float
-        [m].
+        Normal module [m].
 
     Returns
     -------

@@ -7,7 +7,7 @@ of the history that spreads widest, or two `MOST`-ths of the range of all.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -120,6 +120,20 @@ def added(parts: Sequence[Classes]) -> Classes:
         )
         amount[place] += part.amount
     return Classes(powers, first, amount)
+
+
+def added_by_name(one: Mapping[str, Classes], other: Mapping[str, Classes]) -> dict[str, Classes]:
+    """Distributions of the same names together; those of one alone as they are.
+
+    Parameters
+    ----------
+    one, other : Mapping[str, Classes]
+        By name, over the same quantities.
+    """
+    result = dict(one)
+    for name, classes in other.items():
+        result[name] = added([result[name], classes]) if name in result else classes
+    return result
 
 
 def _coarser(part: Classes, powers: Sequence[int]) -> Classes:

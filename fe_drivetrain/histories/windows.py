@@ -6,6 +6,7 @@ that a campaign asks for (IEC 61400-13).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,6 +35,38 @@ class Windows:
     start: Floats
     seconds: Floats
     values: Floats
+
+    def chosen(self, which: ArrayLike) -> Windows:
+        """Those for which a mask (w,) holds."""
+        mask = np.asarray(which, dtype=bool)
+        return Windows(self.start[mask], self.seconds[mask], self.values[mask])
+
+    def together(self) -> Floats:
+        """(k, 4) least, mean, largest, standard deviation of all samples of all windows."""
+        share = self.seconds / self.seconds.sum()
+        means = self.values[:, :, 1]
+        mean = np.einsum("w,wc->c", share, means)
+        within = np.einsum("w,wc->c", share, self.values[:, :, 3] ** 2)
+        between = np.einsum("w,wc->c", share, (means - mean) ** 2)
+        return np.column_stack(
+            [
+                self.values[:, :, 0].min(0),
+                mean,
+                self.values[:, :, 2].max(0),
+                np.sqrt(within + between),
+            ]
+        )
+
+
+def joined_windows(parts: Sequence[Windows]) -> Windows:
+    """Windows of several histories, one after the other; none where there is no history."""
+    if not parts:
+        return Windows(np.zeros(0), np.zeros(0), np.zeros((0, 0, len(COLUMNS))))
+    return Windows(
+        np.concatenate([one.start for one in parts]),
+        np.concatenate([one.seconds for one in parts]),
+        np.concatenate([one.values for one in parts]),
+    )
 
 
 def window_statistics(time: ArrayLike, samples: ArrayLike, seconds: float = TEN_MINUTES) -> Windows:

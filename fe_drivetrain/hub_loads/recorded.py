@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import os
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -54,6 +55,9 @@ KNOWN = {
 
 _NOTHING_TURNED = ", nothing turned"
 
+Files = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
+"""A file, a folder or a pattern, or several of these."""
+
 OWN_NAMES = ChannelMap()
 """Files whose channels have the names of OpenFAST, or of the tables that are written here."""
 
@@ -80,20 +84,22 @@ class Recorded:
     others: Mapping[str, Floats] = field(default_factory=dict)
 
 
-def recorded_files(patterns: list[str]) -> list[Path]:
-    """Files that several patterns find, each once.
+def recorded_files(files: Files) -> list[Path]:
+    """Files that are named, or found by patterns, each once.
 
     Parameters
     ----------
-    patterns : list of str
-        See `files_of_patterns`.
+    files : str, path, or sequence of these
+        Files, folders, or patterns as "outputs/*.outb": see `files_of_patterns`.
 
     Raises
     ------
     InputError
         None is found, or a file that is named does not exist.
     """
-    return [existing_file(file) for file in files_of_patterns(patterns)]
+    patterns = [files] if isinstance(files, str | os.PathLike) else files
+    found = files_of_patterns([os.fspath(pattern) for pattern in patterns])
+    return [existing_file(file) for file in found]
 
 
 def read_recorded(

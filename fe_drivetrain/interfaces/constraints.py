@@ -29,11 +29,11 @@ class Constraint:
     Attributes
     ----------
     name : str
-        What the rows are, for messages.
+        Name of the rows, for messages.
     rows : sparse.csr_array
         (m, n_dofs) coefficients.
     pivots : Ints
-        (m,) the degree of freedom that each row is solved for.
+        Degree of freedom (m,) that each row is solved for.
     sums : Ints
         Degrees of freedom that the rows bring in: sums over groups of nodes.
     is_mean : bool
@@ -54,9 +54,9 @@ class ReferencePoint:
     Attributes
     ----------
     name : str
-        What the point is: "hub", "gearbox", ...
+        Name of the point: "hub", "gearbox", ...
     position : Floats
-        (3,) [m].
+        Position (3,) [m].
     motion : sparse.csr_array
         (6, n_dofs): displacement [m] and rotation [rad] of the point from all degrees of freedom.
         Its transpose spreads a force and a moment at the point over the degrees of freedom.
@@ -101,11 +101,11 @@ def sliding_sphere(
     Parameters
     ----------
     inner, outer : Ints
-        (n,) nodes of the convex and of the concave side, pairwise at the same place.
+        Nodes (n,) of the convex and of the concave side, pairwise at the same place.
     points : Floats
         (n_nodes, 3) node coordinates [m].
     centre : Floats
-        (3,) centre of the sphere [m].
+        Centre (3,) of the sphere [m].
     """
     normal = points[outer] - centre
     normal /= np.linalg.norm(normal, axis=1)[:, None]
@@ -134,11 +134,11 @@ def averaged_sphere(
     Parameters
     ----------
     inner, outer : Ints
-        (n,) nodes of the convex and of the concave side.
+        Nodes (n,) of the convex and of the concave side.
     inner_weights, outer_weights : Floats
         Integrals of the shape functions over the face at those nodes [m^2].
     groups : Ints
-        (2 n,) group number from 0 on of each node, inner ones first.
+        Group number (2 n,) from 0 on of each node, inner ones first.
     first_dof : int
         First of the 3 n_groups degrees of freedom that are the groups' sums.
     """
@@ -196,11 +196,11 @@ def centred_weights(weights: Floats, points: Floats, centre: Floats) -> Floats:
     Parameters
     ----------
     weights : Floats
-        (n,) integrals of the shape functions over the face [m^2].
+        Integrals (n,) of the shape functions over the face [m^2].
     points : Floats
-        (n, 3) [m].
+        Nodes (n, 3) [m].
     centre : Floats
-        (3,) [m].
+        Centre (3,) [m].
     """
     r = points - centre
     tilt = np.linalg.solve(np.einsum("n,ni,nj->ij", weights, r, r), -(weights @ r))
@@ -217,9 +217,9 @@ def shared_motion(
     Parameters
     ----------
     name, position : str, Floats
-        Of the point that moves so.
+        Name and position (3,) of the point that moves so [m].
     motion : sparse.csr_array
-        (6, n_dofs) the motion from the nodes' displacements.
+        Motion (6, n_dofs) from the nodes' displacements.
     groups : Sequence[Ints]
         Nodes of each group; together all that the motion has, none of them twice.
     first : int
@@ -282,13 +282,13 @@ def averaged_point(
     Parameters
     ----------
     nodes : Ints
-        (n,) nodes of the face.
+        Nodes (n,) of the face.
     weights : Floats
-        (n,) integrals of the shape functions over the face [m^2].
+        Integrals (n,) of the shape functions over the face [m^2].
     points : Floats
         (n_nodes, 3) node coordinates [m].
     position : Floats
-        (3,) where the point is [m].
+        Position (3,) of the point [m].
     """
     w = weights / weights.sum()
     motions = rigid_motions(points[nodes], position)
@@ -307,9 +307,9 @@ class Elimination:
     T : sparse.csr_array
         (n_dofs, n_dofs); the columns of eliminated degrees of freedom are empty.
     free : NDArray[np.bool_]
-        (n_dofs,) which degrees of freedom are left.
+        Flags (n_dofs,): degrees of freedom that are left.
     constraints : tuple[Constraint, ...]
-        What was eliminated.
+        Constraints that were eliminated.
     """
 
     T: sparse.csr_array

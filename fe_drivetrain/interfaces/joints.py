@@ -42,7 +42,7 @@ class Joint:
     Attributes
     ----------
     constraints : tuple[Constraint, ...]
-        Its rows.
+        Constraints of the joint.
     springs : tuple[tuple[ReferencePoint, Floats], ...]
         Relative motions of bearing against housing, and their (6, 6) stiffness.
     """
@@ -52,14 +52,14 @@ class Joint:
 
 
 def in_series(first: Floats, second: Floats) -> Floats:
-    """Two springs one behind the other; the second may be rigid or free in some motions.
+    """Two springs in series; the second may be rigid or free in some motions.
 
     Parameters
     ----------
     first : Floats
-        (6 k, 6 k) of k bearings, positive definite.
+        Stiffness (6 k, 6 k) of k bearings, positive definite.
     second : Floats
-        (6 k, 6 k), (6, 6) as of `joint_stiffness` for each of them.
+        Stiffness (6 k, 6 k), or (6, 6) for each of them, see `joint_stiffness`.
     """
     series = np.zeros(first.shape)
     rigid = np.isinf(second.diagonal())
@@ -83,11 +83,11 @@ def spring_joint(unit: BearingUnit, mesh: Mesh, first_dof: int, n_dofs: int) -> 
     Parameters
     ----------
     unit, mesh : BearingUnit, Mesh
-        Of interface "spring".
+        Bearing unit with interface "spring", and the mesh.
     first_dof : int
         First of 6 `SECTORS` degrees of freedom, the sectors' shares of the relative motion.
     n_dofs : int
-        Of the model.
+        Number of degrees of freedom of the model.
     """
     name = f"{unit.bearing.name}.joint"
     centre = np.array([unit.bearing.x, 0.0, 0.0])
@@ -116,16 +116,16 @@ def condensed_joint(unit: BearingUnit, mesh: Mesh, first_dof: int, n_dofs: int) 
     Parameters
     ----------
     unit, mesh : BearingUnit, Mesh
-        Of a condensed housing; the bearing's outer face is free.
+        Bearing unit with a condensed housing, and the mesh; the bearing's outer face is free.
     first_dof : int
         First of 6 `SECTORS` degrees of freedom, the sectors' shares of the mean motion.
     n_dofs : int
-        Of the model.
+        Number of degrees of freedom of the model.
 
     Returns
     -------
     Joint
-        The one spring is to ground, at "NAME.ground".
+        Joint whose one spring is to ground, at "NAME.ground".
     """
     assert unit.condensed is not None
     name, centre = f"{unit.bearing.name}.ground", np.array([unit.bearing.x, 0.0, 0.0])
@@ -143,25 +143,25 @@ def condensed_joint(unit: BearingUnit, mesh: Mesh, first_dof: int, n_dofs: int) 
 def nose_joint(
     bearing: NoseBearing, mesh: Mesh, first_dof: int, n_dofs: int
 ) -> tuple[Constraint, ReferencePoint]:
-    """How the shaft moves against its nose at a bearing: the mean motions of the two faces.
+    """Motion of the shaft against its nose at a bearing: the mean motions of the two faces.
 
     Parameters
     ----------
     bearing : NoseBearing
         The bearing.
     mesh : Mesh
-        With shaft and nose.
+        Mesh with shaft and nose.
     first_dof : int
         First of 6 `SECTORS` degrees of freedom, the sectors' shares of the relative motion.
     n_dofs : int
-        Of the model.
+        Number of degrees of freedom of the model.
 
     Returns
     -------
     Constraint
-        What the shares are.
+        Constraint that defines the shares.
     ReferencePoint
-        "NAME.joint", for the bearing's springs and holds.
+        Reference point "NAME.joint", for the bearing's springs and holds.
     """
     name, centre = f"{bearing.name}.joint", np.array([bearing.x, 0.0, 0.0])
     motion, nodes = sparse.csr_array((6, n_dofs)), []
@@ -192,9 +192,9 @@ def roller_joint(unit: BearingUnit, mesh: Mesh, n_dofs: int) -> Joint:
     Parameters
     ----------
     unit, mesh : BearingUnit, Mesh
-        Of interface "rollers".
+        Bearing unit with interface "rollers", and the mesh.
     n_dofs : int
-        Of the model.
+        Number of degrees of freedom of the model.
     """
     rollers, bearing = rollers_of(unit), unit.bearing
     places, ways = roller_contacts(unit)
@@ -236,9 +236,9 @@ def roller_loads(unit: BearingUnit, motions: Mapping[str, Floats]) -> Floats:
     Parameters
     ----------
     unit : BearingUnit
-        Of interface "rollers".
+        Bearing unit with interface "rollers".
     motions : Mapping[str, Floats]
-        (6, m) of "NAME.roller K", of bearing against housing.
+        Motions (6, m) of "NAME.roller K", of bearing against housing.
 
     Returns
     -------

@@ -38,10 +38,10 @@ class WeakMotion:
     Attributes
     ----------
     description : str
-        What moves and how, as in "shaft can nearly turn about x through (0, 0, 0) m".
+        Sentence on what moves and how, as in "shaft can nearly turn about x through (0, 0, 0) m".
     ratio : float
         Work of the springs over that of a spring of the bodies' own scale, Young's modulus times
-        length, which is stretched by the largest displacement anywhere in the body.
+        length, which is stretched by the maximum displacement anywhere in the body.
     """
 
     description: str
@@ -67,17 +67,17 @@ class _StrainFree:
     Attributes
     ----------
     motions : Floats
-        (n_dofs, 6 n_bodies + n_extra) displacements; turning is measured by its `length`.
+        Displacements (n_dofs, 6 n_bodies + n_extra); turning is measured by its `length`.
     body_of_node : Ints
-        (n_nodes,).
+        Body (n_nodes,) of each node.
     names : list[tuple[str, ...]]
-        Of the parts of each body.
+        Names of the parts of each body.
     centres : Floats
-        (n_bodies, 3) that the bodies turn about [m].
+        Centres (n_bodies, 3) that the bodies turn about [m].
     length : float
-        Turning by 1 / length moves the far end of the scene by about one [m].
+        Length [m]: turning by 1 / length moves the far end of the scene by about one.
     extents : Floats
-        (n_bodies,) largest dimension of each body [m].
+        Maximum dimension (n_bodies,) of each body [m].
     """
 
     motions: Floats
@@ -88,7 +88,7 @@ class _StrainFree:
     extents: Floats
 
     def largest(self, motion: Floats) -> Floats:
-        """(n_bodies,) largest displacement of any node of each body in a motion (m,)."""
+        """Maximum displacement (n_bodies,) of any node of each body in a motion (m,)."""
         moved = (self.motions @ motion)[: 3 * len(self.body_of_node)].reshape(-1, 3)
         found = np.zeros(len(self.names))
         np.maximum.at(found, self.body_of_node, np.linalg.norm(moved, axis=1))
@@ -167,16 +167,16 @@ def weak_restraints(
     Parameters
     ----------
     mesh, constraints, springs : Mesh, Sequence[Constraint], Sequence[tuple[ReferencePoint, Floats]]
-        As for `find_mechanisms`; the scene is no mechanism.
+        Arguments of `find_mechanisms`; the scene is no mechanism.
     moduli : Mapping[str, float]
-        Young's modulus of each part [Pa]; of a body of several parts the largest counts.
+        Young's modulus of each part [Pa]; of a body of several parts the maximum counts.
     below : float
         Ratio of the restraint to the bodies' own stiffness that a motion must be below.
 
     Returns
     -------
     motions
-        The weakest restraint first.
+        Weak motions, in ascending order of restraint.
     """
     if not springs:
         return []

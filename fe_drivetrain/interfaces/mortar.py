@@ -95,11 +95,11 @@ def mortar_tie(
     Parameters
     ----------
     name : str
-        What is tied, for messages.
+        Name of the tie, for messages.
     points : Floats
-        (n, 3) node coordinates [m].
+        Node coordinates (n, 3) [m].
     slave, master : Ints
-        (nf, k) facets in VTK's order, turned outward: triangles of 3 or 6, quadrilaterals of 4, 8
+        Facets (nf, k) in VTK's order, turned outward: triangles of 3 or 6, quadrilaterals of 4, 8
         or 9 nodes. The master face covers all of the slave face; it may be larger.
     n_dofs : int
         Degrees of freedom of the whole model, three a node first.
@@ -163,7 +163,7 @@ def node_tie(name: str, points: Floats, slave: Ints, master: Ints, n_dofs: int) 
     Parameters
     ----------
     name, points, slave, master, n_dofs : str, Floats, Ints, Ints, int
-        As for `mortar_tie`.
+        Arguments of `mortar_tie`.
 
     Raises
     ------
@@ -173,7 +173,7 @@ def node_tie(name: str, points: Floats, slave: Ints, master: Ints, n_dofs: int) 
     Warns
     -----
     UserWarning
-        As `mortar_tie`.
+        The slave is coarser than the master, or the faces lie apart; see `mortar_tie`.
     """
     nodes, rows, columns = _numbered(name, slave, master)
     _warn_of_coarse_slave(name, points, slave, master)
@@ -189,7 +189,7 @@ def node_tie(name: str, points: Floats, slave: Ints, master: Ints, n_dofs: int) 
     beyond = at.coordinates.sum(axis=0) if master.shape[1] in (3, 6) else at.coordinates.max(axis=0)
     outside = np.maximum(outside, beyond - 1.0)
     outside[~(np.abs(at.distance) < REACH * radii[facet])] = np.inf
-    # Of the facets about a node the one that it lies in, or least outside of.
+    # the facet about a node that it lies in, or is nearest to
     order = np.lexsort((outside, node))
     found, first = np.unique(node[order], return_index=True)
     best = order[first]
@@ -204,7 +204,7 @@ def node_tie(name: str, points: Floats, slave: Ints, master: Ints, n_dofs: int) 
 
 
 def settled(points: Floats, *ties: Constraint) -> Floats:
-    """The points with slave nodes moved to where the ties see the master face.
+    """Move slave nodes to where the ties see the master face, and return all points.
 
     Facets of two meshes of a curved surface lie a little apart, and a tie across that gap resists
     rotation. Moved by it (of curved quadratic facets the cube of their size), the nodes fulfil the
@@ -214,14 +214,14 @@ def settled(points: Floats, *ties: Constraint) -> Floats:
     Parameters
     ----------
     points : Floats
-        (n, 3) node coordinates [m], as the ties were made with.
+        Node coordinates (n, 3) [m], as the ties were made with.
     *ties : Constraint
-        Of `mortar_tie` or `node_tie`.
+        Ties from `mortar_tie` or `node_tie`.
 
     Returns
     -------
     points
-        (n, 3) [m]. The ties hold for them as they are.
+        Points (n, 3) [m]. The ties hold for them as they are.
     """
     moved = points.astype(float).ravel()
     for tie in ties:
@@ -254,8 +254,8 @@ def _warn_of_coarse_slave(name: str, points: Floats, slave: Ints, master: Ints) 
     if others > _FINER * own:
         warnings.warn(
             f"tie {name!r}: the master face has {others / own:.3g} times as many nodes to an area "
-            f"as the slave, but {_FINER:g} times is as much as is sound: take the finer face as "
-            "the slave, else stress beside the tie may be wrong and all nodes of the master are "
+            f"as the slave, but must have at most {_FINER:g} times: take the finer face as the "
+            "slave, else stress beside the tie may be wrong and all nodes of the master are "
             "coupled with one another",
             stacklevel=3,
         )

@@ -23,7 +23,7 @@ _STEP = 1e-12  # of a facet: Newton's last step, which squares itself once more
 _STEPS = 20
 _DEGREE = {3: 1, 6: 2, 4: 2, 8: 3, 9: 4}  # of the shape functions on a straight facet
 _DIVISIONS = 8  # of half an edge: of what lies beyond half chords a sixty-fourth is left out
-# Of what lies between an arc of up to 60 degrees and its chord, a parabola misses as much whose
+# Share of what lies between an arc of up to 60 degrees and its chord that a parabola misses whose
 # middle node is off the middle by a quarter of the way to an end, as optimised meshes may have it.
 _OFF_MIDDLE = 0.14
 _OUTLINE = {
@@ -37,17 +37,17 @@ _OUTLINE = {
 
 @dataclass(frozen=True)
 class Pieces:
-    """What slave and master facets have in common, piece by piece.
+    """Common pieces of slave and master facets.
 
     Attributes
     ----------
     slave, master : Ints
-        (n,) facets.
+        Facets (n,) of both faces.
     area : Floats
-        (n,) [m^2].
+        Area (n,) [m^2].
     own, across : Floats
-        (n, k, k) and (n, k, l): integrals of products of the slave's shape functions with
-        themselves and with the master's [m^2].
+        Integrals (n, k, k) and (n, k, l) of products of the slave's shape functions with themselves
+        and with the master's [m^2].
     """
 
     slave: Ints
@@ -175,12 +175,12 @@ def _cut(polygons: Floats) -> tuple[Ints, Floats]:
     Parameters
     ----------
     polygons : Floats
-        (n, v, 2), anticlockwise.
+        Polygons (n, v, 2), anticlockwise.
 
     Returns
     -------
     polygon, triangles
-        (m,) which polygon each comes from, and (m, 3, 2).
+        Number (m,) of the polygon that each comes from, and triangles (m, 3, 2).
     """
     number = np.arange(len(polygons))
     for side in range(3):
@@ -208,7 +208,8 @@ def _halved(polygons: Floats, inside: Floats) -> tuple[Floats, Ints]:
     Returns
     -------
     polygons, corners
-        (n, w, 2), of which the last corner is repeated where there are fewer, and how many.
+        Polygons (n, w, 2), whose last corner is repeated where there are fewer, and numbers of
+        corners.
     """
     following, then = np.roll(polygons, -1, axis=1), np.roll(inside, -1, axis=1)
     crosses = (inside > 0.0) != (then > 0.0)
@@ -294,7 +295,7 @@ class OppositePoints:
 
 
 def opposite_points(kind: FacetKind, nodes: Floats, x: Floats, direction: Floats) -> OppositePoints:
-    """Where lines from x (q, 3) meet facets with these nodes (q, k, 3): Newton's method."""
+    """Points where lines from x (q, 3) meet facets with these nodes (q, k, 3): Newton's method."""
     at = np.repeat(kind.places.mean(axis=0)[:, None], len(x), axis=1)
     distance = np.zeros(len(x))
     for _ in range(_STEPS):
@@ -352,16 +353,16 @@ def _bulges(points: Floats, facets: Ints, outward: bool) -> tuple[Ints, Floats]:
     Parameters
     ----------
     points : Floats
-        (n, 3) nodes [m].
+        Nodes (n, 3) [m].
     facets : Ints
-        (nf, k) the face.
+        Facets (nf, k) of the face.
     outward : bool
         Chords of edges that bulge outward and half chords of others, or the other way round.
 
     Returns
     -------
     owner, triangles
-        (m,) facets, and (m, 3, 3) corners, turned as the facets [m].
+        Facets (m,), and corners (m, 3, 3), turned as the facets [m].
     """
     if facets.shape[1] in (3, 4):
         return np.zeros(0, dtype=np.int64), np.zeros((0, 3, 3))

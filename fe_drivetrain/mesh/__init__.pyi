@@ -1,5 +1,3 @@
-from .adaptivity import marked as marked
-from .adaptivity import refined_sizes as refined_sizes
 from .blocks import FACES as FACES
 from .blocks import Block as Block
 from .blocks import brick as brick

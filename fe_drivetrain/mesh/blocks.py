@@ -32,7 +32,7 @@ class Block:
     Attributes
     ----------
     points : Floats
-        (n, 3) [m].
+        Nodes (n, 3) [m].
     cells : Ints
         (n_cells, k) node numbers in VTK's order.
     faces : dict[str, Ints]
@@ -62,14 +62,15 @@ def brick(
     Parameters
     ----------
     divisions : tuple[int, int, int]
-        Hexahedra along each direction.
+        Numbers of hexahedra along each direction.
     nodes : int
-        Of each element: hexahedra of 8, 20 or 27, or tetrahedra of 4 or 10, six in each hexahedron.
+        Number of nodes of each element: hexahedra of 8, 20 or 27, or tetrahedra of 4 or 10, six in
+        each hexahedron.
     shape : callable or None
-        Of (n, 3) places in the unit cube: (n, 3) positions [m], right-handed.
+        Function from places (n, 3) in the unit cube to positions (n, 3) [m], right-handed.
     edges : Sequence[ArrayLike or None]
-        For each direction the places of the elements' boundaries, from 0 to 1, in place of
-        divisions of equal length.
+        Places of the elements' boundaries for each direction, from 0 to 1, in place of divisions of
+        equal length.
 
     Raises
     ------

@@ -31,25 +31,25 @@ def cached_mesh(
     cache: Cache | None = None,
     bands: Mapping[str, Band] = NO_BANDS,
 ) -> Mesh:
-    """The mesh of these parts, taken from the cache where it was generated before.
+    """Mesh of these parts, taken from the cache where it was generated before.
 
     Parameters
     ----------
     shaft, bearings, housings, sizes, bonded, bands : see `fe_drivetrain.mesh.generation.generate`
-        As there.
+        Arguments of `fe_drivetrain.mesh.generation.generate`.
     cache : Cache or None
-        The user's if not given.
+        Cache of meshes; the user's if not given.
 
     Returns
     -------
     Mesh
-        The same to the last bit, with the same layout in memory, whether kept or generated now;
-        its ``kept`` says which.
+        Mesh, the same to the last bit, with the same layout in memory, whether kept or generated
+        now; its ``kept`` says which.
 
     Raises
     ------
     InputError
-        As `fe_drivetrain.mesh.generation.generate`.
+        The parts do not fit together, or an element stays inverted.
     """
     used = user_cache() if cache is None else cache
     content = mesh_content(shaft, bearings, housings, sizes, bonded, bands)

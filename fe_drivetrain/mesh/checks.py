@@ -41,13 +41,13 @@ class Fault:
     part : str
         Name of the part.
     count : int
-        How many elements, nodes or facets have it.
+        Number of elements, nodes or facets that have it.
     element : int
         The first element that has it, as `Mesh.cells` numbers them; -1 where it is none.
     place : tuple[float, float, float]
-        Where it is, m; of an element its centre.
+        Place of the fault, m; of an element its centre.
     sentence : str
-        What is wrong, where, and how to fix it.
+        Sentence that says what is wrong, where, and how to fix it.
     """
 
     kind: str
@@ -59,7 +59,7 @@ class Fault:
 
 
 def refuse_unsound(mesh: Mesh, faces: Iterable[str] = (), joints: Joints | None = None) -> None:
-    """Refuse a mesh that has a fault; arguments as of `find_faults`.
+    """Refuse a mesh that has a fault; arguments of `find_faults`.
 
     Raises
     ------
@@ -78,7 +78,7 @@ def find_faults(mesh: Mesh, faces: Iterable[str] = (), joints: Joints | None = N
     Parameters
     ----------
     mesh : Mesh
-        Any.
+        Mesh of any kind.
     faces : Iterable[str]
         Names of the faces that loads, supports and interfaces need.
     joints : Joints or None
@@ -108,7 +108,7 @@ def find_faults(mesh: Mesh, faces: Iterable[str] = (), joints: Joints | None = N
 
 
 def flatness(points: Floats, cells: Ints) -> Floats:
-    """Least height of each tetrahedron over its longest edge, of its corners alone, (ne,).
+    """Minimum height of each tetrahedron over its longest edge, of its corners alone, (ne,).
 
     0.816 of the regular one, 0 of a flat one; negative where it is turned inside out.
     """
@@ -240,7 +240,7 @@ def _flat(mesh: Mesh) -> list[Fault]:
         mesh,
         "flat",
         np.flatnonzero(flat < FLATTEST),
-        f"are flatter than {FLATTEST:g} (least height over longest edge; the worst "
+        f"are flatter than {FLATTEST:g} (minimum height over longest edge; the worst "
         f"{flat.min():.1g})",
         "let the mesher optimise them away, or make the mesh finer there",
     )

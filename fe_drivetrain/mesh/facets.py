@@ -44,7 +44,7 @@ class FacetKind(Nodal):
     Attributes
     ----------
     degree : int
-        Of a quadrature that is exact to round-off for smooth loads on curved facets.
+        Degree of a quadrature that is exact to round-off for smooth loads on curved facets.
     """
 
     degree: int
@@ -52,7 +52,7 @@ class FacetKind(Nodal):
 
 @cache
 def facet_kind(n_nodes: int) -> FacetKind:
-    """The facet with so many nodes: triangles with 3 and 6, quadrilaterals with 4, 8 and 9.
+    """Facet with that number of nodes: triangles with 3 and 6, quadrilaterals with 4, 8 and 9.
 
     Raises
     ------
@@ -74,7 +74,7 @@ def facet_kind(n_nodes: int) -> FacetKind:
 
 @cache
 def local_facets(n_nodes: int) -> Ints:
-    """(n_facets, k) local nodes of the facets of a cell with so many nodes, turned outward."""
+    """Local nodes (n_facets, k) of a cell's facets, by its number of nodes, turned outward."""
     if element_kind(n_nodes).n_corners == 4:
         return _TETRAHEDRON[:, : 3 if n_nodes == 4 else 6]
     middle = {frozenset(edge): 8 + k for k, edge in enumerate(HEXAHEDRON_EDGES)}
@@ -109,7 +109,7 @@ class FacetPoints:
     normals : Floats
         (n_facets, n_q, 3) unit normals, outward.
     areas : Floats
-        (n_facets, n_q) what each point weighs [m^2].
+        Weight (n_facets, n_q) of each point [m^2].
     """
 
     values: Floats
@@ -124,11 +124,11 @@ def facet_points(points: Floats, facets: Ints, degree: int | None = None) -> Fac
     Parameters
     ----------
     points : Floats
-        (n, 3) node coordinates [m].
+        Node coordinates (n, 3) [m].
     facets : Ints
-        (n_facets, k) node numbers in VTK's order, turned outward.
+        Node numbers (n_facets, k) in VTK's order, turned outward.
     degree : int or None
-        Of the quadrature; that of the kind where not given.
+        Degree of the quadrature; that of the kind where not given.
     """
     check_nodes(facets, len(points), "facet")
     kind = facet_kind(facets.shape[1])
@@ -152,7 +152,7 @@ def face_weights(points: Floats, facets: Ints, n_nodes: int, degree: int | None 
     Parameters
     ----------
     points, facets, degree : Floats, Ints, int or None
-        As for `facet_points`.
+        Arguments of `facet_points`.
     n_nodes : int
         Length of the result.
     """
@@ -168,7 +168,7 @@ def volume_weights(points: Floats, cells: Ints, n_nodes: int) -> Floats:
     Parameters
     ----------
     points : Floats
-        (n, 3) node coordinates [m].
+        Node coordinates (n, 3) [m].
     cells : Ints
         (n_cells, k) node numbers in VTK's order.
     n_nodes : int

@@ -38,7 +38,7 @@ DEFAULT_SIZES = MeshSizes()
 ATTEMPTS = 4
 
 REFINEMENT = 1.3
-"""Where elements fold over, the mesh of that kind of part is refined so much, and tried again."""
+"""Refinement factor for a kind of part whose elements fold over, before it is meshed again."""
 
 
 def generate(
@@ -58,14 +58,14 @@ def generate(
     Parameters
     ----------
     shaft, bearings, housings, sizes, bonded, bands : see `fe_drivetrain.geometry.build`
-        As there.
+        Parts and sizes, as `fe_drivetrain.geometry.build` takes them.
     local : LocalSizes or None
-        Smaller sizes where they are wanted, see `fe_drivetrain.mesh.adaptivity`.
+        Smaller sizes where they are wanted.
 
     Returns
     -------
     Mesh
-        Every element valid everywhere inside.
+        Mesh in which every element is valid everywhere inside.
 
     Raises
     ------
@@ -107,9 +107,9 @@ def relax_flat_cells(mesh: Mesh, floor: float = 0.05, passes: int = 4) -> Mesh:
 
     Where a cell has two facets on one smooth surface, or lies across a sharp fillet, curving its
     edges to the surface can fold it. Its mid-side nodes are then drawn half way towards the
-    straight edge, again and again, until it is sound; the shape gives way there by a fraction of
+    straight edge, again and again, until it is sound; the shape changes there by a fraction of
     an edge's sagitta. Nodes of seats, joints and bases stay exactly where they are; the ends and
-    the bore of the shaft may give way like any other surface.
+    the bore of the shaft may change like any other surface.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def relax_flat_cells(mesh: Mesh, floor: float = 0.05, passes: int = 4) -> Mesh:
     floor : float
         Cells of a smaller scaled Jacobian are relaxed.
     passes : int
-        How often at most; each halves what curvature is left.
+        Maximum number of passes; each halves the curvature that is left.
     """
     points, moves = mesh.points.copy(), np.ones(len(mesh.points), dtype=bool)
     for name in set(mesh.faces) - {"shaft.front", "shaft.rear", "shaft.bore"}:

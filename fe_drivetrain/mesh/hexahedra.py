@@ -53,9 +53,9 @@ class Hexahedra:
     Attributes
     ----------
     points : Floats
-        (n, 3), m.
+        Nodes (n, 3), m.
     cells : Ints
-        (ne, 8), (ne, 20) or (ne, 27) node ids in VTK's order.
+        Node ids (ne, 8), (ne, 20) or (ne, 27) in VTK's order.
     front, rear : Ints
         Ids of the nodes of the two end faces, ascending.
     seats : dict[str, Ints]
@@ -84,17 +84,18 @@ def shaft_hexahedra(
     Parameters
     ----------
     shaft : Shaft
-        Without fillets; bored or solid, stepped, tapered, with a flange or without.
+        Shaft without fillets; bored or solid, stepped, tapered, with a flange or without.
     size : float
-        Largest length of an element along x and along the radius, m.
+        Maximum length of an element along x and along the radius, m.
     nodes : Nodes
-        Of each element: 8, 20 or 27.
+        Number of nodes of each element: 8, 20 or 27.
     elements_per_turn : int
-        Elements round the axis, a multiple of 4 where a length of the shaft is solid.
+        Number of elements round the axis, a multiple of 4 where a length of the shaft is solid.
     refinement : int
-        Every element of the mesh for 1 is cut into so many along each of its three directions.
+        Number of parts that every element of the mesh for 1 is cut into along each of its three
+        directions.
     grading : Grading
-        Thinner layers at edges where stress is singular.
+        Grading: thinner layers at edges where stress is singular.
     seats : Mapping[str, tuple[float, float]] or None
         Ranges (low, high) of x of bearing seats by name, m; each gets its own nodes.
 

@@ -16,9 +16,9 @@ class Renumbered(NamedTuple):
     Attributes
     ----------
     points : Floats
-        (n, 3), m.
+        Nodes (n, 3), m.
     cells : Ints
-        (ne, nodes of a cell) node ids.
+        Node ids (ne, nodes of a cell).
     number : Ints
         (n_before,) new id of each node of the mesh before, -1 for those left out.
     """
@@ -39,9 +39,9 @@ def straightened(points: Floats, cells: Ints) -> Floats:
     Parameters
     ----------
     points : Floats
-        (n, 3), m.
+        Nodes (n, 3), m.
     cells : Ints
-        (ne, k) node ids in VTK's order.
+        Node ids (ne, k) in VTK's order.
 
     Returns
     -------
@@ -66,9 +66,9 @@ def first_order(points: Floats, cells: Ints) -> Renumbered:
     Parameters
     ----------
     points : Floats
-        (n, 3), m.
+        Nodes (n, 3), m.
     cells : Ints
-        (ne, k) node ids in VTK's order.
+        Node ids (ne, k) in VTK's order.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""From the reference element to its place: of numpy alone, for processes that have no more."""
+"""Mapping from the reference element to its place: numpy alone, for processes with no more."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def jacobian(points: Floats, cells: Ints, gradients: Floats) -> tuple[Floats, Fl
     Parameters
     ----------
     points : Floats
-        (n, 3) node coordinates [m].
+        Node coordinates (n, 3) [m].
     cells : Ints
         (n_cells, n_nodes) node numbers.
     gradients : Floats

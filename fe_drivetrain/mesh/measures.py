@@ -67,11 +67,11 @@ def jacobians(points: Floats, cells: Ints, at: Floats = CUBIC) -> Floats:
     Parameters
     ----------
     points : Floats
-        (n, 3), m.
+        Nodes (n, 3), m.
     cells : Ints
-        (ne, 10) node ids.
+        Node ids (ne, 10).
     at : Floats
-        (q, 4) barycentric coordinates.
+        Barycentric coordinates (q, 4).
 
     Returns
     -------
@@ -104,7 +104,7 @@ def inverted_cells(mesh: Mesh, depth: int = 3) -> Ints:
     Parameters
     ----------
     depth : int
-        How often an undecided element is split.
+        Maximum number of times that an undecided element is split.
 
     Returns
     -------
@@ -141,18 +141,18 @@ def inverted_cells(mesh: Mesh, depth: int = 3) -> Ints:
 
 @dataclass(frozen=True)
 class MeshQuality:
-    """How well shaped a mesh is.
+    """Shape quality of a mesh.
 
     Attributes
     ----------
     minimum_scaled_jacobian : float
-        Least ratio of the Jacobian in a curved element to that of the straight-sided element
+        Minimum ratio of the Jacobian in a curved element to that of the straight-sided element
         with the same corners: 1 where every edge is straight, 0 or less where an element folds
         over (gmsh's minSJ). Sampled at the 20 points of the cubic lattice.
     minimum_scaled_jacobian_of : dict[str, float]
-        The same, part by part.
+        Minimum of each part by its name.
     elements, nodes : int
-        Their numbers.
+        Numbers of elements and nodes.
     inverted : int
         Number of elements not proved valid everywhere inside (`inverted_cells`).
     """
@@ -165,7 +165,7 @@ class MeshQuality:
 
 
 def scaled_jacobians(points: Floats, cells: Ints) -> Floats:
-    """Least ratio of each cell's Jacobian to that of its straight-sided twin, (ne,).
+    """Minimum ratio of each cell's Jacobian to that of its straight-sided twin, (ne,).
 
     Negative also where the corners alone make an inverted tetrahedron.
     """
@@ -220,9 +220,9 @@ def mass_moments(points: Floats, cells: Ints) -> tuple[float, Floats, Floats]:
     Parameters
     ----------
     points : Floats
-        (n, 3) [m].
+        Nodes (n, 3) [m].
     cells : Ints
-        (ne, k) node numbers in VTK's order.
+        Node numbers (ne, k) in VTK's order.
 
     Returns
     -------

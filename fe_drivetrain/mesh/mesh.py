@@ -23,16 +23,16 @@ class Mesh:
     Attributes
     ----------
     points : Floats
-        (n, 3) positions of the nodes, m.
+        Positions (n, 3) of the nodes, m.
     cells : Ints
-        (ne, 10) node ids in VTK's order, which is scikit-fem's too.
+        Node ids (ne, 10) in VTK's order, which is scikit-fem's too.
     part : Ints
-        (ne,) index into `part_names`.
+        Index (ne,) into `part_names`.
     part_names : tuple[str, ...]
         Names of the parts.
     faces : dict[str, Ints]
-        (nf, 6) node ids of the six-node triangles of each named face, normal outward from the
-        part whose name the face's name begins with.
+        Node ids (nf, 6) of the six-node triangles of each named face, normal outward from the part
+        whose name the face's name begins with.
     named_points : dict[str, int]
         Node id of each named point.
     kept : bool

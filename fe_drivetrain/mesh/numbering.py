@@ -16,7 +16,7 @@ def check_nodes(cells: Ints, n_nodes: int, what: str = "cell") -> None:
     cells : Ints
         (n_cells, k) node numbers.
     n_nodes : int
-        How many nodes there are.
+        Number of nodes.
     what : str
         "cell" or "facet".
 

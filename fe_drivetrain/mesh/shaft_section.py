@@ -14,7 +14,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
 
 CORE = 0.5
-"""Radius inside which a solid length has its core, as a share of its least radius."""
+"""Radius inside which a solid length has its core, as a share of its minimum radius."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Grading:
     ends : int
         Layers at the edges of the two end faces, singular where an end is held or rigid.
     ratio : float
-        Between 0 and 1.
+        Ratio of thicknesses, between 0 and 1.
     """
 
     steps: int = 0
@@ -45,23 +45,23 @@ UNGRADED = Grading()
 def shaft_quadrilaterals(
     shaft: Shaft, size: float, *, refinement: int = 1, grading: Grading = UNGRADED
 ) -> tuple[Floats, Ints]:
-    """The meridian that `shaft_hexahedra` turns, down to the axis where the shaft is solid.
+    """Meridian that `shaft_hexahedra` turns, down to the axis where the shaft is solid.
 
     Parameters
     ----------
     shaft, size, refinement, grading : Shaft, float, int, Grading
-        As for `shaft_hexahedra`.
+        Arguments of `shaft_hexahedra`.
 
     Returns
     -------
     nodes, quads
-        (n, 2) x and radius, m; (nq, 3, 3) node ids, along x, then along the radius: corners at
-        even places, middles at odd ones.
+        Places (n, 2) x and radius, m; node ids (nq, 3, 3), along x, then along the radius: corners
+        at even places, middles at odd ones.
 
     Raises
     ------
     InputError
-        As `shaft_hexahedra`.
+        The shaft has a fillet, or a setting is out of its range.
     """
     check_division(shaft, size, 27, 4, refinement, grading)
     section = section_of(pieces_of(shaft, 0.0), size, refinement, grading, [])
@@ -207,11 +207,11 @@ class ShaftSection:
     Attributes
     ----------
     nodes : Floats
-        (n, 2) x and radius, m.
+        Nodes (n, 2), x and radius, m.
     quads : Ints
-        (nq, 3, 3) node ids: along x, then along the radius.
+        Node ids (nq, 3, 3): along x, then along the radius.
     core_edges : Ints
-        (nc, 3) node ids, along x, of the edges on the core of solid lengths.
+        Node ids (nc, 3), along x, of the edges on the core of solid lengths.
     """
 
     nodes: Floats
@@ -231,9 +231,9 @@ def section_of(
     Parameters
     ----------
     pieces : list[Piece]
-        From `pieces_of`.
+        Pieces from `pieces_of`.
     size, refinement, grading : float, int, Grading
-        As of `shaft_quadrilaterals`.
+        Arguments of `shaft_quadrilaterals`.
     seats : Iterable[tuple[float, float]]
         Ranges (low, high) of x at which elements shall end [m].
     """

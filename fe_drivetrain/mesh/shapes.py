@@ -1,4 +1,4 @@
-"""What an element is: nodes, shape functions and quadrature of tetrahedra and hexahedra."""
+"""Element kinds: nodes, shape functions and quadrature of tetrahedra and hexahedra."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -72,12 +72,12 @@ class ElementKind(Nodal):
     Attributes
     ----------
     name : str
-        As meshio and VTK call it.
+        Name, as meshio and VTK have it.
     corner : Element
-        The linear element on the same corners.
+        Linear element on the same corners.
     degree : int
-        Of the quadrature when the element is curved: two Gauss points a direction for linear, three
-        for quadratic hexahedra; for tetrahedra what scikit-fem takes.
+        Degree of the quadrature when the element is curved: two Gauss points a direction for
+        linear, three for quadratic hexahedra; for tetrahedra what scikit-fem takes.
     """
 
     name: str
@@ -111,7 +111,7 @@ ELEMENT_NAMES: Mapping[int, str] = {
 
 @cache
 def element_kind(n_nodes: int) -> ElementKind:
-    """The element with so many nodes: tetrahedra with 4 and 10, hexahedra with 8, 20 and 27.
+    """Element with that number of nodes: tetrahedra with 4 and 10, hexahedra with 8, 20 and 27.
 
     Raises
     ------

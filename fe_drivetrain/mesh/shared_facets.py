@@ -13,9 +13,9 @@ from fe_drivetrain.mesh.mesh import FACETS, Mesh
 def facet_keys(corners: Ints, n_nodes: int) -> Ints:
     """One number for each facet, (m, 3) or (m, 4) corners, whatever their order.
 
-    Of triangles it is exact up to two million nodes; beyond, what 64 bits hold of it, which is
-    wrong only where two differ by a multiple of 2^64. Of quadrilaterals it is wrong where two
-    share their lowest and highest corner and the sum of the others.
+    For triangles the number is exact up to two million nodes; beyond, what 64 bits hold of it,
+    which is wrong only where two differ by a multiple of 2^64. For quadrilaterals it is wrong where
+    two share their lowest and highest corner and the sum of the others.
     """
     # column by column: NumPy takes ten times as long along so short an axis
     columns = list(corners.T)
@@ -39,17 +39,17 @@ class SharedFacets:
     Attributes
     ----------
     n_nodes : int
-        Of the mesh.
+        Number of nodes of the mesh.
     keys : Ints
-        (4 ne,) one number for each triple of corners, ascending.
+        Numbers (4 ne,), one for each triple of corners, ascending.
     order : Ints
-        (4 ne,) the facets that they belong to.
+        Facets (4 ne,) that they belong to.
     first, second : Ints
-        (k,) facets of the pairs.
+        Facets (k,) of the pairs.
     more : Ints
         Facets that a third cell has as well.
     alone : Ints
-        (m,) facets of one cell only.
+        Facets (m,) of one cell only.
     """
 
     n_nodes: int
@@ -62,7 +62,7 @@ class SharedFacets:
 
     @staticmethod
     def of(mesh: Mesh) -> SharedFacets:
-        """Those of a mesh of tetrahedra."""
+        """Facets of a mesh of tetrahedra."""
         keys = facet_keys(mesh.cells[:, FACETS[:, :3]].reshape(-1, 3), len(mesh.points))
         order = np.argsort(keys, kind="stable")
         keys = keys[order]

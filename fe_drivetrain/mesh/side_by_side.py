@@ -17,7 +17,7 @@ def renamed(mesh: Mesh, part: str, name: str) -> Mesh:
     mesh : Mesh
         The mesh.
     part, name : str
-        What the part is called, and what it shall be called.
+        Name of the part, and its new name.
     """
 
     def new(old: str) -> str:

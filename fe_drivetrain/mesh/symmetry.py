@@ -35,7 +35,7 @@ def meshed(build: Callable[[BodySizes], None], sizes: BodySizes) -> tuple[Mesh, 
     Raises
     ------
     InputError
-        It cannot be built, or elements fold over whatever is done.
+        It cannot be built, or elements fold over at every mesh size tried.
     """
     for _ in range(ATTEMPTS):
         with gmsh_session():
@@ -76,14 +76,14 @@ def repeated(
     cuts: Sequence[str],
     own: Mapping[str, Sequence[str]],
 ) -> Mesh:
-    """The body that copies of a mesh make where they meet.
+    """Build the body that copies of a mesh make where they meet.
 
     Parameters
     ----------
     mesh : Mesh
-        Of one part of the body.
+        Mesh of one part of the body.
     copies : Sequence[Floats]
-        (3, 3) orthogonal matrices, the first the identity.
+        Orthogonal matrices (3, 3), the first the identity.
     cuts : Sequence[str]
         Names of the faces where copies meet; they are no faces of the body.
     own : Mapping[str, Sequence[str]]

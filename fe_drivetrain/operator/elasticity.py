@@ -69,7 +69,7 @@ def assemble(
     Parameters
     ----------
     points : Floats
-        (n, 3) node coordinates [m].
+        Node coordinates (n, 3) [m].
     cells : Ints
         (n_cells, k) node numbers in VTK's order; tetrahedra of 4 or 10, hexahedra of 8, 20 or 27
         nodes.
@@ -80,7 +80,7 @@ def assemble(
         node i, what comes after 3 n belongs to reference points and is left empty. 3 n where not
         given.
     pattern : Pattern or None
-        From `sparsity` for the same cells and n_dofs / 3 nodes, to spare making it again.
+        Pattern from `sparsity` for the same cells and n_dofs / 3 nodes, to spare making it again.
 
     Returns
     -------
@@ -104,17 +104,17 @@ def assemble_materials(
     pattern: Pattern | None = None,
     others: sparse.bsr_array | None = None,
 ) -> sparse.bsr_array:
-    """The sum of `assemble` over elements of several materials, with one sparsity.
+    """Sum of `assemble` over elements of several materials, with one sparsity.
 
     Parameters
     ----------
     points, cells, n_dofs, pattern : Floats, Ints, int or None, Pattern or None
-        As of `assemble`.
+        Arguments of `assemble`.
     materials : Sequence[tuple[Bools, tuple[float, float]]]
-        Which elements are of each, (n_cells,), and its Lame's constants [Pa].
+        Flags (n_cells,) of the elements of each material, and its Lame's constants [Pa].
     others : sparse.bsr_array or None
-        (n_dofs, n_dofs) in 3x3 blocks, added [N/m]: at little cost where all of its rows come after
-        those of the nodes.
+        Matrix (n_dofs, n_dofs) in 3x3 blocks that is added [N/m]: at little cost where all of its
+        rows come after those of the nodes.
 
     Raises
     ------

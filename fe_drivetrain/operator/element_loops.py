@@ -183,13 +183,13 @@ def add_elements(
     Parameters
     ----------
     chosen : NDArray[np.int64]
-        Which cells.
+        Numbers of the cells.
     gradients, weights : Floats
         (n_q, 3, k) reference gradients and (n_q,) weights of the rule.
     lam, mu : float
         Lame's constants [Pa].
     slots, data : Index, Floats
-        From `sparsity`, and the blocks to add to.
+        Slots from `sparsity`, and the blocks to add to.
     """
     n_q, _, k = gradients.shape
     # rows are read eight numbers at once, beyond the last one, too

@@ -16,7 +16,7 @@ from fe_drivetrain.mesh.mapping import jacobian
 
 @dataclass(frozen=True)
 class Rule:
-    """How elements of one kind are integrated.
+    """Quadrature of elements of one kind.
 
     Attributes
     ----------
@@ -39,20 +39,21 @@ def element_stiffness(
     Parameters
     ----------
     points : Floats
-        (n, 3) node coordinates [m].
+        Node coordinates (n, 3) [m].
     cells : Ints
-        (n_cells, k) node numbers in VTK's order.
+        Node numbers (n_cells, k) in VTK's order.
     rule : Rule
-        Of their kind.
+        Quadrature rule of the elements.
     lame : tuple[float, float]
         Lame's constants (lambda, mu) [Pa].
     functions : int
-        How many functions of each element the dilatation is projected on; as it is where 0.
+        Number of functions of each element that the dilatation is projected on; not projected where
+        0.
 
     Returns
     -------
     stiffness
-        (n_cells, k, k, 3, 3): blocks of each pair of an element's nodes [N/m].
+        Stiffness (n_cells, k, k, 3, 3): blocks of each pair of an element's nodes [N/m].
     """
     _, mu = lame
     physical, determinant = jacobian(points, cells, rule.gradients)
@@ -76,10 +77,10 @@ def element_stiffness(
 
 
 def split(lame: tuple[float, float], k: int) -> tuple[tuple[float, float], float]:
-    """What stays at each point and what multiplies the projected dilatation.
+    """Lame's constants of what stays at each point, and factor of the projected dilatation.
 
-    Of hexahedra the whole volumetric part is projected, 3 K = 3 lambda + 2 mu (Hughes 1980, Int. J.
-    Numer. Meth. Eng. 15, 1413-1418: B-bar). Of tetrahedra of 10 nodes it is lambda's alone: with
+    In hexahedra the whole volumetric part is projected, 3 K = 3 lambda + 2 mu (Hughes 1980, Int. J.
+    Numer. Meth. Eng. 15, 1413-1418: B-bar). In tetrahedra of 10 nodes it is lambda's alone: with
     the mean of the whole, u = 2 (a x) x - |x|^2 a about the middle, which has no deviatoric strain,
     would cost no energy.
 
@@ -88,7 +89,7 @@ def split(lame: tuple[float, float], k: int) -> tuple[tuple[float, float], float
     lame : tuple[float, float]
         Lame's constants (lambda, mu) [Pa].
     k : int
-        Nodes of an element.
+        Number of nodes of an element.
 
     Returns
     -------
@@ -108,14 +109,14 @@ def projected(points: Floats, cells: Ints, rule: Rule, count: int) -> tuple[Floa
     Parameters
     ----------
     points, cells, rule : Floats, Ints, Rule
-        As for `element_stiffness`.
+        Arguments of `element_stiffness`.
     count : int
-        Of the functions.
+        Number of the functions.
 
     Returns
     -------
     rows, factor
-        (n_cells, count, k, 3) coefficients, and (n_cells, count, count) the lower factor L of the
+        Coefficients (n_cells, count, k, 3), and the lower factor L (n_cells, count, count) of the
         functions' mass matrix: L^-1 makes them orthonormal.
     """
     physical, determinant = jacobian(points, cells, rule.gradients)

@@ -15,7 +15,7 @@ from fe_drivetrain.mesh.measures import CUBIC
 from fe_drivetrain.mesh.numbering import check_nodes
 from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES, element_kind
 
-# Of the largest determinant in the cell: less than this below zero is round-off.
+# Negative determinant, over the maximum in the cell, up to which it is round-off.
 _ROUND_OFF = 1e-12
 
 
@@ -25,7 +25,7 @@ def check_elements(points: Floats, cells: Ints) -> None:
     Parameters
     ----------
     points : Floats
-        (n, 3) node coordinates [m].
+        Node coordinates (n, 3) [m].
     cells : Ints
         (n_cells, k) node numbers in VTK's order.
 
@@ -98,7 +98,7 @@ def _find_folded(
     folded: NDArray[np.bool_],
     least: Floats,
 ) -> None:
-    """Whether each cell folds over, and the least determinant of its Jacobian J (3, 3)."""
+    """Whether each cell folds over, and the minimum determinant of its Jacobian J (3, 3)."""
     n_cells, k = cells.shape
     for c in range(n_cells):
         for a in range(k):

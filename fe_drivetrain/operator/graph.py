@@ -32,7 +32,7 @@ def distances(indptr: Index, indices: Index, start: int) -> Index:
 def places(
     indptr: Index, indices: Index, rows: NDArray[np.int64], columns: NDArray[np.int64]
 ) -> NDArray[np.int64]:
-    """Where the blocks of some rows and columns stand in ``data``; -1 where there are none."""
+    """Places of the blocks of some rows and columns in ``data``; -1 where there are none."""
     # NumPy makes the array out here: in a compiled loop that takes longer to compile
     found = np.full(len(rows), -1, np.int64)
     _find_places(indptr, indices, rows, columns, found)

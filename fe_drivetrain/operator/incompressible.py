@@ -94,16 +94,16 @@ def assemble_materials(
     n_dofs: int | None = None,
     others: sparse.bsr_array | None = None,
 ) -> sparse.bsr_array:
-    """The sum of `assemble_unlocked` over elements of several materials.
+    """Sum of `assemble_unlocked` over elements of several materials.
 
     Parameters
     ----------
     points, cells, n_dofs : Floats, Ints, int or None
-        As of `assemble`.
+        Arguments of `assemble`.
     materials : Sequence[tuple[Bools, tuple[float, float]]]
-        Which elements are of each, (n_cells,), and its Lame's constants [Pa].
+        Flags (n_cells,) of the elements of each material, and its Lame's constants [Pa].
     others : sparse.bsr_array or None
-        (n_dofs, n_dofs) in 3x3 blocks, added [N/m].
+        Matrix (n_dofs, n_dofs) in 3x3 blocks that is added [N/m].
     """
     averaged = [poisson_ratio(lame) >= AVERAGED_FROM for _, lame in materials]
     k = cells.shape[1]
@@ -137,16 +137,16 @@ def stresses(
     Parameters
     ----------
     points, cells, lame : Floats, Ints, tuple[float, float]
-        As for `assemble`.
+        Arguments of `assemble`, with Lame's constants (lambda, mu) [Pa].
     u : Floats
-        (3 n,) or longer, displacements [m].
+        Displacements (3 n,) or longer [m].
     at : Floats
-        (3, n_q) reference coordinates in each element.
+        Reference coordinates (3, n_q) in each element.
 
     Returns
     -------
     stresses
-        (n_cells, n_q, 6) in the order of `components.STRESSES` [Pa].
+        Stresses (n_cells, n_q, 6) in the order of `components.STRESSES` [Pa].
     """
     kind = element_kind(cells.shape[1])
     values = kind.shape(at)[0]
@@ -201,7 +201,7 @@ def _projected(points: Floats, cells: Ints) -> tuple[Floats, Floats]:
 
 
 def full_rule(kind: ElementKind) -> Rule:
-    """That of curved elements."""
+    """Quadrature rule of curved elements."""
     at, weights = get_quadrature(kind.element.refdom, kind.degree)
     values, gradients = kind.shape(at)
     return Rule(gradients, weights, values)

@@ -179,7 +179,7 @@ def _residual_of_many(
 
 @njit(cache=True)
 def _most(indptr: Index, first: int, end: int) -> int:
-    """Most blocks of a node, of some."""
+    """Maximum number of blocks of a node, from first to end."""
     most = 0
     for i in range(first, end):
         most = max(most, indptr[i + 1] - indptr[i])
@@ -223,7 +223,7 @@ def _node_product(
 ) -> tuple[float, float, float]:
     """``K x`` of node i for one column: eight of a block's nine entries at once.
 
-    Two sums take turns, so that one need not wait for the other.
+    Two alternating sums, so that one need not wait for the other.
     """
     two, three, eight, nine = np.uint64(2), np.uint64(3), np.uint64(8), np.uint64(9)
     most, ahead = np.uint64(len(x)), np.uint64(AHEAD // data.itemsize)

@@ -12,10 +12,10 @@ from fe_drivetrain.mesh.numbering import check_nodes
 from fe_drivetrain.mesh.shapes import element_kind
 
 Traction = Callable[[Floats, Floats], Floats]
-"""Of positions (n, 3) [m] and outward unit normals (n, 3): tractions (n, 3) [Pa]."""
+"""Function from positions (n, 3) [m] and outward unit normals (n, 3) to tractions (n, 3) [Pa]."""
 
 Field = Callable[[Floats], Floats]
-"""Of positions (n, 3) [m]: vectors (n, 3)."""
+"""Function from positions (n, 3) [m] to vectors (n, 3)."""
 _DEGREE = 7  # smooth loads on curved quadratic elements, to round-off or nearly
 
 
@@ -32,12 +32,12 @@ def traction_loads(
     Parameters
     ----------
     points : Floats
-        (n, 3) node coordinates [m].
+        Node coordinates (n, 3) [m].
     facets : Ints
         (n_facets, k) node numbers in VTK's order, turned outward; triangles of 3 or 6,
         quadrilaterals of 4, 8 or 9 nodes.
     traction : Floats or Traction
-        (3,) [Pa], or a function of positions and outward normals.
+        Traction (3,) [Pa], or a function of positions and outward normals.
     n_dofs : int or None
         Length of the result; 3 n where not given.
 
@@ -66,11 +66,11 @@ def body_loads(
     Parameters
     ----------
     points : Floats
-        (n, 3) node coordinates [m].
+        Node coordinates (n, 3) [m].
     cells : Ints
         (n_cells, k) node numbers in VTK's order.
     force : Floats or Field
-        (3,) [N/m^3], or a function of positions.
+        Force per volume (3,) [N/m^3], or a function of positions.
     n_dofs : int or None
         Length of the result; 3 n where not given.
 

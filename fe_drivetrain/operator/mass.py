@@ -20,11 +20,11 @@ def mass_matrix(points: Floats, cells: Ints, density: float, n_dofs: int) -> spa
     Parameters
     ----------
     points : Floats
-        (n, 3) node coordinates [m].
+        Node coordinates (n, 3) [m].
     cells : Ints
         (n_cells, k) node numbers in VTK's order.
     density : float
-        [kg/m^3].
+        Density [kg/m^3].
     n_dofs : int
         Three a node, and others without mass.
 

@@ -20,7 +20,7 @@ def slabs(points: Floats, corners: Ints) -> list[list[Ints]]:
     Parameters
     ----------
     points : Floats
-        (n, 3) nodes [m].
+        Nodes (n, 3) [m].
     corners : Ints
         (n_cells, c) the corner nodes of each element; elements that share a node share a corner.
 

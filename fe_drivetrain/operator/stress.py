@@ -18,11 +18,11 @@ def stresses(
     Parameters
     ----------
     points : Floats
-        (n, 3) node coordinates [m].
+        Node coordinates (n, 3) [m].
     cells : Ints
         (n_cells, k) node numbers in VTK's order.
     u : Floats
-        (3 n,) or longer, displacements [m].
+        Displacements (3 n,) or longer [m].
     lame : tuple[float, float]
         Lame's constants (lambda, mu) [Pa].
     at : Floats
@@ -31,7 +31,7 @@ def stresses(
     Returns
     -------
     stresses
-        (n_cells, n_q, 6) in the order of `STRESSES` [Pa].
+        Stresses (n_cells, n_q, 6) in the order of `STRESSES` [Pa].
     """
     lam, mu = lame
     e = strains(points, cells, u, at)
@@ -71,7 +71,7 @@ def stresses_of_fields(physical: Floats, moved: Floats, lame: tuple[float, float
     Returns
     -------
     stresses
-        (n_cells, n_q, m, 6) as of `stresses` [Pa].
+        Stresses (n_cells, n_q, m, 6), in the form of `stresses` [Pa].
     """
     lam, mu = lame
     n, n_q, _, k = physical.shape
@@ -96,12 +96,12 @@ def nodal_stresses(points: Floats, cells: Ints, u: Floats, lame: tuple[float, fl
     Parameters
     ----------
     points, cells, u, lame : Floats, Ints, Floats, tuple[float, float]
-        As for `stresses`; cells of one material.
+        Arguments of `stresses`; cells of one material.
 
     Returns
     -------
     stresses
-        (n, 6) [Pa]; NaN at nodes that no cell has.
+        Stresses (n, 6) [Pa]; NaN at nodes that no cell has.
     """
     kind = element_kind(cells.shape[1])
     at, weights, to_nodes = _best_points(kind)

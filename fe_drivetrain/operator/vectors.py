@@ -25,7 +25,7 @@ _LANES, _SINGLE = ir.VectorType(_NUMBER, LANES), ir.VectorType(ir.FloatType(), L
 
 
 class Vector(types.Type):  # type: ignore[misc]
-    """What a compiled loop takes such a vector for."""
+    """Type of such a vector in a compiled loop."""
 
     def __init__(self) -> None:
         super().__init__(name=f"{LANES} numbers")

@@ -20,19 +20,19 @@ _READABLE = 6  # rows of a matrix whose cells have room for a number
 
 
 def figure(traces: Sequence[Mapping[str, Any]], layout: Mapping[str, Any]) -> Any:
-    """A Plotly figure in the style of the pages.
+    """Make a Plotly figure in the style of the pages.
 
     Parameters
     ----------
     traces : sequence of mapping
-        As Plotly has them, "name", "x" and "y" in the first place.
+        Traces in Plotly's form, "name", "x" and "y" in the first place.
     layout : mapping
-        As of Plotly.
+        Layout in Plotly's form.
 
     Returns
     -------
     plotly.graph_objects.Figure
-        ``show()`` draws it, ``write_html`` and ``write_image`` save it.
+        Figure: ``show()`` draws it, ``write_html`` and ``write_image`` save it.
     """
     from plotly.graph_objects import Figure  # takes longer than most scripts that draw nothing
 
@@ -45,11 +45,11 @@ def load_lines(time: Floats, loads: Floats, title: str = "") -> Any:
     Parameters
     ----------
     time : Floats
-        (n,) [s].
+        Time (n,) [s].
     loads : Floats
-        (n, 6) Fx, Fy, Fz [N], Mx, My, Mz [N m].
+        Loads (n, 6) Fx, Fy, Fz [N], Mx, My, Mz [N m].
     title : str
-        What they are.
+        Title: what the loads are.
 
     Returns
     -------
@@ -82,9 +82,9 @@ def load_bars(loads: Mapping[str, Floats], title: str = "") -> Any:
     Parameters
     ----------
     loads : mapping
-        (6,) Fx, Fy, Fz [N], Mx, My, Mz [N m] by the name of the place.
+        Loads (6,) Fx, Fy, Fz [N], Mx, My, Mz [N m] by the name of the place.
     title : str
-        What they are.
+        Title: what the loads are.
 
     Returns
     -------
@@ -118,9 +118,9 @@ def stiffness_map(points: Sequence[str], stiffness: Floats, title: str = "") -> 
     points : sequence of str
         Names of n points.
     stiffness : Floats
-        (6 n, 6 n) forces and moments of each point to its motions [N/m, N, N m/rad].
+        Stiffness (6 n, 6 n): forces and moments of each point to its motions [N/m, N, N m/rad].
     title : str
-        What it is.
+        Title: what the stiffness is of.
 
     Returns
     -------
@@ -131,7 +131,7 @@ def stiffness_map(points: Sequence[str], stiffness: Floats, title: str = "") -> 
     Raises
     ------
     InputError
-        The shape is not that of so many points.
+        The shape does not fit the number of points.
     """
     K, n = np.asarray(stiffness, dtype=np.float64), len(points)
     if K.shape != (6 * n, 6 * n):
@@ -189,27 +189,28 @@ def error_against_time(
     chosen: int | None = None,
     title: str = "",
 ) -> Any:
-    """Models by what they take and how far they are from the best of them.
+    """Plot the error of models against their time, the error relative to the best of them.
 
     Parameters
     ----------
     names : sequence of str
-        Of the models.
+        Names of the models.
     seconds : sequence of float
         Wall time of each [s].
     errors : sequence of float
-        Relative; a model whose error is not known is left out, and less than `LEAST` drawn there.
+        Relative errors; a model whose error is not known is left out, and less than `LEAST` drawn
+        there.
     tolerance : float
-        What is allowed, relative.
+        Allowed relative error.
     chosen : int, optional
-        The model that is good enough, drawn larger.
+        Index of the model that is good enough, drawn larger.
     title : str
-        Of what quantity.
+        Title: the quantity that the error is of.
 
     Returns
     -------
     plotly.graph_objects.Figure
-        Both axes logarithmic, the tolerance as a line.
+        Figure with both axes logarithmic, the tolerance as a line.
     """
     known = [k for k, error in enumerate(errors) if np.isfinite(error)]
     traces: list[dict[str, Any]] = [

@@ -103,20 +103,20 @@ _CHART_TEMPLATE: dict[str, Any] = {
 
 
 def styled(traces: Sequence[Mapping[str, Any]], layout: Mapping[str, Any]) -> dict[str, Any]:
-    """A figure in the project's look.
+    """Put a figure into the project's look.
 
     Parameters
     ----------
     traces : sequence of mapping
-        As Plotly has them.
+        Traces in Plotly's form.
     layout : mapping
         Titles of axes and what else is the figure's own.
 
     Returns
     -------
     dict
-        "data" and "layout": each trace in a colour of its own, a known method in that method's;
-        texts typeset, and null for what JSON has no number for.
+        Entries "data" and "layout": each trace in a colour of its own, a known method in that
+        method's; texts typeset, and null for what JSON has no number for.
     """
     layout = {**layout, "template": _CHART_TEMPLATE}
     if layout.get("title"):
@@ -144,7 +144,7 @@ def styled(traces: Sequence[Mapping[str, Any]], layout: Mapping[str, Any]) -> di
 def _log_ticks(axis: str, traces: list[dict[str, Any]]) -> dict[str, Any]:
     """Labels of a logarithmic axis that do not run into each other: decades, or 1, 2 and 5.
 
-    Between decades they are whole numbers: a 2 alone says nothing of its power of ten.
+    Between decades they are whole numbers: a 2 alone does not tell its power of ten.
     """
     values = [v for trace in traces for v in trace.get(axis, []) if is_number(v) and v > 0]
     low, high = (min(values), max(values)) if values else (1.0, 1.0)
@@ -177,7 +177,7 @@ def _range_of_both(traces: list[dict[str, Any]], logarithmic: bool) -> dict[str,
 
 
 def _coloured(traces: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The same traces, each in a colour of its own, those of a known method in that method's.
+    """Traces, each in a colour of its own, those of a known method in that method's.
 
     Where there are more than colours, the lines of the others are drawn in another style.
     """
@@ -225,7 +225,7 @@ def _of_method(name: str) -> str | None:
 
 
 def _finite(value: Any) -> Any:
-    """The same data, its texts typeset, with null for what JSON has no number for."""
+    """Data with its texts typeset, and null for what JSON has no number for."""
     if isinstance(value, dict):
         return {key: _finite(inner) for key, inner in value.items()}
     if isinstance(value, list | tuple):

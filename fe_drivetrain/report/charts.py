@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.results import Chart
 
@@ -158,6 +160,26 @@ def heat_map(
     for axis, more in layout.items():
         axes[axis] = {**axes[axis], **more} if isinstance(more, dict) else more
     return Chart(caption=caption, figure={"data": [data], "layout": axes})
+
+
+def stiffness_chart(name: str, points: Sequence[str], stiffness: Floats) -> Chart:
+    """A stiffness and its couplings, of a unit diagonal.
+
+    Parameters
+    ----------
+    name : str
+        What it is of.
+    points : sequence of str
+        Names of the n points.
+    stiffness : Floats
+        (6 n, 6 n) motions to forces and moments; rows of a diagonal of zero stay empty.
+    """
+    diagonal = stiffness.diagonal()
+    size = np.sqrt(np.where(diagonal > 0.0, diagonal, np.nan))
+    labels = [f"{point} {motion}" for point in points for motion in MOTIONS]
+    titles = ("motion", "force or moment", "of the diagonal [-]")
+    caption = f"Stiffness of {name} and its couplings, of a unit diagonal"
+    return heat_map(caption, labels, labels, stiffness / np.outer(size, size), titles, (-1.0, 1.0))
 
 
 def bars(

@@ -7,6 +7,7 @@ than the front face.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -114,7 +115,7 @@ def at_front(where: Entered, history: LoadHistory) -> LoadHistory:
     return history.moved(start, entrance.front)
 
 
-def joined(loads: list[PointLoads]) -> PointLoads:
+def joined(loads: Sequence[PointLoads]) -> PointLoads:
     """Load steps of several loads that are about one point, one after the other."""
     return PointLoads(np.concatenate([one.values for one in loads]), loads[0].x)
 

@@ -31,19 +31,20 @@ def condensed(
     Parameters
     ----------
     grams : Floats
-        (ne, s m, s m) of each element, integrals of products of s derivatives of m shape functions.
+        Integrals (ne, s m, s m) of products of s derivatives of m shape functions over each
+        element.
     law : Floats
-        (k, k, s, s): element matrices are ``K[p m + i, q m + j] = sum of law[p, q, a, b]
+        Law (k, k, s, s): element matrices are ``K[p m + i, q m + j] = sum of law[p, q, a, b]
         grams[a m + i, b m + j]`` for components p and q; symmetric.
     ids : Ints
-        (ne, k m) degree of freedom that each of an element's follows; the kept are the first
+        Degree of freedom (ne, k m) that each of an element's follows; the kept are the first
         `kept`; negative where it is held at zero.
     shares : Floats
-        (ne, k m) of that degree of freedom.
+        Share (ne, k m) of that degree of freedom.
     kept : int
         Number of degrees of freedom that are kept.
     order : Ints
-        From `dissection`.
+        Order of elimination, from `dissection`.
 
     Returns
     -------
@@ -52,7 +53,7 @@ def condensed(
     Raises
     ------
     InputError
-        What is eliminated can move without strain.
+        The eliminated part can move without strain.
     """
     return np.asarray(_sweep(grams, law, ids, shares, kept, order, False)[0])
 
@@ -64,12 +65,11 @@ class Factor:
     Attributes
     ----------
     dofs : Ints
-        Numbers of each front's degrees of freedom, one front after the other; the eliminated ones
-        first.
+        Numbers of each front's degrees of freedom, front by front; the eliminated ones first.
     sizes, gone : Ints
-        (fronts,) how many, and how many of them are eliminated.
+        Numbers (fronts,) of degrees of freedom of each front, and of those that are eliminated.
     values : Floats
-        Their rows of the factor, in panels whose diagonal blocks are inverted.
+        Rows of the factor, in panels whose diagonal blocks are inverted.
     """
 
     dofs: Ints
@@ -87,7 +87,7 @@ class Factor:
 
 
 def factored(grams: Floats, law: Floats, ids: Ints, shares: Floats, order: Ints) -> Factor:
-    """The stiffness of a mesh, factored; arguments and error as of `condensed`, none kept."""
+    """Stiffness of a mesh, factored; arguments and error of `condensed`, none kept."""
     return Factor(*_sweep(grams, law, ids, shares, 0, order, True)[1:])
 
 
@@ -216,7 +216,7 @@ def _swept(
 ) -> tuple[bool, Floats, Ints, Ints, Ints, Floats]:
     """Whether all could be eliminated, the stiffness of what is kept, and the `Factor` to store.
 
-    Of matrices only what is right of the diagonal is kept up.
+    Only the upper triangles of matrices are kept.
     """
     ne, size = ids.shape
     users = np.zeros(ids.max() + 1, dtype=np.int64)

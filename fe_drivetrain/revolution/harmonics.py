@@ -25,7 +25,8 @@ from fe_drivetrain.revolution.meridian_mesh import Meridian
 from fe_drivetrain.scene.materials import Material
 
 Traction = Callable[[Floats, Floats], Floats]
-"""Of (k, 2) positions [m] and outward normals, each x and radius: (k, 3) amplitudes [Pa]."""
+"""Function from positions (k, 2) [m] and outward normals, each x and radius, to amplitudes (k, 3)
+[Pa]."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,7 @@ class HarmonicResponse:
     reactions : Floats
         (n_nodes, 3, m) nodal forces that hold what is held [N], over the whole turn.
     energy : Floats
-        (m,) strain energy [J].
+        Strain energy (m,) [J].
     """
 
     n: int
@@ -69,11 +70,11 @@ def harmonic_response(
     mesh : Meridian
         The meridian.
     material : Material
-        Of the body.
+        Material of the body.
     n : int
-        The harmonic, 0 or more.
+        Order of the harmonic, 0 or more.
     loads : Floats or None
-        (3 n_nodes,) or (3 n_nodes, m) nodal forces over the whole turn [N], as `surface_loads`
+        Nodal forces (3 n_nodes,) or (3 n_nodes, m) over the whole turn [N], as `surface_loads`
         gives them; none where not given.
     held : tuple[Ints, Floats] or None
         Degrees of freedom (k,) and their displacements (k,) or (k, m) [m].
@@ -134,13 +135,14 @@ def harmonic_solver(
     Parameters
     ----------
     mesh, material, n : Meridian, Material, int
-        As for `harmonic_response`.
+        Meridian, material and harmonic, see `harmonic_response`.
     held : Ints
         Degrees of freedom (k,) that don't move.
 
     Returns
     -------
-    Of nodal forces (3 n_nodes, m) over the whole turn [N]: amplitudes (3 n_nodes, m) [m].
+    Function from nodal forces (3 n_nodes, m) over the whole turn [N] to amplitudes (3 n_nodes, m)
+    [m].
 
     Raises
     ------
@@ -163,7 +165,7 @@ def surface_loads(mesh: Meridian, n: int, sides: Ints, traction: Traction) -> Fl
     n : int
         The harmonic.
     sides : Ints
-        (k, 2) cell and side, as `Meridian.sides` gives them.
+        Cell and side (k, 2), as `Meridian.sides` gives them.
     traction : Traction
         Amplitudes along x, the radius and the circumference.
     """
@@ -189,7 +191,7 @@ def along_sides(
     mesh, side, cells : Meridian, int, Ints
         The meridian, the number of the side, and (k,) cells.
     along : Floats
-        (q,) from the side's first end, 0, to its second, 1; tangents are per unit of it.
+        Places (q,) from the side's first end, 0, to its second, 1; tangents are per unit of it.
     """
     places = mesh.element.side_places(side, along)
     values, gradients = mesh.element.at(places)
@@ -208,13 +210,13 @@ def stresses(
     Parameters
     ----------
     mesh, material, n : Meridian, Material, int
-        As for `harmonic_response`.
+        Meridian, material and harmonic, see `harmonic_response`.
     u : Floats
-        (n_nodes, 3) amplitudes [m].
+        Amplitudes (n_nodes, 3) of the displacements [m].
     at : Floats
-        (q, 2) reference places in each element, or (k, q, 2), own ones of each.
+        Reference places (q, 2) in each element, or (k, q, 2), own ones of each.
     cells : Ints or None
-        (k,) which; all where not given.
+        Numbers (k,) of the elements; all where not given.
 
     Returns
     -------
@@ -391,7 +393,7 @@ def _local(mesh: Meridian) -> Ints:
 
 
 def _factored(mesh: Meridian, material: Material, n: int, held: Ints) -> Callable[[Floats], Floats]:
-    """A solver as of `harmonic_solver`, in the degrees of freedom that others follow."""
+    """Solver like `harmonic_solver`, in the degrees of freedom that others follow."""
     _check_order(n)
     _check_held(mesh, n, held)
     target, coefficient = on_axis(mesh, n)

@@ -46,9 +46,9 @@ class Strip:
     Attributes
     ----------
     radius : float
-        [m].
+        Radius of the surface [m].
     low, high : float
-        Its two ends along x [m].
+        Both ends along x [m].
     """
 
     radius: float
@@ -67,11 +67,11 @@ class InfluenceFunctions:
     half_angle : float
         Half of a patch's arc [rad].
     harmonic_compliances : Floats
-        (N + 1, m, m) of harmonics 0 to N: amplitude of the mean radial displacement of a strip,
-        outwards, for radial pressure on another of an amplitude of 1 / (2 pi) newtons a radian in
-        harmonic 0, of 1 / pi in others [m/N].
+        Compliances (N + 1, m, m) of harmonics 0 to N: amplitude of the mean radial displacement of
+        a strip, outwards, for radial pressure on another of an amplitude of 1 / (2 pi) newtons a
+        radian in harmonic 0, of 1 / pi in others [m/N].
     limits : Floats
-        (m,) product of order and compliance of each strip, on a half space in plane strain [m/N]:
+        Product (m,) of order and compliance of each strip, on a half space in plane strain [m/N]:
         what high orders tend to away from the strip's ends.
     """
 
@@ -92,7 +92,7 @@ class InfluenceFunctions:
         Parameters
         ----------
         angles : ArrayLike
-            (k,) of the middles of patches round the axis, each on all strips [rad].
+            Angles (k,) of the middles of patches round the axis, each on all strips [rad].
 
         Returns
         -------
@@ -150,8 +150,9 @@ def influence_functions(
         The meridian, fine enough at the strips for waves of 1 / N of the circumference, and what
         it is of.
     strips : Sequence[Strip]
-        On its outline; each may be one lamina of a raceway. Best with elements that end where they
-        do (`Shaft.cut`): a jump of pressure inside an element makes it a little too stiff.
+        Strips on its outline; each may be one lamina of a raceway. Best with elements that end
+        where they do (`Shaft.cut`): a jump of pressure inside an element makes it a little too
+        stiff.
     harmonics : int
         N, the highest: about 5 / half_angle for 1e-3, see `InfluenceFunctions.tail`.
     half_angle : float
@@ -160,9 +161,9 @@ def influence_functions(
         Degrees of freedom (k,) of the mesh that don't move in any harmonic, such as those of a
         surface in a rigid housing; see `harmonics.dofs`.
     anchor : Strip or None
-        Where a body that ``held`` leaves free to move sideways is supported: displacements are
-        relative to the mean motion of this strip, which takes the resultant of all pushes. Where
-        they are in balance it takes nothing and is only the reference.
+        Strip where a body that ``held`` leaves free to move sideways is supported: displacements
+        are relative to the mean motion of this strip, which takes the resultant of all pushes.
+        Where they are in balance it takes nothing and is only the reference.
 
     Raises
     ------
@@ -215,13 +216,13 @@ def carried(compliance: Floats, rigid: Floats, supports: Sequence[int]) -> Float
     Parameters
     ----------
     compliance : Floats
-        (k, k) between all patches, relative to an anchor [m/N].
+        Compliance (k, k) between all patches, relative to an anchor [m/N].
     rigid : Floats
-        (k, r) displacement of each patch by the body's rigid motions: cos and sin of its angle for
+        Displacement (k, r) of each patch by the body's rigid motions: cos and sin of its angle for
         those sideways.
     supports : Sequence[int]
-        Which patches are held; their forces, found along with the motions, balance all others, so
-        that nothing is left to the anchor.
+        Numbers of the patches that are held; their forces, found along with the motions, balance
+        all others, so that nothing is left to the anchor.
 
     Returns
     -------
@@ -260,18 +261,20 @@ def roller_forces(
 ) -> Floats:
     """Forces of rollers that press where they touch, and are loose elsewhere.
 
-    Each gives way by d = (F / stiffness)^(1 / exponent) and its raceway by the compliance times all
+    Each deforms by d = (F / stiffness)^(1 / exponent) and its raceway by the compliance times all
     forces; together they make up the approach, or less of it where the roller is loose.
 
     Parameters
     ----------
     compliance : Floats
-        (k, k) of the raceway, outwards [m/N], see `InfluenceFunctions.matrix`; zero of a rigid one.
+        Compliance (k, k) of the raceway, outwards [m/N], see `InfluenceFunctions.matrix`; zero of a
+        rigid one.
     approach : Floats
-        (k,) of the two raceways at each roller if nothing gave way, clearance taken off [m].
+        Approach (k,) of the two raceways at each roller if nothing deformed, clearance taken off
+        [m].
     stiffness, exponent : float
-        Of each roller [N/m^exponent]: 1 of a spring, 10/9 of a line contact, 3/2 of a point
-        contact (Palmgren 1957).
+        Stiffness of each roller [N/m^exponent], and its exponent: 1 of a spring, 10/9 of a line
+        contact, 3/2 of a point contact (Palmgren 1957).
 
     Returns
     -------
@@ -324,14 +327,14 @@ def strip_averages(mesh: Meridian, strip: Strip) -> tuple[Ints, Floats, Floats]:
     mesh : Meridian
         The meridian.
     strip : Strip
-        On its outline.
+        Strip on the meridian's outline.
 
     Returns
     -------
     nodes : Ints
-        (k,), some more than once.
+        Nodes (k,), some more than once.
     mean, slope : Floats
-        (k,) weights in the mean, and in the slope along x of the straight line that is closest
+        Weights (k,) in the mean, and in the slope along x of the straight line that is closest
         [1/m].
 
     Raises

@@ -18,15 +18,15 @@ class Element:
     Attributes
     ----------
     corners : int
-        4 or 3.
+        Number of corners, 4 or 3.
     order : int
-        Of its polynomials: in each direction of a square, complete of a triangle.
+        Order of its polynomials: in each direction of a square, complete of a triangle.
     places : Floats
-        (m, 2) reference places of its nodes, corners first, anticlockwise.
+        Reference places (m, 2) of its nodes, corners first, anticlockwise.
     values, gradients : Floats
-        (q, m) and (q, 2, m) shape functions at the quadrature points.
+        Shape functions (q, m) and their gradients (q, 2, m) at the quadrature points.
     points, weights : Floats
-        (q, 2) and (q,) quadrature.
+        Quadrature points (q, 2) and weights (q,).
     """
 
     corners: int
@@ -49,22 +49,22 @@ class Element:
 
 @cache
 def lagrange_element(corners: int, order: int, places: bytes = b"") -> Element:
-    """The element of an order, with the quadrature of its stiffness.
+    """Element of an order, with the quadrature of its stiffness.
 
     Parameters
     ----------
     corners : int
-        4 or 3.
+        Number of corners, 4 or 3.
     order : int
-        Of its polynomials.
+        Order of its polynomials.
     places : bytes
-        Of a triangle's nodes on the unit triangle, (m, 2) doubles in the order that the mesher has;
-        a square's are those of Gauss and Lobatto.
+        Places of a triangle's nodes on the unit triangle, (m, 2) doubles in the order that the
+        mesher has; a square's are those of Gauss and Lobatto.
 
     Returns
     -------
     element : Element
-        `order` + 2 points of Gauss in each direction; of a triangle those of a square
+        Element with `order` + 2 points of Gauss in each direction; of a triangle those of a square
         with one side drawn together.
     """
     nodes = np.frombuffer(places).reshape(-1, 2).copy() if places else _square(order)

@@ -24,7 +24,7 @@ from fe_drivetrain.mesh.shaft_section import shaft_quadrilaterals
 from fe_drivetrain.revolution.lagrange import Element, lagrange_element
 
 Where = Callable[[Floats, Floats], NDArray[np.bool_]]
-"""Of x and radius [m], any shape: whether a place is meant."""
+"""Function from x and radius [m], any shape, to whether a place is meant."""
 
 HIGHEST_QUADRILATERAL = 12
 
@@ -38,9 +38,9 @@ class Meridian:
     Attributes
     ----------
     nodes : Floats
-        (n, 2) x and radius [m].
+        Nodes (n, 2), x and radius [m].
     cells : Ints
-        (ne, m) node ids, in the order of the element's places.
+        Node ids (ne, m), in the order of the element's places.
     element : Element
         The element.
     """
@@ -111,20 +111,22 @@ def meridian(
     Parameters
     ----------
     shaft : Shaft
-        Any: solid or bored, stepped, tapered, with a flange or fillets or without.
+        Shaft of any kind: solid or bored, stepped, tapered, with a flange or fillets or without.
     size : float or None
-        Largest edge length [m]; a third of the largest diameter where not given.
+        Maximum edge length [m]; a third of the maximum diameter where not given.
     order : int or None
-        Of the elements: 2 to 12 of quadrilaterals, 2 to 6 of triangles; 6 and 4 where not given.
+        Order of the elements: 2 to 12 of quadrilaterals, 2 to 6 of triangles; 6 and 4 where not
+        given.
     layers : int
-        Of ever smaller elements, each at 0.15 of the one before, at every re-entrant corner of the
-        outline and at the corners of its ends.
+        Number of layers of ever smaller elements, each at 0.15 of the one before, at every
+        re-entrant corner of the outline and at the corners of its ends.
     per_fillet : int
-        Elements along each fillet: triangles, but for 2, which are quadrilaterals where they can
-        be had, at fillets that are smaller than the elements; few, and enough for stiffness.
+        Number of elements along each fillet: triangles, but for 2, which are quadrilaterals where
+        they can be had, at fillets that are smaller than the elements; few, and enough for
+        stiffness.
     corners : Sequence[Place]
-        x and radius [m] of more places on the outline, at corners of the sections, towards which
-        elements are graded: ends of a seat. Triangles are not.
+        Places x and radius [m] of more points on the outline, at corners of the sections, towards
+        which elements are graded: ends of a seat. Triangles are not.
 
     Raises
     ------
@@ -169,7 +171,7 @@ class _Plan:
     Attributes
     ----------
     nodes, cells : Floats, Ints
-        (n, 2) and (ne, 4), anticlockwise.
+        Nodes (n, 2) and cells (ne, 4), anticlockwise.
     arcs : tuple[tuple[int, int, Place], ...]
         Two nodes of each curved side, and the centre of its arc.
     """
@@ -227,14 +229,14 @@ def _sharp(shaft: Shaft) -> Shaft:
 
 
 def _foot(arc: Segment) -> Place:
-    """Where the step's face and the thinner surface would meet, equally far from both ends."""
+    """Meeting point of the step's face and the thinner surface, equally far from both ends."""
     on_thin, (x, high) = sorted((arc.start, arc.end), key=lambda place: place[1])
     along, down = on_thin[0] - x, high - on_thin[1]
     return x, high - (along**2 + down**2) / (2.0 * down)
 
 
 RATIO = 0.15
-"""Of an element at a sharp corner to the one that it was split from."""
+"""Size of an element at a sharp corner over that of the one that it was split from."""
 
 
 def _sharp_corners(shaft: Shaft) -> Floats:
@@ -286,8 +288,8 @@ class _Quads:
         centre : int
             The node.
         share : callable
-            Of the edge from it to another node: where to split it. No other edge is split, so that
-            neighbours still match.
+            Share of the edge from it to another node at which to split it. No other edge is split,
+            so that neighbours still match.
 
         Returns
         -------
@@ -355,7 +357,7 @@ class _Quads:
 
 
 _ROOM = 0.9
-"""Of an edge that a fillet may take."""
+"""Maximum share of an edge that a fillet may take."""
 
 
 def _towards(a: Place, b: Place, share: float) -> Place:

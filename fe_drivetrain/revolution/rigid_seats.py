@@ -31,11 +31,11 @@ def end_stiffness(
     Parameters
     ----------
     shaft, size, order, layers, per_fillet : Shaft, float or None, int or None, int, int
-        As for `fe_drivetrain.revolution.meridian`. With the default size stiffness is right to some
-        1e-5 where diameters are equal, to 2e-4 where they differ by 2.5 to 1. Of a shaft with
-        fillets 2 per fillet is many times quicker.
+        Arguments of `fe_drivetrain.revolution.meridian`. With the default size stiffness is right
+        to some 1e-5 where diameters are equal, to 2e-4 where they differ by 2.5 to 1. For a shaft
+        with fillets 2 per fillet is many times quicker.
     material : Material
-        Of the shaft.
+        Material of the shaft.
 
     Returns
     -------
@@ -61,13 +61,13 @@ def seat_stiffness(
     Parameters
     ----------
     shaft, size, order, layers, per_fillet : Shaft, float or None, int or None, int, int
-        As for `meridian`. Quadrilaterals are graded towards the seats' ends,
-        triangles are not: of a shaft with fillets give 2 per fillet.
+        Arguments of `meridian`. Quadrilaterals are graded towards the seats' ends, triangles are
+        not: for a shaft with fillets give 2 per fillet.
     material : Material
-        Of the shaft.
+        Material of the shaft.
     seats : Sequence[tuple[float, float]]
-        x of both ends of each [m]: the outer surface of one section between them; twice the x of
-        the shaft's front or rear for that end face.
+        Axial places x of both ends of each seat [m]: the outer surface of one section between them;
+        twice the x of the shaft's front or rear for that end face.
 
     Returns
     -------
@@ -101,7 +101,7 @@ def seat_stiffness(
 
 
 def stiffness_between_ends(mesh: Meridian, material: Material) -> Floats:
-    """`end_stiffness` of a meridian, whose ends are its nodes of least and of greatest x."""
+    """End stiffness of a meridian whose ends are its nodes of minimum and maximum x."""
     x = mesh.nodes[:, 0]
     ends = [(np.flatnonzero(np.abs(x - end) < LENGTH_TOLERANCE), end) for end in (x.min(), x.max())]
     return stiffness_between_seats(mesh, material, ends)
@@ -193,13 +193,13 @@ def _between(
     Parameters
     ----------
     mesh, n : Meridian, int
-        The meridian and the harmonic.
+        Meridian and harmonic.
     law, order : Floats, Ints
-        As for `frontal.condensed`; the law of the components only.
+        Law and order of elimination, see `frontal.condensed`; the law of the components only.
     seats : Sequence[tuple[Ints, Floats]]
         Nodes (k,) and their motions (k, components, m).
     components : slice
-        Those that the harmonic has.
+        Components that the harmonic has.
     """
     # what is kept goes first
     kept, held, rows = 0, [], []

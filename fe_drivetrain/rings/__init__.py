@@ -1,4 +1,4 @@
-"""Flexible rings: how the races of a bearing give way under its rollers.
+"""Flexible rings: compliance of a bearing's races under its rollers.
 
 In: a housing of revolution, or that of a scene, and a bearing. Out: its compliance at the rollers.
 """

@@ -42,10 +42,10 @@ from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.solve.reduction import reduce
 from fe_drivetrain.solve.solvers import solve
 
-#: Of the springs that hold the solids together while they are solved, over a contact's stiffness.
+#: Stiffness of the springs that hold the solids together while they are solved, over a contact's.
 WEAK = 0.05
 
-# Of the largest stiffness: a negative one beyond it is no round-off.
+# Negative stiffness, over the maximum stiffness, beyond which it is no round-off.
 _NEGATIVE = 1e-6
 
 
@@ -56,18 +56,18 @@ class RollerAssembly:
     Attributes
     ----------
     bearings : Mapping
-        Of rows of rollers, by name.
+        Bearings with rows of rollers, by name.
     stiffness : Floats
-        (2 total, 2 total) S over the approach of all rollers [m], then their leans [rad].
+        Stiffness (2 total, 2 total) S over the approach of all rollers [m], then their leans [rad].
     loads : Floats
-        (2 total, 10) G of the loads of `response.LOADS` [N, N m].
+        Contact loads (2 total, 10) G of the loads of `response.LOADS` [N, N m].
     points : Mapping
         Reference points of the scene by name: their motions (6, 10) under the loads with the
         springs, and (6, 2 total) for unit contact loads.
     springs : Floats
-        (2 total,) that the solids were solved with [N/m]; zero of leans.
+        Stiffness (2 total,) of the springs that the solids were solved with [N/m]; zero of leans.
     entrance : Entrance
-        Where loads enter the scene.
+        Point where loads enter the scene.
     """
 
     bearings: Mapping[str, Bearing]
@@ -89,14 +89,14 @@ class RollerAssembly:
         Parameters
         ----------
         count : int, optional
-            How many; all that give more than a twentieth of what a contact does, if left out.
+            Number of shapes; if left out, all with more than a twentieth of a contact's compliance.
 
         Returns
         -------
         shapes : Floats
-            (2 total, k) approach and lean of each roller.
+            Approach and lean (2 total, k) of each roller.
         stiffness : Floats
-            (k,) [N/m].
+            Stiffness (k,) of the shapes [N/m].
         """
         lengths = roller_lengths(self.together)
         values, vectors = np.linalg.eigh(self.stiffness / np.outer(lengths, lengths))
@@ -108,24 +108,24 @@ class RollerAssembly:
 
 @dataclass(frozen=True, eq=False)
 class AssemblyEquilibrium:
-    """Where a scene comes to rest on its rollers.
+    """Equilibrium of a scene on its rollers.
 
     Attributes
     ----------
     assembly : RollerAssembly
         The scene.
     factors : Floats
-        (n, 10) of the loads.
+        Factors (n, 10) of the loads.
     deflections : Floats
-        (n, 2 total) approach of all rollers [m], then their leans [rad].
+        Approach (n, 2 total) of all rollers [m], then their leans [rad].
     rollers, moments : Floats
-        (n, total) load of each roller [N], bearing by bearing, and its moment [N m].
+        Load (n, total) of each roller [N], bearing by bearing, and its moment [N m].
     residuals : Floats
-        (n,) what is left of the balance, over what `converged` allows.
+        Residual (n,) of the balance, over what `converged` allows.
     converged : Bools
-        (n,).
+        Flags (n,): whether the case has converged.
     iterations : Ints
-        (n,).
+        Number (n,) of Newton steps.
     """
 
     assembly: RollerAssembly
@@ -208,14 +208,15 @@ def roller_assembly(
     scene : Scene
         The scene; the interfaces of these bearings become rollers.
     bearings : Mapping
-        Of rows of rollers that fill the bores of the scene, by name: all bearings of the scene.
+        Bearings with rows of rollers that fill the bores of the scene, by name: all bearings of the
+        scene.
     method : str
         Solver, see `fe_drivetrain.solve.solvers.solve`.
 
     Returns
     -------
     assembly : RollerAssembly
-        The scene at the rollers.
+        Scene condensed to the rollers.
 
     Raises
     ------
@@ -264,8 +265,8 @@ def _solved(scene: Scene, bearings: Mapping[str, Bearing], method: str) -> dict[
     least = np.linalg.eigvalsh(S / scale)
     if least[0] < -_NEGATIVE * least[-1]:
         raise InputError(
-            f"the scene without its rollers gives energy back ({least[0]:.3g} N/m): the solver "
-            'was not exact enough; give method="direct"'
+            f"the scene without its rollers has a negative eigenvalue of stiffness, {least[0]:.3g} "
+            'N/m: the solver was not exact enough; give method="superlu"'
         )
     points = model.points.values()
     return {
@@ -293,11 +294,11 @@ def assembly_equilibrium(
     assembly : RollerAssembly
         The scene at its rollers.
     factors : Factors or array_like
-        (n, 10) or (10,) of the loads of `response.LOADS`.
+        Factors (n, 10) or (10,) of the loads of `response.LOADS`.
     shapes : int, optional
-        How many shapes of the solids to take, see `RollerAssembly.shapes`.
+        Number of shapes of the solids, see `RollerAssembly.shapes`.
     tolerance : float
-        Largest residual over the load.
+        Maximum residual over the load.
     warm : bool
         Start each case from the one before it, where its load is near.
 

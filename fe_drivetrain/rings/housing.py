@@ -33,7 +33,7 @@ from fe_drivetrain.solve.reduction import reduce
 from fe_drivetrain.solve.solid import Assembly
 from fe_drivetrain.solve.solvers import solve
 
-#: Of a raceway in the bore, over the pitch diameter: others are another bearing's.
+#: Maximum radius of the bore over a row's pitch radius: above, it is another bearing's.
 LARGEST_BORE = 1.25
 
 MADE_BY: Mapping[str, Set[str] | None] = {
@@ -47,16 +47,16 @@ _DEGREE = 8  # of the quadrature of a window, which is not smooth
 
 @dataclass(frozen=True, eq=False)
 class HousingSolid:
-    """A housing without its shaft, and where the rollers of a bearing touch it.
+    """A housing without its shaft, and the places where the rollers of a bearing touch it.
 
     Attributes
     ----------
     mesh : Mesh
-        Of the housing; other parts of it have no stiffness.
+        Mesh of the housing; other parts of it have no stiffness.
     name : str
-        Of the bearing in its scene.
+        Name of the bearing in its scene.
     contacts : Floats
-        (3 n, 2 total) nodal forces of a unit load along the contact normal, outwards, and of a unit
+        Nodal forces (3 n, 2 total) of a unit load along the contact normal, outwards, and of a unit
         moment of each roller; transposed, recession and lean.
     """
 
@@ -73,16 +73,17 @@ def housing_races(scene: Scene, name: str, bearing: Bearing, method: str = "auto
     scene : Scene
         The scene.
     name : str
-        Of one of its bearings, whose housing it is.
+        Name of the bearing, one of the scene's, whose housing it is.
     bearing : Bearing
-        Of rows of rollers, about the same centre.
+        Bearing with rows of rollers, about the same centre.
     method : str
         Solver, see `fe_drivetrain.solve.solvers.solve`.
 
     Returns
     -------
     races : Races
-        Relative to the ground; the ring's rigid motion on its housing and bedplate is part of it.
+        Compliance relative to the ground; the ring's rigid motion on its housing and bedplate is
+        part of it.
 
     Raises
     ------
@@ -130,20 +131,20 @@ def contact_compliance(
     mesh : Mesh
         The mesh; other parts of it are left out.
     part, material : str, Material
-        The part, and what it is of.
+        Name of the part, and its material.
     contacts : Floats
-        (3 n, m) nodal forces of a unit of each.
+        Nodal forces (3 n, m) of a unit load on each contact.
     fixed : str
-        The face that does not move.
+        Name of the face that does not move.
     method : str
         Solver, see `fe_drivetrain.solve.solvers.solve`.
     assembly : Assembly
-        Of the stiffness.
+        Assembly of the stiffness.
 
     Returns
     -------
     compliance : Floats
-        (m, m).
+        Compliance (m, m).
     """
     n_dofs = len(contacts)
     cells = mesh.cells[mesh.part_cells(part)]
@@ -168,14 +169,14 @@ def housing_solid(scene: Scene, name: str, bearing: Bearing) -> HousingSolid:
     scene : Scene
         The scene.
     name : str
-        Of one of its bearings.
+        Name of the bearing, one of the scene's.
     bearing : Bearing
-        Of rows of rollers.
+        Bearing with rows of rollers.
 
     Returns
     -------
     solid : HousingSolid
-        See there.
+        Solid with the nodal forces of the rollers.
 
     Raises
     ------
@@ -214,15 +215,15 @@ def contact_rows(mesh: Mesh, face: str, centre: float, bearing: Bearing) -> Floa
     face : str
         The bore, a cylinder or a sphere about the x axis.
     centre : float
-        x of the bearing's centre [m].
+        Axial place x of the bearing's centre [m].
     bearing : Bearing
-        Of rows of rollers.
+        Bearing with rows of rollers.
 
     Returns
     -------
     contacts : Floats
-        (3 n, 2 total): loads of all rollers along their contact normals, outwards, then moments, of
-        loads that grow with x.
+        Nodal forces (3 n, 2 total): loads of all rollers along their contact normals, outwards,
+        then moments, of loads that grow with x.
 
     Raises
     ------

@@ -33,24 +33,24 @@ def races_of_revolution(
     Parameters
     ----------
     bearing : Bearing
-        Of rows of rollers; its inner ring is rigid.
+        Bearing with rows of rollers; its inner ring is rigid.
     mesh, material : Meridian, Material
-        The meridian, best with elements that end where the rollers do, and what it is of.
+        Meridian, best with elements that end where the rollers do, and its material.
     radius : float
-        Of the bore [m].
+        Radius of the bore [m].
     held : Ints
         Degrees of freedom (k,) of the mesh that don't move in any harmonic, see
         `revolution.dofs`: they must hold the body against all rigid motions but rotation about x.
     centre : float
-        x of the bearing's centre [m].
+        Axial place x of the bearing's centre [m].
     harmonics : int, optional
-        The highest; as many as a row has rollers where left out, which leaves out less than 1e-3 of
-        what a roller's window gives.
+        Maximum harmonic; as many as a row has rollers where left out, which leaves out less than
+        1e-3 of the effect of a roller's window.
 
     Returns
     -------
     races : Races
-        Relative to what is held.
+        Compliance relative to what is held.
 
     Raises
     ------

@@ -17,6 +17,7 @@ from .joint_springs import roller_lines as roller_lines
 from .materials import HIGHEST_POISSON_RATIO as HIGHEST_POISSON_RATIO
 from .materials import MATERIALS as MATERIALS
 from .materials import Material as Material
+from .named_scenes import named_scene as named_scene
 from .nose import Nose as Nose
 from .nose import NoseBearing as NoseBearing
 from .reading import change_component as change_component

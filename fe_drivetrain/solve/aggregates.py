@@ -1,7 +1,7 @@
 """The next coarser level by smoothed aggregation, of pyamg's steps.
 
 Vanek, Mandel, Brezina 1996, Computing 56, 179-196. The prolongation is smoothed by a step of the
-block Jacobi iteration, whose inverses and largest eigenvalue the smoother of the level needs anyway
+block Jacobi iteration, whose inverses and maximum eigenvalue the smoother of the level needs anyway
 and pyamg would estimate again, from random numbers.
 """
 
@@ -16,7 +16,7 @@ from fe_drivetrain.common.arrays import Floats
 # Rows of a product that a thread takes at once, and blocks from which on that is worth it.
 _PARTS, _MANY = 4, 20_000
 
-#: Of the Jacobi step, over the largest eigenvalue: least for the eigenvalues above a third of it.
+#: Factor of the Jacobi step, over the maximum eigenvalue: best for eigenvalues above a third of it.
 _DAMPING = 4.0 / 3.0
 
 
@@ -33,11 +33,11 @@ def coarsened(
     Parameters
     ----------
     K : sparse.bsr_array
-        (n, n) stiffness, a block a node.
+        Stiffness (n, n), a block a node.
     motions : Floats
-        (n, 6) rigid motions.
+        Rigid motions (n, 6).
     connected : sparse.csr_array
-        Which nodes may share an aggregate.
+        Nodes that may share an aggregate.
     smoother : str or None
         "jacobi", "energy" or None, of the tentative prolongation.
     inverse : Floats
@@ -78,9 +78,9 @@ def between_aggregates(K: sparse.bsr_array, prolongation: sparse.bsr_array) -> s
     Parameters
     ----------
     K : sparse.bsr_array
-        (n, n) stiffness.
+        Stiffness (n, n).
     prolongation : sparse.bsr_array
-        (n, n_coarse), in blocks with as many rows.
+        Prolongation (n, n_coarse), in blocks with as many rows.
     """
     if len(K.indices) <= _MANY:
         return prolongation.T @ (K @ prolongation)

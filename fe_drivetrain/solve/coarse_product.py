@@ -24,7 +24,7 @@ def coarse_product(K: sparse.bsr_array, prolongation: sparse.csr_array) -> spars
     Parameters
     ----------
     K : sparse.bsr_array
-        (n, n) stiffness in 3x3 blocks.
+        Stiffness (n, n) in 3x3 blocks.
     prolongation : sparse.csr_array
         (n, n_coarse), both multiples of three.
 

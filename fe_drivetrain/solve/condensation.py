@@ -28,17 +28,18 @@ class Condensed:
     Attributes
     ----------
     names : tuple[str, ...]
-        Of the n points.
+        Names of the n points.
     positions : Floats
-        (n, 3) [m].
+        Positions (n, 3) of the points [m].
     stiffness : Floats
-        (6 n, 6 n): ux, uy, uz, rx, ry, rz of each point to Fx to Mz there [N/m, N, N m/rad].
+        Stiffness (6 n, 6 n): ux, uy, uz, rx, ry, rz of each point to Fx to Mz there [N/m, N, N
+        m/rad].
     gravity : Floats
-        (6 n, 3) forces and moments that do at the points what the body's mass does under a uniform
+        Forces and moments (6 n, 3) that do at the points what the body's mass does under a uniform
         acceleration of 1 m/s^2 along x, y, z.
     mass : Floats or None
-        (6 n, 6 n) of the motions that the points force on the body (Guyan 1965) [kg, kg m,
-        kg m^2]; None of a beam.
+        Mass (6 n, 6 n) of the motions that the points force on the body (Guyan 1965) [kg, kg m, kg
+        m^2]; None of a beam.
     """
 
     names: tuple[str, ...]
@@ -72,19 +73,19 @@ def condense(
     Parameters
     ----------
     names, positions : Sequence[str], Floats
-        Of the n points, (n, 3) [m]; at least two.
+        Names and positions (n, 3) of the n points [m]; at least two.
     loads : Floats
-        (n_dofs, k n) nodal forces of a unit force or moment at each point; transposed, the
-        points' motions. k components of each point are kept.
+        Nodal forces (n_dofs, k n) of a unit force or moment at each point; transposed, the points'
+        motions. k components of each point are kept.
     mass : sparse.csr_array
-        (n_dofs, n_dofs) mass matrix of the body [kg].
+        Mass matrix (n_dofs, n_dofs) of the body [kg].
     rigid : Floats
-        (n_dofs, k) the body's rigid motions about the first point.
+        Rigid motions (n_dofs, k) of the body about the first point.
     solve : callable
-        Displacements (n_dofs, m) under nodal forces that are in balance; any rigid motion may
-        be in them.
+        Function from nodal forces (n_dofs, m) that are in balance to displacements; any rigid
+        motion may be in these.
     kept : Sequence[int]
-        Which of the six components of each point ``loads`` has; the others stay without stiffness.
+        Components, of the six of each point, that ``loads`` has; the others stay without stiffness.
 
     Raises
     ------
@@ -154,7 +155,7 @@ def followed(body: Condensed, at: Sequence[str]) -> Floats:
     Returns
     -------
     Floats
-        (6 n, 6 k) motions of all n points for a unit motion of each of these.
+        Motions (6 n, 6 k) of all n points for a unit motion of each of these.
 
     Raises
     ------
@@ -211,8 +212,9 @@ def on_supports(
     stiffness : Floats
         (6 n + m, 6 n + m): six degrees of freedom of each point first, then m of anything.
     supports : Mapping[str, Floats]
-        (6, 6) by point; inf on the diagonal holds that motion, and nothing else is in its row.
-        Where k supports give together, (6, 6 k): the point's rows of their one stiffness.
+        Stiffness (6, 6) of the support by point; inf on the diagonal holds that motion, and nothing
+        else is in its row. Where k supports are coupled, (6, 6 k): the point's rows of their one
+        stiffness.
     together : Sequence[Sequence[str]]
         Names of such points, in the order of their columns.
 
@@ -240,7 +242,7 @@ def on_supports(
         group = next((g for g in together if name in g and 6 * len(g) == k.shape[1]), None)
         if group is None:
             raise InputError(
-                f"support {name!r} gives together with others, which this cannot take: use one of "
+                f"support {name!r} is coupled with others, which is not possible here: use one of "
                 "levels 1 to 4 of the scene"
             )
         for other, block in zip(group, np.split(k, len(group), axis=1), strict=True):
@@ -257,10 +259,10 @@ class Supported:
     Attributes
     ----------
     motions : Floats
-        (6 n, 6 n + 3) of all points, for unit forces and moments at all points and for 1 m/s^2
-        along x, y, z.
+        Motions (6 n, 6 n + 3) of all points, for unit forces and moments at all points and for 1
+        m/s^2 along x, y, z.
     reactions : Mapping[str, Floats]
-        (6, 6 n + 3) by support: what the body puts on it, at its point.
+        Loads (6, 6 n + 3) of the body on each support, at its point.
     """
 
     motions: Floats
@@ -277,10 +279,10 @@ def supported(
     body : Condensed
         The free body.
     supports : Mapping[str, Floats]
-        (6, 6) stiffness to ground of points by name; inf on the diagonal holds that motion rigidly,
-        and nothing else stands in its row then. Those that give together as of `on_supports`.
+        Stiffness (6, 6) to ground of points by name; inf on the diagonal holds that motion rigidly,
+        and nothing else stands in its row then. Coupled ones have the form of `on_supports`.
     together : Sequence[Sequence[str]]
-        See there.
+        Names of coupled points, see `on_supports`.
 
     Raises
     ------

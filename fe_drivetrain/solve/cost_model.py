@@ -1,4 +1,4 @@
-"""What each solver will take, in seconds and bytes, before it is set up.
+"""Cost of each solver, in seconds and bytes, before it is set up.
 
 Nested dissection of a solid whose cross-section has w nodes, n unknowns in all, fills a factor with
 about n w^(1/2) entries at n w^(3/2) operations (George 1973 for squares and cubes; a slender solid
@@ -39,7 +39,7 @@ class Direct(NamedTuple):
     each: float
 
 
-# Of SuperLU, which the grid leaves out where it is slow, fitted in logarithms to 67 systems of 3 to
+# SuperLU, which the grid leaves out where it is slow, is fitted in logarithms to 67 systems of 3 to
 # 40 thousand unknowns that cases solve, too: from a third to four times what was measured.
 DIRECT = {
     "superlu": Direct(0.0, 7.8e-8, 2.2e-9, 346.0, 1.3e-10, 7.1e-11),
@@ -81,7 +81,7 @@ class Schwarz(NamedTuple):
 SCHWARZ = Schwarz(0.3, 6e-5, 40.0, 7e-10, 5e-10, 1600.0, 300.0)
 
 #: Iterations of multigrid to `TOLERANCE` on bodies that are not thin, by the nodes of an element:
-#: medians of what cases take. Of elements that are not known, as of those of ten nodes.
+#: medians of what cases take. Elements that are not known count as those of ten nodes.
 ORDINARY = {4: 21.0, 8: 20.0, 10: 32.0, 20: 45.0, 27: 66.0}
 
 # Iterations for each unit of `thinness`, of tetrahedra and of hexahedra, and how many times as many
@@ -98,9 +98,9 @@ class Cost:
     method : str
         Name of the solver.
     seconds : float
-        Set-up and solve.
+        Time for set-up and solve [s].
     bytes : float
-        Of the factor or hierarchy.
+        Memory of the factor or hierarchy.
     fits : bool
         Whether there is the memory for it now.
     """
@@ -125,11 +125,11 @@ def predict(system: System, n_rhs: int, tolerance: float = TOLERANCE) -> list[Co
     Parameters
     ----------
     system : System
-        From `reduction.reduce`.
+        System from `reduction.reduce`.
     n_rhs : int
-        How many right-hand sides there will be.
+        Number of right-hand sides there will be.
     tolerance : float
-        At which iterations will stop.
+        Tolerance at which iterations will stop.
 
     Returns
     -------
@@ -168,9 +168,9 @@ def iterations(system: System, tolerance: float = TOLERANCE) -> float:
     Parameters
     ----------
     system : System
-        From `reduction.reduce`.
+        System from `reduction.reduce`.
     tolerance : float
-        At which iterations will stop.
+        Tolerance at which iterations will stop.
     """
     found = ORDINARY[10]
     if system.elements is not None:

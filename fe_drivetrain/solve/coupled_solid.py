@@ -43,14 +43,14 @@ class CoupledSolid:
     mesh : Mesh
         The mesh; nodes of parts that are left out have no stiffness.
     cells : Ints
-        (n_cells, k) of the parts.
+        Cells (n_cells, k) of the parts.
     stiffness : sparse.bsr_array
-        (n, n): three degrees of freedom a node first, then six of each point with a rigid face
-        [N/m, N, N m/rad].
+        Stiffness (n, n): three degrees of freedom a node first, then six of each point with a rigid
+        face [N/m, N, N m/rad].
     attachments : tuple[Attachment, ...]
-        Of the faces.
+        Attachments of the faces.
     points : tuple[ReferencePoint, ...]
-        Their reference points, in the same order.
+        Reference points of the faces, in the same order.
     rigid_faces : tuple[Constraint, ...]
         Constraints that make faces rigid (RBE2).
     """
@@ -80,11 +80,11 @@ class CondensedSolid:
     Attributes
     ----------
     mesh : Mesh
-        Its mesh.
+        Mesh of the solid.
     body : Condensed
-        It, condensed to its points.
+        Solid condensed to its points.
     unknowns : int
-        Of the system.
+        Number of unknowns of the system.
     """
 
     mesh: Mesh
@@ -101,7 +101,7 @@ class CondensedSolid:
         Parameters
         ----------
         motions : Floats
-            (6 p,) of the p points [m, rad].
+            Motions (6 p,) of the p points [m, rad].
         """
         return self.fields(motions[:, None])[:, 0].reshape(-1, 3)
 
@@ -122,12 +122,12 @@ def assembled_parts(mesh: Mesh, materials: Mapping[str, Material]) -> sparse.bsr
     mesh : Mesh
         The mesh.
     materials : mapping of str to Material
-        Of each part that is assembled, by its name in the mesh.
+        Material of each part that is assembled, by its name in the mesh.
 
     Returns
     -------
     sparse.bsr_array
-        (3 n, 3 n) of the n nodes [N/m].
+        Stiffness (3 n, 3 n) of the n nodes [N/m].
 
     Raises
     ------
@@ -155,11 +155,11 @@ def coupled_solid(
     mesh : Mesh
         The mesh.
     materials : mapping of str to Material
-        Of each part that is assembled, by its name in the mesh.
+        Material of each part that is assembled, by its name in the mesh.
     attachments : sequence of Attachment
         Reference points with their faces.
     stiffness : sparse.bsr_array or None
-        Of `assembled_parts`, where that is there already.
+        Stiffness from `assembled_parts`, where that is there already.
 
     Raises
     ------
@@ -200,7 +200,7 @@ def condensed_solid(
     mesh : Mesh
         The mesh, all parts of it joined.
     materials : mapping of str to Material
-        Of every part, by its name in the mesh.
+        Material of every part, by its name in the mesh.
     attachments : sequence of Attachment
         Reference points with their faces; at least two.
     method : str
@@ -254,7 +254,7 @@ def point_motions_of(
     solid : CoupledSolid
         The solid.
     held : sequence of Constraint
-        What holds it.
+        Constraints that hold it.
     springs : sequence of (ReferencePoint, ndarray (6, 6))
         Springs to ground at reference points [N/m, N, N m/rad].
     method : str
@@ -263,7 +263,8 @@ def point_motions_of(
     Returns
     -------
     displacements : ndarray, (n, 6 p)
-        Of all n degrees of freedom, for the p points, to `DISPLACEMENTS` in the energy norm.
+        Displacements of all n degrees of freedom, for the p points, to `DISPLACEMENTS` in the
+        energy norm.
     compliance : ndarray, (6 p, 6 p)
         Motions of the points, to the square of that [m/N, 1/N, rad/(N m)].
 
@@ -303,7 +304,7 @@ def point_compliance(
     Returns
     -------
     ndarray, (6 p, 6 p)
-        Of the p points [m/N, 1/N, rad/(N m)].
+        Motions of the p points [m/N, 1/N, rad/(N m)].
     """
     return point_motions_of(solid, held, springs, method)[1]
 

@@ -89,7 +89,7 @@ def _is_there(method: str) -> bool:
 
 @cache
 def _fault(method: str) -> str:
-    """What keeps a package that is there from being loaded, which is tried once; else empty."""
+    """Reason why a package that is there cannot be loaded, which is tried once; else empty."""
     try:
         {"pardiso": _load_pardiso, "cholmod": _cholmod_functions}.get(method, tuple)()
     except Exception as error:  # another project's package and its libraries: it may be any
@@ -114,7 +114,7 @@ def factorise(K: sparse.bsr_array, method: str) -> Factor:
     Parameters
     ----------
     K : sparse.bsr_array
-        (n, n).
+        Stiffness (n, n).
     method : str
         ``superlu``, ``pardiso`` or ``cholmod``.
 

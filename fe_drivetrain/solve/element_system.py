@@ -74,7 +74,7 @@ class ElementSystem:
 
     @cached_property
     def sums(self) -> Sums | None:
-        """Its joints that take means over faces; None where there are none."""
+        """Joints that take means over faces; None where there are none."""
         constraints = self.elimination.constraints
         means = [c.is_mean for c in constraints] + [point.is_mean for point, _ in self.springs]
         return sums_of(self.elimination, self.springs) if any(means) else None
@@ -102,11 +102,11 @@ class Cut:
     Attributes
     ----------
     system : ElementSystem
-        What is cut.
+        System that is cut.
     order : Ints
-        (n_blocks,) its blocks in the order of the parts.
+        Blocks (n_blocks,) in the order of the parts.
     starts : Ints
-        (count + 1,) where in ``order`` each part begins.
+        Places (count + 1,) where each part begins in ``order``.
     apart : bool
         Whether shares are to know the bodies without joints that take means, too.
     """
@@ -161,13 +161,13 @@ class Cut:
         return found.tocsr()
 
     def shares(self) -> Iterator[tuple[Share, tuple[Reduction, ...]]]:
-        """What each part makes its rows of, one after the other.
+        """Share of each part, in turn: what it makes its rows of.
 
         Yields
         ------
         share, reductions
-            With all constraints, and, where it is ``apart``, of bodies without joints that take
-            means.
+            Share with all constraints, and, where it is ``apart``, of bodies without joints that
+            take means.
         """
         system, order = self.system, self.order
         n_nodes = len(system.points)
@@ -255,9 +255,9 @@ def cut(system: ElementSystem, count: int, apart: bool = True) -> Cut:
     system : ElementSystem
         The system.
     count : int
-        Of the parts.
+        Number of parts.
     apart : bool
-        As of `Cut`.
+        Whether shares are to know the bodies without joints that take means, too, see `Cut`.
     """
     n = len(system.points)
     # reference points have no place, and go with the last part
@@ -276,20 +276,20 @@ def sizes(n: int, count: int) -> Ints:
 def parts(points: Floats, count: int) -> Ints:
     """Order of points in which ``count`` equal runs of them are compact parts.
 
-    They are halved across their greatest length, and each half again (recursive coordinate
+    They are halved across their maximum length, and each half again (recursive coordinate
     bisection).
 
     Parameters
     ----------
     points : Floats
-        (n, 3) [m].
+        Points (n, 3) [m].
     count : int
-        Of parts, see `sizes`.
+        Number of parts, see `sizes`.
 
     Returns
     -------
     Ints
-        (n,) numbers of points.
+        Numbers (n,) of the points.
     """
 
     def halves(chosen: Ints, of: Ints) -> list[Ints]:

@@ -1,4 +1,4 @@
-"""How far a stiffness is from its limit, estimated on one mesh: energy of the error by recovery.
+"""Error of a stiffness, estimated on one mesh: energy of the error by recovery.
 
 A displacement model under given forces stores too little energy, by exactly the energy of its
 error: for one load F with its displacement or rotation d, the compliance d / F is too low and the
@@ -84,11 +84,11 @@ def recovery_estimate(
     Parameters
     ----------
     points : Floats
-        (n, 3) node coordinates [m].
+        Node coordinates (n, 3) [m].
     parts : Sequence[tuple[Ints, Lame]]
-        Of each part its cells (n_cells, k) in VTK's order and Lame's constants [Pa].
+        Cells (n_cells, k) of each part in VTK's order, and its Lame's constants [Pa].
     u : Floats
-        (3 n,) or longer, displacements [m]: under given forces, or with given displacements, where
+        Displacements (3 n,) or longer [m]: under given forces, or with given displacements, where
         the energy is too high by that of the error; not with both.
     """
     energy, indicators = 0.0, []
@@ -107,12 +107,12 @@ def error_energies(points: Floats, parts: Sequence[tuple[Ints, Lame]], fields: F
     points, parts : Floats, Sequence[tuple[Ints, Lame]]
         See `recovery_estimate`.
     fields : Floats
-        (3 n, m) or longer, displacements [m].
+        Displacements (3 n, m) or longer [m].
 
     Returns
     -------
     Floats
-        (m,) `ErrorEstimate.error_energy` of each [J].
+        Error energy (m,) of each field, see `ErrorEstimate.error_energy` [J].
     """
     total = np.zeros(fields.shape[1])
     for cells, lame in parts:
@@ -242,7 +242,7 @@ def _errors(
 ) -> Iterator[tuple[Floats, Floats, Floats]]:
     """Volumes (n_cells, n_q), stresses (n_cells, n_q, m, 6), and these less recovered ones.
 
-    Of m fields (3 n, m), in chunks of cells.
+    Fields u are m columns (3 n, m); values come in chunks of cells.
     """
     check_nodes(cells, len(points))
     kind = element_kind(cells.shape[1])

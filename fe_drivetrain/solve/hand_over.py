@@ -22,18 +22,18 @@ def hand_over(folder: Path, system: ElementSystem | System, method: str, count: 
     Parameters
     ----------
     folder : Path
-        Where to.
+        Folder that the files are written to.
     system : ElementSystem or System
-        What is handed over.
+        System that is handed over.
     method : str
-        "petsc", which wants joints that take means apart, or "petsc-mumps".
+        Method "petsc", which wants joints that take means apart, or "petsc-mumps".
     count : int
-        Of processes.
+        Number of processes.
 
     Returns
     -------
     order
-        (n_blocks,) node blocks in the order of the processes.
+        Node blocks (n_blocks,) in the order of the processes.
     """
     if isinstance(system, ElementSystem):
         order, setup = _elements(folder, system, method, count)

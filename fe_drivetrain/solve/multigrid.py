@@ -36,21 +36,22 @@ _SMALLEST, _LARGEST = float(_SINGLE.tiny / _SINGLE.eps), float(_SINGLE.max)
 
 @dataclass(frozen=True)
 class Options:
-    """How a hierarchy is made; the defaults measured best, ``cases/performance/solvers.py``.
+    """Options of a hierarchy; the defaults measured best, ``cases/performance/solvers.py``.
 
     Attributes
     ----------
     degree, coarse_degree : int
-        Of the Chebyshev smoother on the finest level, and on the others. A degree more there takes
-        two passes over the matrix an iteration, and does not save as many; below it costs little.
+        Degree of the Chebyshev smoother on the finest level, and on the others. A degree more there
+        takes two passes over the matrix an iteration, and does not save as many; below it costs
+        little.
     smoothed : float
-        The smoother works on eigenvalues from here on, relative to the largest.
+        Eigenvalue, relative to the maximum, from which on the smoother works.
     linear_level : bool
         Whether linear elements come between the quadratic ones and aggregates.
     strength : float
         Threshold of the symmetric strength of connection.
     prolongation_smoother : str or None
-        "jacobi", "energy" or None, as in pyamg.
+        Smoother of the prolongation: "jacobi", "energy" or None, as in pyamg.
     apart : bool
         Whether bodies that a joint couples keep apart in aggregates.
     coarsest : int
@@ -89,13 +90,13 @@ class Level:
         read. Conjugate gradients have the finest one in double precision, so answers are as exact.
         Rounding is symmetric, and so is the hierarchy.
     inverse : Floats
-        (n_blocks, 3, 3) inverses of its diagonal blocks.
+        Inverses (n_blocks, 3, 3) of its diagonal blocks.
     largest : float
         Upper bound of the eigenvalues of diag^-1 K.
     degree : int
-        Of its Chebyshev smoother.
+        Degree of its Chebyshev smoother.
     prolongation, restriction : sparse.csr_array
-        To and from the next level.
+        Transfer to and from the next level.
     """
 
     K: Rounded
@@ -273,7 +274,7 @@ def _in_rows(P: sparse.sparray) -> sparse.csr_array:
 
 
 def _smoothing(K: sparse.bsr_array, options: Options) -> tuple[Rounded, Floats, float]:
-    """Stiffness, inverse blocks and largest eigenvalue of a level."""
+    """Stiffness, inverse blocks and maximum eigenvalue of a level."""
     diagonal = diagonal_blocks(K)
     sizes = np.einsum("nii->ni", diagonal)  # a view
     sizes[sizes <= 0.0] = 1.0
@@ -297,7 +298,7 @@ def largest_eigenvalue(K: Rounded | sparse.bsr_array, inverse: Floats) -> float:
     Parameters
     ----------
     K : Rounded or sparse.bsr_array
-        (n, n) symmetric positive semi-definite, 3x3 blocks.
+        Stiffness (n, n), symmetric positive semi-definite, 3x3 blocks.
     inverse : Floats
         (n / 3, 3, 3) inverses of its diagonal blocks.
     """
@@ -341,16 +342,16 @@ def _within_bodies(K: sparse.bsr_array, body: Ints) -> sparse.csr_matrix:
 
 @dataclass(frozen=True)
 class Iteration:
-    """What conjugate gradients came to.
+    """Result of conjugate gradients.
 
     Attributes
     ----------
     x : Floats
-        (n, m).
+        Solutions (n, m).
     iterations : int
         Number of them.
     energy_error : float
-        Largest estimate, over the columns, of the relative error in the energy norm; infinite where
+        Maximum estimate, over the columns, of the relative error in the energy norm; infinite where
         stiffness or preconditioner turned out not to be positive.
     """
 
@@ -371,9 +372,9 @@ def conjugate_gradients(
     Parameters
     ----------
     K : sparse.bsr_array
-        (n, n) symmetric positive definite.
+        Stiffness (n, n), symmetric positive definite.
     F : Floats
-        (n, m).
+        Right-hand sides (n, m).
     precondition : callable
         Symmetric positive definite, of all columns.
     tolerance : float
@@ -426,7 +427,7 @@ def _solved(
 def iterates(
     K: sparse.bsr_array, F: Floats, precondition: Callable[[Floats], Floats]
 ) -> Iterator[Iteration]:
-    """Conjugate gradients, one step after the other; ``x`` is overwritten by the next step.
+    """Conjugate gradients, a step at a time; ``x`` is overwritten by the next step.
 
     Their error is estimated in the energy norm, see `stopping`.
     """

@@ -26,17 +26,17 @@ class Reduction:
     Attributes
     ----------
     T : sparse.csr_array
-        (3 n, 3 n) of the elimination, between the n node blocks of the share.
+        Matrix (3 n, 3 n) of the elimination, between the n node blocks of the share.
     free : Bools
-        (3 n,) which degrees of freedom are left.
+        Flags (3 n,): degrees of freedom that are left.
     motions : sparse.csr_array
-        (s, 3 N) what springs stretch, from the degrees of freedom of all processes.
+        Motions (s, 3 N) that stretch the springs, from the degrees of freedom of all processes.
     stiffness : Floats
-        (s, s) of the springs [N/m, N, N m/rad].
+        Stiffness (s, s) of the springs [N/m, N, N m/rad].
     trace : float
-        Of what the springs add to the stiffness before any constraint [N/m].
+        Trace of what the springs add to the stiffness before any constraint [N/m].
     grounded : Bools
-        (3 n,) which degrees of freedom have a ground beside.
+        Flags (3 n,): degrees of freedom that have a ground beside.
     """
 
     T: sparse.csr_array
@@ -49,28 +49,28 @@ class Reduction:
 
 @dataclass(frozen=True)
 class Share:
-    """What one process makes its rows of.
+    """Elements from which one process makes its rows.
 
     Attributes
     ----------
     blocks : Ints
-        (n,) numbers of its node blocks among all, ascending.
+        Numbers (n,) of its node blocks among all, ascending.
     low, high : int
-        Which of all node blocks are its own, low to high - 1.
+        Range of its own node blocks among all, low to high - 1.
     points : Floats
-        (n, 3) [m]; anything at reference points.
+        Points (n, 3) [m]; anything at reference points.
     cells : Ints
-        (n_cells, k) places in ``blocks`` of the nodes of its elements.
+        Places (n_cells, k) in ``blocks`` of the nodes of its elements.
     material : Ints
-        (n_cells,) row of ``lame``.
+        Row (n_cells,) of ``lame``.
     lame : Floats
-        (n_materials, 2) Lame's constants [Pa].
+        Lame's constants (n_materials, 2) [Pa].
     functions : Ints
-        (n_materials,) as of `element_stiffness`.
+        Functions (n_materials,), see `element_stiffness`.
     rule : Rule
-        Of the elements.
+        Quadrature rule of the elements.
     body : Ints
-        (n,) which body each block belongs to, -1 of reference points.
+        Body (n,) that each block belongs to, -1 of reference points.
     """
 
     blocks: Ints
@@ -143,11 +143,11 @@ def own_rows(
     Parameters
     ----------
     K : sparse.bsr_array
-        From `assembled`.
+        Stiffness from `assembled`.
     share : Share
-        Of what.
+        Share of the process.
     reduction : Reduction
-        The constraints and springs.
+        Constraints and springs.
     mean : float
         Stiffness at eliminated degrees of freedom [N/m].
     ground : float
@@ -158,7 +158,7 @@ def own_rows(
     Returns
     -------
     rows
-        (3 (high - low), 3 N), columns ascending; zeros are left out.
+        Rows (3 (high - low), 3 N), columns ascending; zeros are left out.
     """
     own, free = share.own, reduction.free
     dofs = slice(3 * own.start, 3 * own.stop)
@@ -199,7 +199,7 @@ def _between_bodies(rows: sparse.csr_array, share: Share) -> Bools:
 
 
 def passed_on(K: sparse.bsr_array, T: sparse.csr_array, free: Bools) -> sparse.csr_array:
-    """What eliminated degrees of freedom pass on to the others, (n, n).
+    """Terms that eliminated degrees of freedom pass on to the others, (n, n).
 
     It is T^T K T without what stands between those that are left. For supports it is nothing, for
     joints little.
@@ -207,9 +207,9 @@ def passed_on(K: sparse.bsr_array, T: sparse.csr_array, free: Bools) -> sparse.c
     Parameters
     ----------
     K : sparse.bsr_array
-        (n, n) symmetric, before any constraint.
+        Stiffness (n, n), symmetric, before any constraint.
     T, free : sparse.csr_array, Bools
-        (n, n) and (n,), of the elimination.
+        Matrix (n, n) and flags (n,) of the elimination.
     """
     pivots = np.flatnonzero(~free & (np.diff(T.indptr) > 0))
     rows = rows_of(K, pivots)
@@ -250,7 +250,7 @@ def keep(file: Path, share: Share, reductions: Sequence[Reduction]) -> None:
 
 
 def kept(file: Path) -> tuple[Share, tuple[Reduction, ...]]:
-    """What `keep` has kept."""
+    """Load what `keep` has kept."""
     with np.load(file) as values:
 
         def matrix(name: str) -> sparse.csr_array:

@@ -40,7 +40,7 @@ from fe_drivetrain.solve.rounding import worst
 METHODS = ("petsc", "petsc-mumps")
 
 Facts = dict[str, Any]
-"""What processes say of their work; see `Ranks`."""
+"""Messages of processes about their work; see `Ranks`."""
 
 MOST = 400
 """Iterations: 30 to 50 of GAMG are usual, a rigid spherical joint took 94 and more."""
@@ -73,14 +73,14 @@ def interpreter() -> str | None:
 
 @dataclass(frozen=True)
 class Checked(Iteration):
-    """What processes came to, and what they found of it, for they alone have the matrix.
+    """Result of the processes, and its residual, for they alone have the matrix.
 
     Attributes
     ----------
     residual : float
-        Largest |K x - f| / |f| over the columns.
+        Maximum |K x - f| / |f| over the columns.
     round_off : float
-        As of `rounding.round_off`.
+        Relative change of the energy by rounding, see `rounding.round_off`.
     """
 
     residual: float
@@ -93,7 +93,7 @@ class Ranks:
     Parameters
     ----------
     system : ElementSystem or System
-        What they solve: an `ElementSystem`, of which each assembles its rows, or a `System`.
+        System that they solve: an `ElementSystem`, of which each assembles its rows, or a `System`.
     method : str
         ``petsc`` (GAMG) or ``petsc-mumps``.
 
@@ -102,8 +102,8 @@ class Ranks:
     bytes : int
         Memory that setting up took of all processes together.
     facts : dict
-        What the first process answered then: number of processes; of each process the bytes that
-        its part took and its largest memory in all, its entries and its elements; seconds and
+        Facts that the first process answered then: number of processes; of each process the bytes
+        that its part took and its peak memory in all, its entries and its elements; seconds and
         bytes of handing over, by this process; seconds of reading or assembling, and of setting up.
 
     Raises
@@ -144,12 +144,12 @@ class Ranks:
         self._number = 0
 
     def solve(self, F: Floats, tolerance: float) -> Checked:
-        """Solve for all columns, one after the other.
+        """Solve for all columns, in turn.
 
         Parameters
         ----------
         F : Floats
-            (n, m).
+            Right-hand sides (n, m).
         tolerance : float
             Energy error at which conjugate gradients stop.
         """

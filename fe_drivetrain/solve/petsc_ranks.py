@@ -68,8 +68,8 @@ def rows_of(folder: Path, low: int, high: int) -> Any:
 class Joined:
     """A preconditioner of bodies, corrected for joints that take means over faces.
 
-    As `multigrid.Joined`, whose parts it has for the rows of this process; sums over all processes
-    are of as many numbers as joints have rows.
+    Same as `multigrid.Joined`, whose parts it has for the rows of this process; sums over all
+    processes are of as many numbers as joints have rows.
     """
 
     def __init__(self, rank: Rank, pc: Any) -> None:
@@ -113,7 +113,7 @@ class Joined:
 
 
 class Rank:
-    """Its part of the system."""
+    """One process and its part of the system."""
 
     def __init__(self, folder: Path) -> None:
         setup = json.loads((folder / "setup.json").read_text())
@@ -142,7 +142,7 @@ class Rank:
         return rows, apart, 0
 
     def _made(self, setup: dict[str, Any]) -> tuple[Any, Any, int]:
-        """The same, and how many elements they were made of."""
+        """Rows like those of `_read`, and the number of elements that they were made of."""
         share, reductions = own_rows.kept(self.folder / f"share-{self.comm.rank}.npz")
         K = own_rows.assembled(share)
         n = 3 * self.blocks
@@ -158,7 +158,7 @@ class Rank:
         return rows, apart, len(share.cells)
 
     def _matrix(self, rows: Any) -> Any:
-        """What PETSc makes of these rows."""
+        """PETSc's matrix of these rows."""
         csr = (rows.indptr.astype(PETSc.IntType), rows.indices.astype(PETSc.IntType), rows.data)
         K = PETSc.Mat().createAIJ(self.size, bsize=3, csr=csr, comm=self.comm)
         K.setOption(PETSc.Mat.Option.SYMMETRIC, True)
@@ -229,7 +229,7 @@ class Rank:
         )
 
     def _checks(self, x: Floats, F: Floats) -> dict[str, Any]:
-        """Largest |K x - f| / |f|, and |x|.|K||x| and x.K x of each column; see `rounding`."""
+        """Maximum |K x - f| / |f|, and |x|.|K||x| and x.K x of each column; see `rounding`."""
         indptr, columns, data = self.K.getValuesCSR()
         low, high = 3 * self.low, 3 * self.high
         outside = (columns < low) | (columns >= high)
@@ -310,7 +310,7 @@ def main(folder: Path) -> None:
 
 
 def say(**values: Any) -> None:
-    """What the first process has to say."""
+    """Write a message of the first process."""
     if PETSc.COMM_WORLD.rank == 0:
         print("@" + json.dumps(values), flush=True)
 

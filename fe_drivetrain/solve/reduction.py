@@ -29,18 +29,19 @@ GROUND = 1e-4
 
 @dataclass(frozen=True)
 class Elements:
-    """What a system was made of, for methods that cut it up.
+    """Elements of a system, for methods that cut it up.
 
     Attributes
     ----------
     points : Floats
-        (n_nodes, 3) [m].
+        Node coordinates (n_nodes, 3) [m].
     cells : Ints
-        (n_cells, k) node numbers in VTK's order.
+        Node numbers (n_cells, k) in VTK's order.
     diagonal : Floats
-        (n_nodes, 3, 3) diagonal blocks of the stiffness before any constraint [N/m].
+        Diagonal blocks (n_nodes, 3, 3) of the stiffness before any constraint [N/m].
     T, free : sparse.csr_array, NDArray[np.bool_]
-        Of the `fe_drivetrain.interfaces.constraints.Elimination`.
+        Matrix and free degrees of freedom of the
+        `fe_drivetrain.interfaces.constraints.Elimination`.
     """
 
     points: Floats
@@ -57,10 +58,10 @@ class System:
     Attributes
     ----------
     K : sparse.bsr_array
-        (n, n) symmetric positive definite, 3x3 blocks; rows of eliminated degrees of freedom are
-        diagonal.
+        Stiffness (n, n), symmetric positive definite, 3x3 blocks; rows of eliminated degrees of
+        freedom are diagonal.
     prolongation : sparse.csr_array or None
-        (n, n_corner) from the linear elements on the same corners to the quadratic ones, in
+        Matrix (n, n_corner) from the linear elements on the same corners to the quadratic ones, in
         degrees of freedom that fulfil the constraints; None where the elements are linear.
     near_nullspace : Floats
         (n_corner, 6), or (n, 6) of linear elements: the rigid motions.
@@ -71,7 +72,7 @@ class System:
     n_free : int
         Number of degrees of freedom that are left.
     elements : Elements or None
-        What it was made of; None where that is not known.
+        Elements that it was made of; None where they are not known.
     joints : callable or None
         Makes its joints that take means over faces, apart from its bodies, for methods that want
         them so; None where there are none.
@@ -93,11 +94,11 @@ class Joints:
     Attributes
     ----------
     bodies : System
-        On a soft ground under the joints' faces, for without the joints they may float.
+        Bodies on a soft ground under the joints' faces, for without the joints they may float.
     sums : Sums
         The joints.
     free : NDArray[np.bool_]
-        (n,) degrees of freedom that are left where the joints' conditions hold, too.
+        Flags (n,): degrees of freedom that are left where the joints' conditions hold, too.
     """
 
     bodies: System
@@ -149,7 +150,7 @@ def _joints(
     elimination: Elimination,
     springs: Sequence[tuple[ReferencePoint, Floats]],
 ) -> Joints:
-    """Joints and bodies apart; arguments as of `reduce`."""
+    """Joints and bodies apart; arguments of `reduce`."""
     sums = sums_of(elimination, springs)
     faces = np.diff(sums.rows.tocsc().indptr) > 0
     ground = GROUND * float(K.diagonal().mean()) * sparse.diags_array(faces.astype(float))
@@ -180,7 +181,7 @@ def diagonal_blocks(K: sparse.bsr_array) -> Floats:
 
 
 def _diagonal_places(K: sparse.bsr_array) -> Ints:
-    """Where the diagonal blocks stand; -1 where there are none."""
+    """Places of the diagonal blocks; -1 where there are none."""
     nodes = np.arange(len(K.indptr) - 1)
     return np.asarray(graph.places(*kernels.pattern_of(K), nodes, nodes), dtype=np.int64)
 
@@ -248,7 +249,7 @@ def motions_with_points(points: Floats, elimination: Elimination) -> Floats:
 def _prolongation(
     cells: Ints, n_nodes: int, T: sparse.csr_array, free: np.ndarray
 ) -> tuple[sparse.csr_array, Ints]:
-    """From degrees of freedom of corner nodes (and reference points) to all, constraints fulfilled.
+    """Prolongation from corner nodes (and reference points) to all, constraints fulfilled.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""What rounding does to a slender or thin solid before any solver sees it."""
+"""Effect of rounding on a slender or thin solid before any solver sees it."""
 
 from dataclasses import dataclass
 
@@ -17,14 +17,14 @@ _ROWS = 1024
 
 @dataclass(frozen=True)
 class Judged:
-    """What the stiffness says of solutions.
+    """Residual and round-off of solutions, judged by the stiffness.
 
     Attributes
     ----------
     residual : float
-        |f - K x| over |f|, of the worst column; |K x| where f is zero.
+        Residual |f - K x| over |f|, of the worst column; |K x| where f is zero.
     round_off : float
-        As of `round_off`.
+        Relative change of the energy by rounding, see `round_off`.
     """
 
     residual: float
@@ -37,9 +37,9 @@ def judged(K: sparse.bsr_array, x: Floats, F: Floats) -> Judged:
     Parameters
     ----------
     K : sparse.bsr_array
-        (n, n) symmetric positive definite, 3x3 blocks.
+        Stiffness (n, n), symmetric positive definite, 3x3 blocks.
     x, F : Floats
-        (n, m) solutions and right-hand sides.
+        Solutions and right-hand sides (n, m).
     """
     x, left = np.ascontiguousarray(x), np.empty(x.shape)
     residual(*pattern_of(K), K.data, x, np.ascontiguousarray(F), left)
@@ -66,14 +66,14 @@ def round_off(K: sparse.bsr_array, x: Floats) -> float:
     Parameters
     ----------
     K : sparse.bsr_array
-        (n, n) symmetric positive definite, 3x3 blocks.
+        Stiffness (n, n), symmetric positive definite, 3x3 blocks.
     x : Floats
-        (n, m) solutions.
+        Solutions (n, m).
 
     Returns
     -------
     relative
-        Of the worst column; those that are zero do not count.
+        Relative change in the worst column; those that are zero do not count.
     """
     return judged(K, x, np.zeros_like(x)).round_off
 

@@ -37,12 +37,12 @@ Index = NDArray[np.int32]
 
 @dataclass(frozen=True)
 class Options:
-    """How patches and coarse space are made; ``cases/stability/thin_walls.py`` shows others.
+    """Options of patches and coarse space; ``cases/stability/thin_walls.py`` shows others.
 
     Attributes
     ----------
     nodes : int
-        That a patch has, about.
+        Number of nodes of a patch, approximately.
     threshold : float
         Eigenvalues below it belong to the coarse space.
     """
@@ -63,7 +63,7 @@ class Schwarz:
     K : sparse.bsr_array
         The stiffness.
     partition : Partition
-        Which patch each node block belongs to.
+        Partition of the node blocks into patches.
     factors, factor_starts : Floats, Ints
         Lower Cholesky factors of the patches, row after row, and where each begins.
     modes, mode_starts : Floats, Ints
@@ -182,11 +182,11 @@ def soft_modes(S: Floats, A: Floats, edge: NDArray[np.bool_], threshold: float) 
     Parameters
     ----------
     S, A : Floats
-        (n, n) stiffness cut out, and held.
+        Stiffness (n, n), cut out and held.
     edge : NDArray[np.bool_]
-        (n,) degrees of freedom in which they differ.
+        Flags (n,): degrees of freedom in which they differ.
     threshold : float
-        Of lambda.
+        Threshold of lambda.
     """
     order = np.argsort(edge, kind="stable")
     n_inner = int((~edge).sum())
@@ -281,11 +281,11 @@ def times_modes(
     own : Ints
         Node blocks whose rows are taken.
     patch, place : Ints
-        (n_blocks,) of each block, and where it stands in its patch.
+        Patch (n_blocks,) of each block, and its place in the patch.
     modes, mode_starts, counts : Floats, Ints, Ints
-        As in `Schwarz`.
+        Modes of the patches, see `Schwarz`.
     slot : Ints
-        (n_patches,) first column of each patch in ``out``.
+        First column (n_patches,) of each patch in ``out``.
     """
     for a in range(len(own)):
         for p in range(indptr[own[a]], indptr[own[a] + 1]):

@@ -18,7 +18,7 @@ from fe_drivetrain.solve.solvers import Diagnostics, solve
 Lame = tuple[float, float]
 
 Assembly = Callable[[Floats, Ints, Lame, int], sparse.bsr_array]
-"""Of points, cells, Lame's constants and n_dofs, as `elasticity.assemble`."""
+"""Function of points, cells, Lame's constants and n_dofs, such as `elasticity.assemble`."""
 
 
 @dataclass(frozen=True)
@@ -28,16 +28,16 @@ class Static:
     Attributes
     ----------
     u : Floats
-        (n_dofs, m) displacements [m], and motions of reference points.
+        Displacements (n_dofs, m) [m], and motions of reference points.
     reactions : Mapping[str, Floats]
-        (n_dofs, m) nodal forces [N] that each support or interface puts on the solid, by the
-        name of its constraint; "prescribed" those that displace it as prescribed.
+        Nodal forces (n_dofs, m) [N] that each support or interface puts on the solid, by the name
+        of its constraint; "prescribed" those that displace it as prescribed.
     energy : Floats
-        (m,) strain energy [J].
+        Strain energy (m,) [J].
     K : sparse.bsr_array
-        (n_dofs, n_dofs) stiffness before any constraint [N/m].
+        Stiffness (n_dofs, n_dofs) before any constraint [N/m].
     diagnostics : Diagnostics
-        Of the solve.
+        Diagnostics of the solve.
     """
 
     u: Floats
@@ -62,23 +62,23 @@ def solve_solid(
     Parameters
     ----------
     points : Floats
-        (n, 3) node coordinates [m].
+        Node coordinates (n, 3) [m].
     cells : Ints or Sequence[tuple[Ints, Lame]]
-        (n_cells, k) node numbers in VTK's order; or of several materials the pairs of cells, all of
+        Node numbers (n_cells, k) in VTK's order; or of several materials the pairs of cells, all of
         one kind, and Lame's constants, with ``lame=None``.
     lame : Lame or None
         Lame's constants (lambda, mu) [Pa].
     constraints : Sequence[Constraint]
         Supports and interfaces, see `fe_drivetrain.interfaces.constraints`.
     F : Floats
-        (n_dofs,) or (n_dofs, m) nodal forces [N].
+        Nodal forces (n_dofs,) or (n_dofs, m) [N].
     prescribed : tuple[Ints, Floats] or None
         Degrees of freedom (k,) and their displacements (k,) or (k, m) [m].
     method : str
         Solver, see `fe_drivetrain.solve.solvers.solve`.
     assembly : Assembly
-        Of the stiffness: that of `elasticity`, or `incompressible.assemble` for solids with nu near
-        1/2, or `incompatible.assemble` for hexahedra of 8 nodes that must bend.
+        Assembly of the stiffness: that of `elasticity`, or `incompressible.assemble` for solids
+        with nu near 1/2, or `incompatible.assemble` for hexahedra of 8 nodes that must bend.
 
     Raises
     ------

@@ -24,7 +24,7 @@ METHODS = ("auto", "superlu", "cholmod", "pardiso", "multigrid", "schwarz", *pet
 ITERATIVE = ("multigrid", "schwarz", *petsc.METHODS)
 
 _USELESS = 1e-2  # a direct solver's residual; 1e-7 is seen in slender solids whose answer is right
-_SURELY = 1e-2  # of a tolerance: a sum of errors is seldom so much less than the largest
+_SURELY = 1e-2  # of a tolerance: a sum of errors is seldom so much less than the maximum
 _DOUBTFUL, _LOST = 1e-4, 0.1
 """Bounds of what rounding does, above which it is reported, and refused: of first order, they bound
 nothing where they are not small. Mostly it does a tenth to a hundredth of that, see
@@ -33,28 +33,28 @@ nothing where they are not small. Mostly it does a tenth to a hundredth of that,
 
 @dataclass(frozen=True)
 class Diagnostics:
-    """How a system was solved, and how well.
+    """Method, accuracy and cost of a solve.
 
     Attributes
     ----------
     residual : float
-        Largest true relative residual |K x - f| / |f| over the right-hand sides.
+        Maximum true relative residual |K x - f| / |f| over the right-hand sides.
     energy_error : float
-        Estimate of the largest relative error in the energy norm. Of a direct solver, what one
+        Estimate of the maximum relative error in the energy norm. For a direct solver, what one
         step of refinement changed, or would change.
     round_off : float
-        What the rounding of the stiffness' own entries may have done to the energy of a solution,
-        relative, at worst: no solver can do better, see `rounding.round_off`.
+        Relative change of a solution's energy by the rounding of the stiffness' own entries, at
+        worst: no solver can do better, see `rounding.round_off`.
     iterations : int
-        Of conjugate gradients; 0 of a direct solver.
+        Number of iterations of conjugate gradients; 0 for a direct solver.
     method, reason : str
-        The solver that was used, and why.
+        Solver that was used, and why.
     setup_seconds, solve_seconds : float
         Wall time of factorisation or hierarchy, and of the solve.
     bytes : int
         Memory of factor or hierarchy, beside the stiffness matrix.
     n_unknowns : int
-        Unknowns of the system.
+        Number of unknowns of the system.
     """
 
     residual: float
@@ -189,15 +189,15 @@ def factorise(
     Parameters
     ----------
     system : System or ElementSystem
-        From `reduction.reduce`, or not assembled: ``petsc`` and ``petsc-mumps`` assemble it in
-        parts, others here.
+        System from `reduction.reduce`, or not assembled: ``petsc`` and ``petsc-mumps`` assemble it
+        in parts, others here.
     method : str
         ``superlu`` (always there), ``cholmod``, ``pardiso`` (optional packages), ``multigrid``,
         ``schwarz`` (for thin and slender solids of any size), ``petsc`` and ``petsc-mumps`` (in
-        parts, on MPI processes: see `petsc`), or ``auto``: the one with the least
+        parts, on MPI processes: see `petsc`), or ``auto``: the one with the minimum
         predicted time, see `cost_model.predict`.
     n_rhs : int
-        How many right-hand sides will come, for ``auto``.
+        Number of right-hand sides that will come, for ``auto``.
     tolerance : float
         Relative error in the energy norm at which an iteration stops.
 
@@ -276,5 +276,5 @@ def _refined(
 def solve(
     system: System | ElementSystem, F: Floats, method: str = "auto", tolerance: float = TOLERANCE
 ) -> Solution:
-    """Set up and solve once; arguments as of `factorise` and `Solver.solve`."""
+    """Set up and solve once; arguments of `factorise` and `Solver.solve`."""
     return factorise(system, method, F.shape[1], tolerance).solve(F)

@@ -1,9 +1,9 @@
-"""When conjugate gradients have done enough, or will never: of numpy alone, for all who iterate.
+"""Stopping of conjugate gradients, converged or hopeless: numpy alone, for all who iterate.
 
 The residual says little about slender solids, whose stiffest and softest motions are ten decades
 apart. What conjugate gradients add in step k to the squared energy norm is known exactly, Delta_k =
 alpha_k (r_k, z_k), and the squared error is the sum of what is still to come. It is taken as
-Delta_k times the largest such ratio seen in the steps before (Meurant, Papez, Tichy 2021, Accurate
+Delta_k times the maximum such ratio seen in the steps before (Meurant, Papez, Tichy 2021, Accurate
 error estimation in CG, section 4).
 """
 
@@ -17,7 +17,7 @@ TOLERANCE = 1e-9
 """Energy error at which iterations stop, relative; squared, that of a load's own stiffness."""
 
 LAST_DIGIT = 1e-32
-"""Of the squared residual in the preconditioner's norm: below it a column is solved."""
+"""Share of the squared residual in the preconditioner's norm below which a column is solved."""
 
 _RECENT = 1e-2
 _PATIENCE = 40
@@ -32,7 +32,7 @@ def energy_error(terms: NDArray[np.float64]) -> float:
     Parameters
     ----------
     terms : ndarray
-        (k, m) what each step of conjugate gradients added to the squared energy norm.
+        Terms (k, m) that each step of conjugate gradients added to the squared energy norm.
     """
     last = terms[-1]
     tails = np.cumsum(terms[::-1], axis=0)[::-1]  # from each step to the last
@@ -59,13 +59,13 @@ def is_hopeless(
     Parameters
     ----------
     errors : sequence of float
-        After each step so far.
+        Energy errors after each step so far.
     tolerance : float
-        To come to.
+        Tolerance to come to.
     most : int
-        Steps that there are.
+        Maximum number of steps.
     foreseen : callable
-        Gives the number of steps that it was thought to take; asked only where it decides.
+        Function that returns the number of steps foreseen; called only where it decides.
     """
     k = len(errors)
     if k < _PATIENCE:

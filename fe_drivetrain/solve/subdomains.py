@@ -20,7 +20,7 @@ from fe_drivetrain.solve.reduction import Elements
 
 _DIGITS = 3
 _WIDE = 12  # degrees of freedom that an eliminated one may depend on, in elements that count
-_LOOSE = (1e-14, 1e-12, 1e-10, 1e-8, 1e-6)  # of the mean diagonal, least first
+_LOOSE = (1e-14, 1e-12, 1e-10, 1e-8, 1e-6)  # of the mean diagonal, ascending
 
 
 @dataclass(frozen=True)
@@ -30,9 +30,10 @@ class Partition:
     Attributes
     ----------
     patch : Ints
-        (n_blocks,) of each node block.
+        Patch (n_blocks,) of each node block.
     blocks, starts : Ints
-        Blocks in the order of their patches, and (n_patches + 1,) where each patch begins.
+        Blocks in the order of their patches, and the place (n_patches + 1,) where each patch
+        begins.
     cells, cell_starts : Ints
         The same of elements. Patches of reference points have none.
     """
@@ -56,16 +57,16 @@ class Partition:
 
 
 def partition(elements: Elements, nodes: int, n_blocks: int) -> Partition:
-    """Cut a solid into patches, each time across its greatest length.
+    """Cut a solid into patches, each time across its maximum length.
 
     Parameters
     ----------
     elements : Elements
-        Of the solid.
+        Elements of the solid.
     nodes : int
-        That a patch has, about.
+        Number of nodes of a patch, approximately.
     n_blocks : int
-        Node blocks of the system: what comes after the nodes makes patches of its own.
+        Number of node blocks of the system: what comes after the nodes makes patches of its own.
     """
     points, cells = elements.points, elements.cells
     each = max(1, round(nodes * len(cells) / len(points)))
@@ -87,7 +88,7 @@ def partition(elements: Elements, nodes: int, n_blocks: int) -> Partition:
 
 
 def _bisected(centres: Floats, each: int) -> Ints:
-    """Part of each centre, of parts of about so many: halved across the greatest length."""
+    """Part of each centre, for parts of about equal numbers: halved across the maximum length."""
     part = np.zeros(len(centres), dtype=np.int64)
     waiting, count = [np.arange(len(centres))], 0
     while waiting:
@@ -161,14 +162,14 @@ class CutOut:
     def stiffness(self, cells: Ints, blocks: Ints) -> Floats:
         """Stiffness (3 k, 3 k) of elements, as the degrees of freedom of some node blocks feel it.
 
-        Whatever else these elements touch, gives way.
+        Degrees of freedom of these elements in other blocks are condensed out.
 
         Parameters
         ----------
         cells : Ints
-            Which elements.
+            Numbers of the elements.
         blocks : Ints
-            (k,) ascending.
+            Numbers (k,) of the node blocks, ascending.
         """
         S = np.zeros((3 * len(blocks), 3 * len(blocks)))
         chosen = self._elements.cells[cells]
@@ -236,9 +237,9 @@ def dense_part(indptr: Index, indices: Index, data: Floats, blocks: Ints, place:
     Parameters
     ----------
     blocks : Ints
-        (k,) which.
+        Numbers (k,) of the blocks.
     place : Ints
-        (n_blocks,) where each of them goes, -1 of all others.
+        Places (n_blocks,) that they go to, -1 of all others.
     """
     k = len(blocks)
     A = np.zeros((3 * k, 3 * k))

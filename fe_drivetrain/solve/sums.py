@@ -28,22 +28,23 @@ _NONE = np.zeros(0, dtype=np.int64)
 
 @dataclass(frozen=True)
 class Sums:
-    """What the joints of a system are, that take sums over groups of nodes.
+    """Joints of a system that take sums over groups of nodes.
 
     Attributes
     ----------
     dofs : Ints
-        (s,) degrees of freedom that are such sums.
+        Degrees of freedom (s,) that are such sums.
     shares : sparse.csr_array
-        (s, n) the sums from the degrees of freedom of the bodies.
+        Sums (s, n) from the degrees of freedom of the bodies.
     rows : sparse.csr_array
-        (m, n) what conditions hold and springs stretch, from the degrees of freedom of the bodies.
+        Rows (m, n): what conditions hold and springs stretch, from the degrees of freedom of the
+        bodies.
     flexibility : Floats
-        (m,) of each row: zero of a condition.
+        Flexibility (m,) of each row: zero of a condition.
     elimination : Elimination
         All constraints of the bodies alone.
     springs : sparse.csr_array
-        (n, n) what the springs add to the stiffness of the bodies before any constraint [N/m].
+        Stiffness (n, n) that the springs add to that of the bodies before any constraint [N/m].
     """
 
     dofs: Ints

@@ -19,18 +19,18 @@ def lowest_modes(
     Parameters
     ----------
     solve : callable
-        Of (n,) forces: (n,) displacements under K - shift M.
+        Function from forces (n,) to displacements (n,) under K - shift M.
     M : sparse.sparray
-        (n, n) mass [kg].
+        Mass (n, n) [kg].
     count : int
-        How many, below n.
+        Number of modes, below n.
     shift : float
-        Below all omega^2 [rad^2/s^2]: negative where the body moves freely.
+        Shift below all omega^2 [rad^2/s^2]: negative where the body moves freely.
 
     Returns
     -------
     values, modes : Floats
-        (count,) omega^2, ascending [rad^2/s^2], and (n, count) shapes of unit mass.
+        Eigenvalues (count,) omega^2, ascending [rad^2/s^2], and shapes (n, count) of unit mass.
     """
     n = M.shape[0]
     # a start of no structure, from where the solutions lie
@@ -45,23 +45,24 @@ def lowest_modes(
 def held_modes(
     solver: Solver, elimination: Elimination, M: sparse.sparray, count: int, shift: float = 0.0
 ) -> tuple[Floats, Floats]:
-    """The lowest modes of a body whose constraints were eliminated.
+    """Modes of the lowest frequencies of a body whose constraints were eliminated.
 
     Parameters
     ----------
     solver : Solver
-        Of K - shift M, reduced.
+        Solver of K - shift M, reduced.
     elimination : Elimination
         The constraints.
     M : sparse.sparray
-        (n_dofs, n_dofs) mass before any constraint [kg].
+        Mass (n_dofs, n_dofs) before any constraint [kg].
     count, shift : int, float
-        As of `lowest_modes`.
+        Number of modes and shift of omega^2 [rad^2/s^2], see `lowest_modes`.
 
     Returns
     -------
     values, modes : Floats
-        (count,) omega^2, ascending [rad^2/s^2], and (n_dofs, count) shapes of unit mass.
+        Eigenvalues (count,) omega^2, ascending [rad^2/s^2], and shapes (n_dofs, count) of unit
+        mass.
     """
     T, free = elimination.T, np.flatnonzero(elimination.free)
     left = sparse.csr_array(T.T @ M @ T)[free][:, free]

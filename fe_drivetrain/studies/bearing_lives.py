@@ -7,7 +7,6 @@ number.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from itertools import islice
@@ -20,7 +19,7 @@ from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.histories.sites import Site
-from fe_drivetrain.hub_loads.recorded import recorded_files
+from fe_drivetrain.hub_loads.recorded import Files, recorded_files
 from fe_drivetrain.life.roller_damage import KINDS, LifeRules
 from fe_drivetrain.report.charts import bars
 from fe_drivetrain.report.results import Chart
@@ -92,7 +91,7 @@ class LifeResult(Result):
 
 def life(
     scene: Scene,
-    files: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
+    files: Files,
     site: Site | None = None,
     options: LifeOptions | None = None,
     *,
@@ -124,8 +123,7 @@ def life(
         given and files have no wind speed.
     """
     asked = LifeOptions() if options is None else options
-    patterns = [files] if isinstance(files, str | os.PathLike) else files
-    paths = recorded_files([os.fspath(pattern) for pattern in patterns])
+    paths = recorded_files(files)
     report("bearings")
     drivetrain = DrivetrainBearings(scene, asked)
     return lives_under(drivetrain, paths, site, resume=resume, report=report)

@@ -85,7 +85,7 @@ class Case:
         found = Results(
             case=self.name,
             title=f"{page.subject}: {self.title}" if page.subject else self.title,
-            source=page.source or self.source,
+            source=self.source,
             notes=[
                 *self._of_quick_runs(run.quick),
                 *page.notes,
@@ -161,13 +161,14 @@ def _declared_in(module: str) -> list[Case]:
     if declaration is None:
         return []
     kind, call, function = declaration.groups()
-    *_, group, name = module.split(".")
+    *_, group, script = module.split(".")
     arguments = ast.parse(f"f({call})", mode="eval").body
     assert isinstance(arguments, ast.Call)
     (first,) = [ast.literal_eval(value) for value in arguments.args]
     named = {str(key.arg): ast.literal_eval(key.value) for key in arguments.keywords}
     if kind == "case":
         run = partial(_run_declared, module, function)
+        name = named.pop("name", script)
         return [Case(f"{group}/{name}", first, run=run, **named)]
     import yaml
 

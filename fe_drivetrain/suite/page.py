@@ -37,8 +37,8 @@ class Page(Findings):
 
     Attributes
     ----------
-    subject, source : str
-        What a page is about, and from where, if the user gave it; empty where it is the case's own.
+    subject : str
+        What a page is about, if the user gave it; empty where it is the case's own.
     sections : list of Section
         Headings, and what stands under them.
     headline : str
@@ -47,7 +47,7 @@ class Page(Findings):
 
     def __init__(self) -> None:
         super().__init__()
-        self.subject = self.source = self.headline = ""
+        self.subject = self.headline = ""
         self.sections: list[Section] = []
 
     def take(self, found: Found) -> None:

@@ -10,6 +10,14 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.suite.case import Case
 
+#: Commands that take what no setting of these cases is.
+_OF_STUDIES = {
+    "scene": "fe-drivetrain study FILE",
+    "loads": "fe-drivetrain study FILE --loads FILES",
+    "skip": "fe-drivetrain study FILE --loads FILES --skip SECONDS",
+    "self_weight": "fe-drivetrain study FILE --no-weight",
+}
+
 
 def settings_by_case(
     cases: Sequence[Case], settings: Mapping[str, Any]
@@ -86,4 +94,6 @@ def _unknown(key: str, cases: Sequence[Case]) -> InputError:
     ways = [f"one of {', '.join(own)}"] if own else []
     if values:
         ways.append(f"a value of {', '.join(values)} by its dotted key")
+    if key in _OF_STUDIES:
+        hint = f" (a drivetrain of your own is studied by {_OF_STUDIES[key]})"
     return InputError(f"setting {shown(key)} is unknown to {which}{hint}: use {', or '.join(ways)}")

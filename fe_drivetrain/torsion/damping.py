@@ -6,7 +6,7 @@ from math import sqrt
 def shaft_damping(ratio: float, inertia: float, stiffness: float) -> float:
     """C = 2 zeta sqrt(J k) [N m s/rad] (Eq 4.5), with J an inertia [kg m^2].
 
-    Of two inertias J_1 and J_2 on the shaft, J_1 J_2 / (J_1 + J_2) makes zeta the damping ratio of
+    For two inertias J_1 and J_2 on the shaft, J_1 J_2 / (J_1 + J_2) makes zeta the damping ratio of
     the two against each other.
     """
     return 2 * ratio * sqrt(inertia * stiffness)
@@ -27,7 +27,7 @@ def mesh_damping(
     ratio : float
         zeta.
     stiffness : float
-        About the driving gear [N m/rad].
+        Mesh stiffness about the driving gear [N m/rad].
     driving, driven : float
         Inertias J_1, J_2 about their own axes [kg m^2].
     gear : float

@@ -110,7 +110,7 @@ class PlanetaryStage(_Stage):
     planet_teeth: Teeth | None = Field(
         default=None,
         description="teeth of a planet, beside those of ring and sun; without, (ring - sun) / 2, "
-        "as of stages without profile shift",
+        "as in stages without profile shift",
         json_schema_extra={"unit": "-", "source": "assumed: (ring - sun) / 2, no profile shift"},
     )
     carrier: float = _inertia("inertia of the carrier, planets as points")
@@ -289,7 +289,7 @@ class Drivetrain(Part):
         return self
 
     def assumptions(self) -> list[Assumption]:
-        """What the table does not give and is taken all the same, of all of its rows."""
+        """Assumptions of all rows: what the table does not give."""
         named: list[tuple[str, Part]] = [(f"shaft {shaft.name}", shaft) for shaft in self.shafts]
         named += [(f"stage {k}", stage) for k, stage in enumerate(self.stages, start=1)]
         return assumed_in([*named, ("generator", self.generator)])

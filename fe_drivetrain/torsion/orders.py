@@ -18,7 +18,7 @@ class Geared(Protocol):
 
     @property
     def teeth(self) -> tuple[int, ...] | None:
-        """From the largest gear on; the last are those of the output."""
+        """Numbers of teeth, from the largest gear on; the last are those of the output."""
 
     @property
     def speed_ratio(self) -> float:
@@ -34,7 +34,7 @@ class Toothed:
     kind : str
         "planetary", with its ring standing and driven by its carrier, or "parallel".
     teeth : tuple of int
-        Of ring and sun, or of gear and pinion.
+        Teeth of ring and sun, or of gear and pinion.
     """
 
     kind: str
@@ -74,13 +74,13 @@ def mesh_orders(stages: Iterable[Geared]) -> dict[str, float]:
     Returns
     -------
     dict
-        By "stage 1" and so on; stages without teeth are left out.
+        Orders by "stage 1" and so on; stages without teeth are left out.
     """
     return _orders(stages, absolute=False)
 
 
 def absolute_sun_orders(stages: Iterable[Geared]) -> dict[str, float]:
-    """What Table 4.8 of Al-Hamadani 2018 prints: of planetary stages, z_ring + z_sun; wrong."""
+    """Orders of Table 4.8 of Al-Hamadani 2018, with z_ring + z_sun in planetary stages: wrong."""
     return _orders(stages, absolute=True)
 
 
@@ -100,7 +100,7 @@ def crossing_speed(frequency: float, order: float) -> float:
     Parameters
     ----------
     frequency : float
-        [Hz].
+        Frequency [Hz].
     order : float
         Periods in a turn of the rotor.
     """

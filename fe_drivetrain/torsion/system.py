@@ -25,8 +25,7 @@ from fe_drivetrain.common.errors import InputError
 
 Complex = NDArray[np.complex128]
 
-#: Of the highest frequency and the count of motions, in units of round-off: one below is no more
-#: than 0.
+#: Frequency over the highest and the count of motions, in units of round-off, below which it is 0.
 ROUND_OFF = 1e3
 
 
@@ -39,7 +38,7 @@ class Inertia:
     name : str
         Unique in its system.
     inertia : float
-        About its axis [kg m^2].
+        Moment of inertia about its axis [kg m^2].
     """
 
     name: str
@@ -142,7 +141,7 @@ class Torsional:
         return np.asarray(self.B.T @ (c[:, None] * self.B))
 
     def place(self, name: str) -> int:
-        """Where an inertia stands.
+        """Number of an inertia in the system.
 
         Raises
         ------
@@ -171,16 +170,16 @@ class Modes:
     Attributes
     ----------
     names, elements : tuple[str, ...]
-        Of the inertias, and of the elements.
+        Names of the inertias, and of the elements.
     frequencies : Floats
-        (n,) ascending [Hz]; exactly 0 where the system turns freely.
+        Frequencies (n,), ascending [Hz]; exactly 0 where the system turns freely.
     shapes : Floats
-        (n, n) a mode a column, ``shapes.T @ M @ shapes`` is 1; the largest entry of each positive.
-        Modes of equal frequency are any basis of theirs.
+        Mode shapes (n, n), a mode a column, ``shapes.T @ M @ shapes`` is 1; the entry of maximum
+        size of each positive. Modes of equal frequency are any basis of theirs.
     stiffness_shares : Floats
-        (m, n) share of each element in the strain energy of each mode; 0 where nothing is wound.
+        Share (m, n) of each element in the strain energy of each mode; 0 where nothing is wound.
     inertia_shares : Floats
-        (n, n) share of each inertia (row) in the kinetic energy of each mode.
+        Share (n, n) of each inertia (row) in the kinetic energy of each mode.
     """
 
     names: tuple[str, ...]
@@ -192,7 +191,7 @@ class Modes:
 
     @property
     def energy_shares(self) -> dict[str, Floats]:
-        """By name of each inertia (kinetic) and element (strain), (n,) shares in each mode."""
+        """Shares (n,) in each mode, by name of each inertia (kinetic) and element (strain)."""
         return dict(
             zip(
                 (*self.names, *self.elements),
@@ -203,7 +202,7 @@ class Modes:
 
     @property
     def to_one(self) -> Floats:
-        """The shapes with the largest entry of each made 1."""
+        """Shapes with the entry of maximum size of each made 1."""
         return np.asarray(self.shapes / np.abs(self.shapes).max(axis=0))
 
 
@@ -242,7 +241,7 @@ def resolved(frequencies: Floats, free: int) -> bool:
     frequencies : ndarray, (n,)
         Ascending.
     free : int
-        How many motions have a frequency of 0.
+        Number of motions that have a frequency of 0.
     """
     least = ROUND_OFF * len(frequencies) * float(np.finfo(float).eps)
     return len(frequencies) == free or bool(frequencies[free] > least * frequencies[-1])
@@ -251,8 +250,8 @@ def resolved(frequencies: Floats, free: int) -> bool:
 def relative_sensitivities(system: Torsional) -> dict[str, Floats]:
     """d ln f / d ln p, (n,) by mode, of every stiffness and inertia p, by its name.
 
-    Of Rayleigh's quotient: half of an element's share in the strain energy, and minus half of an
-    inertia's in the kinetic energy. 0 of free turning. Not defined one by one for modes of equal
+    From Rayleigh's quotient: half of an element's share in the strain energy, and minus half of an
+    inertia's in the kinetic energy. 0 for free turning. Not defined one by one for modes of equal
     frequency.
     """
     modes = natural_modes(system)
@@ -271,7 +270,7 @@ def frequency_bands(system: Torsional, relative: Mapping[str, float]) -> Floats:
     Parameters
     ----------
     system : Torsional
-        At its middle values.
+        System at its middle values.
     relative : Mapping[str, float]
         Half width over value, by the name of an element (its stiffness) or inertia.
 
@@ -330,7 +329,7 @@ def damped(system: Torsional, dampings: Mapping[str, float]) -> Torsional:
 
 
 def referred(system: Torsional, speeds: Mapping[str, float]) -> Torsional:
-    """The same system in other angles: that of each inertia over its speed ratio.
+    """System in other angles: that of each inertia over its speed ratio.
 
     An angle theta' = theta / s is that seen from a shaft that turns 1 / s as fast; its inertia is
     s^2 J (Al-Hamadani 2018, Eq 4.8-4.12), windings by it are s times as large. Frequencies stay.
@@ -394,7 +393,7 @@ class Oscillations:
     Attributes
     ----------
     eigenvalues : Complex
-        (k,) imaginary parts above zero and ascending [1/s].
+        Eigenvalues (k,), imaginary parts above zero and ascending [1/s].
     """
 
     eigenvalues: Complex
@@ -417,7 +416,7 @@ class DampedModes(Oscillations):
     Attributes
     ----------
     creeping : Floats
-        (j,) real eigenvalues below zero of what comes back without oscillating [1/s].
+        Real eigenvalues (j,) below zero, of what comes back without oscillating [1/s].
     """
 
     creeping: Floats
@@ -460,7 +459,7 @@ def response(system: Torsional, at: str, frequencies: ArrayLike) -> Complex:
     at : str
         Name of the inertia.
     frequencies : ArrayLike
-        [Hz]; none of them a frequency of an undamped mode.
+        Frequencies [Hz]; none of them that of an undamped mode.
     """
     omega = 2 * np.pi * np.atleast_1d(np.asarray(frequencies, dtype=float))
     load = np.zeros(len(system.inertias))

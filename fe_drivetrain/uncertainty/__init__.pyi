@@ -1,11 +1,5 @@
 from .input_study import Study as Study
 from .input_study import study as study
-from .moved_meshes import BORE as BORE
-from .moved_meshes import FRONT as FRONT
-from .moved_meshes import OUTER as OUTER
-from .moved_meshes import PEDESTAL as PEDESTAL
-from .moved_meshes import WALL as WALL
-from .moved_meshes import moved as moved
 from .numbers import first_order as first_order
 from .numbers import relative_spread as relative_spread
 from .sampling import Samples as Samples

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -79,7 +80,18 @@ class Samples:
         """The band, with its errors from resampling the samples (Efron 1979) as if independent.
 
         Those of a Latin hypercube are about as large or smaller (Owen 1997, Ann. Statist. 25(4)).
+        Resampling takes tens of milliseconds, so that a band is kept for who asks again.
         """
+        if (share, seed) not in self._bands:
+            self._bands[share, seed] = self._resampled(share, seed)
+        return self._bands[share, seed]
+
+    @cached_property
+    def _bands(self) -> dict[tuple[float, int], Band]:
+        """Bands so far, by share and seed."""
+        return {}
+
+    def _resampled(self, share: float, seed: int) -> Band:
         outside = (1.0 - share) / 2
         ends = np.quantile(self.values, [outside, 1.0 - outside])
         errors = [0.0, 0.0]

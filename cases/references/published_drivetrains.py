@@ -1,0 +1,207 @@
+"""Al-Hamadani 2018: tables of four drivetrains as printed, and what their rounding leaves open.
+
+The inputs stand in YAML files beside this module, digit for digit as in Tables 4.2, 4.3 and 4.7;
+the frequencies of Tables 6.1, 6.2 and 6.4 stand here.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+import yaml
+
+from fe_drivetrain.common import Floats, Ints
+from fe_drivetrain.compare.tolerances import digit
+from fe_drivetrain.torsion import (
+    Drivetrain,
+    GeneratorState,
+    Modes,
+    ParallelStage,
+    PlanetaryStage,
+    Torsional,
+    natural_modes,
+    parse_drivetrain,
+)
+
+TABLE_6_1 = "Al-Hamadani 2018, Table 6.1"
+TABLE_6_2 = "Al-Hamadani 2018, Table 6.2"
+TABLE_6_4 = "Al-Hamadani 2018, Table 6.4"
+
+#: Table 4.1: name of each drivetrain's table, power [W] and rated speed [rpm].
+RATED = {
+    "D": ("nrel_750kw", 750e3, 18.6),
+    "A": ("drivetrain_a", 3e6, 14.8),
+    "B": ("drivetrain_b", 3e6, 16.1),
+    "C": ("drivetrain_c", 2e6, 16.0),
+}
+
+#: Table 6.1 [Hz], as printed: generator's speed constant (its spring on), then variable (off).
+TWO = {"fixed": ("0.864", "5.888"), "free": ("0", "2.524")}
+FIVE = {
+    "fixed": ("0.864", "5.889", "312", "402", "1974"),
+    "free": ("0", "2.524", "312", "402", "1974"),
+}
+ELEVEN = {
+    "fixed": ("0.841", "5.859", "154", "307", "353", "748", "1020", "1530", "4398"),
+    "free": ("0", "2.44", "154", "307", "353", "748", "1020", "1530", "4397"),
+}
+STATES: tuple[GeneratorState, GeneratorState] = ("fixed", "free")
+
+#: Measured, in Table 6.1 after Mandic et al. 2012 (constant) and Girsang et al. 2014 (variable).
+MEASURED = {"fixed": 0.806, "free": 2.32}
+
+#: Table 6.2: the two masses [rad/s], the five [Hz], and what section 6.1.2 says of the first
+#: frequency of five masses with variable speed [Hz].
+OTHER_TWO = ("5.1951", "38.2748")
+OTHER_FIVE = ("0.826", "6.092", "291.987", "371.528", "1974.245")
+OTHER_FREE = "2.957"
+#: Table 6.2's other column, Mandic et al. 2012, in the same units.
+MANDIC_TWO = ("5.1972", "38.2818")
+MANDIC_FIVE = ("0.83", "6.09", "291.8", "371.3", "1974")
+
+#: Table 6.4 [Hz].
+OTHERS = {
+    "A": ("0", "9.049", "111.9", "352.8", "766.2", "1086", "2246", "3902"),
+    "B": (
+        "0",
+        "4.54",
+        "58.21",
+        "190.74",
+        "308.70",
+        "538.61",
+        "666.46",
+        "1597.35",
+        "2552.25",
+        "2733.50",
+    ),
+    "C": ("0", "2.37", "213", "257", "431", "834", "1720", "2110", "3750"),
+}
+#: Section 6.2.3: peaks of the torque's spectrum in a simulated shutdown [Hz].
+SHUTDOWN = {"A": 9.1, "B": 4.664, "C": 2.503}
+
+#: What is counted is exact.
+_EXACT = {"teeth", "planets"}
+
+
+def text_of(name: str) -> str:
+    """The YAML text of a table, digit for digit as printed.
+
+    Parameters
+    ----------
+    name : str
+        "nrel_750kw", "drivetrain_a", "drivetrain_b" or "drivetrain_c".
+    """
+    return (files("fe_drivetrain.cases.references") / f"{name}.yaml").read_text("utf-8")
+
+
+def table(name: str) -> Drivetrain:
+    """One of the tables; `name` as in `text_of`."""
+    return parse_drivetrain(text_of(name), source=name)
+
+
+def nrel_stages(table: Drivetrain) -> tuple[PlanetaryStage, ParallelStage, ParallelStage]:
+    """The three stages of drivetrain D, the NREL 750 kW.
+
+    Raises
+    ------
+    TypeError
+        The table is of another drivetrain.
+    """
+    one, two, three = table.stages
+    if not (
+        isinstance(one, PlanetaryStage)
+        and isinstance(two, ParallelStage)
+        and isinstance(three, ParallelStage)
+    ):
+        raise TypeError("drivetrain D has a planetary stage and two parallel ones")
+    return one, two, three
+
+
+def with_values(table: Drivetrain, values: Mapping[str, float]) -> Drivetrain:
+    """The table with other values, by dotted key such as "stages.0.carrier"."""
+    data = table.model_dump(exclude_none=True)
+    for key, value in values.items():
+        *path, last = key.split(".")
+        target: Any = data
+        for part in path:
+            target = target[int(part)] if part.isdecimal() else target[part]
+        target[last] = value
+    return Drivetrain.model_validate(data)
+
+
+def printed_inputs(name: str) -> Iterator[tuple[str, str]]:
+    """Dotted key and digits as printed of every input of a table that is measured or computed."""
+    # the base loader leaves numbers the words that they are in the file
+    yield from _numbers(yaml.load(text_of(name), Loader=yaml.BaseLoader), "")
+
+
+def _numbers(data: Any, key: str) -> Iterator[tuple[str, str]]:
+    if isinstance(data, dict | list):
+        for name, value in data.items() if isinstance(data, dict) else enumerate(data):
+            if name not in _EXACT:
+                yield from _numbers(value, f"{key}.{name}".removeprefix("."))
+    elif data[:1].isdecimal():
+        yield key, data
+
+
+def rounding_band(
+    name: str,
+    model: Callable[[Drivetrain], Torsional],
+    base: Drivetrain | None = None,
+    without: frozenset[str] = frozenset(),
+) -> Floats:
+    """Band of each frequency that the rounding of the printed inputs leaves.
+
+    Parameters
+    ----------
+    name : str
+        Of the table whose digits count.
+    model : callable
+        From a table to its masses.
+    base : Drivetrain, optional
+        The table with some values changed; the printed one where left out.
+    without : frozenset of str
+        Keys of those values, which have no printed digits any more.
+
+    Returns
+    -------
+    band : (n,) array
+        Half widths [Hz]: every input at its worst within half of its last digit, summed.
+    """
+    middle = base or table(name)
+    band = np.zeros(len(model(middle).inertias))
+    for key, printed in printed_inputs(name):
+        if key in without or "damping" in key:
+            continue
+        half = digit(printed) / 2
+        pair = [
+            natural_modes(model(with_values(middle, {key: float(printed) + step}))).frequencies
+            for step in (half, -half)
+        ]
+        band += np.abs(pair[0] - pair[1]) / 2
+    return band
+
+
+def observable(modes: Modes, least: float = 1e-9) -> Ints:
+    """Numbers of the modes that are in Tables 6.1 and 6.4.
+
+    Planets that move against each other, their sum at rest, turn nothing else: the thesis finds
+    frequencies from the response of the generator's speed to the rotor's torque, in which these
+    modes have no part.
+
+    Parameters
+    ----------
+    modes : Modes
+        Of a model with a mass for each gear.
+    least : float
+        Share of the kinetic energy outside the planets, below which a mode is theirs alone.
+
+    Returns
+    -------
+    numbers : (m,) array
+        From 0, ascending.
+    """
+    planets = [i for i, name in enumerate(modes.names) if "planet" in name]
+    others = np.delete(modes.inertia_shares, planets, axis=0).sum(axis=0)
+    return np.flatnonzero(others > least)

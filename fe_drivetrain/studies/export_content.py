@@ -1,0 +1,280 @@
+"""What an export writes: a part condensed to points, modes, a summary, a model or its mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import ClassVar, Literal
+
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.common.steps import Steps
+from fe_drivetrain.common.stiffness_bands import KINDS, StiffnessBands
+from fe_drivetrain.export.craig_bampton import CraigBampton, craig_bampton_shaft
+from fe_drivetrain.export.formats.summary import SummaryFile, summary
+from fe_drivetrain.export.from_component import BODY, component_superelement
+from fe_drivetrain.export.scene_export import AUTO, SHAFT, superelement_of
+from fe_drivetrain.export.superelement import Superelement
+from fe_drivetrain.fidelity.component_solid import component_mesh
+from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.report.charts import bars, stiffness_chart
+from fe_drivetrain.report.results import Chart
+from fe_drivetrain.response.model import Model, build_model, mesh_scene
+from fe_drivetrain.scene.component import Component
+from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.studies.part_survey import place_records
+from fe_drivetrain.studies.result import Result
+from fe_drivetrain.suite.findings import Findings
+
+Kind = Literal["superelement", "modes", "summary", "model", "mesh"]
+"""A part condensed to points; the free shaft with fixed-interface modes, too; numbers of a
+drivetrain model; the whole model with its unit loads; its mesh alone."""
+
+Content = Superelement | CraigBampton | SummaryFile | Model | Mesh
+"""What is written of each of these kinds, in their order."""
+
+#: Level of a component's export where none is asked for.
+_COMPONENT_LEVEL = 3
+#: Level of the reactions of a summary, and of the shaft that modes are of.
+_SUMMARY_LEVEL, _MODES_LEVEL = 2, 2
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class ExportResult(Result):
+    """What is to be written, with the facts that stand in the headers of its files.
+
+    Attributes
+    ----------
+    drivetrain : Scene or Component
+        What it is of.
+    kind : str
+        Which of `Kind`.
+    content : Content
+        For a function of `fe_drivetrain.export` that writes it; not part of the JSON.
+    points : tuple[str, ...]
+        Names of the points that matrices are at; empty where there are none.
+    level : str
+        Level of the ladder, with its name; empty of model and mesh.
+    band : StiffnessBands or None
+        Half widths of the bands of a superelement's stiffness by kind of motion; None where they
+        are not known.
+    """
+
+    STUDY: ClassVar[str] = "export"
+
+    drivetrain: Scene | Component
+    kind: Kind
+    content: Content = field(repr=False)
+    points: tuple[str, ...]
+    level: str
+    band: StiffnessBands | None
+
+    def chart(self) -> Chart:
+        """Stiffness between points; masses of a summary; elements of each part of a mesh."""
+        content = self.content
+        if isinstance(content, CraigBampton):
+            return stiffness_chart("shaft", content.points, content.point_stiffness)
+        if isinstance(content, Superelement):
+            return stiffness_chart(content.name, content.points, content.stiffness)
+        if isinstance(content, SummaryFile):
+            masses = {name: part.mass for name, part in content.parts.items()}
+            return bars("Mass of each part", {"mass": masses}, "mass [kg]")
+        mesh = _mesh_of(content)
+        counts = {name: float(len(mesh.part_cells(name))) for name in mesh.part_names}
+        return bars("Elements of each part", {"elements": counts}, "elements")
+
+
+def prepare_export(
+    drivetrain: Scene | Component,
+    kind: Kind = "superelement",
+    what: str = "",
+    at: Sequence[str] | None = None,
+    level: int | None = None,
+    modes: int = 0,
+    *,
+    report: Progress = silent,
+) -> ExportResult:
+    """Prepare what other programs take of a drivetrain: choose level and points, and condense.
+
+    Parameters
+    ----------
+    drivetrain : Scene or Component
+        What is exported.
+    kind : str
+        "superelement", "modes" (a superelement of the free shaft with modes), "summary", "model" or
+        "mesh".
+    what : str
+        Of a superelement of a scene: "shaft", "drivetrain", "seats" or the name of a bearing, see
+        `fe_drivetrain.export.superelement_of`; of a component "body" or "supported". The first of
+        each where left out.
+    at : sequence of str or None
+        Names of the points to keep; None for the usual ones.
+    level : int or None
+        Of the ladder; None for the usual one: of scenes 4 for bearings and else 2, of components 3.
+    modes : int
+        Number of fixed-interface modes.
+    report : Progress
+        Called with the name of each step as it begins.
+
+    Raises
+    ------
+    InputError
+        There is no such part, point or level, a component has nothing of this kind, or an argument
+        is not used by this kind.
+    """
+    found, steps = Findings(), Steps(report)
+    found.about(drivetrain)
+    found.seed = None
+    _refuse_unused(kind, what, at, level, modes)
+    content: Content
+    if kind in ("model", "mesh"):
+        content = _model_or_mesh(found, steps, drivetrain, kind)
+    elif kind == "modes":
+        scene = _scene_of_modes(drivetrain, what, level)
+        content = steps.timed("condense", craig_bampton_shaft, scene, modes, at)
+    elif kind == "summary":
+        scene = _require_scene(drivetrain, "a summary is")
+        content = steps.timed(
+            "condense", summary, scene, _SUMMARY_LEVEL if level is None else level
+        )
+    else:
+        content = steps.timed("condense", _superelement, drivetrain, what, at, level)
+    found.answer(_description(content))
+    _data(found, content)
+    return ExportResult(
+        drivetrain=drivetrain,
+        kind=kind,
+        content=content,
+        points=_points(content),
+        level=_level(content),
+        band=content.band if isinstance(content, Superelement) else None,
+        **found.frozen(steps.times, kind=kind, what=what, at=at, level=level, modes=modes),
+    )
+
+
+def _refuse_unused(
+    kind: Kind, what: str, at: Sequence[str] | None, level: int | None, modes: int
+) -> None:
+    """Refuse arguments that a kind of export does not use."""
+    if kind == "summary" and at is not None:
+        raise InputError(
+            f"--at {','.join(at)} is not used by --what summary, which has all points of the "
+            "scene: leave --at out"
+        )
+    given = {"what": what, "at": at, "level": level, "modes": modes}
+    used = {"superelement": ("what", "at", "level"), "summary": ("level",)}
+    used["modes"] = ("what", "at", "level", "modes")
+    unused = [name for name, value in given.items() if value and name not in used.get(kind, ())]
+    if unused:
+        raise InputError(f"{unused[0]} is not used by an export of kind {kind!r}: leave it out")
+
+
+def _superelement(
+    drivetrain: Scene | Component, what: str, at: Sequence[str] | None, level: int | None
+) -> Superelement:
+    if isinstance(drivetrain, Scene):
+        return superelement_of(drivetrain, what or SHAFT, at, AUTO if level is None else level)
+    number = _COMPONENT_LEVEL if level is None else level
+    return component_superelement(drivetrain, what or BODY, at, number)
+
+
+def _model_or_mesh(
+    found: Findings, steps: Steps, drivetrain: Scene | Component, kind: Kind
+) -> Model | Mesh:
+    if kind == "model":
+        scene = _require_scene(drivetrain, "a whole model is")
+        mesh = steps.timed("mesh", mesh_scene, scene)
+        model = steps.timed("model", build_model, scene, mesh)
+        for warning in model.warnings:
+            found.note(warning)
+        return model
+    with steps.step("mesh"):
+        if isinstance(drivetrain, Scene):
+            return mesh_scene(drivetrain)
+        return component_mesh(drivetrain)[0]
+
+
+def _require_scene(drivetrain: Scene | Component, what: str) -> Scene:
+    if isinstance(drivetrain, Scene):
+        return drivetrain
+    raise InputError(
+        f"{what} of a scene, and {drivetrain.title!r} is a component: export its mesh, or its body "
+        "condensed to points"
+    )
+
+
+def _scene_of_modes(drivetrain: Scene | Component, what: str, level: int | None) -> Scene:
+    """The scene whose free shaft has the modes.
+
+    Raises
+    ------
+    InputError
+        It is another part, at another level, or of a component.
+    """
+    if not isinstance(drivetrain, Scene):
+        raise InputError("--modes is for the shaft of a scene, not for a component: leave it out")
+    if what not in ("", SHAFT):
+        raise InputError(f"--modes is for the free shaft, not for --what {what}: leave --what out")
+    if level not in (None, _MODES_LEVEL):
+        raise InputError(
+            f"--modes is for the shaft of level {_MODES_LEVEL}, not --level {level}: leave "
+            "--level out"
+        )
+    return drivetrain
+
+
+def _mesh_of(content: Model | Mesh) -> Mesh:
+    return content.mesh if isinstance(content, Model) else content
+
+
+def _points(content: Content) -> tuple[str, ...]:
+    return content.points if isinstance(content, Superelement | CraigBampton) else ()
+
+
+def _level(content: Content) -> str:
+    if isinstance(content, SummaryFile):
+        return content.reactions.level
+    return content.origin.level if isinstance(content, Superelement | CraigBampton) else ""
+
+
+def _description(content: Content) -> str:
+    """What is written, as the command says it."""
+    if isinstance(content, CraigBampton):
+        return f"shaft at {', '.join(content.points)}, free, with {len(content.omega)} modes"
+    if isinstance(content, SummaryFile):
+        return (
+            f"summary of {', '.join(content.parts)}, reactions of level {content.reactions.level}"
+        )
+    if isinstance(content, Superelement):
+        supports = "on its supports" if content.supported else "free"
+        return (
+            f"{content.name} at {', '.join(content.points)}, {supports}, level "
+            f"{content.origin.level}, {'with' if content.mass is not None else 'without'} mass"
+        )
+    mesh = _mesh_of(content)
+    return f"{len(mesh.cells):,} elements, {len(mesh.points):,} nodes"
+
+
+def _data(found: Findings, content: Content) -> None:
+    """Keep the facts of the headers, and what a reader can check."""
+    if isinstance(content, SummaryFile):
+        found.data("summary", content.model_dump(mode="json"))
+        return
+    if isinstance(content, Model | Mesh):
+        mesh = _mesh_of(content)
+        found.data(
+            "elements",
+            [{"part": name, "elements": len(mesh.part_cells(name))} for name in mesh.part_names],
+        )
+        return
+    found.data("points", place_records(content.points, content.positions))
+    found.data("origin", vars(content.origin))
+    if isinstance(content, CraigBampton):
+        found.data("frequencies [rad/s]", content.omega)
+        return
+    if content.band is not None:
+        for kind, band in zip(KINDS, content.band, strict=True):
+            found.found(f"band of the stiffness, {kind} [%]", 100 * band)
+    if (inertia := content.inertia()) is not None:
+        found.found("mass [kg]", float(inertia[0, 0]))
+    found.data("checks", content.checks())

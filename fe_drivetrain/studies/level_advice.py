@@ -1,0 +1,218 @@
+"""The cheapest model level that is accurate enough for a quantity, and which details matter."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import numpy as np
+
+from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.common.steps import Steps
+from fe_drivetrain.fidelity.ablation import Effect, effects
+from fe_drivetrain.fidelity.adviser import Advice, LevelResult
+from fe_drivetrain.fidelity.adviser import advise as run_levels
+from fe_drivetrain.fidelity.quantity import Quantity, named_load
+from fe_drivetrain.report.charts import chart, rounded, trace
+from fe_drivetrain.report.results import Chart
+from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.studies.result import Result
+from fe_drivetrain.suite.findings import Findings
+from fe_drivetrain.suite.records import Record
+
+_LEAST = 1e-6  # in percent; statics has no error, but a logarithmic axis needs one
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class AdviseResult(Result):
+    """The model levels of a scene, from cheap to expensive, as far as they were run.
+
+    Attributes
+    ----------
+    drivetrain : Scene
+        The scene.
+    advice : Advice
+        The quantity, its tolerance, and every level that was run; not part of the JSON.
+    effects : tuple[Effect, ...]
+        Change of the quantity for each detail that is left out, the largest first; empty where
+        statics decides or no bearing has a housing.
+    effects_level : int
+        Level of the shaft at which the details were left out, 1 or 2.
+    """
+
+    STUDY: ClassVar[str] = "advise"
+
+    drivetrain: Scene
+    advice: Advice = field(repr=False)
+    effects: tuple[Effect, ...]
+    effects_level: int
+
+    @property
+    def level(self) -> int | None:
+        """Cheapest level that is known to be within the tolerance; None where none is."""
+        chosen = self.chosen
+        return None if chosen is None else chosen.model.level
+
+    @property
+    def chosen(self) -> LevelResult | None:
+        """Result of that level."""
+        advice = self.advice
+        return None if advice.chosen is None else advice.results[advice.chosen]
+
+    def all_tables(self) -> Mapping[str, Any]:
+        """Tables by name: those of the page, and the change for each detail that is left out."""
+        details = [
+            {"detail left out": one.detail, "change [%]": 100 * one.change} for one in self.effects
+        ]
+        return {**self.tables, "details": details}
+
+    def chart(self) -> Chart:
+        """Error of each level over its time."""
+        return _against_time(self.advice)
+
+    def effects_chart(self) -> Chart:
+        """Change of the quantity for each detail that is left out."""
+        advice, shown = self.advice, list(reversed(self.effects))
+        bars = {
+            "type": "bar",
+            "orientation": "h",
+            "x": rounded([100 * effect.change for effect in shown]),
+            "y": [effect.detail for effect in shown],
+        }
+        tolerance = 100 * advice.tolerance
+        figure = chart(
+            f"Change of {advice.quantity.name} when one detail is left out, at level "
+            f"{effects_level_title(self.effects_level)}; shaded: within the tolerance",
+            [bars],
+            x="change [%]",
+            y="",
+            safe=(-tolerance, tolerance),
+        )
+        figure.figure["layout"]["yaxis"]["automargin"] = True
+        return figure
+
+
+def advise(
+    scene: Scene,
+    quantity: str,
+    tolerance: float = 0.01,
+    load: Mapping[str, float] | None = None,
+    to_the_top: bool = False,
+    *,
+    report: Progress = silent,
+) -> AdviseResult:
+    """Find the cheapest level that is accurate enough, and rank the details of the scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its mesh sizes are those of the most expensive level.
+    quantity : str
+        Quantity that must be accurate: a reaction, as in "main_bearing.My" or "gearbox.Fz", or a
+        stiffness, "hub.stiffness.ux" to "hub.stiffness.rz".
+    tolerance : float
+        Allowed error, relative.
+    load : mapping of str to float or None
+        Load that causes a reaction, by component [N, N m, m/s^2]; None for each hub load by itself.
+    to_the_top : bool
+        Whether to run every level, even if a cheaper one is accurate enough.
+    report : Progress
+        Called with the name of each step as it begins.
+
+    Raises
+    ------
+    InputError
+        The quantity or a load is unknown, or the quantity is zero at the highest level.
+    """
+    found, steps = Findings(), Steps(report)
+    found.about(scene)
+    asked = Quantity(quantity, None if load is None else named_load(scene, load))
+    with steps.step("model levels"):
+        advice = run_levels(scene, asked, tolerance, to_the_top, report)
+    chosen = None if advice.chosen is None else advice.results[advice.chosen]
+    level = 2 if chosen is not None and chosen.model.level == 2 else 1
+    ranked: list[Effect] = []
+    if advice.springs:
+        with steps.step("details"):
+            ranked = effects(scene, asked, level, advice.springs, report)
+    found.answer(advice.sentence())
+    if chosen is not None and chosen.model.neglects:
+        found.answer(f"It neglects {', '.join(chosen.model.neglects)}.")
+    _judge(found, advice, advice.top if chosen is None else chosen)
+    _data(found, advice)
+    return AdviseResult(
+        drivetrain=scene,
+        advice=advice,
+        effects=tuple(ranked),
+        effects_level=level,
+        **found.frozen(
+            steps.times, quantity=quantity, tolerance=tolerance, load=load, to_the_top=to_the_top
+        ),
+    )
+
+
+def effects_level_title(level: int) -> str:
+    """Words for the level at which details are left out."""
+    return f"{level} with housings as springs"
+
+
+def _judge(found: Findings, advice: Advice, known: LevelResult) -> None:
+    """Check the error of the chosen level, else of the highest one, against the tolerance."""
+    is_exact = known.estimate == 0.0 or known is advice.top
+    error = known.estimate if is_exact else known.error + advice.top.estimate
+    which = f"{advice.quantity.name}: error of level {known.model.level}, {known.model.title}"
+    found.found(f"{which} [%]", 100.0 * error)
+    found.at_most(
+        which,
+        error,
+        advice.tolerance,
+        why="the tolerance that was requested",
+        source=f"level {advice.top.model.level}, {advice.top.model.title}, and its own error band",
+    )
+
+
+def _data(found: Findings, advice: Advice) -> None:
+    """Keep the levels for other programs."""
+    found.data("quantity", advice.quantity.name)
+    found.data("levels", [_level(result) for result in advice.results])
+
+
+def _level(result: LevelResult) -> Record:
+    return {
+        "level": result.model.level,
+        "title": result.model.title,
+        "values": result.values,
+        "seconds": result.seconds,
+        "waited": result.waited,
+        "estimate": None if np.isnan(result.estimate) else result.estimate,
+        "error": None if np.isnan(result.error) else result.error,
+    }
+
+
+def _against_time(advice: Advice) -> Chart:
+    known = [result for result in advice.results if np.isfinite(result.error)]
+    chosen = None if advice.chosen is None else advice.results[advice.chosen]
+    traces: list[Any] = [
+        trace(
+            f"level {result.model.level}, {result.model.title}",
+            [result.seconds],
+            [max(100 * (result.error if result is not advice.top else result.estimate), _LEAST)],
+            points=True,
+            marker={"size": 14 if result is chosen else 9},
+        )
+        for result in known
+    ]
+    times = [result.seconds for result in known]
+    limit = 100 * advice.tolerance
+    traces.append(
+        trace("tolerance", [min(times), max(times)], [limit, limit], line={"dash": "dash"})
+    )
+    return chart(
+        "Error over time; for the last level its estimated own error. The largest marker is the "
+        f"level that is accurate enough. Errors of zero are drawn at {_LEAST:g} %",
+        traces,
+        x="time [s]",
+        y="error [%]",
+        logarithmic=("x", "y"),
+    )

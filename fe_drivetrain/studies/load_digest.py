@@ -1,0 +1,259 @@
+"""What the study of loads needs of one file, in little memory whatever the file's length."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.made_by import file_digest, program_hash
+from fe_drivetrain.histories.cycle_sums import CycleRule, CycleSums, count_cycles
+from fe_drivetrain.histories.cycles import Cycles, Residue
+from fe_drivetrain.histories.damage import FREQUENCY, SLOPES, check_slope
+from fe_drivetrain.histories.faults import lone_samples, times_as_far
+from fe_drivetrain.histories.level_sums import (
+    LevelSums,
+    TorqueSums,
+    level_sums,
+    torque_sums,
+    turns_of,
+)
+from fe_drivetrain.histories.spectrum_sums import HistorySpectra, history_spectra
+from fe_drivetrain.histories.windows import Windows, window_statistics
+from fe_drivetrain.hub_loads.channel_map import ChannelMap
+from fe_drivetrain.hub_loads.recorded import OWN_NAMES, Recorded
+from fe_drivetrain.studies.load_planes import PLANES, PlaneDigest, plane_digest
+from fe_drivetrain.studies.unused import own_speeds
+
+LOADS = (*FORCES, "radial force", "bending moment")
+"""Channels that are counted; the last two are sizes across the shaft."""
+
+CHANNELS = (*LOADS, "rotor speed", "wind speed")
+UNITS = (*3 * ("N",), *3 * ("N m",), "N", "N m", "rad/s", "m/s")
+UNIT_OF = dict(zip(CHANNELS, UNITS, strict=True))
+
+MOMENTS_BY_MEAN = ("Mx", "My")
+"""Loads whose cycles are counted by range and mean."""
+
+
+@dataclass(frozen=True)
+class LoadOptions:
+    """How histories are read and counted.
+
+    Attributes
+    ----------
+    columns : Mapping[str, str]
+        What a channel is, and how files call it, before what the mapping says.
+    skip : float
+        Left out at the beginning of each file [s].
+    slopes : Sequence[float]
+        Exponents of S-N curves.
+    residue : str
+        Rule for cycles that the end of a file leaves open: half, closed, or repeated.
+    gate : float
+        Cycles of a smaller range are left out, as a share of the largest one of the channel in
+        its file.
+    rotor_speed : float or None
+        [rad/s], for files that have none.
+    ultimate : Mapping[str, float]
+        Loads that break the part, by channel [N, N m]: cycles of these are counted about zero mean,
+        too, by Goodman's line.
+    frequency : float
+        Frequency of damage-equivalent loads [Hz]; what is kept of a file does not depend on it.
+    mapping : ChannelMap
+        How files call their channels, and their frame and origin.
+    also : Sequence[str]
+        Further channels, as files call them, of which there are statistics and cycles, too.
+
+    Raises
+    ------
+    InputError
+        A slope is not from 1 to 20, or there is none.
+    """
+
+    columns: Mapping[str, str] = field(default_factory=dict)
+    skip: float = 0.0
+    slopes: Sequence[float] = SLOPES
+    residue: Residue = "half"
+    gate: float = 0.0
+    rotor_speed: float | None = None
+    ultimate: Mapping[str, float] = field(default_factory=dict)
+    frequency: float = FREQUENCY
+    mapping: ChannelMap = OWN_NAMES
+    also: Sequence[str] = ()
+
+    def __post_init__(self) -> None:
+        if not self.slopes:
+            raise InputError("load histories: there is no slope of an S-N curve: give one or more")
+        for slope in self.slopes:
+            check_slope(slope)
+
+    @property
+    def names(self) -> ChannelMap:
+        """The mapping, with the columns."""
+        return self.mapping.with_columns(self.columns)
+
+    @property
+    def cycle_rule(self) -> CycleRule:
+        """How cycles are counted."""
+        return CycleRule(
+            tuple(self.slopes), self.residue, self.gate, self.ultimate, MOMENTS_BY_MEAN
+        )
+
+    @property
+    def counted(self) -> str:
+        """How cycles are counted, in words."""
+        rule = Cycles(np.zeros(0), np.zeros(0), np.zeros(0), self.residue).rule
+        if not self.gate:
+            return rule
+        return (
+            f"{rule}; cycles of a range below {100 * self.gate:g} % of the largest of the channel "
+            "in its file are left out"
+        )
+
+    def content(self, file: Path) -> dict[str, Any]:
+        """All that the digest of a file depends on: what is in the file counts, not its name."""
+        return {
+            "code": program_hash(),
+            "file": file_digest(str(file)),
+            "mapping": self.names.content(),
+            "slopes": [float(m) for m in self.slopes],
+            "ultimate": dict(self.ultimate),
+            "also": list(self.also),
+            **{name: getattr(self, name) for name in ("skip", "residue", "gate", "rotor_speed")},
+        }
+
+
+@dataclass(frozen=True)
+class Span:
+    """When a history is.
+
+    Attributes
+    ----------
+    start, end : float
+        Time of the first and the last sample [s].
+    step : float
+        Between two samples [s].
+    samples : int
+        How many.
+    """
+
+    start: float
+    end: float
+    step: float
+    samples: int
+
+    @property
+    def seconds(self) -> float:
+        """How long all samples last [s]."""
+        return self.samples * self.step
+
+
+@dataclass(frozen=True, eq=False)
+class Digest:
+    """The loads of one file: hub loads, a reaction to them, or another channel.
+
+    Attributes
+    ----------
+    channels : str
+        Which channels of the file they were read from.
+    span : Span
+        When.
+    windows : Windows
+        Statistics of `CHANNELS` in windows of ten minutes; NaN of what the file has not.
+    lone : ndarray, (6, 3)
+        Samples that stand alone, of each component: how many, time of the first [s], and how many
+        times as far from its neighbours as usual the farthest is.
+    cycles : CycleSums
+        Cycles of `LOADS`.
+    levels : LevelSums
+        Time and turns at each level of `LOADS`.
+    torque : TorqueSums
+        Sums of the torque.
+    spectra : HistorySpectra or None
+        Spectra of `LOADS`; None of a file shorter than half a segment.
+    planes : Mapping[str, PlaneDigest]
+        Force and moment across the shaft.
+    own_speeds : ndarray, (2,)
+        Least and largest rotor speed that the file states [1/min]; NaN where it has none.
+    """
+
+    channels: str
+    span: Span
+    windows: Windows
+    lone: Floats
+    cycles: CycleSums
+    levels: LevelSums
+    torque: TorqueSums
+    spectra: HistorySpectra | None
+    planes: Mapping[str, PlaneDigest]
+    own_speeds: Floats
+
+    def mean_of(self, channel: str) -> float:
+        """Mean of one of `CHANNELS` over the file; NaN where it has none."""
+        weights = self.windows.seconds
+        means = self.windows.values[:, CHANNELS.index(channel), 1]
+        return float(means @ weights) / float(weights.sum())
+
+
+def digest(found: Recorded, options: LoadOptions) -> Digest:
+    """Statistics, counts and distributions of one file.
+
+    Parameters
+    ----------
+    found : Recorded
+        The history.
+    options : LoadOptions
+        How it is counted.
+
+    Raises
+    ------
+    InputError
+        The mean of a cycle reaches an ultimate load.
+    """
+    history = found.history
+    step, count = history.step, len(history)
+    speed = found.rotor_speed
+    if speed is None and options.rotor_speed is not None:
+        speed = np.full(count, options.rotor_speed)
+    loads = _all_loads(history.loads)
+    unknown = np.full(count, np.nan)
+    beside = [unknown if c is None else c for c in (speed, found.wind_speed)]
+    channels = dict(zip(LOADS, loads.T, strict=True))
+    turns = None if speed is None else turns_of(speed, step)
+    return Digest(
+        channels=str(history.attributes.get("channels", "as in the file")),
+        span=Span(float(history.time[0]), float(history.time[-1]), step, count),
+        windows=window_statistics(history.time, np.column_stack([loads, *beside])),
+        lone=_lone(history.time, history.loads),
+        cycles=count_cycles(channels, options.cycle_rule),
+        levels=level_sums(channels, step, turns),
+        torque=torque_sums(channels["Mx"], step, turns),
+        spectra=history_spectra(channels, step, speed, "My"),
+        planes={
+            name: plane_digest(history.time, loads[:, y], loads[:, y + 1], step, speed)
+            for name, y in PLANES
+        },
+        own_speeds=own_speeds(found.rotor_speed),
+    )
+
+
+def _lone(time: Floats, loads: Floats) -> Floats:
+    """Samples of each component that stand alone: see `Digest`."""
+    rows = []
+    for column in loads.T:
+        places = lone_samples(column)
+        far = times_as_far(column, places).max() if len(places) else np.nan
+        rows.append([len(places), time[places[0]] if len(places) else np.nan, far])
+    return np.array(rows, dtype=float)
+
+
+def _all_loads(loads: Floats) -> Floats:
+    sizes = [np.hypot(loads[:, y], loads[:, y + 1]) for _, y in PLANES]
+    return np.column_stack([loads, *sizes])

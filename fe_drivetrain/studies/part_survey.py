@@ -1,0 +1,153 @@
+"""What is in a user's part: bores and planes of STEP or mesh files, stiffness of superelements."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import MOTIONS
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.common.steps import Steps
+from fe_drivetrain.export.condensed_housing import condensed_housing
+from fe_drivetrain.export.limited_reading import read_limited
+from fe_drivetrain.export.superelement import Superelement
+from fe_drivetrain.foreign.survey import Survey, surveyed
+from fe_drivetrain.geometry import CondensedHousing
+from fe_drivetrain.report.charts import bars, stiffness_chart
+from fe_drivetrain.report.results import Chart
+from fe_drivetrain.studies.result import Result
+from fe_drivetrain.suite.findings import Findings
+from fe_drivetrain.suite.records import Record
+
+SUPERELEMENTS = {".json": "json", ".csv": "csv", ".bdf": "dmig", ".op4": "op4", ".h5": "hdf5"}
+"""Format of a superelement by the ending of its file."""
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class PartResult(Result):
+    """A part before a scene takes it as a housing.
+
+    Attributes
+    ----------
+    survey : Survey or None
+        Volume, bores and planes of a STEP or mesh file; its surface is not part of the JSON.
+    element : Superelement or None
+        The superelement of another file.
+    housing : CondensedHousing or None
+        Its stiffness at the bore, as a scene takes it.
+    """
+
+    STUDY: ClassVar[str] = "part"
+
+    survey: Survey | None = field(repr=False)
+    element: Superelement | None = field(repr=False)
+    housing: CondensedHousing | None
+
+    def chart(self) -> Chart:
+        """Radius of each bore; of a superelement its stiffness at the bore, of a unit diagonal."""
+        if self.housing is not None:
+            stiffness = np.array(self.housing.stiffness, dtype=np.float64)
+            return stiffness_chart(self.housing.source, ("bore",), stiffness)
+        assert self.survey is not None
+        radii = {one.name: one.radius for one in reversed(self.survey.bores)}
+        unit = self.survey.unit or "the file's unit"
+        return bars("Radius of each bore", {"radius": radii}, f"radius [{unit}]")
+
+
+def part(
+    file: Path, bore: str = "", held: Sequence[str] = (), *, report: Progress = silent
+) -> PartResult:
+    """Find what is in a file of a part: what a scene may pick of it, or its stiffness.
+
+    Parameters
+    ----------
+    file : Path
+        STEP (.step, .stp), mesh (.msh, .vtu, .inp), or superelement (.json, .csv, .bdf, .op4, .h5).
+    bore : str
+        Of a superelement: the point in the middle of its bore; may be left out where it has but
+        one point.
+    held : sequence of str
+        Of a superelement: points that stand on the ground.
+    report : Progress
+        Called with the name of each step as it begins.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, a point is unknown or of no superelement, or what is left of one
+        moves freely.
+    """
+    found, steps = Findings(), Steps(report)
+    found.seed = None
+    survey, element, housing = None, None, None
+    if file.suffix.lower() not in SUPERELEMENTS:
+        _refuse_points(file, {"--bore": bore, "--held": ",".join(held)})
+    with steps.step("read"):
+        if file.suffix.lower() in SUPERELEMENTS:
+            element = read_limited(file, SUPERELEMENTS[file.suffix.lower()])
+            housing = condensed_housing(element, bore, held)
+        else:
+            survey = surveyed(file)
+    if survey is not None:
+        _find_survey(found, file, survey)
+    elif element is not None and housing is not None:
+        _find_stiffness(found, file, element, housing)
+    return PartResult(
+        survey=survey,
+        element=element,
+        housing=housing,
+        **found.frozen(steps.times, file=file.name, bore=bore, held=list(held)),
+    )
+
+
+def _refuse_points(file: Path, options: Mapping[str, str]) -> None:
+    """Refuse points of a file that is no superelement, and so has none."""
+    for option, value in options.items():
+        if value:
+            raise InputError(
+                f"{option} {value} names points of a superelement, and {file} is none: leave "
+                f"{option} out, or give a file that ends in {', '.join(SUPERELEMENTS)}"
+            )
+
+
+def place_records(points: Sequence[str], positions: Floats) -> list[Record]:
+    """Names and places (n, 3) [m] of points, as records."""
+    return [
+        {"point": name, "x [m]": x, "y [m]": y, "z [m]": z}
+        for name, (x, y, z) in zip(points, positions.tolist(), strict=True)
+    ]
+
+
+def _find_survey(found: Findings, file: Path, survey: Survey) -> None:
+    """Volume, bores and planes of a body."""
+    unit = survey.unit or "unit of the file"
+    if survey.volume is not None:
+        found.found(f"volume [{unit}^3]", survey.volume, survey.volume_band)
+    holes = sum(one.hole for one in survey.bores)
+    found.answer(f"{file.name}: {holes} bore{'s' * (holes != 1)} that may be seats.")
+    found.data("bores", [one._asdict() for one in survey.bores])
+    found.data("planes", [one._asdict() for one in survey.planes])
+
+
+def _find_stiffness(
+    found: Findings, file: Path, element: Superelement, housing: CondensedHousing
+) -> None:
+    """Points of a superelement, and its stiffness at the bore."""
+    state = "on its supports" if element.supported else "free"
+    points = ", ".join(element.points)
+    found.answer(f"{file.name}: superelement {element.name} at {points}, {state}.")
+    for k, motion in enumerate(MOTIONS):
+        unit = "N/m" if k < 3 else "N m/rad"
+        value = float(housing.stiffness[k][k])
+        found.found(f"{motion} at the bore, other motions held [{unit}]", value)
+    found.data("points", place_records(element.points, element.positions))
+    found.data(
+        "stiffness [N/m, N, N m/rad]",
+        [dict(zip(MOTIONS, row, strict=True)) for row in housing.stiffness],
+    )

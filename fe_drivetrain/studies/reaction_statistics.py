@@ -1,0 +1,150 @@
+"""Statistics of reactions over load histories: extremes, means, damage-equivalent loads, bands."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.compare.time_weighted import weighted_statistics
+from fe_drivetrain.fidelity.ladder import LevelModel
+from fe_drivetrain.fidelity.over_loads import Levels, reaction_history
+from fe_drivetrain.histories.cycles import Cycles, rainflow_cycles
+from fe_drivetrain.histories.damage import damage_equivalent_load
+from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.studies.study_loads import EnteredLoads
+from fe_drivetrain.suite.records import Record
+
+COLUMNS = ("least", "mean", "largest", "standard deviation")
+"""Columns of `Statistics.values`."""
+
+_ROUND_OFF = 1e-9  # of a reaction's largest component: shown as zero
+_SHOWN_UNITS = 3 * ("kN",) + 3 * ("kN\u00a0m",)
+
+
+@dataclass(frozen=True, eq=False)
+class Statistics:
+    """Statistics of one reaction over all histories together, or over one of them.
+
+    Attributes
+    ----------
+    values : ndarray, (6, 4)
+        Min, mean, max, standard deviation of each component [N, N m].
+    band : ndarray, (6,) or None
+        What the mesh may change of any of these [N, N m]; None where it is not known.
+    equivalent : ndarray, (6, s)
+        Ranges of the damage-equivalent loads for s slopes [N, N m].
+    """
+
+    values: Floats
+    band: Floats | None
+    equivalent: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class ReactionStatistics:
+    """Statistics of one reaction.
+
+    Attributes
+    ----------
+    whole : Statistics
+        Over all histories together, each sample by the time that it stands for.
+    by_history : tuple of Statistics
+        Over each history, in their order.
+    """
+
+    whole: Statistics
+    by_history: tuple[Statistics, ...]
+
+
+def reaction_statistics(
+    name: str,
+    scene: Scene,
+    levels: Levels,
+    loads: EnteredLoads,
+    slopes: Sequence[float],
+) -> ReactionStatistics:
+    """Statistics of one reaction of the assembly.
+
+    Parameters
+    ----------
+    name : str
+        Name of a bearing, or "gearbox".
+    scene : Scene
+        The scene.
+    levels : Levels
+        The assembly, and one on a coarser mesh, which the band comes from.
+    loads : EnteredLoads
+        Hub loads, each history with its own time.
+    slopes : sequence of float
+        Slopes of S-N curves.
+    """
+    weight, gravity = scene.gearbox.weight, loads.given.gravity
+
+    def histories_of(level: LevelModel) -> list[Floats]:
+        return [reaction_history(level, name, one, weight, gravity) for one in loads.each]
+
+    samples = histories_of(levels.reference)
+    coarse = None if levels.coarser is None else histories_of(levels.coarser)
+    least = _ROUND_OFF * max(float(np.abs(part).max()) for part in samples)
+    cycles = [[_cycles(c, least) for c in part.T] for part in samples]
+
+    def over(chosen: Sequence[int], weights: Floats, seconds: float) -> Statistics:
+        fine = weighted_statistics(np.concatenate([samples[k] for k in chosen]), weights)
+        band = None
+        if coarse is not None:
+            other = weighted_statistics(np.concatenate([coarse[k] for k in chosen]), weights)
+            band = levels.band(other - fine).max(axis=1)
+        equivalent = [
+            [damage_equivalent_load([cycles[k][c] for k in chosen], seconds, m) for m in slopes]
+            for c in range(6)
+        ]
+        return Statistics(fine, band, np.reshape(equivalent, (6, len(slopes))))
+
+    histories = loads.given.histories
+    return ReactionStatistics(
+        over(range(len(histories)), loads.given.weights, loads.given.seconds),
+        tuple(
+            over([k], np.full(len(history), 1.0 / len(history)), history.seconds)
+            for k, history in enumerate(histories)
+        ),
+    )
+
+
+def _cycles(samples: Floats, least: float) -> Cycles:
+    """Rainflow cycles; none where a component is round-off beside the others."""
+    if np.ptp(samples) <= least:
+        return Cycles(np.zeros(0), np.zeros(0), np.zeros(0))
+    return rainflow_cycles(samples)
+
+
+def statistics_rows(name: str, found: Statistics, slopes: Sequence[float]) -> list[Record]:
+    """Records of the components of one reaction [kN, kN m], round-off as zero.
+
+    Parameters
+    ----------
+    name : str
+        Name of the reaction.
+    found : Statistics
+        Its statistics.
+    slopes : sequence of float
+        Slopes of S-N curves.
+    """
+    least = _ROUND_OFF * float(np.abs(found.values).max())
+    shown = np.where(np.abs(found.values) < least, 0.0, found.values) / 1e3
+    return [
+        {
+            "reaction": name,
+            "component": f"{component} [{unit}]",
+            **dict(zip(COLUMNS, shown[c].tolist(), strict=True)),
+            "± mesh": None if found.band is None else float(found.band[c]) / 1e3,
+            **{
+                f"DEL, m = {m:g}": value / 1e3
+                for m, value in zip(slopes, found.equivalent[c].tolist(), strict=True)
+            },
+        }
+        for c, (component, unit) in enumerate(zip(FORCES, _SHOWN_UNITS, strict=True))
+    ]

@@ -1,0 +1,182 @@
+"""Hub loads of a study: the user's files, or the surrogate's."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import partial
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import GRAVITY
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.steps import Clock
+from fe_drivetrain.compare.time_weighted import sample_weights
+from fe_drivetrain.hub_loads.aero_rotor import assumptions
+from fe_drivetrain.hub_loads.channel_map import ChannelMap
+from fe_drivetrain.hub_loads.files import read_hub_load_files, read_hub_loads
+from fe_drivetrain.hub_loads.histories import LoadHistory
+from fe_drivetrain.hub_loads.point_loads import PointLoads
+from fe_drivetrain.hub_loads.recorded import read_mapped
+from fe_drivetrain.hub_loads.surrogate import hub_load_set, surrogate_grid
+from fe_drivetrain.hub_loads.turbines import different_turbines, vertical_forces
+from fe_drivetrain.response.entering import at_front, entering, joined
+from fe_drivetrain.scene.scene import Scene
+
+_QUICK_SEEDS = 1
+
+
+@dataclass(frozen=True)
+class StudyLoads:
+    """Hub-load histories, and what they are.
+
+    Attributes
+    ----------
+    histories : Sequence[LoadHistory]
+        One or more, each with its own time.
+    statement : str
+        What they are, as a sentence.
+    own : bool
+        Whether they are the user's.
+    assumptions : Sequence[tuple[str, float, str, str]]
+        Name, value, unit and source of what a surrogate assumes.
+    gravity : float
+        Along -z, that gives all parts their weight [m/s^2]; 0 where weights are left out.
+    """
+
+    histories: Sequence[LoadHistory]
+    statement: str
+    own: bool
+    assumptions: Sequence[tuple[str, float, str, str]] = field(default_factory=tuple)
+    gravity: float = GRAVITY
+
+    @property
+    def seconds(self) -> float:
+        """How long all last together [s]."""
+        return sum(history.seconds for history in self.histories)
+
+    @property
+    def weights(self) -> Floats:
+        """(n,) of all samples, one history after the other: each by the time that it lasts."""
+        histories = self.histories
+        return sample_weights([len(h) for h in histories], [h.step for h in histories])
+
+    def entering(self, scene: Scene) -> EnteredLoads:
+        """The loads as they enter a scene, with the loads and weights at its load points."""
+        each = tuple(entering(scene, history) for history in self.histories)
+        return EnteredLoads(self, each, joined(each))
+
+
+@dataclass(frozen=True, eq=False)
+class EnteredLoads:
+    """Hub loads as they enter a scene.
+
+    Attributes
+    ----------
+    given : StudyLoads
+        What they are.
+    each : tuple of PointLoads
+        Each history.
+    together : PointLoads
+        All of them, one after the other.
+    """
+
+    given: StudyLoads
+    each: tuple[PointLoads, ...]
+    together: PointLoads
+
+
+def own_loads(
+    patterns: str | Sequence[str], skip: float, scene: Scene, mapping: ChannelMap | None = None
+) -> StudyLoads:
+    """Read the user's files.
+
+    Parameters
+    ----------
+    patterns : str or sequence of str
+        Files, folders, or patterns; a file that several find counts once.
+    skip : float
+        What is left out at the beginning of each file [s].
+    scene : Scene
+        Says which point of the shaft they are about.
+    mapping : ChannelMap, optional
+        How files of other programs call their channels, and their frame and origin.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read, or all loads are zero.
+    """
+    read = read_hub_loads if mapping is None else partial(read_mapped, mapping)
+    histories = read_hub_load_files(patterns, skip, read)
+    return _of_the_user(histories, scene, f"--loads {patterns!r}", ("file", "files"), skip)
+
+
+def given_loads(histories: Sequence[LoadHistory], scene: Scene) -> StudyLoads:
+    """The user's histories, about the shaft's front face.
+
+    Parameters
+    ----------
+    histories : sequence of LoadHistory
+        One or more, of any length and step.
+    scene : Scene
+        States which point of the shaft they are about.
+
+    Raises
+    ------
+    InputError
+        There is none, or all loads are zero.
+    """
+    if not histories:
+        raise InputError("there is no load history to study: give one or more, or None")
+    return _of_the_user(histories, scene, "loads", ("history", "histories"))
+
+
+def _of_the_user(
+    found: Sequence[LoadHistory],
+    scene: Scene,
+    source: str,
+    words: tuple[str, str],
+    skip: float = 0.0,
+) -> StudyLoads:
+    """Histories at the front face, and a sentence on them."""
+    histories = [at_front(scene, history) for history in found]
+    if not any(history.loads.any() for history in histories):
+        raise InputError(f"{source}: all hub loads are zero: give histories with loads")
+    moved = scene.loads_at != scene.shaft.front
+    about = f" Their moments, about x = {scene.loads_at:g} m, are moved to the front face." * moved
+    unlike = different_turbines(vertical_forces(histories))
+    count, samples = len(histories), sum(map(len, histories))
+    seconds = sum(history.seconds for history in histories)
+    return StudyLoads(
+        histories,
+        f"Hub loads: {count} {words[count > 1]} of your own, {samples:,} load steps "
+        f"over {seconds:,.6g} s"
+        + (f"; the first {skip:g} s of each are left out." if skip else ".")
+        + about
+        + (f" {unlike}" if unlike else ""),
+        True,
+    )
+
+
+def surrogate_loads(steps: Clock, quick: bool = False) -> StudyLoads:
+    """The surrogate's histories.
+
+    Parameters
+    ----------
+    steps : Clock
+        Times the step in which they are made.
+    quick : bool
+        Whether those of one seed are enough.
+    """
+    grid = [c for c in surrogate_grid() if not quick or c.seed <= _QUICK_SEEDS]
+    with steps.step("hub loads"):
+        found = hub_load_set(
+            grid, progress=lambda done, of: steps.report(f"hub loads ({done} of {of})")
+        )
+    return StudyLoads(
+        list(found),
+        f"Hub loads are a surrogate, not those of your turbine: {len(grid)} ten-minute histories "
+        "of a generic 2 MW, 80 m rotor in turbulent wind. Give your own with --loads.",
+        False,
+        list(assumptions()),
+    )
