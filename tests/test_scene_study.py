@@ -50,6 +50,15 @@ def test_reactions_to_further_loads_carry_all_weight(studied: StudyResult) -> No
         studied.reactions(further, "nosuch")
 
 
+def test_the_peak_across_the_shaft_is_a_figure(studied: StudyResult) -> None:
+    across = np.vstack([studied.reactions(h)["main_bearing"] for h in HISTORIES])[:, 1:3]
+    row, column = np.unravel_index(np.abs(across).argmax(), across.shape)
+    figure = studied[f"peak {('Fy', 'Fz')[column]} on main_bearing"]
+    assert (figure.computed, figure.unit) == (pytest.approx(across[row, column] / 1e3), "kN")
+    assert figure.band is not None
+    assert 0.0 < figure.band < 0.5 * abs(figure.computed)
+
+
 def test_statistics_are_of_the_reactions_each_history_by_its_time(studied: StudyResult) -> None:
     samples = [studied.reactions(history)["main_bearing"] for history in HISTORIES]
     found = studied.reaction_statistics["main_bearing"]

@@ -90,7 +90,7 @@ def recorded_files(files: Files) -> list[Path]:
     Parameters
     ----------
     files : str, path, or sequence of these
-        Files, folders, or patterns as "outputs/*.outb": see `files_of_patterns`.
+        Files, folders, or patterns as ``"outputs/*.outb"``: see `files_of_patterns`.
 
     Raises
     ------

@@ -106,7 +106,7 @@ def life(
         The drivetrain.
     files : str, path, or sequence of these
         Hub loads: files (.out, .outb of OpenFAST, or .csv), folders, or patterns as
-        "outputs/*.outb".
+        ``"outputs/*.outb"``.
     site : Site or None
         Whose winds weight the files; without one they follow each other for ever.
     options : LifeOptions or None

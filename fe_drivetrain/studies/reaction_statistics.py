@@ -114,6 +114,29 @@ def reaction_statistics(
     )
 
 
+def peak_across(name: str, of: Statistics) -> tuple[str, float, float | None]:
+    """Peak of the force across the shaft: the component and the end that are farthest from zero.
+
+    Parameters
+    ----------
+    name : str
+        Name of a bearing.
+    of : Statistics
+        Statistics of its reaction.
+
+    Returns
+    -------
+    quantity : str
+        What it is, with its unit.
+    peak, band : float, float or None
+        Value with its sign, and what the mesh may change of it [kN].
+    """
+    ends = of.values[1:3][:, [0, 2]]
+    row, end = np.unravel_index(int(np.abs(ends).argmax()), ends.shape)
+    band = None if of.band is None else float(of.band[1 + row]) / 1e3
+    return f"peak {FORCES[1 + row]} on {name} [kN]", float(ends[row, end]) / 1e3, band
+
+
 def _cycles(samples: Floats, least: float) -> Cycles:
     """Rainflow cycles; none where a component is round-off beside the others."""
     if np.ptp(samples) <= least:

@@ -43,6 +43,7 @@ from fe_drivetrain.studies.level_errors import (
 from fe_drivetrain.studies.load_facts import LoadFacts, load_facts
 from fe_drivetrain.studies.reaction_statistics import (
     ReactionStatistics,
+    peak_across,
     reaction_statistics,
     statistics_rows,
 )
@@ -378,6 +379,8 @@ def _reactions(
     for number, name in enumerate(names, 1):
         report(f"reactions of all load steps ({number} of {len(names)})")
         every[name] = reaction_statistics(name, scene, levels, loads, slopes)
+    for name in (bearing for bearing in scene.bearing_names if bearing in every):
+        found.found(*peak_across(name, every[name].whole))
     rows = [row for name, of in every.items() for row in statistics_rows(name, of.whole, slopes)]
     found.data("reactions_kN", rows)
     return every
