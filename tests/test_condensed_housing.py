@@ -52,7 +52,7 @@ def test_the_beam_level_agrees_with_the_assembly(model):
 def test_its_stiffness_is_given_with_no_band(model):
     assert np.allclose(unit_stiffness(model.scene, NAME), ROWS, rtol=1e-12)
     bounds = unit_bounds(model.scene, NAME)
-    assert bounds.mesh == 0.0
+    assert bounds.mesh.largest == 0.0
     assert np.array_equal(bounds.soft, bounds.stiff)
 
 

@@ -262,7 +262,7 @@ def test_the_theory_names_modules_that_are_there() -> None:
 
 
 #: Rooms that compute nothing of their own.
-WITHOUT_THEORY = {"commands", "common", "plots", "report", "scene", "suite"}
+WITHOUT_THEORY = {"commands", "common", "pages", "plots", "report", "scene", "suite"}
 
 
 def test_every_room_that_models_something_has_its_theory() -> None:

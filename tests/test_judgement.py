@@ -12,7 +12,7 @@ from fe_drivetrain.fidelity.ladder import Cost, LevelModel
 from fe_drivetrain.fidelity.quantity import Quantity
 from fe_drivetrain.geometry import MeshSizes
 from fe_drivetrain.scene.reading import change_scene, library_scene
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.scene.scene import Scene, coarser_scene
 from fe_drivetrain.studies.level_errors import enough
 
 LENGTH = 3.8
@@ -75,7 +75,7 @@ def self_aligning() -> Scene:
 
 
 def test_the_adviser_says_of_a_slight_reaction_what_a_study_makes_of_it() -> None:
-    scene = self_aligning()
+    scene = coarser_scene(self_aligning(), 2.0, 8)
     main, slight = (
         advise(scene, Quantity(name), 0.05, shafts=(1,)) for name in ("front.Fz", "gearbox.Fz")
     )

@@ -98,16 +98,16 @@ class ForceErrors:
 
     Attributes
     ----------
-    mean_error : float
+    mean_error_percent : float
         Mean of |F_model - F_FE| / |F_FE| over the samples, the metric of Stirling 2023 [%].
-    relative_error : float
+    relative_error_percent : float
         Mean |F_model - F_FE| over mean |F_FE|, which zero crossings do no harm [%].
     correlation : float
         Pearson's coefficient; NaN where a load never changes.
     """
 
-    mean_error: float
-    relative_error: float
+    mean_error_percent: float
+    relative_error_percent: float
     correlation: float
 
 
@@ -183,8 +183,8 @@ def closed_form_rows(found: Mapping[str, ForceErrors]) -> list[Record]:
     return [
         {
             "closed form": name,
-            "mean error [%]": one.mean_error,
-            "mean |error| / mean |force| [%]": one.relative_error,
+            "mean error [%]": one.mean_error_percent,
+            "mean |error| / mean |force| [%]": one.relative_error_percent,
             "correlation [-]": None if np.isnan(one.correlation) else one.correlation,
         }
         for name, one in found.items()
