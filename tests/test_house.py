@@ -138,7 +138,7 @@ def test_what_is_started_by_its_name_is_named_there(module: str, file: str) -> N
     assert f"fe_drivetrain.{module}" in text or f'"{module.rpartition(".")[2]}.py"' in text
 
 
-#: Cases that take from the command line what is to become a study or a page of its own.
+#: Cases that are about the command line itself: they kill it, and give it faults at set moments.
 WITH_COMMANDS = {
     "cases.stability.fault_moments",
     "cases.verification.command_kills",

@@ -181,6 +181,42 @@ def test_a_result_has_frames_of_its_figures_and_tables(result: Result) -> None:
         result.to_frame("nosuch")
 
 
+def test_numbers_that_are_none_are_words_in_the_json(compared: CompareResult) -> None:
+    odd = compared.checks[0].model_copy(update={"computed": math.nan, "band": math.inf})
+    found = json.loads(dataclasses.replace(compared, checks=(odd,)).to_json())
+    assert (found["checks"][0]["computed"], found["checks"][0]["band"]) == ("nan", "inf")
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"ultimate": {"my": 1e6}}, "channel with an ultimate load"),
+        ({"ultimate": {"My": -1.0}}, "ultimate load of My is -1 N or N m but must be above 0"),
+        ({"frequency": 0.0}, "frequency of equivalent loads is 0 Hz but must be above 0"),
+        ({"gate": 1.0}, "gate is 1 of the largest range but must be at least 0 and below 1"),
+        ({"skip": -1.0}, "skip is -1 s but must be at least 0"),
+        ({"rotor_speed": math.nan}, "rotor speed is nan rad/s but must be above 0"),
+        ({"residue": "none"}, "residue of cycles"),
+    ],
+)
+def test_options_of_loads_out_of_their_range_are_refused(
+    options: dict[str, Any], message: str
+) -> None:
+    with pytest.raises(InputError, match=message):
+        LoadOptions(**options)
+
+
+def test_words_and_counts_that_no_study_takes_are_refused(tmp_path: Path) -> None:
+    scene = coarse_scene("bonded")
+    write_history(tmp_path / "one.csv", 8.0)
+    with pytest.raises(InputError, match="level of reactions to load histories"):
+        loads(tmp_path / "one.csv", scene=scene, level=2)
+    with pytest.raises(InputError, match="kind of export"):
+        prepare_export(scene, "drawing")  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="39 samples show no band of 95 %: take 40 or more"):
+        uncertainty(scene, samples=39)
+
+
 def test_masses_and_costs_are_numbers(checked: CheckResult) -> None:
     assert checked.mass == pytest.approx(float(checked.model.mass.sum()))
     assert [row["unknowns"] for row in checked.tables["levels"]] == [

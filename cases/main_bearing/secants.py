@@ -77,8 +77,6 @@ class Cases:
     ----------
     hub : PointLoads
         (m, 6) at the hub, then six columns more for each load point, with its weight [N, N m].
-    weights : Floats or None
-        (m,) share of each in the whole time; None where all are equal.
     statement : str
         What they are.
     """

@@ -68,7 +68,7 @@ def compare_command(
     """Compare designs: the differences of their stiffnesses and reactions, ranked.
 
     Each quantity comes from the cheapest level that is enough: its bands in both designs together
-    are within the tolerance. A change that is smaller than its band may be none, and is said so.
+    are within the tolerance. A change that is smaller than its band may be zero: it is named.
 
     The exit status is 0 if every change is known within the tolerance, 1 if not.
     """

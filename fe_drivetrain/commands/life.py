@@ -145,7 +145,7 @@ def life_command(
     rotor_speed: RotorSpeed = None,
     skip: Skip = LifeOptions.skip,
     every: Annotated[
-        int, typer.Option("--every", metavar="COUNT", min=1, help="Take one sample of so many.")
+        int, typer.Option("--every", metavar="COUNT", min=1, help="Use every n-th sample.")
     ] = LifeOptions.every,
     weight: Annotated[
         bool,

@@ -68,7 +68,7 @@ def write_reactions(folder: Path, result: StudyResult, histories: Sequence[LoadH
     result : StudyResult
         What was found.
     histories : sequence of LoadHistory
-        The load histories, one in memory at a time.
+        The load histories.
     """
     columns = ["time [s]"]
     columns += [

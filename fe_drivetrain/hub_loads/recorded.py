@@ -102,6 +102,19 @@ def recorded_files(files: Files) -> list[Path]:
     return [existing_file(file) for file in found]
 
 
+def short_name(file: Path, files: Sequence[Path]) -> str:
+    """Name of a file in tables: its stem, or its whole path where another has the same stem.
+
+    Parameters
+    ----------
+    file : Path
+        The file.
+    files : sequence of Path
+        All files that are named beside each other.
+    """
+    return str(file) if sum(other.stem == file.stem for other in files) > 1 else file.stem
+
+
 def read_recorded(
     path: Path, mapping: ChannelMap = OWN_NAMES, skip: float = 0.0, also: Sequence[str] = ()
 ) -> Recorded:

@@ -129,6 +129,7 @@ def compare(
         A design cannot be built, or has not all quantities.
     """
     found, steps = Findings(), Steps(report)
+    found.seed = None
     with steps.step("designs at their levels"):
         differences = compare_designs(designs, quantities, tolerance, load, report)
     for name, scene in designs.items():

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, get_args
 
-from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.errors import InputError, require_known
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.common.stiffness_bands import KINDS, StiffnessBands
@@ -125,6 +125,7 @@ def prepare_export(
     found, steps = Findings(), Steps(report)
     found.about(drivetrain)
     found.seed = None
+    require_known("kind of export", kind, get_args(Kind))
     _refuse_unused(kind, what, at, level, modes)
     content: Content
     if kind in ("model", "mesh"):

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.fidelity.quantities import Number
@@ -89,6 +90,10 @@ class UncertaintyResult(Result):
         return half_bands(self.study)
 
 
+MIN_SAMPLES = 40
+"""Least number of samples: one of them lies beyond a band of 95 %, on either side."""
+
+
 def uncertainty(
     scene: Scene,
     quantities: Sequence[str] = (),
@@ -130,8 +135,13 @@ def uncertainty(
     Raises
     ------
     InputError
-        See `fe_drivetrain.uncertainty.input_study.study`; or the load has an unknown name.
+        See `fe_drivetrain.uncertainty.input_study.study`; the load has an unknown name, or there
+        are too few samples for a band.
     """
+    if samples < MIN_SAMPLES:
+        raise InputError(
+            f"uncertainty: {samples} samples show no band of 95 %: take {MIN_SAMPLES} or more"
+        )
     found, steps = Findings(), Steps(report)
     found.about(scene)
     found.seed = seed

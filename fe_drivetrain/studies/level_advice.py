@@ -126,6 +126,7 @@ def advise(
         The quantity or a load is unknown, or the quantity is zero at the highest level.
     """
     found, steps = Findings(), Steps(report)
+    found.seed = None
     found.about(scene)
     asked = Quantity(quantity, None if load is None else named_load(scene, load))
     with steps.step("model levels"):

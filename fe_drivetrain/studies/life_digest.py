@@ -48,7 +48,7 @@ class Reading:
     skip : float
         Left out at the beginning of each [s].
     every : int
-        Take one sample of so many.
+        Every n-th sample is used.
     rotor_speed : float or None
         Of files that have none [1/min].
     """

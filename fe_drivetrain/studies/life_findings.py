@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.histories.sites import Site
+from fe_drivetrain.hub_loads.recorded import short_name
 from fe_drivetrain.hub_loads.turbines import different_turbines
 from fe_drivetrain.life.limits import centrifugal_load
 from fe_drivetrain.life.reference_life import RINGS
@@ -134,7 +135,8 @@ def cautions(
     for life in lives:
         if life.bearing.misfit is not None:
             found.note(life.bearing.misfit)
-    vertical = {one.file.stem: one.vertical for one in lives[0].files}
+    files = [one.file for one in lives[0].files]
+    vertical = {short_name(one.file, files): one.vertical for one in lives[0].files}
     if unlike := different_turbines(vertical):
         found.note(unlike)
     own_speeds = [one.own_speeds for one in lives[0].files]

@@ -11,10 +11,10 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
-from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.errors import InputError, require_known
 from fe_drivetrain.common.made_by import file_digest, program_hash
 from fe_drivetrain.histories.cycle_sums import CycleRule, CycleSums, count_cycles
-from fe_drivetrain.histories.cycles import Cycles, Residue
+from fe_drivetrain.histories.cycles import RESIDUES, Cycles, Residue
 from fe_drivetrain.histories.damage import FREQUENCY, SLOPES, check_slope
 from fe_drivetrain.histories.faults import lone_samples, times_as_far
 from fe_drivetrain.histories.level_sums import (
@@ -40,6 +40,18 @@ UNIT_OF = dict(zip(CHANNELS, UNITS, strict=True))
 
 MOMENTS_BY_MEAN = ("Mx", "My")
 """Loads whose cycles are counted by range and mean."""
+
+
+def _require(
+    name: str, value: float, unit: str, low: float, high: float, lowest: bool = False
+) -> None:
+    """Refuse a value that is not between two bounds, or at the lower one where that is allowed."""
+    if not (low < value < high or (lowest and value == low)):
+        least = f"at least {low:g}" if lowest else f"above {low:g}"
+        most = f" and below {high:g}" if np.isfinite(high) else ""
+        raise InputError(
+            f"load histories: {name} is {value:g} {unit} but must be {least}{most}: change it"
+        )
 
 
 @dataclass(frozen=True)
@@ -74,7 +86,8 @@ class LoadOptions:
     Raises
     ------
     InputError
-        A slope is not from 1 to 20, or there is none.
+        A slope is not from 1 to 20 or there is none, a residue or channel is unknown, or a number
+        is out of its range.
     """
 
     columns: Mapping[str, str] = field(default_factory=dict)
@@ -93,6 +106,15 @@ class LoadOptions:
             raise InputError("load histories: there is no slope of an S-N curve: give one or more")
         for slope in self.slopes:
             check_slope(slope)
+        require_known("residue of cycles", self.residue, RESIDUES)
+        for name, size in self.ultimate.items():
+            require_known("channel with an ultimate load", name, LOADS)
+            _require(f"ultimate load of {name}", size, "N or N m", 0.0, np.inf)
+        _require("skip", self.skip, "s", 0.0, np.inf, lowest=True)
+        _require("gate", self.gate, "of the largest range", 0.0, 1.0, lowest=True)
+        _require("frequency of equivalent loads", self.frequency, "Hz", 0.0, np.inf)
+        if self.rotor_speed is not None:
+            _require("rotor speed", self.rotor_speed, "rad/s", 0.0, np.inf)
 
     @property
     def names(self) -> ChannelMap:

@@ -15,7 +15,7 @@ from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.histories.sites import Site, require_winds
 from fe_drivetrain.histories.spectra import MULTIPLES
-from fe_drivetrain.hub_loads.recorded import Files, recorded_files
+from fe_drivetrain.hub_loads.recorded import Files, recorded_files, short_name
 from fe_drivetrain.procedure.failure_modes import ROTOR_TORQUE
 from fe_drivetrain.report.answer import value_with_band
 from fe_drivetrain.report.charts import chart, trace
@@ -305,7 +305,7 @@ def _added_up(
     others: dict[str, LoadSums] = {}
     with steps.step("files"):
         for file, one in digests(files, options, resume, "files", steps.report, reactions):
-            name = _name(file, files)
+            name = short_name(file, files)
             hub.add(name, one.hub)
             for reaction, sums in of_scene.items():
                 sums.add(name, one.reactions[reaction])
@@ -318,11 +318,6 @@ def _added_up(
         {name: sums.totals() for name, sums in of_scene.items()},
         {name: sums.totals() for name, sums in others.items()},
     )
-
-
-def _name(file: Path, files: Sequence[Path]) -> str:
-    """Its stem, or its whole path where another has the same."""
-    return str(file) if sum(other.stem == file.stem for other in files) > 1 else file.stem
 
 
 def _events(

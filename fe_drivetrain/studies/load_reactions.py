@@ -12,6 +12,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.components import GRAVITY
+from fe_drivetrain.common.errors import require_known
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.fidelity.ladder import LevelModel, assembly_level, shaft_level
@@ -90,7 +91,13 @@ def scene_reactions(scene: Scene, level: int) -> SceneReactions:
         The scene.
     level : int
         1, a beam on rigid housings; 4, the assembly of solids.
+
+    Raises
+    ------
+    InputError
+        There is no such level, or the scene cannot be solved.
     """
+    require_known("level of reactions to load histories", level, (1, 4))
     return SceneReactions(scene, shaft_level(scene, 1) if level == 1 else assembly_level(scene))
 
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, ClassVar
+
+from pydantic import BaseModel
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.report.answer import value_with_band
@@ -54,16 +56,16 @@ class Result(Found):
         return {
             "schema": f"fe-drivetrain/{self.STUDY}/{self.SCHEMA_VERSION}",
             "version": version("fe-drivetrain"),
-            "drivetrains": [one.model_dump(mode="json") for one in self.drivetrains],
+            "drivetrains": _models(self.drivetrains),
             "options": _plain(self.options),
             "answer": list(self.answer),
-            "figures": [one.model_dump(mode="json") for one in self.figures],
-            "checks": [one.model_dump(mode="json") for one in self.checks],
+            "figures": _models(self.figures),
+            "checks": _models(self.checks),
             "notes": list(self.notes),
             "unsettled": list(self.unsettled),
             "skipped": list(self.skipped),
-            "assumptions": [one.model_dump(mode="json") for one in self.assumptions],
-            "limits": [one.model_dump(mode="json") for one in self.limits],
+            "assumptions": _models(self.assumptions),
+            "limits": _models(self.limits),
             "tables": _plain(self.all_tables()),
             "seed": self.seed,
             "times": dict(self.times),
@@ -114,6 +116,11 @@ class Result(Found):
 
         chart = self.chart()
         return go.Figure(chart.figure).update_layout(title={"text": chart.caption})
+
+
+def _models(records: Iterable[BaseModel]) -> list[Any]:
+    """Records as plain JSON data."""
+    return [_plain(one.model_dump()) for one in records]
 
 
 def _plain(value: Any) -> Any:

@@ -196,9 +196,9 @@ def study(
     for slope in slopes:
         check_slope(slope)
     found, steps = Findings(), Steps(report)
-    found.about(scene)
     scene = quick_scene(scene) if quick else scene
     scene = scene if weight else weightless(scene)
+    found.about(scene)
     given = loads if loads is None or isinstance(loads, StudyLoads) else given_loads(loads, scene)
     model = checked_model(steps, scene)
     given = surrogate_loads(steps, quick) if given is None else given

@@ -138,7 +138,7 @@ def require_samples(file: Path, count: int, every: int, least: int) -> None:
     count : int
         Samples that it has.
     every : int
-        Take one sample of so many.
+        Every n-th sample is used.
     least : int
         Samples that have to be left.
 
