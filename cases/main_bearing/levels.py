@@ -168,6 +168,8 @@ def run(run: Run, page: Page) -> None:
     pinned, sprung = (
         found["bonded"].closed_forms[name].mean_error_percent for name in (PINNED, SPRUNG)
     )
+    page.found("pinned beam on the bonded bearing: mean error of the resultant [%]", pinned)
+    page.found(f"{SPRUNG}: mean error of the resultant [%]", sprung)
     page.answer(
         f"On the bonded bearing the pinned beam has a mean error of {pinned:.1f} % "
         f"(the thesis, of other loads and another housing: 22.74 %), with K_R of the unit alone "
