@@ -34,7 +34,7 @@ def calculix_rollers(
 
 
 def _lines(solid: HousingSolid, bearing: Bearing, material: Material, u: Floats) -> Iterator[str]:
-    """Of each roller two nodes on a line: the mean of its window, and the inner ring behind it."""
+    """Two nodes on a line for each roller: the mean of its window, and the inner ring behind it."""
     mesh, law = solid.mesh, bearing.rows[0].law
     cells = mesh.cells[mesh.part_cells(PART)]
     total, n = sum(bearing.counts), len(mesh.points)

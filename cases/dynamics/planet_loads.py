@@ -51,7 +51,7 @@ def shared_load(
 
 
 def branch_stiffness(sun: float, ring: float, pin: float, pressure_angle: float) -> float:
-    """Of a planet between sun and ring on a pin as stiff in both directions [N/m].
+    """Stiffness of a planet between sun and ring on a pin as stiff in both directions [N/m].
 
     Both meshes carry F and the pin 2 F cos(alpha) along the tangent; the planet's own turning makes
     the two equal.

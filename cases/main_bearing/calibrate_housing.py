@@ -108,14 +108,14 @@ def listed(x: Floats) -> str:
 
 
 def width_range(family: Family) -> str:
-    """Of the whole family, in words."""
+    """Widths of the whole family, in words."""
     low, high = family.cloud[:, WIDTH].min(), family.cloud[:, WIDTH].max()
     bound = " (the bound)" if high > 0.999 * HIGH[WIDTH] else ""
     return f"{low:.3f} to {high:.3f} m{bound}"
 
 
 def stress_range(scene: Scene, family: Family) -> str:
-    """Of the whole family, in words."""
+    """Stresses of the whole family, in words."""
     found, proof = family.stresses(scene), PROOF / 1e6
     above = 100.0 * float((found > proof).mean())
     share = f"{above:.0f} % of the family above {proof:.0f} MPa"

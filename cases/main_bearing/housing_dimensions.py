@@ -370,7 +370,7 @@ def projected(
 
 
 def mass(scene: Scene) -> float:
-    """Of the housing [kg], outer ring included, exact."""
+    """Mass of the housing [kg], outer ring included, exact."""
     unit = scene.bearing_units[0]
     bearing = unit.bearing
     bore = scene.seat_diameter(bearing.name)

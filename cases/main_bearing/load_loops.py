@@ -83,7 +83,7 @@ def definition(page: Page) -> None:
 
 
 def loops_of(hub: HubLoadSet, path: Floats, excursion: float | None = None) -> list[Loops]:
-    """Of each history."""
+    """Loops of each history."""
     return [find_loops(hub.time, *one.T, excursion=excursion) for one in path]
 
 

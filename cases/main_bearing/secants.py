@@ -65,7 +65,7 @@ class Reacted:
     fit: secant_stiffness.Spring
 
     def secant(self, component: int) -> secant_stiffness.Secant:
-        """Of the load cases, about one axis."""
+        """Secant stiffness over the load cases, about one axis."""
         return secant_stiffness.secant(self.loads, self.motions, component)
 
 
@@ -147,12 +147,12 @@ def at_centre(unit: Reacted) -> tuple[Floats, Floats]:
 
 
 def vertical_scatter(unit: Reacted) -> float:
-    """Of the secant about y, at the shaft's axis."""
+    """Scatter of the secant about y, at the shaft's axis."""
     return unit.secant(4).scatter
 
 
 def scatter_at_centre(unit: Reacted) -> float:
-    """Of the secant about y, at the elastic centre."""
+    """Scatter of the secant about y, at the elastic centre."""
     return secant_stiffness.secant(*at_centre(unit), 4).scatter
 
 

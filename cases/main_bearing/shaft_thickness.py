@@ -32,7 +32,7 @@ CHANGE, DEFLECTION = "mean change, FE [%]", "hub deflection per Fz [nm/N]"
 
 
 def named(label: str, wall: int) -> str:
-    """Of a bearing type and a wall."""
+    """Name of a bearing type with a wall."""
     return f"{label}, {wall} % wall"
 
 
@@ -49,7 +49,7 @@ def bored(whole: Scene, wall: int) -> Scene:
 
 
 def mean_change(force: Floats, reference: Floats) -> float:
-    """Of a force over time, over the mean of the reference [%]."""
+    """Mean change of a force over time, over the mean of the reference [%]."""
     return 100.0 * float(np.abs(force - reference).mean() / reference.mean())
 
 

@@ -35,7 +35,7 @@ ROUNDED = round_off(1e4, "sums and products of a thousand numbers of order 1 to 
 
 
 class Found(NamedTuple):
-    """Of one check: what, ours, exact or printed and where from, allowed difference and why.
+    """One check: what, ours, exact or printed and where from, allowed difference and why.
 
     Where `most` is true, no difference above the exact value is allowed but that, any below.
     """

@@ -157,7 +157,7 @@ def inner_forces(patch: Patch, stress: Floats, degree: int) -> float:
 
 
 def forces_by_degree(patch: Patch, degrees: Sequence[int]) -> list[float]:
-    """Of each degree of quadrature the largest of `inner_forces` of the states `SIGMAS`."""
+    """For each degree of quadrature the largest of `inner_forces` of the states `SIGMAS`."""
     return [max(inner_forces(patch, stress, degree) for stress in SIGMAS) for degree in degrees]
 
 

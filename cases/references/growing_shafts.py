@@ -54,7 +54,7 @@ class Grown:
 
     @property
     def times(self) -> dict[str, Times]:
-        """Of each step."""
+        """Time of each step."""
         return {step: Times(tuple(seconds)) for step, seconds in self.seconds.items()}
 
     @property

@@ -185,7 +185,7 @@ def quarters(radii: Sequence[float], width: float, n: int) -> list[Block]:
 
 
 def _pairs(outer: Floats, inner: Floats) -> Ints:
-    """Of each point of the shaft's seat the point of the ring's that lies there."""
+    """For each point of the shaft's seat, the point of the ring's that lies there."""
     apart, pairs = cKDTree(inner).query(outer)
     if apart.max() > 1e-9 or len(np.unique(pairs)) < len(outer):
         raise ValueError("nodes on the seat do not pair")

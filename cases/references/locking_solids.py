@@ -37,7 +37,7 @@ DISC = Shaft(front=0.0, sections=(Section(length=0.15, outer_diameter=0.6),))
 
 
 def material(nu: float) -> Material:
-    """Of modulus `E`, without mass."""
+    """Material of modulus `E`, without mass."""
     return Material(youngs_modulus=E, poisson_ratio=nu, density=0.0)
 
 

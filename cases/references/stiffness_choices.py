@@ -107,7 +107,7 @@ class Outcome:
 
     @property
     def runs(self) -> int:
-        """Of the step with the fewest."""
+        """Runs of the step with the fewest."""
         return min(len(times.seconds) for times in self.times.values())
 
     @property

@@ -181,7 +181,7 @@ def basic_lives(setup: Setup, deflections: Floats) -> Floats:
 
 
 def rotor_speed() -> Floats:
-    """Of each mean wind speed [1/min]."""
+    """Rotor speed at each mean wind speed [1/min]."""
     return np.array([Rotor().rotor_speed(v) * 30.0 / np.pi for v in SPEEDS])
 
 

@@ -35,7 +35,7 @@ class TwistedTube:
 
     @property
     def stiffness(self) -> float:
-        """Of the finest mesh [N m/rad]."""
+        """Stiffness of the finest mesh [N m/rad]."""
         return self.series.finest
 
     @property

@@ -56,7 +56,7 @@ def curved(per_turn: float, method: str = "") -> Mesh:
 
 
 def exact_volume() -> float:
-    """Of the shaft [m^3]: two cylinders, and the fillet by Pappus."""
+    """Volume of the shaft [m^3]: two cylinders, and the fillet by Pappus."""
     r = RADIUS
     area, centroid = r * r * (1 - math.pi / 4), r * (10 - 3 * math.pi) / (12 - 3 * math.pi)
     cylinders = sum(math.pi / 4 * s.outer_diameter**2 * s.length for s in SHAFT.sections)

@@ -73,7 +73,7 @@ class BentBlock:
         return float(static.energy[0])
 
     def flexure_energy(self, force: float) -> float:
-        """Of the plane cantilever under a force per width [N/m], per width [J/m].
+        """Energy of the plane cantilever under a force per width [N/m], per width [J/m].
 
         P^2 L^3 / (6 E' I) + 3 P^2 L / (5 G A) of Timoshenko and Goodier 1970, art 21, plane strain.
         """

@@ -48,7 +48,7 @@ class Bracket:
 
     @property
     def length(self) -> float:
-        """Of the middle line [m]."""
+        """Length of the middle line [m]."""
         return self.arm + self.leg + 0.5 * np.pi * self._middle
 
     @property

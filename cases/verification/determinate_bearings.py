@@ -58,7 +58,7 @@ class Carried:
 
     @property
     def largest_moment(self) -> float:
-        """Of the hub loads [N m]."""
+        """Largest moment of the hub loads [N m]."""
         return float(self.moments[HUB].max())
 
     @property

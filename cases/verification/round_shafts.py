@@ -48,7 +48,7 @@ def slice_of_tube(wall: int) -> Block:
 
 
 def thickness(wall: int) -> float:
-    """Of the slice [m]."""
+    """Thickness of the slice [m]."""
     return (OUTER - INNER) / wall
 
 

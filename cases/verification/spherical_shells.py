@@ -325,7 +325,7 @@ def _joint(mesh: Mesh, joint: Joint, first: int, n: int) -> list[Constraint]:
 
 
 def _n_groups(mesh: Mesh) -> int:
-    """Of an averaged joint: near the square root of the number of nodes there."""
+    """Groups of an averaged joint: near the square root of the number of nodes there."""
     return round(math.sqrt(len(np.unique(mesh.inner))))
 
 

@@ -31,7 +31,7 @@ TIES: tuple[TieKind, ...] = ("dual", "standard", "node by node")
 
 @dataclass(frozen=True)
 class Stiffnesses:
-    """Of a bar; and of a tied one what the tie does not pass on.
+    """Stiffness of a bar; and of a tied one what the tie does not pass on.
 
     Attributes
     ----------

@@ -226,7 +226,7 @@ def steady_state(
 def _steady_state(
     rotor: Rotor, wind_speed: float, rotor_speed: float, pitch: float
 ) -> OperatingPoint:
-    """As `steady_state`; controllers of one rotor ask for the same states again and again."""
+    """Steady state, kept: controllers of one rotor ask for the same states again and again."""
     r, weight = rotor.element_radius()
     axial_wind = wind_speed * np.cos(rotor.shaft_tilt)
     swirl = rotor_speed * r

@@ -111,7 +111,7 @@ class Controller:
 
     @property
     def slope(self) -> float:
-        """Of region 2 1/2 [N m s]."""
+        """Slope of region 2 1/2 [N m s]."""
         return self.rated_torque / (self.torque_speed * (1.0 - 1.0 / (1.0 + SLIP)))
 
     @property
@@ -124,7 +124,7 @@ class Controller:
         return min((self.slope - math.sqrt(root)) / (2.0 * self.optimal), self.torque_speed)
 
     def torque(self, speed: float, pitch: float = 0.0) -> float:
-        """Of the generator at a speed [rad/s] and pitch [rad], without rate limit [N m]."""
+        """Torque of the generator at a speed [rad/s] and pitch [rad], without rate limit [N m]."""
         if speed >= self.torque_speed or pitch >= LEAST_PITCH:
             if self.tuning.constant_power:
                 return self.rated_power / max(speed, 0.5 * self.rated_speed)

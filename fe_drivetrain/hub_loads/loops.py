@@ -333,7 +333,7 @@ def _innermost(start: Floats, end: Floats) -> Ints:
 
 
 def _one_after_another(parts: list[_Part], touch: float) -> list[_Part]:
-    """As many as fit; of equal numbers, those that lead farther together."""
+    """The largest number that fits; of equal numbers, those that lead farther together."""
     ends = [part.end for part in parts]
     best = [(0, 0.0)]
     before: list[int] = []

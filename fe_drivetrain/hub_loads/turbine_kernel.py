@@ -221,7 +221,7 @@ def solved(matrix: Floats, right: Floats, result: Floats) -> None:
 
 @njit(cache=True)
 def asked_torque(control: Control, speed: float, pitch: float) -> float:
-    """As `Controller.torque`."""
+    """Torque that `Controller.torque` asks for."""
     if speed >= control.torque_speed or pitch >= control.least_pitch:
         if control.constant_power:
             return control.rated_power / max(speed, 0.5 * control.rated_speed)

@@ -57,7 +57,7 @@ class Variant:
 
     @property
     def tool_name(self) -> str:
-        """As its makers call it."""
+        """Name that its makers use."""
         return str(_module(self.tool).NAME)
 
     @property

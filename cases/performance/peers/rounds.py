@@ -57,12 +57,12 @@ class Row:
 
     @property
     def stiffnesses(self) -> list[float]:
-        """Of each motion; the same in all runs."""
+        """Stiffness of each motion; the same in all runs."""
         return self.found[0]["stiffness"] if self.found else []
 
     @property
     def stiffness(self) -> float | None:
-        """Of the first motion."""
+        """Stiffness of the first motion."""
         return self.stiffnesses[0] if self.found else None
 
     @property
