@@ -13,6 +13,7 @@ import pytest
 from tiny_case import Result
 
 from fe_drivetrain.commands.life import parse_lubricant
+from fe_drivetrain.common.array_records import as_arrays
 from fe_drivetrain.common.cache import CACHE_VARIABLE
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
@@ -154,7 +155,7 @@ def test_what_is_kept_of_each_file_is_small(histories: Path) -> None:
     for _ in range(100):
         sums.add(histories / "v8.csv", digest)
     found = sums.life(rules, choices)
-    of_digest = sum(array.nbytes for array in life_digest.as_arrays(digest).values())
+    of_digest = sum(array.nbytes for array in as_arrays(digest).values())
     assert of_digest > 50_000
     assert all(not one.damage.basic and not one.damage.modified for one in found.files)
     of_files = sum(len(pickle.dumps(one)) for one in found.files) / 100

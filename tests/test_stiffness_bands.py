@@ -46,7 +46,7 @@ def test_bands_of_two_causes_add_and_of_two_estimates_the_wider_one_holds() -> N
     one, other = StiffnessBands(0.01, 0.2, 0.03), StiffnessBands(0.02, 0.1, 0.03)
     assert list(one + other) == pytest.approx([0.03, 0.3, 0.06])
     assert one | other == StiffnessBands(0.02, 0.2, 0.03)
-    assert StiffnessBands.alike(0.1).are_numbers
+    assert StiffnessBands.uniform(0.1).are_numbers
     assert not StiffnessBands(0.1, -0.1, 0.1).are_numbers
     assert not StiffnessBands(0.1, 0.1, float("inf")).are_numbers
 
@@ -89,7 +89,7 @@ def test_json_keeps_the_bands_and_reads_the_earlier_form(tmp_path: Path) -> None
     assert content["schema_version"] == 2
     assert content["band"] == dict(zip(KINDS, (0.01, 0.002, 1.0 / 3.0), strict=True))
     assert export.read(file, "json").band == unit().band
-    for stated, found in ((0.07, StiffnessBands.alike(0.07)), (None, None)):
+    for stated, found in ((0.07, StiffnessBands.uniform(0.07)), (None, None)):
         file.write_text(json.dumps(content | {"schema_version": 1, "band": stated}))
         assert export.read(file, "json").band == found
 
@@ -99,7 +99,7 @@ def test_texts_state_the_bands_and_are_read_in_the_earlier_form(tmp_path: Path) 
     found = element_of(tmp_path / "unit.txt", said, K, None)
     assert found.band == unit().band
     assert element_of(tmp_path / "a", said | {"band": "0.07 of the stiffness"}, K, None).band == (
-        StiffnessBands.alike(0.07)
+        StiffnessBands.uniform(0.07)
     )
     open_one = statement(replace(unit(), band=None))
     assert open_one["band"] == "not known"

@@ -196,7 +196,7 @@ def test_torsion_of_the_free_shaft_is_g_j_over_l() -> None:
 def test_supported_drivetrain_and_bearing_unit() -> None:
     scene = coarse_scene("bonded")
     model = shaft_level(scene, 1)
-    element = supported_superelement(scene, model, ["hub"], StiffnessBands.alike(0.01))
+    element = supported_superelement(scene, model, ["hub"], StiffnessBands.uniform(0.01))
     np.testing.assert_allclose(element.stiffness, model.stiffness(["hub"]))
     assert element.supported
     unit = unit_superelement(scene, "main_bearing")

@@ -126,7 +126,7 @@ def _errors(page: Page, result: StudyResult) -> None:
     page.text(_notes(levels, result.judgement))
     page.table(
         f"The cheapest level that has each reaction within {100 * ENOUGH:g} % over these loads"
-        + (", for either bound of the housings" if levels.stiff else ""),
+        + (", for either bound of the housings" if levels.units else ""),
         tables["advice"],
     )
     page.text(
@@ -135,7 +135,7 @@ def _errors(page: Page, result: StudyResult) -> None:
     )
     counted, count = result.measures.histories, len(result.loads.histories)
     of_all = "" if counted == count else f" in {counted} of the {count} histories"
-    worse = ", the worse of both bounds of the housings" if levels.stiff else ""
+    worse = ", the worse of both bounds of the housings" if levels.units else ""
     page.table(
         f"Error of each level by what a part is designed for{of_all}: the component across the "
         f"shaft that varies most{worse}. Mean and load duration "
@@ -156,7 +156,7 @@ def _errors(page: Page, result: StudyResult) -> None:
 def _notes(levels: Levels, judgement: Judgement) -> str:
     """Notes on the tables: bounds, what the mesh does, and what does not decide."""
     notes = []
-    if levels.stiff:
+    if levels.units:
         notes.append("Stiff and soft housings are the two bounds of the bearing units.")
     if COARSER_ASSEMBLY in levels.models:
         notes.append(

@@ -2,7 +2,8 @@
 
 The name of an array is its path through fields and keys of mappings, as in ``cycles/ranges/Mx``,
 with ``/`` and ``~`` in a key written as in a JSON pointer (RFC 6901). A field may be an array, a
-number, text, a tuple of whole numbers, a mapping by text, a dataclass, or one of these or None.
+number, text, a tuple of numbers, of arrays or of dataclasses, a mapping by text, a dataclass, or
+one of these or None.
 """
 
 from __future__ import annotations
@@ -70,6 +71,8 @@ def _put(found: dict[str, NDArray[Any]], path: str, value: Any) -> None:
         inner = {field.name: getattr(value, field.name) for field in fields(value)}
     elif isinstance(value, Mapping):
         inner = dict(value)
+    elif isinstance(value, tuple) and any(np.ndim(p) or is_dataclass(p) for p in value):
+        inner = {str(k): part for k, part in enumerate(value)}
     else:
         found[path] = np.asarray(value)
         return
@@ -86,6 +89,9 @@ def _made(hint: Any, node: Any, path: str) -> Any:
     if origin is not None and issubclass(origin, Mapping):
         branch = _branch(node, path)
         return {name: _made(within[1], part, f"{path}/{name}") for name, part in branch.items()}
+    if origin is tuple and isinstance(node, dict):
+        parts = ((f"{path}/{k}", node.get(str(k))) for k in range(len(node)))
+        return tuple(_made(within[0], part, at) for at, part in parts)
     if is_dataclass(hint):
         return _record(hint, _branch(node, path), path)
     if not isinstance(node, np.ndarray):

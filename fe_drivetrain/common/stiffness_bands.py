@@ -43,7 +43,7 @@ class StiffnessBands:
     bending: float
 
     @classmethod
-    def alike(cls, value: float) -> StiffnessBands:
+    def uniform(cls, value: float) -> StiffnessBands:
         """One number for all."""
         return cls(value, value, value)
 

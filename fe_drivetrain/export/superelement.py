@@ -103,7 +103,7 @@ class Superelement:
         Whether the scene's supports are in it; else it is free, and has six rigid motions.
     band : StiffnessBands or None
         Half widths of the uncertainty of the stiffness, of each kind of motion by itself, relative;
-        None where it is not known. Of one number for all, `StiffnessBands.alike`.
+        None where it is not known. Of one number for all, `StiffnessBands.uniform`.
     origin : Origin
         Where it comes from.
     """

@@ -284,7 +284,7 @@ def unit_bounds(scene: Scene, name: str, cache: Cache | None = None) -> UnitBoun
     """
 
     if (given := _given(scene, name)) is not None:
-        return UnitBounds(given, given, StiffnessBands.alike(0.0))
+        return UnitBounds(given, given, StiffnessBands.uniform(0.0))
 
     ways = [face_of(scene, name, True, coupling) for coupling in _COUPLINGS]
 

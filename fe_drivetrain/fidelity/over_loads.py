@@ -14,7 +14,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.spatial import wrench_transport
-from fe_drivetrain.fidelity.bearing_units import unit_bounds
+from fe_drivetrain.fidelity.bearing_units import UnitBounds, unit_bounds
 from fe_drivetrain.fidelity.ladder import (
     LevelModel,
     assembly_level,
@@ -42,13 +42,10 @@ class Levels:
 
     Attributes
     ----------
-    stiff, soft : Mapping[str, Floats]
-        (6, 6) of each bearing unit by name, its face held in shape and on average: two bounds
-        [N/m, N, N m/rad].
+    units : Mapping[str, UnitBounds]
+        Stiffness of each bearing unit by name, between two bounds.
     models : Mapping[str, LevelModel]
         By name, from cheap to expensive. The last one is the assembly that all are compared with.
-    unit_mesh : Mapping[str, float]
-        By how much the mesh may make each unit too stiff, relative.
     mesh_ratio : float
         Mean element size of the coarser assembly over that of the other; NaN where there is none.
     bounds : Mapping[str, Sequence[str]]
@@ -56,10 +53,8 @@ class Levels:
         the names of its models: two where bearing units are between two bounds.
     """
 
-    stiff: Mapping[str, Floats]
-    soft: Mapping[str, Floats]
+    units: Mapping[str, UnitBounds]
     models: Mapping[str, LevelModel]
-    unit_mesh: Mapping[str, float]
     mesh_ratio: float
     bounds: Mapping[str, Sequence[str]]
 
@@ -108,11 +103,11 @@ def levels_of(scene: Scene, response: Response, report: Progress = silent) -> Le
         names["1 beam, rigid housings"] = ["beam, rigid housings"]
         models["beam, rigid housings"] = shaft_level(scene, 1)
     report("levels 1 and 2 (1 of 4)")
-    bounds = {
+    units = {
         unit.bearing.name: unit_bounds(scene, unit.bearing.name) for unit in scene.bearing_units
     }
-    stiff = {name: found.stiff for name, found in bounds.items()}
-    soft = {name: found.soft for name, found in bounds.items()}
+    stiff = {name: found.stiff for name, found in units.items()}
+    soft = {name: found.soft for name, found in units.items()}
     for level, word in ((1, "beam"), (2, "meridian")):
         report(f"levels 1 and 2 ({level + 1} of 4)")
         body = condensed_shaft(scene, level)
@@ -137,8 +132,7 @@ def levels_of(scene: Scene, response: Response, report: Progress = silent) -> Le
     found = response.diagnostics
     seconds = found.setup_seconds + found.solve_seconds
     models["assembly"] = level_of_response(scene, response, seconds)
-    unit_mesh = {name: found.mesh.largest for name, found in bounds.items()}
-    return Levels(stiff, soft, models, unit_mesh, ratio, names)
+    return Levels(units, models, ratio, names)
 
 
 def reaction_history(

@@ -81,7 +81,7 @@ def banded_meridian(
     last = StiffnessBands.of_difference(higher.stiffness, body.stiffness)
     found = before.each(lambda *changes: band_of_orders(order, *changes), last)
     # of what elements have exactly, as torsion without steps, round-off is left
-    return body, found | StiffnessBands.alike(SOLVER_ROUND_OFF)
+    return body, found | StiffnessBands.uniform(SOLVER_ROUND_OFF)
 
 
 def band_of_orders(order: int, before: float, last: float) -> float:

@@ -18,6 +18,7 @@ from fe_drivetrain.fidelity.over_loads import (
     relative_errors,
 )
 from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.studies.reaction_statistics import SHOWN_UNITS
 from fe_drivetrain.studies.study_loads import EnteredLoads
 from fe_drivetrain.suite.records import Record
 
@@ -25,7 +26,6 @@ ENOUGH = 0.05
 """Share of the root mean square that the study takes for accurate enough."""
 
 _KINDS = ("force", "moment")
-_SHOWN_UNITS = 3 * ("kN",) + 3 * ("kN\u00a0m",)
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ def level_errors(scene: Scene, levels: Levels, loads: EnteredLoads) -> LevelErro
             judged.append(_judged(f"{name}, {kind}", kind, float(np.linalg.norm(own)), of, levels))
             components += [
                 {
-                    "reaction": f"{name}, {FORCES[c]} [{_SHOWN_UNITS[c]}]",
+                    "reaction": f"{name}, {FORCES[c]} [{SHOWN_UNITS[c]}]",
                     "rms of FE": size[c] / 1e3,
                     **{m: rmse[m][c] / 1e3 for m in others},
                 }

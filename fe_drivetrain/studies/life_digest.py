@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import astuple, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +19,7 @@ from fe_drivetrain.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.hub_loads.histories import MIN_SAMPLES
 from fe_drivetrain.hub_loads.recorded import read_recorded
 from fe_drivetrain.hub_loads.turbines import vertical_forces
-from fe_drivetrain.life.limits import Limits, check_speed
+from fe_drivetrain.life.limits import check_speed
 from fe_drivetrain.life.roller_damage import Damage, LifeRules, damage_of_steps
 from fe_drivetrain.life.steps import Steps
 from fe_drivetrain.response.cached import whole_content
@@ -245,11 +244,11 @@ def kept_digest(
         Take what is kept.
     """
     cache, key = user_cache(), content(file, one, rules, reading, scene, choices)
-    kept = cache.load("life-digests", key) if resume else None
+    kept = cache.load_record("life-digests", key, LifeDigest) if resume else None
     if kept is None:
-        kept = as_arrays(digest(file, one, rules, reading, scene, choices, report))
-        cache.keep("life-digests", key, kept)
-    return from_arrays(kept)
+        kept = digest(file, one, rules, reading, scene, choices, report)
+        cache.keep_record("life-digests", key, kept)
+    return kept
 
 
 class _Sums:
@@ -319,66 +318,3 @@ def worse(mine: Floats, its: Floats) -> Floats:
     """The roller of each row with the higher pressure, (rows, 2, laminae) [Pa]."""
     higher = its.max(axis=(1, 2)) > mine.max(axis=(1, 2))
     return np.where(higher[:, None, None], its, mine)
-
-
-def as_arrays(found: LifeDigest) -> dict[str, Floats]:
-    """A digest as arrays by name, for the cache.
-
-    Parameters
-    ----------
-    found : LifeDigest
-        The digest.
-
-    Returns
-    -------
-    arrays : dict
-        For `from_arrays`.
-    """
-    damage = found.damage
-    return {
-        "numbers": np.array([damage.seconds, damage.turns, found.wind, found.speed, found.samples]),
-        "limits": np.array(astuple(damage.limits)),
-        "of standard": damage.of_standard,
-        "of bearing": damage.of_bearing,
-        "alone": damage.alone,
-        **{f"basic {r}": part for r, part in enumerate(damage.basic)},
-        **{f"modified {r}": part for r, part in enumerate(damage.modified)},
-        "mean load": found.mean_load,
-        "peak load": found.peak_load,
-        "times": found.times,
-        "over time": found.over_time,
-        "worst": found.worst,
-        "vertical": np.array(found.vertical),
-        "own speeds": found.own_speeds,
-        "ratios": found.ratios,
-    }
-
-
-def from_arrays(kept: Mapping[str, Floats]) -> LifeDigest:
-    """The digest of `as_arrays`."""
-    seconds, turns, wind, speed, samples = kept["numbers"].tolist()
-    rows = range(len(kept["mean load"]))
-    damage = Damage(
-        seconds,
-        turns,
-        tuple(kept[f"basic {r}"] for r in rows),
-        tuple(kept[f"modified {r}"] for r in rows),
-        kept["of standard"],
-        kept["of bearing"],
-        kept["alone"],
-        Limits(*kept["limits"].tolist()),
-    )
-    return LifeDigest(
-        damage,
-        wind,
-        speed,
-        samples,
-        kept["mean load"],
-        kept["peak load"],
-        kept["times"],
-        kept["over time"],
-        kept["worst"],
-        (float(kept["vertical"][0]), float(kept["vertical"][1])),
-        kept["own speeds"],
-        kept["ratios"],
-    )

@@ -16,6 +16,7 @@ from fe_drivetrain.histories.windows import COLUMNS
 from fe_drivetrain.studies.load_digest import LOADS, UNITS, Digest
 from fe_drivetrain.studies.load_planes import PLANES
 from fe_drivetrain.studies.load_reactions import ALONE, FileDigest
+from fe_drivetrain.studies.load_records import shown_unit
 
 
 def features(found: Digest, slopes: Sequence[float]) -> dict[str, float]:
@@ -29,15 +30,11 @@ def features(found: Digest, slopes: Sequence[float]) -> dict[str, float]:
         With which it was counted.
     """
     seconds = found.span.seconds
-    values, weights = found.windows.values, found.windows.seconds
-    share = weights / weights.sum()
-    mean = share @ values[:, :, 1]
-    spread = np.sqrt(share @ (values[:, :, 3] ** 2 + (values[:, :, 1] - mean) ** 2))
-    table = np.column_stack([values[:, :, 0].min(0), mean, values[:, :, 2].max(0), spread])
+    table = found.windows.together()
     amplitudes = None if found.spectra is None else found.spectra.multiples
     result: dict[str, float] = {}
     for c, (name, unit) in enumerate(zip(LOADS, UNITS, strict=False)):
-        shown = "kN" if unit == "N" else "kN m"
+        shown = shown_unit(unit)
         for k, what in enumerate(COLUMNS):
             result[f"{name}, {what} [{shown}]"] = float(table[c, k]) / 1e3
         for k, slope in enumerate(slopes):

@@ -12,7 +12,7 @@ from fe_drivetrain.compare.time_weighted import weighted_statistics
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.point_loads import PointLoads
 from fe_drivetrain.scene.scene import Scene
-from fe_drivetrain.studies.reaction_statistics import COLUMNS
+from fe_drivetrain.studies.reaction_statistics import COLUMNS, SHOWN_UNITS
 from fe_drivetrain.studies.study_loads import EnteredLoads
 from fe_drivetrain.suite.records import Record
 
@@ -154,11 +154,10 @@ def hub_load_rows(statistics: Floats) -> list[Record]:
     statistics : ndarray, (6 or more, 4)
         Min, mean, max, standard deviation of each component [N, N m].
     """
-    units = 3 * ("kN",) + 3 * ("kN\u00a0m",)
     return [
         {
             "component": f"{component} [{unit}]",
             **dict(zip(COLUMNS, (values / 1e3).tolist(), strict=True)),
         }
-        for component, unit, values in zip(FORCES, units, statistics, strict=False)
+        for component, unit, values in zip(FORCES, SHOWN_UNITS, statistics, strict=False)
     ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
@@ -44,7 +44,7 @@ from fe_drivetrain.suite.findings import Findings
 from fe_drivetrain.suite.records import Record
 
 if TYPE_CHECKING:
-    import pandas as pd
+    pass
 
 _NAMED = 3  # files that are sampled too slowly
 
@@ -124,21 +124,9 @@ class LoadsResult(Result):
             found["beside"] = rows.comparison_rows(self.comparison)
         return found
 
-    def to_frame(self, table: str = "") -> pd.DataFrame:
-        """A table as a pandas frame, those of `file_tables` first; without a name the figures.
-
-        Parameters
-        ----------
-        table : str
-            As "windows", "equivalent_loads" or "loops".
-
-        Raises
-        ------
-        InputError
-            pandas is not installed, or there is no such table.
-        """
-        every = replace(self, tables={**self.tables, **self.file_tables()})
-        return Result.to_frame(every, table)
+    def frames(self) -> Mapping[str, Any]:
+        """Tables that `to_frame` gives, by name: those of `file_tables`, and those of the page."""
+        return {**self.tables, **self.file_tables()}
 
     def chart(self) -> Chart:
         """Cycles of a range or a larger one, of the moments."""

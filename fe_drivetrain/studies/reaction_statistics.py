@@ -22,7 +22,8 @@ COLUMNS = ("least", "mean", "largest", "standard deviation")
 """Columns of `Statistics.values`."""
 
 _ROUND_OFF = 1e-9  # of a reaction's largest component: shown as zero
-_SHOWN_UNITS = 3 * ("kN",) + 3 * ("kN\u00a0m",)
+SHOWN_UNITS = 3 * ("kN",) + 3 * ("kN\u00a0m",)
+"""Units in which the components of a load are shown."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,5 +170,5 @@ def statistics_rows(name: str, found: Statistics, slopes: Sequence[float]) -> li
                 for m, value in zip(slopes, found.equivalent[c].tolist(), strict=True)
             },
         }
-        for c, (component, unit) in enumerate(zip(FORCES, _SHOWN_UNITS, strict=True))
+        for c, (component, unit) in enumerate(zip(FORCES, SHOWN_UNITS, strict=True))
     ]

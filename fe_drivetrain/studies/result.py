@@ -81,7 +81,7 @@ class Result(Found):
         Parameters
         ----------
         table : str
-            A name of `all_tables` that holds records.
+            A name of `frames` that holds records.
 
         Raises
         ------
@@ -95,7 +95,7 @@ class Result(Found):
         if not table:
             columns = ["quantity", "computed", "band", "unit"]
             return pd.DataFrame([one.model_dump() for one in self.figures], columns=columns)
-        tables = self.all_tables()
+        tables = self.frames()
         rows = tables.get(table)
         if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
             known = [name for name, value in tables.items() if isinstance(value, list)]
@@ -105,6 +105,10 @@ class Result(Found):
     def all_tables(self) -> Mapping[str, Any]:
         """Tables by name: those of the page, and of some studies longer ones."""
         return self.tables
+
+    def frames(self) -> Mapping[str, Any]:
+        """Tables that `to_frame` gives, by name: those of `all_tables`, and longer ones."""
+        return self.all_tables()
 
     def chart(self) -> Chart:
         """The chart that shows the answer, as its page has it."""

@@ -12,7 +12,6 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
-from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.fidelity.bearing_units import UnitBounds
 from fe_drivetrain.fidelity.foot_opening import foot_warnings
 from fe_drivetrain.fidelity.judgement import Judgement, judge_levels
@@ -209,7 +208,7 @@ def study(
             step.name += ", from the cache"
     with steps.step("levels 1 and 2"):
         levels = levels_of(scene, response, report)
-    units = _units(levels)
+    units = levels.units
     _check(found, scene, response, levels)
     _answer(found, model, response, entered, quick)
     _stiffness(found, units)
@@ -322,13 +321,6 @@ def _answer(
     given = loads.given
     opening = foot_warnings(model.scene, response, loads.together, given.weights, given.gravity)
     found.answer(given.statement, *model.warnings, *opening)
-
-
-def _units(levels: Levels) -> dict[str, UnitBounds]:
-    return {
-        name: UnitBounds(levels.soft[name], stiff, StiffnessBands.alike(levels.unit_mesh[name]))
-        for name, stiff in levels.stiff.items()
-    }
 
 
 def _stated(model: Model, gravity: float) -> Stated:

@@ -122,7 +122,7 @@ def _band(stated: str) -> StiffnessBands | None:
         return None
     words = stated.replace(",", "").split()
     if words[0] not in KINDS:
-        return StiffnessBands.alike(float(words[0]))
+        return StiffnessBands.uniform(float(words[0]))
     found = dict(zip(words[::2], words[1::2], strict=False))
     return StiffnessBands(*(float(found[kind]) for kind in KINDS))
 

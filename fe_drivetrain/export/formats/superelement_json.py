@@ -165,7 +165,7 @@ def element_of(content: SuperelementFile) -> Superelement:
 def _band(stated: float | BandFile | None) -> StiffnessBands | None:
     if isinstance(stated, BandFile):
         return StiffnessBands(**stated.model_dump())
-    return None if stated is None else StiffnessBands.alike(stated)
+    return None if stated is None else StiffnessBands.uniform(stated)
 
 
 def write(path: Path, element: Superelement) -> None:
