@@ -63,3 +63,24 @@ def test_arrays_of_another_form_are_unfit() -> None:
         arrays = {name: array for name, array in {**put, **sound}.items() if name != taken}
         with pytest.raises(UnfitError, match=said):
             from_arrays(Outer, arrays)
+
+
+@dataclass(frozen=True, eq=False)
+class Several:
+    rows: tuple[Floats, ...]
+    parts: tuple[Inner, ...]
+    ends: tuple[float, float]
+
+
+def test_tuples_of_arrays_and_of_records_keep_their_order_and_shapes() -> None:
+    rows = tuple(np.full((k, 2), float(k)) for k in range(12))
+    whole = Several(rows, (Inner(np.ones(1), (1,)), Inner(np.zeros(2), ())), (0.5, np.inf))
+    found = from_arrays(Several, as_arrays(whole))
+    for one, other in zip(found.rows, rows, strict=True):
+        np.testing.assert_array_equal(one, other)
+    assert [part.first for part in found.parts] == [(1,), ()]
+    assert found.ends == (0.5, np.inf)
+    assert from_arrays(Several, as_arrays(Several((), (), (0.0, 1.0)))).rows == ()
+    lacking = {name: array for name, array in as_arrays(whole).items() if name != "rows/3"}
+    with pytest.raises(UnfitError, match="without an array"):
+        from_arrays(Several, lacking)

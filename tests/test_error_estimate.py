@@ -135,7 +135,7 @@ def mirrored(block, v):
 
 @pytest.mark.parametrize("nodes", [8, 20, 27])
 def test_works_of_either_sign_cancel_and_leave_their_scatter(nodes):
-    """Of one field that is symmetric and one that is antisymmetric on a symmetric mesh."""
+    """Works of one field that is symmetric and one that is antisymmetric on a symmetric mesh."""
     block = brick((3, 4, 2), nodes)
     parts = [(block.cells, LAME)]
     kept, turned = mirrored(block, lambda p: 1e-3 * np.sin(3 * p[:, [1, 2, 0]] + p))

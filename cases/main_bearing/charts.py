@@ -15,8 +15,8 @@ Pairs = Mapping[str, tuple[str, Floats]]
 _PLANES = (("horizontal", "Fy", 1), ("vertical", "Fz", 2))
 
 ROUND_OFF = 1e-9
-"""Of the largest force: what solvers leave in reactions that statics decides, and far below what
-any other model leaves."""
+"""Share of the largest force: what solvers leave in reactions that statics decides, and far below
+what any other model leaves."""
 
 
 def is_round_off(reference: Floats, model: Floats) -> bool:

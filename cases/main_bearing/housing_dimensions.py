@@ -294,7 +294,7 @@ def member(
     Parameters
     ----------
     scene, form, surface, start, free, wanted, tolerance, most, ratio : see `calibrated`
-        As of `calibrated`.
+        What `calibrated` takes.
     estimator : int
         Place in `fe_drivetrain.response.ESTIMATORS`.
     mesh : MeshSizes or None

@@ -173,7 +173,7 @@ class Worked:
     found : Comparison
         Beams against FE.
     pictures : sequence of Image, Solid or Text
-        Of the model.
+        Pictures of the model.
     """
 
     spherical: Solved

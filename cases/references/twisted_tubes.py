@@ -149,7 +149,7 @@ def twisted_step(
     material : Material
         Of the shaft.
     refinements : sequence of int
-        Of the meshes, coarse first; see `fe_drivetrain.cases.references.solid_shafts.solid`.
+        Refinements, coarse first; see `fe_drivetrain.cases.references.solid_shafts.solid`.
     """
     large, small = diameters
     shaft = stepped(diameters, length, bore)

@@ -19,11 +19,11 @@ class OneFillet(NamedTuple):
     step : float
         Larger diameter.
     radius : float
-        Of the fillet; at most half of what the diameters differ by.
+        Radius of the fillet; at most half of what the diameters differ by.
     bore : float
         Diameter.
     length : float
-        Of each of both sections.
+        Length of each of both sections.
     seat : float
         Middle of the bearing on the thinner section, over the length of that.
     """
@@ -99,7 +99,7 @@ def filleted_two_bearings(radius: float) -> Scene:
     Parameters
     ----------
     radius : float
-        Of the fillet [m].
+        Radius of the fillet [m].
     """
     scene = library_scene("two_bearings")
     first, *others = scene.shaft.sections

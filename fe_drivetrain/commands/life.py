@@ -250,9 +250,9 @@ def parse_mapping(file: Path | None, channels: Iterable[str]) -> ChannelMap:
     Parameters
     ----------
     file : Path or None
-        Of ``--mapping``.
+        File of ``--mapping``.
     channels : iterable of str
-        Of ``--channel``, which goes before the mapping.
+        Words of ``--channel``, which goes before the mapping.
 
     Raises
     ------

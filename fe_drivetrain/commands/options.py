@@ -116,7 +116,7 @@ def left_out(context: typer.Context, parameter: str) -> bool:
     Parameters
     ----------
     context : typer.Context
-        Of the command.
+        Context of the command.
     parameter : str
         By its name in Python.
     """

@@ -75,7 +75,7 @@ def describe(page: Page, described: Mapping[str, Sequence[Record]]) -> None:
     page : Page
         Takes them.
     described : Mapping[str, Sequence[Record]]
-        Of `fe_drivetrain.studies.scene_description.description`.
+        Tables by caption, see `fe_drivetrain.studies.scene_description.description`.
     """
     for caption, rows in described.items():
         page.table(caption, rows)

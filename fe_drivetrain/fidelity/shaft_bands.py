@@ -90,7 +90,7 @@ def band_of_orders(order: int, before: float, last: float) -> float:
     Parameters
     ----------
     order : int
-        Of the elements.
+        Order of the elements.
     before, last : float
         Changes from the order before to this one, and from this one to the next.
 

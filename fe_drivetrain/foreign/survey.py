@@ -105,7 +105,7 @@ class Survey(NamedTuple):
     marks : tuple[Mark, ...]
         Seats and planes by the names that the text gives them.
     unit : str
-        Of its lengths: "mm" of a STEP file; empty of a mesh, which does not say.
+        Unit of its lengths: "mm" of a STEP file; empty of a mesh, which does not say.
     volume : float or None
         In the cube of that unit; None where elements fold over.
     volume_band : float or None

@@ -351,8 +351,7 @@ class Pair:
         Returns
         -------
         tuple of two arrays
-            Radii of the first and of the second gear's flank [m]; an internal gear's (concave) is
-            negative.
+            Radii of both flanks [m]; that of an internal gear, which is concave, negative.
         """
         first = np.asarray(place, dtype=np.float64)
         total = self.second.sign * self.centre_distance * sin(self.working_angle)

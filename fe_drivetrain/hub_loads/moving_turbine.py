@@ -62,7 +62,7 @@ class TurbineHistory:
     history : LoadHistory
         The hub loads.
     azimuth : ndarray
-        Of blade 1 from upwards [rad], growing.
+        Angle of blade 1 from upwards [rad], growing.
     rotor_speed : ndarray
         [rad/s].
     pitch : ndarray
@@ -137,7 +137,7 @@ def simulate(
     start : tuple of float or None
         Speed [rad/s] and pitch [rad] at the beginning; those of the mean wind if not given.
     longest_step : float
-        Of the integration [s]: steps are as many to a sample as it asks for, one at least.
+        Longest step of the integration [s]: it decides how many steps a sample takes.
 
     Returns
     -------
@@ -238,9 +238,10 @@ def accounted_history(
     controller, physics, duration, rate : Controller or None, Physics or None, float, float
         As for `turbine_history`.
     longest_step : float
-        Of the integration [s], as for `simulate`.
+        Longest step of the integration [s], as for `simulate`.
     harmonics : int or None
-        Of azimuth in the wind, the first of those that are drawn for the rotor; all if not given.
+        Harmonics of azimuth in the wind, the first of those that are drawn for the rotor; all if
+        not given.
 
     Returns
     -------

@@ -162,7 +162,7 @@ def moving_energy_error(
     Returns
     -------
     float
-        As of `fe_drivetrain.dynamics.energy_error`.
+        Error as `fe_drivetrain.dynamics.energy_error` gives it.
 
     Raises
     ------

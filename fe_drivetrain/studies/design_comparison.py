@@ -38,7 +38,7 @@ class Varied:
     key : str
         Dotted key of the scene.
     values : tuple[float, ...]
-        Of each design.
+        Value of each design.
     """
 
     key: str

@@ -159,7 +159,7 @@ def failure(seen: Mapping[str, Mapping[str, Mapping[str, float]]], use: str) -> 
     seen : mapping
         By level and reaction: errors by measure, as shares; NaN where there is no such load.
     use : str
-        Of `fe_drivetrain.histories.model_errors.USES`.
+        A key of `fe_drivetrain.histories.model_errors.USES`.
 
     Returns
     -------
@@ -184,7 +184,7 @@ def sentence(found: Mapping[str, str | None], failures: Mapping[str, str], withi
     Parameters
     ----------
     found : mapping
-        Of `good_enough_for`.
+        Model by use, from `good_enough_for`.
     failures : mapping
         By use for which there is none: see `failure`.
     within : float

@@ -104,13 +104,13 @@ def prepare_export(
         "superelement", "modes" (a superelement of the free shaft with modes), "summary", "model" or
         "mesh".
     what : str
-        Of a superelement of a scene: "shaft", "drivetrain", "seats" or the name of a bearing, see
+        Part of a scene for a superelement: "shaft", "drivetrain", "seats" or a bearing's name, see
         `fe_drivetrain.export.superelement_of`; of a component "body" or "supported". The first of
         each where left out.
     at : sequence of str or None
         Names of the points to keep; None for the usual ones.
     level : int or None
-        Of the ladder; None for the usual one: of scenes 4 for bearings and else 2, of components 3.
+        Model level; None for the usual one: of scenes 4 for bearings and else 2, of components 3.
     modes : int
         Number of fixed-interface modes.
     report : Progress

@@ -37,7 +37,7 @@ class UncertaintyResult(Result):
     Attributes
     ----------
     level : int
-        Of the ladder, that was sampled: 1 beam, 2 meridian.
+        Model level that was sampled: 1 beam, 2 meridian.
     units : Mapping[str, str]
         Unit of each quantity; the mappings below have the same keys, those asked for first.
     nominal : Mapping[str, float]

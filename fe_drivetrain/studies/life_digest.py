@@ -45,11 +45,11 @@ class Reading:
     names : ChannelMap
         How files call their channels, and their frame and origin.
     skip : float
-        Left out at the beginning of each [s].
+        Time that is left out at the beginning of each [s].
     every : int
         Every n-th sample is used.
     rotor_speed : float or None
-        Of files that have none [1/min].
+        Rotor speed of files that have none [1/min].
     """
 
     names: ChannelMap
@@ -65,13 +65,13 @@ class LifeDigest:
     Attributes
     ----------
     damage : Damage
-        Of the whole file.
+        Damage of the whole file.
     wind : float
-        Mean [m/s]; not a number where the file has none.
+        Mean wind speed [m/s]; not a number where the file has none.
     speed : float
-        Mean of the rotor [1/min].
+        Mean rotor speed [1/min].
     samples : float
-        That were taken.
+        Number of samples that were taken.
     mean_load, peak_load : Floats
         (rows, elements) of each roller's place, over time [N].
     times, over_time : Floats
@@ -109,17 +109,17 @@ def content(
     Parameters
     ----------
     file : Path
-        With the history.
+        File with the history.
     one : OneBearing
         The bearing.
     rules : LifeRules
-        Of the life.
+        Rules of the life.
     reading : Reading
-        Of the file.
+        How the file is read.
     scene : Scene
         The shaft.
     choices : Choices
-        Of the model.
+        Choices of the model.
 
     Returns
     -------
@@ -154,17 +154,17 @@ def digest(
     Parameters
     ----------
     file : Path
-        With the history.
+        File with the history.
     one : OneBearing
         The bearing.
     rules : LifeRules
-        Of the life.
+        Rules of the life.
     reading : Reading
-        Of the file.
+        How the file is read.
     scene : Scene
         Says which point of the shaft hub loads are about.
     choices : Choices
-        Of the model.
+        Choices of the model.
     report : Progress
         Told how far it is.
 
@@ -227,19 +227,19 @@ def kept_digest(
     Parameters
     ----------
     report : Progress
-        As of `digest`.
+        Told how far it is.
     file : Path
-        With the history.
+        File with the history.
     one : OneBearing
         The bearing.
     rules : LifeRules
-        Of the life.
+        Rules of the life.
     reading : Reading
-        Of the file.
+        How the file is read.
     scene : Scene
-        As of `digest`.
+        Says which point of the shaft hub loads are about.
     choices : Choices
-        Of the model.
+        Choices of the model.
     resume : bool
         Take what is kept.
     """

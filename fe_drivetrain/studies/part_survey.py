@@ -70,10 +70,9 @@ def part(
     file : Path
         STEP (.step, .stp), mesh (.msh, .vtu, .inp), or superelement (.json, .csv, .bdf, .op4, .h5).
     bore : str
-        Of a superelement: the point in the middle of its bore; may be left out where it has but
-        one point.
+        Point in the middle of a superelement's bore; may be left out where it has but one point.
     held : sequence of str
-        Of a superelement: points that stand on the ground.
+        Points of a superelement that stand on the ground.
     report : Progress
         Called with the name of each step as it begins.
 

@@ -168,7 +168,7 @@ def as_record(found: FoundEvidence) -> Record:
     Parameters
     ----------
     found : Found
-        Of a link.
+        Evidence of a link.
     """
     worst = found.worst
     checks, unit, band = "none", "", None

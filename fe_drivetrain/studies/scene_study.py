@@ -78,7 +78,7 @@ class StudyResult(Result):
     secants : tuple of TiltSecant
         K_R of each bearing that carries moments, as the load steps show it in the drivetrain.
     reaction_statistics : Mapping[str, ReactionStatistics]
-        Of each bearing and "gearbox": extremes, means, deviations, damage-equivalent loads.
+        Extremes, means, deviations and damage-equivalent loads of each bearing and "gearbox".
     errors : LevelErrors
         Errors of each model against the assembly.
     judgement : Judgement

@@ -56,7 +56,7 @@ class Found:
     scene : str
         The scene as a file; empty where there is none.
     seed : int or None
-        Of random numbers; None where there are none.
+        Seed of random numbers; None where there are none.
     times : mapping of str to float
         Wall time of each step [s].
     """
@@ -92,7 +92,7 @@ class Findings(Checks):
     unsettled : list of str
         Answers that have not converged, in sentences.
     verdicts : list of Verdict
-        Of all checks so far.
+        Verdicts of all checks so far.
     summary : list of str
         The answer, in sentences.
     answers : list of Figure
@@ -110,7 +110,7 @@ class Findings(Checks):
     skipped : list of str
         Checks that were not made, by `skip`.
     seed : int or None
-        Of random numbers; None where there are none.
+        Seed of random numbers; None where there are none.
     """
 
     def __init__(self) -> None:
