@@ -8,6 +8,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.dynamics.springs import Spring
 from fe_drivetrain.dynamics.system import System
@@ -82,6 +83,8 @@ class Superelement:
     stiffness: Floats
     mass: Floats | None = field(default=None)
     weight: Floats | None = field(default=None)
+
+    __repr__ = short_repr
 
 
 def assemble(

@@ -11,6 +11,7 @@ from fe_drivetrain.common.arrays import Bools, Floats
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.system import System
 from fe_drivetrain.torsion.system import Oscillations
 
@@ -46,6 +47,8 @@ class SystemModes:
     shapes: Floats
     strain_shares: Floats
     kinetic_shares: Floats
+
+    __repr__ = short_repr
 
     @property
     def energy_shares(self) -> dict[str, Floats]:
@@ -171,6 +174,8 @@ class TurningModes(Oscillations):
 
     shapes: Complex
     growing: Floats
+
+    __repr__ = short_repr
 
 
 def turning_modes(system: System, speed: float = 0.0, damped: bool = True) -> TurningModes:

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.compare.statistics import CONSTANT
 from fe_drivetrain.hub_loads.point_loads import PointLoads
 from fe_drivetrain.plots.figures import load_lines
@@ -82,6 +83,8 @@ class LoadHistory:
     at: Mapping[str, Floats] = field(default_factory=dict)
     unread: Sequence[str] = ()
     about: About = None
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         time = _frozen(self.time)

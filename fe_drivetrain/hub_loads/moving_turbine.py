@@ -22,6 +22,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache, user_cache
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.hub_loads.aero_rotor import OperatingPoint
 from fe_drivetrain.hub_loads.controller import Controller, designed_controller, steady_operation
 from fe_drivetrain.hub_loads.csv_table import write_csv
@@ -82,6 +83,8 @@ class TurbineHistory:
     generator_torque: Floats
     power: Floats
     wind_speed: Floats
+
+    __repr__ = short_repr
 
     @property
     def recorded(self) -> Recorded:

@@ -9,6 +9,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError, require_known
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.histories.sites import HOURS_A_YEAR, Site, midpoint_edges
 from fe_drivetrain.life.roller_damage import KINDS, Damage
 
@@ -34,6 +35,8 @@ class SiteLife:
     shares: Floats
     at_winds: tuple[Damage, ...]
     a_year: Damage
+
+    __repr__ = short_repr
 
     @property
     def covered(self) -> float:

@@ -22,6 +22,7 @@ from fe_drivetrain.bearing.geometry import BallRow
 from fe_drivetrain.bearing.rating import LAMBDA
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError, require_known
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.life.limits import Limits, check_speed, limits_of
 from fe_drivetrain.life.lubricants import Lubricant
 from fe_drivetrain.life.modified_life import MIX, life_factor
@@ -134,6 +135,8 @@ class Damage:
     of_bearing: Floats
     alone: Floats
     limits: Limits
+
+    __repr__ = short_repr
 
     def __add__(self, other: Damage) -> Damage:
         """Damage of both."""

@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.foreign.assembly import base_centre, bolt_springs, mesh_parts, tied
 from fe_drivetrain.foreign.further_parts import open_sides, tie_faces
 from fe_drivetrain.geometry import Band
@@ -105,6 +106,8 @@ class Model:
     held: Mapping[str, Sequence[int]]
     n_dofs: int
     warnings: tuple[str, ...] = ()
+
+    __repr__ = short_repr
 
     def standing(self, name: str) -> list[str]:
         """Reference points that a bearing's housing stands on: a bedplate, bolts, or a foot."""

@@ -9,6 +9,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import SINGULAR, InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import resultant, wrench_transport
 from fe_drivetrain.interfaces.constraints import dofs
 from fe_drivetrain.operator import kernels
@@ -66,6 +67,8 @@ class Response:
     diagnostics: Diagnostics
     kept: bool = False
     entrance: Entrance = AT_HUB
+
+    __repr__ = short_repr
 
     def reaction_matrix(self) -> tuple[list[str], Floats]:
         """All reactions as one matrix.

@@ -14,6 +14,7 @@ import numpy as np
 from scipy import linalg, sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import point_motions, rigid_motions
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.constraints import Constraint, Elimination, ReferencePoint
@@ -62,6 +63,8 @@ class CoupledSolid:
     points: tuple[ReferencePoint, ...]
     rigid_faces: tuple[Constraint, ...]
 
+    __repr__ = short_repr
+
     @property
     def n_dofs(self) -> int:
         """Number of degrees of freedom, of the nodes and of points with a rigid face."""
@@ -94,6 +97,8 @@ class CondensedSolid:
     _rigid: Floats
     _elimination: Elimination
     _solver: Solver
+
+    __repr__ = short_repr
 
     def displacements(self, motions: Floats) -> Floats:
         """Displacements of all nodes (n, 3) where the points move so, and nothing else loads it.

@@ -16,6 +16,7 @@ from fe_drivetrain.beam.closed_forms import MainBearingBeam
 from fe_drivetrain.beam.of_scene import main_bearing_beam
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.compare import statistics
 from fe_drivetrain.fidelity.bearing_units import UnitBounds
 from fe_drivetrain.fidelity.quantities import unit_numbers
@@ -40,6 +41,8 @@ class LinearModel:
 
     matrix: Floats
     constant: Floats
+
+    __repr__ = short_repr
 
     @classmethod
     def of_fe(cls, scene: Scene, response: Response, gravity: float = 0.0) -> LinearModel:

@@ -10,6 +10,7 @@ import numpy as np
 
 from fe_drivetrain.bearing.geometry import Row
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.histories.sites import Site, require_winds, rounded_wind
 from fe_drivetrain.life.at_site import SiteLife, site_lives
 from fe_drivetrain.life.limits import Limits
@@ -52,6 +53,8 @@ class FileLife:
     own_speeds: Floats
     ratios: Floats
 
+    __repr__ = short_repr
+
 
 @dataclass(frozen=True, eq=False)
 class DamageOverTime:
@@ -73,6 +76,8 @@ class DamageOverTime:
     rate: float
     times: Floats
     values: Floats
+
+    __repr__ = short_repr
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +117,11 @@ class BearingLife:
     pressures: Floats
     worst: DamageOverTime
     assumptions: tuple[Assumption, ...]
+
+    def __repr__(self) -> str:
+        """One line: the bearing, and its life of each kind."""
+        years = ", ".join(f"{kind} {value:.3g}" for kind, value in self.years.items())
+        return f"<life of bearing {self.name} [years]: {years}>"
 
     @property
     def name(self) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.compare.time_weighted import weighted_statistics
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.point_loads import PointLoads
@@ -95,6 +96,8 @@ class LoadFacts:
     mean: Floats
     histories: tuple[HistoryFacts, ...]
     beginning: Beginning
+
+    __repr__ = short_repr
 
 
 def load_facts(scene: Scene, loads: EnteredLoads) -> LoadFacts:

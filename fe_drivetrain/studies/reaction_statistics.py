@@ -9,6 +9,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.compare.time_weighted import weighted_statistics
 from fe_drivetrain.fidelity.ladder import LevelModel
 from fe_drivetrain.fidelity.over_loads import Levels, reaction_history
@@ -43,6 +44,8 @@ class Statistics:
     values: Floats
     band: Floats | None
     equivalent: Floats
+
+    __repr__ = short_repr
 
 
 @dataclass(frozen=True, eq=False)
