@@ -1,6 +1,6 @@
 """Rigid bodies with six degrees of freedom each, held, tied to each other or free."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -207,10 +207,3 @@ def _check(bodies: Sequence[Body], names: Sequence[str], springs: Sequence[Sprin
                     f"spring {spring.name!r}: {what} is {value:g} but must be a finite number of "
                     "at least 0: change it"
                 )
-
-
-def stretched(springs: Sequence[Spring], motions: Mapping[str, Floats]) -> Floats:
-    """(m,) elongation of springs by motions (6,) of bodies; those not given stand still."""
-    return np.array(
-        [sum(float(row @ motions[b]) for b, row in s.by.items() if b in motions) for s in springs]
-    )

@@ -2,7 +2,7 @@
 
 Shafts, components and bearing units all come this way: the parts of a mesh and their materials, the
 faces and how each holds its point, then either the free body condensed to the points
-(`condensed_solid`) or the compliance of a held one there (`point_compliance`).
+(`condensed_solid`) or the compliance of a held one there (`point_motions_of`).
 """
 
 from __future__ import annotations
@@ -296,22 +296,6 @@ def compliance_of(K: sparse.bsr_array, F: Floats, U: Floats) -> Floats:
     """
     first = F.T @ U
     return np.asarray(first + first.T - U.T @ kernels.product(K, U))
-
-
-def point_compliance(
-    solid: CoupledSolid,
-    held: Sequence[Constraint],
-    springs: Sequence[tuple[ReferencePoint, Floats]] = (),
-    method: str = "auto",
-) -> Floats:
-    """Motions of a held solid's points for unit loads there, see `point_motions_of`.
-
-    Returns
-    -------
-    ndarray, (6 p, 6 p)
-        Motions of the p points [m/N, 1/N, rad/(N m)].
-    """
-    return point_motions_of(solid, held, springs, method)[1]
 
 
 def _pins(points: Floats, allowed: Ints, n_dofs: int) -> Constraint:
