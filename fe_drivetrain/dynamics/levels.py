@@ -43,8 +43,8 @@ from fe_drivetrain.dynamics.springs import (
     uniform_shaft,
 )
 from fe_drivetrain.dynamics.system import System, without_massless
-from fe_drivetrain.solve.condensation import Condensed
-from fe_drivetrain.torsion.system import Element, Inertia, Torsional
+from fe_drivetrain.dynamics.torsion.system import Element, Inertia, Torsional
+from fe_drivetrain.elasticity.solve.condensation import Condensed
 
 TURNS = frozenset({"rx"})
 """Degree of freedom of a body in a torsional model."""
@@ -447,7 +447,7 @@ def _heavier(body: Body, shaft: ShaftData, length: float) -> Body:
 
 
 def torsional(machine: MachineTable) -> Torsional:
-    """The machine at the torsional level, for what the room `torsion` does with one.
+    """The machine at the torsional level, for what `dynamics.torsion` does with one.
 
     Windings of meshes are along the lines of action [m/rad], so that their stiffness is in N/m;
     else these are the systems of `gear_masses` of a gear table with the planets' teeth.
