@@ -9,7 +9,7 @@ from fe_drivetrain.bearing import (
     effective_centre,
     equilibrium,
     ratings,
-    read_catalogue,
+    read_bearing_catalogue,
 )
 from fe_drivetrain.cases import case
 from fe_drivetrain.report import rolling_elements
@@ -81,7 +81,7 @@ def run(run: Run, page: Page) -> None:
         measure="stiffness",
     )
     with run.step("tapered pair"):
-        entry = read_catalogue()["masta_single"]
+        entry = read_bearing_catalogue()["masta_single"]
         found_ratings = ratings(entry.bearing("masta_single"))
         upwind, downwind = catalogue_bearing("masta_pair").rows
         span = effective_centre(downwind) - effective_centre(upwind)

@@ -61,9 +61,9 @@ def stiffness_files(page: Page, folder: Path, scene: Scene, quantity: Quantity) 
         worst = 0.0
         for format in FORMATS:
             path = folder / f"{element.name}{export.FORMATS[format].suffix}"
-            export.write(path, element, format)
+            export.write_superelement(path, element, format)
             names.append(path.name)
-            again = read[what] = export.read(path, format)
+            again = read[what] = export.read_superelement(path, format)
             worst = max(worst, largest_difference(again.stiffness, element.stiffness))
         rows.append(_row(names, element))
         page.vanishes(

@@ -28,7 +28,7 @@ from fe_drivetrain.gear import (
     contact_depths,
     contact_half_width,
     energy_law,
-    iso_stiffness,
+    iso_gear_stiffness,
     kuang_yang_law,
     meshing_without_backlash,
     parabolic_law,
@@ -95,7 +95,7 @@ def one_pair(
     run: Run, page: Page, name: str, pair: Pair, hubs: tuple[float, float], steps: int
 ) -> str:
     """All methods on one pair: checks, charts, and the answer in a sentence."""
-    iso = iso_stiffness(pair)
+    iso = iso_gear_stiffness(pair)
     with run.step(f"{name}: fine elements"):
         fine = meshed_pair(pair, hubs, STRAIN, STEEL, steps, QUICK_FINE if run.quick else FINE)
     exact, single, places = fine.mesh(LOAD), fine.single(LOAD), fine.places
@@ -249,7 +249,7 @@ def checks(
                         source="Hertz's pressure on elements of an eighth of the half width",
                         measure="deflection",
                     )
-    iso = iso_stiffness(pair)
+    iso = iso_gear_stiffness(pair)
     with run.step(f"{name}: hubs and loads"):
         ends = []
         for share, load in (SOFTEST, STIFFEST):

@@ -21,7 +21,7 @@ from .arrangements import toroidal as toroidal
 from .catalogue import Entry as Entry
 from .catalogue import catalogue_bearing as catalogue_bearing
 from .catalogue import catalogue_entry as catalogue_entry
-from .catalogue import read_catalogue as read_catalogue
+from .catalogue import read_bearing_catalogue as read_bearing_catalogue
 from .contact import ContactLaw as ContactLaw
 from .contact import PointContact as PointContact
 from .contact import houpert as houpert

@@ -48,7 +48,12 @@ class SystemModes:
     strain_shares: Floats
     kinetic_shares: Floats
 
-    __repr__ = short_repr
+    def __repr__(self) -> str:
+        """One line: how many, and the lowest and the highest of those that are not free."""
+        stiff = self.frequencies[self.frequencies > 0]
+        free = self.frequencies.size - stiff.size
+        span = f"{stiff[0]:.4g} to {stiff[-1]:.4g} Hz" if stiff.size else "none"
+        return f"<{stiff.size} modes of {len(self.bodies)} bodies: {span}; {free} free motions>"
 
     @property
     def energy_shares(self) -> dict[str, Floats]:

@@ -9,7 +9,6 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import SINGULAR, InputError
-from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import resultant, wrench_transport
 from fe_drivetrain.drivetrain_file.entrance import AT_HUB, Entrance
 from fe_drivetrain.elasticity.interfaces.constraints import dofs
@@ -68,7 +67,14 @@ class Response:
     kept: bool = False
     entrance: Entrance = AT_HUB
 
-    __repr__ = short_repr
+    def __repr__(self) -> str:
+        """One line: the loads, the reactions on the surroundings, and the errors."""
+        names = ", ".join(name for name in self.reactions if "." not in name)
+        return (
+            f"<Response to {self.displacements.shape[-1]} unit loads: reactions of {names}; errors "
+            f"of equilibrium {self.equilibrium_error:.1g}, of superposition "
+            f"{self.superposition_error:.1g}>"
+        )
 
     def reaction_matrix(self) -> tuple[list[str], Floats]:
         """All reactions as one matrix.

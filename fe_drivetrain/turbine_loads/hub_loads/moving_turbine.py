@@ -29,7 +29,7 @@ from fe_drivetrain.turbine_loads.hub_loads.controller import (
     designed_controller,
     steady_operation,
 )
-from fe_drivetrain.turbine_loads.hub_loads.csv_table import write_csv
+from fe_drivetrain.turbine_loads.hub_loads.csv_table import write_hub_loads
 from fe_drivetrain.turbine_loads.hub_loads.histories import MIN_SAMPLES, Attribute, LoadHistory
 from fe_drivetrain.turbine_loads.hub_loads.recorded import Recorded
 from fe_drivetrain.turbine_loads.hub_loads.surrogate import DURATION, RATE, Condition, made_by
@@ -115,7 +115,7 @@ class TurbineHistory:
             "pitch [rad]": self.pitch,
             "generator torque [N m]": self.generator_torque,
         }
-        write_csv(self.history, path, beside)
+        write_hub_loads(self.history, path, beside)
 
 
 def simulate(
