@@ -14,7 +14,7 @@ from fe_drivetrain.studies.result import Result
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "docs"))
 
-import face_examples  # noqa: E402
+import face_examples
 
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
 
