@@ -162,7 +162,7 @@ def shutdown(
 
     Parameters
     ----------
-    table : Drivetrain
+    table : GearTable
         Inertias and stiffnesses.
     torque, rotor_speed : float
         Rated torque and speed of the rotor [N m, rad/s].

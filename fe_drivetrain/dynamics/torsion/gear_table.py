@@ -313,7 +313,7 @@ def read_gear_table(path: str | Path) -> GearTable:
 
     Returns
     -------
-    Drivetrain
+    GearTable
 
     Raises
     ------
