@@ -8,7 +8,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import rigid_ended_shafts, slivers
 from fe_drivetrain.cases.references.exact_blocks import LENGTH, SIDE
 from fe_drivetrain.cases.stability import faulty_meshes
-from fe_drivetrain.common import InputError
+from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.geometry import WIDEST, MeshSizes, Section, Shaft
 from fe_drivetrain.mesh import Mesh, find_faults, generate
 from fe_drivetrain.report import trace
@@ -93,7 +93,31 @@ def doubled_nodes(run: Run, page: Page) -> None:
         )
     # the energy of a singular tip converges with the first power of the element size
     limit = 2 * fine - coarse
+    check_crack(page, rows, limit, fine)
     merged = max(column(rows, "nodes merged"))
+    share, loss = (np.array(column(rows, key)) for key in ("share of the height", "torn mesh"))
+    safe = max(share[loss < CRITERION], default=0.0)
+    page.answer(
+        f"Unnoticed, doubled nodes over half a section cost {100 * fine:.0f} % of the bending "
+        "stiffness and no solver reports it; only when the bar falls in two is it 'singular'. "
+        f"Merging the nodes gives the exact stiffness back to {merged:.0e}."
+    )
+    page.limit(
+        "a mesh with doubled nodes, solved unchecked",
+        "share of a section's height with doubled nodes [-]",
+        high=safe,
+        criterion=f"stiffness lost below {100 * CRITERION:g} %",
+        beyond=f"a crack: {100 * fine:.0f} % of the bending stiffness lost at one half, without "
+        "any sign; 'singular' at 1",
+        program="finds doubled nodes before the solve, unless they are a joint's; refuses with "
+        "node, element and place",
+        remedy=f"merging the nodes: exact to {merged:.0e}",
+    )
+    show_crack(page, rows, safe)
+
+
+def check_crack(page: Page, rows: list[Record], limit: float, fine: float) -> None:
+    """What a crack costs, that it is named, and that merging its nodes undoes it."""
     page.equals(
         "bending stiffness lost by a crack of half the height that the mesh has by mistake",
         limit,
@@ -116,30 +140,17 @@ def doubled_nodes(run: Run, page: Page) -> None:
     )
     page.vanishes(
         "bending stiffness after nodes at one place are merged, less the exact one, worst",
-        merged,
+        max(column(rows, "nodes merged")),
         within=1e-9,
         why="quadratic elements hold the solution; round-off",
         source="Euler-Bernoulli, exact without lateral contraction",
     )
+
+
+def show_crack(page: Page, rows: list[Record], safe: float) -> None:
+    """Chart of the stiffness that cracks cost."""
     share, loss = (np.array(column(rows, key)) for key in ("share of the height", "torn mesh"))
     whole = np.isnan(loss)
-    safe = max(share[loss < CRITERION], default=0.0)
-    page.answer(
-        f"Unnoticed, doubled nodes over half a section cost {100 * fine:.0f} % of the bending "
-        "stiffness and no solver reports it; only when the bar falls in two is it 'singular'. "
-        f"Merging the nodes gives the exact stiffness back to {merged:.0e}."
-    )
-    page.limit(
-        "a mesh with doubled nodes, solved unchecked",
-        "share of a section's height with doubled nodes [-]",
-        high=safe,
-        criterion=f"stiffness lost below {100 * CRITERION:g} %",
-        beyond=f"a crack: {100 * fine:.0f} % of the bending stiffness lost at one half, without "
-        "any sign; 'singular' at 1",
-        program="finds doubled nodes before the solve, unless they are a joint's; refuses with "
-        "node, element and place",
-        remedy=f"merging the nodes: exact to {merged:.0e}",
-    )
     traces = [
         trace("torn mesh", share[~whole], loss[~whole], mode="lines+markers"),
         trace("theory of the crack", share, column(rows, "theory of the crack")),
@@ -161,21 +172,11 @@ def doubled_nodes(run: Run, page: Page) -> None:
 
 def wrong_units(run: Run, page: Page) -> None:
     """A shaft whose lengths are given too large by a factor."""
-    stiffness, refusal = [], ""
     scale = np.array(QUICK_SCALES if run.quick else SCALES)
     run.report("millimetres for metres")
     with run.step("wrong units"):
-        for s in scale:
-            shaft = Shaft(front=0.0, sections=(Section(length=s, outer_diameter=DIAMETER * s),))
-            try:
-                mesh = generate(shaft, sizes=MeshSizes(shaft=0.25 * s, elements_per_turn=8))
-            except InputError as error:
-                refusal = refusal or str(error)
-                stiffness.append(np.nan)
-                continue
-            solid = rigid_ended_shafts.solved(mesh, shaft, ("torsion",))
-            stiffness.append(solid.stiffness["torsion"])
-    ratio = np.array(stiffness) / stiffness[0]
+        stiffness, refusal = torsion_of_scaled(scale)
+    ratio = stiffness / stiffness[0]
     caught = np.isnan(ratio)
     page.holds(
         "millimetres taken for metres are refused before meshing",
@@ -227,6 +228,22 @@ def wrong_units(run: Run, page: Page) -> None:
         "within what is plausible: no check of sizes can find that. A modulus in MPa or GPa is "
         "refused by the range of the material."
     )
+
+
+def torsion_of_scaled(scales: Floats) -> tuple[Floats, str]:
+    """Torsional stiffness of scaled shafts [N m/rad], NaN where refused, and the first refusal."""
+    stiffness, refusal = [], ""
+    for s in scales:
+        shaft = Shaft(front=0.0, sections=(Section(length=s, outer_diameter=DIAMETER * s),))
+        try:
+            mesh = generate(shaft, sizes=MeshSizes(shaft=0.25 * s, elements_per_turn=8))
+        except InputError as error:
+            refusal = refusal or str(error)
+            stiffness.append(np.nan)
+            continue
+        solid = rigid_ended_shafts.solved(mesh, shaft, ("torsion",))
+        stiffness.append(solid.stiffness["torsion"])
+    return np.array(stiffness), refusal
 
 
 def every_kind(run: Run, page: Page) -> list[Record]:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -220,18 +221,23 @@ def show(page: Page, rows: list[Record], peak: float) -> None:
         program="auto takes them where a factor does not fit or takes longer",
         remedy="none needed",
     )
+    show_costs(page, rows, peak)
+
+
+def over_unknowns(name: str, series: list[Record], key: str) -> Any:
+    """Curve of a quantity."""
+    return trace(name, column(series, "unknowns"), column(series, key), mode="lines+markers")
+
+
+def show_costs(page: Page, rows: list[Record], peak: float) -> None:
+    """Iterations and memory over the unknowns, and all numbers."""
     page.section("Iterations and memory")
     page.chart(
         "Iterations of conjugate gradients with patches, to an energy error of 1e-9. Shaded: all, "
         "none was found where they fail",
         [
-            trace(
-                name,
-                column(series, "unknowns"),
-                column(series, "iterations of patches"),
-                mode="lines+markers",
-            )
-            for name, series in of.items()
+            over_unknowns(name, series, "iterations of patches")
+            for name, series in grouped(rows, "body")
         ],
         "unknowns",
         "iterations",
@@ -242,12 +248,7 @@ def show(page: Page, rows: list[Record], peak: float) -> None:
     page.chart(
         "Memory beside the stiffness matrix",
         [
-            trace(
-                f"{name}, {what}",
-                column(series, "unknowns"),
-                column(series, key),
-                mode="lines+markers",
-            )
+            over_unknowns(f"{name}, {what}", series, key)
             for key, what, of_rows in (
                 ("memory of patches [GiB]", "patches", rows),
                 ("memory of a factor [GiB]", "direct factor", known),

@@ -1,5 +1,7 @@
 """Short and long numbers: how many digits of a stiffness survive over L/D and the mesh."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from fe_drivetrain.cases import case
@@ -119,13 +121,23 @@ def compare(run: Run, page: Page, rows: list[Record], load: str) -> dict[str, fl
         precision: np.array(column(rows, key(load, precision)))
         for precision in (SHORT, DOUBLE, MIXED, LONG, PROGRAM)
     }
+    check(page, load, slenderness, of, 0.3 if run.quick else 0.15)
+    highest = state_limits(page, load, slenderness, of)
+    show(page, load, slenderness, of, highest[DOUBLE])
+    return highest
+
+
+def check(
+    page: Page, load: str, slenderness: Floats, of: Mapping[str, Floats], within: float
+) -> None:
+    """The error grows with slenderness, and shrinks with bits."""
     usable = (of[LONG] < 0.1 * of[DOUBLE]) & (slenderness >= 2.0)
     exponent, band = fitted_exponent(slenderness[usable], of[DOUBLE][usable], (1e-15, 0.1))
     page.equals(
         f"{load}, 64 bits: error against L/D, exponent",
         exponent,
         EXPONENTS[load],
-        within=0.3 if run.quick else 0.15,
+        within=within,
         why="round-off scatters by about a decade from point to point, which leaves 0.1 of a slope "
         "through ten points over three decades: three times that of an exponent of 2, and twice as "
         "much through the five points of a quick run",
@@ -146,6 +158,12 @@ def compare(run: Run, page: Page, rows: list[Record], load: str) -> dict[str, fl
         measure="identity",
         band=decades_apart.std() / np.sqrt(len(decades_apart)),
     )
+
+
+def state_limits(
+    page: Page, load: str, slenderness: Floats, of: Mapping[str, Floats]
+) -> dict[str, float | None]:
+    """The longest tube with four digits in each precision."""
     highest: dict[str, float | None] = {}
     for precision, name in LIMITS.items():
         try:
@@ -169,6 +187,13 @@ def compare(run: Run, page: Page, rows: list[Record], load: str) -> dict[str, fl
             if in_double
             else "64 bits",
         )
+    return highest
+
+
+def show(
+    page: Page, load: str, slenderness: Floats, of: Mapping[str, Floats], high: float | None
+) -> None:
+    """Errors of all precisions; safe up to the slenderness `high` in 64 bits."""
     answered = np.isfinite(of[PROGRAM])
 
     def clipped(precision: str) -> Floats:
@@ -203,9 +228,8 @@ def compare(run: Run, page: Page, rows: list[Record], load: str) -> dict[str, fl
         "L/D",
         "relative error",
         "xy",
-        (None, highest[DOUBLE]),
+        (None, high),
     )
-    return highest
 
 
 def check_refusal_and_refinement(page: Page, rows: list[Record]) -> None:

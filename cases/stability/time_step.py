@@ -1,9 +1,11 @@
 """How short a time step has to be: steps in a mesh period, and where a method blows up."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.compare import decades, fitted_exponent, last_within
 from fe_drivetrain.dynamics import (
     AVERAGE,
@@ -80,11 +82,15 @@ def accuracy(page: Page, duration: float) -> float:
     # two steps extrapolated: of the fourth order
     exact = (4.0 * force(AVERAGE, 1024) - force(AVERAGE, 512)) / 3.0
     swing = float(np.ptp(exact))
-    traces, found = [], {}
+    found = {}
     for scheme in (AVERAGE, generalised_alpha(0.8), generalised_alpha(0.0)):
-        error = np.array([np.abs(force(scheme, int(n)) - exact).max() / swing for n in counts])
-        found[scheme.name] = error
-        traces.append(trace(scheme.name, counts, error, mode="lines+markers"))
+        error = [np.abs(force(scheme, int(n)) - exact).max() / swing for n in counts]
+        found[scheme.name] = np.array(error)
+    return judge_accuracy(page, counts, found)
+
+
+def judge_accuracy(page: Page, counts: Ints, found: Mapping[str, Floats]) -> float:
+    """Order, limit and chart of the errors; the fewest steps that are enough."""
     slope, spread = fitted_exponent(counts, found[AVERAGE.name], (1e-6, 1e-1))
     page.equals(
         "average acceleration: error of a mesh force over the steps in its period, exponent",
@@ -111,7 +117,7 @@ def accuracy(page: Page, duration: float) -> float:
     page.section("Steps in a period of the mesh")
     page.chart(
         "Largest error of the mesh force over its swing; shaded: enough",
-        traces,
+        [trace(name, counts, error, mode="lines+markers") for name, error in found.items()],
         STEPS,
         "error",
         "xy",
