@@ -7,14 +7,12 @@ from fe_drivetrain.beam.beam import Beam, Support
 from fe_drivetrain.beam.sections import BeamSection
 from fe_drivetrain.beam.shaft import unit_load_response
 from fe_drivetrain.cases.references.shaft_theory import (
-    Spring,
     Tube,
     chain_frequencies,
     evenly_loaded_shear,
     extra_curvature,
     flexure_field,
     flexure_stress,
-    macaulay,
     michell_torque,
     missed_at_held_edge,
     parabola_shortfall,
@@ -29,6 +27,7 @@ from fe_drivetrain.cases.references.solid_shafts import (
     solid,
     straight,
 )
+from fe_drivetrain.cases.references.sprung_beams import Spring, macaulay
 from fe_drivetrain.cases.references.torsion_meridian import torsion_bounds
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.scene.materials import MATERIALS
