@@ -98,6 +98,20 @@ def run(run: Run, page: Page) -> None:
         + ", ".join(f"{ratio:.2f}" for ratio in softer[1:])
         + ".",
     )
+    show(page, found, angles, rows, softer)
+    page.table("Printed, ours, verdict", verdicts(loose, worst, ratios, largest))
+    state_share(page)
+    assumptions(page, machine)
+
+
+def show(
+    page: Page,
+    found: dict[tuple[str, str], Turned],
+    angles: Floats,
+    rows: list[Record],
+    softer: list[float],
+) -> None:
+    """Ratios over a turn and over the carrier's compliance, and all loads."""
     page.section("Over a turn")
     for case_name in MOMENTS:
         page.chart(
@@ -119,7 +133,10 @@ def run(run: Run, page: Page) -> None:
         "upwind over downwind, of means",
         ("x",),
     )
-    page.table("Printed, ours, verdict", verdicts(loose, worst, ratios, largest))
+
+
+def state_share(page: Page) -> None:
+    """What a printed ratio asks of the carrier, and what contradicts itself."""
     printed = 1.42
     share = printed / (1.0 + printed)
     page.text(
@@ -134,7 +151,6 @@ def run(run: Run, page: Page) -> None:
         "The thesis's own pressures contradict each other: the upwind bearing of drivetrain B has "
         "1.51 GPa in its section 7.5, and 7 % above 1.5 GPa, 1.605, in its conclusions."
     )
-    assumptions(page, machine)
 
 
 def own_carrier() -> Flexible:
