@@ -26,7 +26,7 @@ from fe_drivetrain.dynamics import (
     torsional,
     turning_modes,
 )
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked
 from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.torsion import Drivetrain, gear_masses, natural_modes, static_stiffness
 
@@ -168,12 +168,7 @@ def error_curves(answers: Sequence[Answer]) -> list[dict[str, Any]]:
         ]
         shown = [(t, e) for t, e in points if e > 1e-6]
         curves.append(
-            trace(
-                question.partition(" [")[0],
-                [t for t, _ in shown],
-                [e for _, e in shown],
-                mode="lines+markers",
-            )
+            marked(question.partition(" [")[0], [t for t, _ in shown], [e for _, e in shown])
         )
     return curves
 

@@ -22,7 +22,7 @@ from fe_drivetrain.dynamics import (
 )
 from fe_drivetrain.fidelity.component_frames import carrier_frame
 from fe_drivetrain.geometry.planet_carrier import PlanetCarrier
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked, trace
 from fe_drivetrain.scene import CarrierComponent, library_component
 from fe_drivetrain.suite import Page, Record, Run
 
@@ -128,7 +128,7 @@ def show(
     page.data("loads", rows)
     page.chart(
         "Upwind over downwind against the compliance of the carrier, torque and gravity",
-        [trace("0.1 mm of clearance", SOFTER, softer, mode="lines+markers")],
+        [marked("0.1 mm of clearance", SOFTER, softer)],
         "compliance over that of the carrier assumed",
         "upwind over downwind, of means",
         ("x",),

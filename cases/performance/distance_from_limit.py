@@ -16,7 +16,7 @@ from fe_drivetrain.cases.performance.peer_settings import problems_of, sizes_of
 from fe_drivetrain.cases.performance.peers import BENCHMARKS, Problem, assembled, problems
 from fe_drivetrain.interfaces import eliminate, fixed
 from fe_drivetrain.operator import Pattern, kernels, sparsity
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked
 from fe_drivetrain.solve import System, multigrid, reduce
 from fe_drivetrain.suite import Page, Record, Run, grouped
 
@@ -90,11 +90,10 @@ def run(run: Run, page: Page) -> None:
     page.section("Phases")
     page.table("Median times of each phase, what it moves at least, and its floor", rows)
     traces = [
-        trace(
+        marked(
             f"{name}, {phase}" if len(names) > 1 else phase,
             [row["unknowns"] for row in of],
             [row["over its floor"] for row in of],
-            mode="lines+markers",
         )
         for name, mine in grouped(rows, "problem")
         for phase, of in grouped(mine, "phase")

@@ -34,7 +34,7 @@ from fe_drivetrain.dynamics import (
 from fe_drivetrain.dynamics.equations import equations_of_motion, joined_laws
 from fe_drivetrain.dynamics.machines import slip_line
 from fe_drivetrain.dynamics.steady_state import restoring
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked
 from fe_drivetrain.suite import Page, Record, Run, check_in_time, goal, grouped
 
 SPEED = 12.1 * np.pi / 30.0  # rad/s, rated
@@ -180,12 +180,7 @@ def show_errors(page: Page, rows: list[Record], imbalance: float) -> None:
         page.chart(
             f"Error of the mesh forces over the {key}",
             [
-                trace(
-                    str(name),
-                    [row[key] for row in of],
-                    [row[WITHIN] for row in of],
-                    mode="lines+markers",
-                )
+                marked(str(name), [row[key] for row in of], [row[WITHIN] for row in of])
                 for name, of in grouped(rows[1:], "method")
             ],
             key,

@@ -14,7 +14,7 @@ from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.interfaces import eliminate, fixed, rigid_face, rigid_point
 from fe_drivetrain.mesh import generate
 from fe_drivetrain.operator import assemble
-from fe_drivetrain.report import Chart, chart, trace
+from fe_drivetrain.report import Chart, chart, marked, trace
 from fe_drivetrain.response import build_model, mesh_scene
 from fe_drivetrain.scene import MATERIALS, library_scene
 from fe_drivetrain.solve import (
@@ -445,7 +445,7 @@ def check_stop(page: Page, name: str, problem: Problem) -> Record:
     page.chart(
         f"{name}: worst of six loads",
         [
-            trace(label, iterations, values, mode="lines+markers")
+            marked(label, iterations, values)
             for label, values in (
                 ("relative residual", residuals),
                 ("energy error, estimated", estimated),

@@ -20,7 +20,7 @@ from fe_drivetrain.cases.stability.locking_curves import (
 )
 from fe_drivetrain.compare import DOUBTFUL, last_within
 from fe_drivetrain.operator import incompressible
-from fe_drivetrain.report import crosses, trace
+from fe_drivetrain.report import crosses, marked
 from fe_drivetrain.solve import MAX_ITERATIONS, TOLERANCE, direct_solvers
 from fe_drivetrain.suite import Page, Run
 
@@ -268,7 +268,7 @@ def iterations(run: Run, page: Page, of_disc: DiscSweep) -> list[int]:
     traces = []
     for name, n in counts.items():
         good, of = np.array(converged[name]), np.array(n)
-        traces.append(trace(name, moduli[good], of[good], mode="lines+markers"))
+        traces.append(marked(name, moduli[good], of[good]))
         traces.append(crosses(f"{name}: stopped short", moduli[~good], of[~good]))
     page.section("Iterations")
     page.chart(

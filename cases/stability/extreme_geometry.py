@@ -9,7 +9,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability import extreme_parts
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import crosses, marked
 from fe_drivetrain.suite import Page, Run
 
 
@@ -215,11 +215,9 @@ def show_outcomes(
 ) -> None:
     """Chart of the errors and table of every value."""
     parameter, every = sweep.parameter, [*found, *fine]
-    refused = [o.value for o in found if o.sentence]
     page.section(parameter[0].upper() + parameter[1:])
     traces = [curve("meshed", [o for o in found if not o.sentence])]
-    cross = {"symbol": "x", "size": 11, "color": "#c62828"}
-    traces.append(trace("refused", refused, [1.0] * len(refused), True, marker=cross))
+    traces.append(crosses("refused", [o.value for o in found if o.sentence]))
     if fine:
         traces.append(curve(f"{sweep.remedy}: meshed", fine))
     positive = [o.value for o in every if o.value > 0]
@@ -248,7 +246,7 @@ def show_outcomes(
 def curve(name: str, meshed: Outcomes) -> Any:
     """Errors of what was meshed."""
     errors = [max(o.error, 1e-16) for o in meshed]
-    return trace(name, [o.value for o in meshed], errors, mode="lines+markers")
+    return marked(name, [o.value for o in meshed], errors)
 
 
 def short(value: float) -> str:

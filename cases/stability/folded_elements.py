@@ -17,7 +17,7 @@ from fe_drivetrain.mesh import (
     relax_flat_cells,
     volume,
 )
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import crosses, marked
 from fe_drivetrain.suite import Page, Record, Run, column, grouped
 
 #: Elements to a full turn of the fillet's radius; a fillet is a quarter of a turn.
@@ -233,12 +233,11 @@ def curves(of: Mapping[str, list[Record]], quantity: str, shift: float = 0.0) ->
     for name, series in of.items():
         answered = [row for row in series if np.isfinite(row[quantity])]
         values = np.abs(column(answered, quantity)) + shift
-        traces.append(trace(name, column(answered, TURN), values, mode="lines+markers"))
+        traces.append(marked(name, column(answered, TURN), values))
     return traces
 
 
 def no_answers(raw: list[Record]) -> list[Any]:
     """Crosses at the meshes that have no answer, if there are any."""
     at = [row[TURN] for row in raw if np.isnan(row[TORSION])]
-    cross = {"symbol": "x", "size": 11, "color": "#c62828"}
-    return [trace("no answer as curved", at, [1.0] * len(at), True, marker=cross)] if at else []
+    return [crosses("no answer as curved", at)] if at else []

@@ -22,7 +22,6 @@ from fe_drivetrain.cases.references.studied_lives import (
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import (
     as_printed,
-    fitted_exponent,
 )
 from fe_drivetrain.life import stress_riser
 from fe_drivetrain.suite import Page, Record, Run
@@ -53,17 +52,16 @@ def laminae(page: Page, quick: bool) -> None:
         name: np.abs(np.array([row[name] for row in rows]) / rows[-1][name] - 1.0)
         for name in ("straight, f = 1", "straight, f of ISO", "profile, f of ISO")
     }
-    slope, spread = fitted_exponent(n[:-1], error["straight, f = 1"][:-1], (1e-6, 0.2))
-    page.equals(
+    page.exponent(
         "straight rollers without stress riser: error of life over laminae, exponent",
-        slope,
+        n[:-1],
+        error["straight, f = 1"][:-1],
         -2.0,
         within=0.25,
+        between=(1e-6, 0.2),
         why="the finest of the sweep stands for the limit, and its own error bends the last "
         "points of the curve",
         source="midpoint rule",
-        measure="order",
-        band=spread,
     )
     thirty, riser = rows[counts.index(30)][EVEN], left_by_riser(100_000)
     page.equals(
@@ -158,17 +156,16 @@ def seeds(page: Page, quick: bool) -> None:
     lives = basic_lives(setup, setup.deflections(winds.hub_loads()))
     rows = scatter_of_seeds(lives.reshape(len(SPEEDS), count, -1), 50 if quick else 200)
     n, scatter = (np.array([row[key] for row in rows]) for key in list(rows[0])[:2])
-    slope, spread = fitted_exponent(n, scatter, (1e-9, 1e9))
-    page.equals(
+    page.exponent(
         "scatter of damage over the number of seeds, exponent",
-        slope,
+        n,
+        scatter,
         -0.5,
         within=0.25 if quick else 0.1,
+        between=(1e-9, 1e9),
         relative=False,
         why="200 draws leave 5 % of each scatter, over a factor of 12; fewer in a quick run",
         source="independent histories",
-        measure="order",
-        band=spread,
     )
     needed = (scatter * np.sqrt(n)).mean() ** 2 / (100.0 * ENOUGH) ** 2
     page.limit(

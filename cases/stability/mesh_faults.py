@@ -11,7 +11,7 @@ from fe_drivetrain.cases.stability import faulty_meshes
 from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.geometry import WIDEST, MeshSizes, Section, Shaft
 from fe_drivetrain.mesh import Mesh, find_faults, generate
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import crosses, marked, trace
 from fe_drivetrain.response import build_model, mesh_scene, needed_faces
 from fe_drivetrain.scene import Scene, library_scene
 from fe_drivetrain.suite import Page, Record, Run, column
@@ -28,8 +28,6 @@ DIAMETER = 0.5  # m, of the shaft that is meant
 
 #: Of a stiffness: the largest effect that an unnoticed fault may have.
 CRITERION = 0.01
-
-CROSS = {"symbol": "x", "size": 11, "color": "#c62828"}
 
 
 @case(
@@ -152,12 +150,12 @@ def show_crack(page: Page, rows: list[Record], safe: float) -> None:
     share, loss = (np.array(column(rows, key)) for key in ("share of the height", "torn mesh"))
     whole = np.isnan(loss)
     traces = [
-        trace("torn mesh", share[~whole], loss[~whole], mode="lines+markers"),
+        marked("torn mesh", share[~whole], loss[~whole]),
         trace("theory of the crack", share, column(rows, "theory of the crack")),
-        trace("nodes merged", share, column(rows, "nodes merged"), mode="lines+markers"),
+        marked("nodes merged", share, column(rows, "nodes merged")),
     ]
     if whole.any():
-        traces.append(trace("'singular'", share[whole], [1.0] * whole.sum(), True, marker=CROSS))
+        traces.append(crosses("'singular'", share[whole]))
     page.section("Doubled nodes")
     page.chart(
         "Bending stiffness lost where nodes are doubled from the top of a section downwards: a "
@@ -215,8 +213,8 @@ def wrong_units(run: Run, page: Page) -> None:
         f"Torsional stiffness of a shaft of {DIAMETER:g} m whose lengths are given too large by a "
         "factor",
         [
-            trace("answered", scale[~caught], ratio[~caught], mode="lines+markers"),
-            trace("refused", scale[caught], scale[caught] ** 3, True, marker=CROSS),
+            marked("answered", scale[~caught], ratio[~caught]),
+            crosses("refused", scale[caught], scale[caught] ** 3),
         ],
         "lengths given over lengths meant",
         "stiffness over the one meant",

@@ -10,7 +10,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import thin_bodies as bodies
 from fe_drivetrain.cases.references.solver_trials import compliance, factor_memory
 from fe_drivetrain.common import InputError, peak_memory, timed_runs
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked
 from fe_drivetrain.solve import TOLERANCE, multigrid, round_off, schwarz
 from fe_drivetrain.suite import Page, Record, Run, column, grouped
 
@@ -226,7 +226,7 @@ def show(page: Page, rows: list[Record], peak: float) -> None:
 
 def over_unknowns(name: str, series: list[Record], key: str) -> Any:
     """Curve of a quantity."""
-    return trace(name, column(series, "unknowns"), column(series, key), mode="lines+markers")
+    return marked(name, column(series, "unknowns"), column(series, key))
 
 
 def show_costs(page: Page, rows: list[Record], peak: float) -> None:

@@ -7,10 +7,10 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.soft_springs import Sprung, scene_of, sprung
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
+from fe_drivetrain.compare import FOUR_DIGITS, decades, in_words, safe_range
 from fe_drivetrain.interfaces import WEAK
 from fe_drivetrain.mesh import Mesh
-from fe_drivetrain.report import crosses, trace
+from fe_drivetrain.report import crosses, marked, trace
 from fe_drivetrain.response import mesh_scene
 from fe_drivetrain.suite import Page, Record, Run, column
 
@@ -132,18 +132,16 @@ def check_errors(run: Run, page: Page, joint: str, found: Softened) -> None:
     for motion, error in found.errors.items():
         usable = (error > 0.0) & (error < 0.1) & (targets < 1e-5)
         lost = np.log10(error[usable] / predicted[usable])
-        exponent, band = fitted_exponent(targets[usable], error[usable])
-        page.equals(
+        page.exponent(
             f"{joint} joint, {motion}: error against the restraint, exponent",
-            exponent,
+            targets[usable],
+            error[usable],
             -1.0,
             within=0.4 if run.quick else 0.2,
             why="round-off scatters by about a decade from point to point: by as much at one end "
             "of six decades it changes a slope by 0.2, and twice that is let pass of the four "
             "points of a quick run",
             source="round-off of the bodies' stiffness acts as springs to ground",
-            measure="order",
-            band=band,
         )
         page.vanishes(
             f"{joint} joint, {motion}: digits lost, less those that the program names, mean "
@@ -207,12 +205,7 @@ def show(page: Page, joint: str, found: Softened, low: float) -> None:
         "plus moment over stiffness. Shaded: four digits. Crosses: refused",
         [
             *(
-                trace(
-                    motion,
-                    targets[answered],
-                    np.maximum(error[answered], 1e-16),
-                    mode="lines+markers",
-                )
+                marked(motion, targets[answered], np.maximum(error[answered], 1e-16))
                 for motion, error in found.errors.items()
             ),
             trace(

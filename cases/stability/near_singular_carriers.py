@@ -7,7 +7,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats, InputError
-from fe_drivetrain.compare import decades, fitted_exponent, safe_range
+from fe_drivetrain.compare import decades, safe_range
 from fe_drivetrain.dynamics import (
     Flexible,
     Level,
@@ -19,7 +19,7 @@ from fe_drivetrain.dynamics import (
     steady_load,
 )
 from fe_drivetrain.fidelity.component_frames import carrier_frame
-from fe_drivetrain.report import crosses, trace
+from fe_drivetrain.report import crosses, marked
 from fe_drivetrain.scene import CarrierComponent, library_component
 from fe_drivetrain.suite import Page, Run
 
@@ -90,8 +90,7 @@ def run(run: Run, page: Page) -> None:
     without = factors[np.isnan(imbalance)]
     page.chart(
         "Relative errors and differences; shaded: safe; crosses: refused",
-        [trace(name, factors, y, mode="lines+markers") for name, y in curves.items()]
-        + [crosses("refused", without)],
+        [marked(name, factors, y) for name, y in curves.items()] + [crosses("refused", without)],
         FACTOR,
         "relative",
         "xy",
@@ -112,16 +111,15 @@ def check(
         source="torque over base radius",
     )
     far = slice(*np.searchsorted(factors, [9.0, 2e4]).tolist())
-    slope, spread = fitted_exponent(factors[far], apart[far], (1e-7, 1e-2))
-    page.equals(
+    page.exponent(
         "difference to a rigid carrier over the stiffness, exponent",
-        slope,
+        factors[far],
+        apart[far],
         -1.0,
         within=0.1,
+        between=(1e-7, 1e-2),
         why="at ten times the stiffness the next order is a tenth",
         source="springs in series",
-        measure="order",
-        band=spread,
     )
     page.holds(
         "what is refused is softer than all that is solved, and a free motion is named",

@@ -14,7 +14,7 @@ from fe_drivetrain.cases.stability.penalised_couplings import (
     work,
 )
 from fe_drivetrain.common import Bools, Floats, InputError
-from fe_drivetrain.compare import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
+from fe_drivetrain.compare import FOUR_DIGITS, decades, in_words, safe_range
 from fe_drivetrain.report import crosses, trace
 from fe_drivetrain.scene import change_scene, library_scene
 from fe_drivetrain.solve import System, solve
@@ -157,29 +157,27 @@ def check_exponents(page: Page, kind: str, found: Penalised, within: float) -> t
     penalties, error = found.penalties, found.error
     spread = np.sqrt((found.direct**2).mean(axis=1))
     best = int(np.nanargmin(error))
-    soft, soft_band = fitted_exponent(penalties[: best + 1], spread[: best + 1], (1e-6, 1e-2))
-    stiff, stiff_band = fitted_exponent(penalties[best:], spread[best:], (2.0 * spread[best], 0.1))
-    page.equals(
+    soft = page.exponent(
         f"{kind}: error of a soft penalty, exponent",
-        soft,
+        penalties[: best + 1],
+        spread[: best + 1],
         -1.0,
         within=0.05,
+        between=(1e-6, 1e-2),
         why="first order in the compliance: the next order is a hundredth of the leading error at "
         "most",
         source="springs in series: the penalty's own compliance is added",
-        measure="order",
-        band=soft_band,
     )
-    page.equals(
+    stiff = page.exponent(
         f"{kind}: error of a stiff penalty, exponent",
-        stiff,
+        penalties[best:],
+        spread[best:],
         1.0,
         within=within,
+        between=(2.0 * spread[best], 0.1),
         why="round-off scatters by about a decade from point to point: a slope over five decades "
         "in steps of a third of one by 0.15, over the few points of a quick run by 0.4",
         source="round-off of penalty terms, 2e-16 of them, is added to the elastic ones",
-        measure="order",
-        band=stiff_band,
     )
     return soft, stiff
 

@@ -9,8 +9,8 @@ from fe_drivetrain.cases.references.solid_shafts import straight
 from fe_drivetrain.cases.stability import other_precisions
 from fe_drivetrain.cases.stability.other_precisions import BORE, DIAMETER
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import FOUR_DIGITS, fitted_exponent, in_words, safe_range
-from fe_drivetrain.report import trace
+from fe_drivetrain.compare import FOUR_DIGITS, in_words, safe_range
+from fe_drivetrain.report import crosses, trace
 from fe_drivetrain.suite import Page, Record, Run, column
 
 LOADS = ("bending", "torsion")
@@ -132,18 +132,17 @@ def check(
 ) -> None:
     """The error grows with slenderness, and shrinks with bits."""
     usable = (of[LONG] < 0.1 * of[DOUBLE]) & (slenderness >= 2.0)
-    exponent, band = fitted_exponent(slenderness[usable], of[DOUBLE][usable], (1e-15, 0.1))
-    page.equals(
+    page.exponent(
         f"{load}, 64 bits: error against L/D, exponent",
-        exponent,
+        slenderness[usable],
+        of[DOUBLE][usable],
         EXPONENTS[load],
         within=within,
+        between=(1e-15, 0.1),
         why="round-off scatters by about a decade from point to point, which leaves 0.1 of a slope "
         "through ten points over three decades: three times that of an exponent of 2, and twice as "
         "much through the five points of a quick run",
         source="energy of a rigid motion of the end over that of the deformation",
-        measure="order",
-        band=band,
     )
     both = (of[SHORT] < 0.1) & (of[DOUBLE] > 0.0)
     decades_apart = np.log10(of[SHORT][both] / of[DOUBLE][both])
@@ -217,13 +216,7 @@ def show(
                 line=dashed,
             ),
             trace(PROGRAM, slenderness[answered], clipped(PROGRAM)[answered], True),
-            trace(
-                "the program refuses",
-                slenderness[~answered],
-                np.ones((~answered).sum()),
-                True,
-                marker={"symbol": "x"},
-            ),
+            crosses("the program refuses", slenderness[~answered]),
         ],
         "L/D",
         "relative error",

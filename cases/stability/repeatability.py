@@ -15,8 +15,8 @@ from fe_drivetrain.cases.stability.fingerprints import (
     tube_answers,
 )
 from fe_drivetrain.common import Floats, scratch_folder
-from fe_drivetrain.compare import FOUR_DIGITS, fitted_exponent, in_words, safe_range
-from fe_drivetrain.report import trace
+from fe_drivetrain.compare import FOUR_DIGITS, in_words, safe_range
+from fe_drivetrain.report import marked, trace
 from fe_drivetrain.suite import Page, Record, Run
 
 #: Lengths over diameters of the tubes that other processes solve.
@@ -160,18 +160,17 @@ def check(
         why="the same operations in the same order round in the same way: bit for bit",
         source="IEEE 754",
     )
-    exponent, band = fitted_exponent(reordered.slenderness, reordered.typical, (1e-15, 0.1))
-    page.equals(
+    page.exponent(
         "nodes in another order: difference of the stiffness against L/D, exponent",
-        exponent,
+        reordered.slenderness,
+        reordered.typical,
         4.0,
         within=0.3 if quick else 0.15,
+        between=(1e-15, 0.1),
         why="round-off scatters by about a decade from point to point: by as much at either end of "
         "the two and a half decades of the fit it changes a slope by 0.8, a fifth of it; 15 % of "
         "the mean of several solvers, and twice that of the three points of a quick run",
         source="round-off over the energy of bending, as in stability/precision",
-        measure="order",
-        band=band,
     )
     if not quick:
         between = {r["part"]: r for r in rows if r["runs"] == "one thread / two threads"}
@@ -218,11 +217,10 @@ def show(page: Page, rows: list[Record], lengths: tuple[float, ...], reordered: 
         "solver refuses",
         [
             *(
-                trace(
+                marked(
                     f"renumbered, {method}",
                     at[np.isfinite(values)],
                     np.maximum(values[np.isfinite(values)], 1e-17),
-                    mode="lines+markers",
                 )
                 for method, values in reordered.by_method.items()
             ),

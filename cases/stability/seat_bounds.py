@@ -10,7 +10,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability import seat_couplings as seat
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import GridConvergence, grid_convergence, last_within
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked, trace
 from fe_drivetrain.suite import Page, Run
 
 #: Widths of the loaded band [m]; the ring is as long as the last.
@@ -314,8 +314,8 @@ def show_tilt(page: Page, found: Found, narrow: float | None) -> None:
         "grows, sliding as it shrinks; shaded where rigid and averaged are within "
         f"{100 * GAP:g} %",
         [
-            trace("averaged", percent, np.abs(averaged), mode="lines+markers"),
-            trace("sliding", percent, np.abs(sliding), mode="lines+markers"),
+            marked("averaged", percent, np.abs(averaged)),
+            marked("sliding", percent, np.abs(sliding)),
             trace("smooth strip (theory)", percent, theory, line={"dash": "dot"}),
         ],
         "width of the loaded band, of the ring's length [%]",
@@ -371,7 +371,7 @@ def show_lengths(page: Page, found: Found) -> None:
         "Whole bore loaded, over the rigid coupling's tilt stiffness: by its mean rotation a short "
         "sliding seat is stiffer than a rigid one, and where it is shorter still the mean points "
         "against the moment. Shaded where it points with it",
-        [trace(name, found.long, of, mode="lines+markers") for name, of in curves.items()],
+        [marked(name, found.long, of) for name, of in curves.items()],
         "length of the ring over the diameter of its bore",
         "over rigid",
         "x",
@@ -415,7 +415,7 @@ def show_meshes(page: Page, found: Found, limits: Mapping[str, GridConvergence])
         "all are too stiff; shaded where the averaged coupling is within "
         f"{100 * MESH_ERROR:g} %",
         [
-            *(trace(c, found.rough, errors[c], mode="lines+markers") for c in seat.COUPLINGS),
+            *(marked(c, found.rough, errors[c]) for c in seat.COUPLINGS),
             *(
                 trace(
                     f"{c}, sixth order (remedy)",

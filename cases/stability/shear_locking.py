@@ -25,7 +25,7 @@ from fe_drivetrain.cases.stability.bent_shafts import (
 from fe_drivetrain.cases.stability.locking_curves import CRITERION, WITHIN, error_chart, limit
 from fe_drivetrain.compare import last_within
 from fe_drivetrain.operator import elasticity, incompatible, incompressible
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked
 from fe_drivetrain.solve import recovery_estimate
 from fe_drivetrain.suite import Page, Record, Run
 
@@ -169,10 +169,7 @@ def show_tables(page: Page, square: Square, tetrahedra: list[Record], estimates:
     page.chart(
         "Error of the energy estimated from one mesh of 8-node hexahedra, over the true one: 1 is "
         "right, above a third the estimate's band contains the answer",
-        [
-            trace(name, square.lengths, values, mode="lines+markers")
-            for name, values in estimates.items()
-        ],
+        [marked(name, square.lengths, values) for name, values in estimates.items()],
         OVER_DEPTH,
         "estimated over true error [-]",
         "x",

@@ -8,8 +8,8 @@ from fe_drivetrain.beam import Support, beam_of_scene, unit_load_response
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.soft_springs import Sprung, scene_of, sprung
 from fe_drivetrain.common import Bools, Floats, InputError
-from fe_drivetrain.compare import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
-from fe_drivetrain.report import crosses, trace
+from fe_drivetrain.compare import FOUR_DIGITS, decades, in_words, safe_range
+from fe_drivetrain.report import crosses, marked, trace
 from fe_drivetrain.response import mesh_scene
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.suite import Page, Run
@@ -214,24 +214,21 @@ def check_spherical(
     found, stiffness, error = errors.of, errors.of.stiffness, errors.hub
     silent = found.answered & ~found.warned & ~(errors.worst < FOUR_DIGITS)
     allowed = stiffness <= STIFFEST
-    soft, soft_band = fitted_exponent(
-        stiffness[stiffness < 1e5], error[stiffness < 1e5], (1e-12, 0.1)
-    )
     page.holds(
         "spherical, no gearbox spring: refused, and the motion named",
         "turn freely about y" in at_zero,
         why="without a spring the stiffness is singular, and any answer would be round-off",
         source="a shaft on a sphere",
     )
-    page.equals(
+    page.exponent(
         "spherical, soft spring: error of the hub's motion, exponent",
-        soft,
+        stiffness[stiffness < 1e5],
+        error[stiffness < 1e5],
         -1.0,
         within=within,
+        between=(1e-12, 0.1),
         why=SCATTER,
         source="round-off of the shaft's stiffness acts as springs to ground",
-        measure="order",
-        band=soft_band,
     )
     page.holds(
         "spherical: every answer without four digits was warned of or refused, from a spring of "
@@ -264,15 +261,12 @@ def show_spherical(
     by_beam = np.isfinite(beam_error)
     page.section("Spherical bearing: from a mechanism to a held shaft")
     quiet, loud = answered & ~warned, answered & warned
-    marked = "lines+markers"
     page.chart(
         "Error of the hub's motion under a force there, against the motion held plus lever squared "
         "over stiffness. Shaded: four digits",
         [
-            trace(
-                "solid, no warning", stiffness[quiet], np.maximum(error[quiet], 1e-16), mode=marked
-            ),
-            trace("solid, warned of", stiffness[loud], error[loud], mode=marked),
+            marked("solid, no warning", stiffness[quiet], np.maximum(error[quiet], 1e-16)),
+            marked("solid, warned of", stiffness[loud], error[loud]),
             trace(
                 "reaction of the gearbox",
                 stiffness[answered],
@@ -347,31 +341,29 @@ def check_first_order(page: Page, found: OneSpring, within: float) -> None:
     k, reaction_error = found.of.stiffness, found.reaction_error
     above = k > STIFFEST
     between = (k > 1.0 / found.own) & ~above
-    stiff, stiff_band = fitted_exponent(k[above], reaction_error[above], (1e-11, 0.1))
-    page.equals(
+    page.exponent(
         "bonded, stiff spring: error of the gearbox's reaction, exponent",
-        stiff,
+        k[above],
+        reaction_error[above],
         1.0,
         within=within,
+        between=(1e-11, 0.1),
         why=SCATTER,
         source="the spring times a motion that round-off does not let vanish",
-        measure="order",
-        band=stiff_band,
     )
     for quantity, at, departure, expected in (
         ("soft spring: departure from the free shaft", k > 0.0, found.from_free, 1.0),
         ("stiff spring: departure from the held shaft", between, found.from_held, -1.0),
     ):
-        exponent, band = fitted_exponent(k[at], departure[at], (1e-9, 1e-2))
-        page.equals(
+        page.exponent(
             f"bonded, {quantity}, exponent",
-            exponent,
+            k[at],
+            departure[at],
             expected,
             within=0.05,
+            between=(1e-9, 1e-2),
             why=FIRST_ORDER,
             source="one spring on a body: k u / (1 + k c)",
-            measure="order",
-            band=band,
         )
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats, Ints
-from fe_drivetrain.compare import decades, fitted_exponent, last_within
+from fe_drivetrain.compare import decades, last_within
 from fe_drivetrain.dynamics import (
     AVERAGE,
     LINEAR,
@@ -25,7 +25,7 @@ from fe_drivetrain.dynamics import (
     varying_equations,
     wind_up,
 )
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked
 from fe_drivetrain.suite import Page, Run
 
 FREQUENCY = 128.5  # Hz, of the third stage's mesh at 6 rpm
@@ -91,16 +91,15 @@ def accuracy(page: Page, duration: float) -> float:
 
 def judge_accuracy(page: Page, counts: Ints, found: Mapping[str, Floats]) -> float:
     """Order, limit and chart of the errors; the fewest steps that are enough."""
-    slope, spread = fitted_exponent(counts, found[AVERAGE.name], (1e-6, 1e-1))
-    page.equals(
+    page.exponent(
         "average acceleration: error of a mesh force over the steps in its period, exponent",
-        slope,
+        counts,
+        found[AVERAGE.name],
         -2.0,
         within=0.1,
+        between=(1e-6, 1e-1),
         why="largest errors of beats have no steady phase",
         source="second order",
-        measure="order",
-        band=spread,
     )
     error = found[AVERAGE.name]
     least = last_within(counts[::-1], error[::-1], ENOUGH) or float(counts[-1])
@@ -117,7 +116,7 @@ def judge_accuracy(page: Page, counts: Ints, found: Mapping[str, Floats]) -> flo
     page.section("Steps in a period of the mesh")
     page.chart(
         "Largest error of the mesh force over its swing; shaded: enough",
-        [trace(name, counts, error, mode="lines+markers") for name, error in found.items()],
+        [marked(name, counts, error) for name, error in found.items()],
         STEPS,
         "error",
         "xy",
@@ -171,7 +170,7 @@ def stability(page: Page) -> None:
     page.section("Stability")
     page.chart(
         "Growth of one mass in a step",
-        [trace(name, steps, values, mode="lines+markers") for name, values in growth.items()],
+        [marked(name, steps, values) for name, values in growth.items()],
         OVER,
         "growth in a step",
         "xy",

@@ -19,7 +19,7 @@ from fe_drivetrain.dynamics import (
     steady,
 )
 from fe_drivetrain.dynamics.steady_state import restoring
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked, trace
 from fe_drivetrain.suite import Page, Run, check_in_time
 
 #: Variation of the stiffness, damping ratio, half backlash over the static deflection.
@@ -135,8 +135,8 @@ def show(page: Page, found: Sweeps, safe: float) -> None:
         ("Least force over the mean: 0 where teeth part", "least force over the mean", 0),
     ):
         traces = [
-            trace("with backlash, up", at, up[:, k], mode="lines+markers"),
-            trace("with backlash, down", at, down[:, k], mode="lines+markers"),
+            marked("with backlash, up", at, up[:, k]),
+            marked("with backlash, down", at, down[:, k]),
             trace("spring that pulls", at, linear[:, k], line={"dash": "dot"}),
         ]
         page.chart(caption, traces, OVER, y, safe=(safe, None))

@@ -30,7 +30,7 @@ from fe_drivetrain.cases.stability.locking_curves import (
 from fe_drivetrain.common import InputError
 from fe_drivetrain.compare import band_of, last_within
 from fe_drivetrain.operator import incompatible
-from fe_drivetrain.report import crosses, trace
+from fe_drivetrain.report import crosses, marked
 from fe_drivetrain.scene import HIGHEST_POISSON_RATIO
 from fe_drivetrain.suite import Page, Run
 
@@ -219,7 +219,7 @@ def near_half(run: Run, page: Page) -> None:
         "Cylinder, averaged hexahedra of 27 nodes: how far the stiffness, over the exact one, is "
         f"from its value at 1/2 - nu = {distances[0]:g} (shaded: four digits)",
         [
-            trace("averaged", kept, np.maximum(changes, 1e-12), mode="lines+markers"),
+            marked("averaged", kept, np.maximum(changes, 1e-12)),
             crosses("found singular", refused),
         ],
         "1/2 - nu [-]",
