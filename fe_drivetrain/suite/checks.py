@@ -106,10 +106,14 @@ class Checks:
             The points; see `fe_drivetrain.compare.fitted_exponent`.
         expected : float
             The exponent by theory.
-        within, why, source, relative
+        within : float
+            Allowed difference, as for `equals`.
+        why, source : str
             As for `equals`.
         between : tuple of float
             Only points with y between these are fitted.
+        relative : bool
+            False where `within` is that of the exponent itself.
 
         Returns
         -------
