@@ -74,12 +74,9 @@ def run(run: Run, page: Page) -> None:
         workers = found_workers.count
     repeats = run.count("repeats", 1 if run.quick else 5)
     count = len(sizes(each))
-
-    in_pieces = partial(counted_in_pieces, run, each)
-
     with run.step("in pieces"):
         own = time.process_time()
-        found, times = timed_runs(in_pieces, repeats)
+        found, times = timed_runs(partial(counted_in_pieces, run, each), repeats)
         apart, own = times.median, (time.process_time() - own) / repeats
     import resource  # which Windows does not have
 

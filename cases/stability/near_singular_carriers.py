@@ -50,22 +50,8 @@ def meshes(found: Static) -> list[float]:
 )
 def run(run: Run, page: Page) -> None:
     """Scale the stiffness of a condensed carrier over thirty decades."""
-    component = library_component("planet_carrier")
-    assert isinstance(component, CarrierComponent)
-    body = carrier_frame(component)
-    rigid = meshes(loaded(None))
     factors = decades(-18, 12, 1 if run.quick else 4)
-    imbalance, apart = np.full((2, len(factors)), np.nan)
-    refused: list[str] = []
-    for k, factor in enumerate(factors):
-        scaled = replace(body, stiffness=body.stiffness * factor)
-        try:
-            forces = meshes(run.clocked("stiffnesses", loaded, Flexible({1: scaled})))
-        except InputError as error:
-            refused.append(str(error))
-            continue
-        imbalance[k] = max(abs(sum(forces) / EXACT - 1.0), 1e-17)
-        apart[k] = max(abs(forces[0] / rigid[0] - 1.0), 1e-17)
+    imbalance, apart, refused = scaled(run, factors)
     check(page, factors, imbalance, apart, refused)
     low, high = safe_range(factors, np.nan_to_num(imbalance, nan=1.0), WITHIN)
     page.limit(
@@ -97,6 +83,26 @@ def run(run: Run, page: Page) -> None:
         (low, high),
     )
     page.data("sweep", {"factor": factors, **curves})
+
+
+def scaled(run: Run, factors: Floats) -> tuple[Floats, Floats, list[str]]:
+    """Imbalance of the sun, difference from a rigid carrier, NaN where refused; the refusals."""
+    component = library_component("planet_carrier")
+    assert isinstance(component, CarrierComponent)
+    body = carrier_frame(component)
+    rigid = meshes(loaded(None))
+    imbalance, apart = np.full((2, len(factors)), np.nan)
+    refused: list[str] = []
+    for k, factor in enumerate(factors):
+        softer = replace(body, stiffness=body.stiffness * factor)
+        try:
+            forces = meshes(run.clocked("stiffnesses", loaded, Flexible({1: softer})))
+        except InputError as error:
+            refused.append(str(error))
+            continue
+        imbalance[k] = max(abs(sum(forces) / EXACT - 1.0), 1e-17)
+        apart[k] = max(abs(forces[0] / rigid[0] - 1.0), 1e-17)
+    return imbalance, apart, refused
 
 
 def check(
