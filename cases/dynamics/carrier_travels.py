@@ -87,7 +87,7 @@ def run(run: Run, page: Page) -> None:
 
 
 def show_turn(page: Page, moving: Turn, still: Turn, count: int) -> None:
-    """Load of a bearing over a turn, in time and at rest."""
+    """Show the load of a bearing over a turn, in time and at rest."""
     page.section("Over a turn")
     angles = np.degrees(azimuths(count))
     page.chart(
@@ -102,7 +102,7 @@ def show_turn(page: Page, moving: Turn, still: Turn, count: int) -> None:
 
 
 def show_ring(page: Page, lines: Floats, per_mesh: int) -> None:
-    """Lines of the elastic ring, from so many steps in a period of the mesh."""
+    """Show the lines of the elastic ring, computed with `per_mesh` steps in a mesh period."""
     page.section("An elastic ring")
     page.unsettled.append(
         f"Not converged: amplitudes of the elastic ring, by {per_mesh} steps in a period of the "

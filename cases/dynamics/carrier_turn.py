@@ -86,7 +86,7 @@ def turned(
 
 
 def show(page: Page, found: dict[str, Turn], angles: Floats, rows: list[Record]) -> None:
-    """Loads over a turn, with each moment of the hub."""
+    """Show the loads over a turn, for each moment of the hub."""
     page.section("Over a turn")
     for name, one in found.items():
         page.chart(

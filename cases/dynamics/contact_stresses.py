@@ -66,7 +66,7 @@ def run(run: Run, page: Page) -> None:
 
 
 def check(page: Page, rows: list[Record], pressures: dict[str, float]) -> None:
-    """Pressures by hand, and radii of the gears' own pairs."""
+    """Check pressures against Hertz's formula, and radii against the gears' own pairs."""
     page.about(library_machine("synthetic_2mw"), "synthetic_2mw")
     for key, expected in DERIVED.items():
         page.equals(

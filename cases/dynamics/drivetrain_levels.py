@@ -90,7 +90,7 @@ def run(run: Run, page: Page) -> None:
 
 
 def show_ladder(page: Page, name: str, machine: Machine, answers: Sequence[Answer]) -> None:
-    """Answers of each level, and their differences from the finest against time."""
+    """Show the answers of each level, and their differences from the finest against time."""
     page.section(machine.title)
     rows: list[Record] = []
     finest = answers[-1].values
@@ -119,7 +119,7 @@ def show_ladder(page: Page, name: str, machine: Machine, answers: Sequence[Answe
 
 
 def assume(page: Page, name: str, machine: Machine) -> None:
-    """What the sources of a machine do not give."""
+    """State the values that the sources of a machine do not give."""
     if name == "synthetic_2mw":
         page.assume(
             f"{name}: carrier",
@@ -133,7 +133,7 @@ def assume(page: Page, name: str, machine: Machine) -> None:
 
 
 def show_needed(page: Page, needed: list[Record]) -> None:
-    """Which level each question needs."""
+    """Show which level each question needs."""
     page.section("Which level a question needs")
     page.table(f"The simplest level within {100 * TOLERANCE:g} % of the finest", needed)
     page.text(

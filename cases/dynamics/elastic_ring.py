@@ -92,7 +92,7 @@ def run(run: Run, page: Page) -> None:
 
 
 def check_limits(page: Page, rigid: Floats) -> None:
-    """Harmonics that are enough, and a rim so stiff that the ring is rigid."""
+    """Check convergence with harmonics, and a rim so stiff that the ring is rigid."""
     series = [frequencies(0.02, n)[1:11] for n in (4, 7, 13, 25)]
     changes = [float(np.abs(a / series[-1] - 1).max()) for a in series[:-1]]
     page.at_most(

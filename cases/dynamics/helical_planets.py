@@ -57,7 +57,7 @@ def run(run: Run, page: Page) -> None:
 
 
 def rows_of(planets: int, system: System, modes: SystemModes, kinds: list[str]) -> list[Record]:
-    """Each frequency, its kind, how often it is there, and where its energy is."""
+    """Frequencies with kind, multiplicity and the body that has most of the kinetic energy."""
     rows: list[Record] = []
     start = 0
     for frequency, times in distinct(modes.frequencies, 1e-7):

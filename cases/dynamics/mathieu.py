@@ -41,7 +41,7 @@ def growth_in_time(depth: float, step: float, _: int) -> InTime:
 
 
 def check_growth(page: Page, depth: float) -> Record:
-    """Growth at twice the natural frequency, beside that of Floquet."""
+    """Check the growth at twice the natural frequency against Floquet's multiplier."""
     found, right = stepped_growth(depth, 2.0, STEPS), exact_growth(depth, 2.0)
     page.equals(
         f"depth {depth}: growth at twice the natural frequency [1/s]",
@@ -111,7 +111,7 @@ def run(run: Run, page: Page) -> None:
 def show(
     page: Page, depth: float, rows: list[Record], at: Floats, ours: Floats, exact: Floats
 ) -> None:
-    """Rates of growth at and beside twice the natural frequency."""
+    """Show the rates of growth at and beside twice the natural frequency."""
     page.section("At twice the natural frequency")
     page.table("Rate of growth for w = 1 rad/s", rows)
     page.section("Beside it")

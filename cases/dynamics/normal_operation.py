@@ -93,7 +93,7 @@ def run(run: Run, page: Page) -> None:
 
 
 def verdicts(apart: float, least: float, largest: float) -> list[list[Cell]]:
-    """What is printed of B beside what we find.
+    """Printed statements on drivetrain B beside ours.
 
     Parameters
     ----------

@@ -106,7 +106,7 @@ def run(run: Run, page: Page) -> None:
 def after_step(
     run: Run, page: Page, name: str, system: System, dt: float, duration: float
 ) -> tuple[Record, Spectrum]:
-    """Sidebands of the mesh line after a torque step, and the spectrum of the mesh."""
+    """Check the sidebands of the mesh line after a torque step; return them and the spectrum."""
     with run.step(f"torque step, {name}"):
         force, shaft = stepped(system, dt, duration)
     spectrum = spectrum_of(force, dt)
@@ -148,7 +148,7 @@ def after_step(
 
 
 def show_words(page: Page, lines: list[float], flat: float, space: float, resolved: float) -> None:
-    """Words of the source beside lines and distances of sidebands in either model."""
+    """Show the printed statements beside lines and sidebands of either model."""
     page.section("Printed, ours, verdict")
     page.table(
         "Words of section 4",

@@ -111,7 +111,7 @@ def show(
     rows: list[Record],
     softer: list[float],
 ) -> None:
-    """Ratios over a turn and over the carrier's compliance, and all loads."""
+    """Show the ratios over a turn and over the carrier's compliance, and all loads."""
     page.section("Over a turn")
     for case_name in MOMENTS:
         page.chart(
@@ -136,7 +136,7 @@ def show(
 
 
 def state_share(page: Page) -> None:
-    """What a printed ratio asks of the carrier, and what contradicts itself."""
+    """State what a printed ratio asks of the carrier, and where the thesis contradicts itself."""
     printed = 1.42
     share = printed / (1.0 + printed)
     page.text(

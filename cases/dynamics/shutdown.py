@@ -77,7 +77,7 @@ def run(run: Run, page: Page) -> None:
 
 
 def assume(page: Page) -> None:
-    """What the thesis does not print."""
+    """State the values that the thesis does not print."""
     page.assume("sequence", "generator off at 1 s, brake at 3 s", "", "not printed")
     page.assume("aerodynamic torque", "from rated to 0 in 2 s, evenly", "", "not printed")
     page.assume("brake", f"so large that LSS reaches {PEAK} of rated", "", "by trial in the thesis")
@@ -93,7 +93,7 @@ def assume(page: Page) -> None:
 def show_shutdown(
     page: Page, losses: list[Record], rows: list[Record], instants: list[Record]
 ) -> None:
-    """Losses of the generator, and shutdowns, in numbers."""
+    """Show losses of the generator and shutdowns in numbers."""
     page.section("Loss of the generator's torque, in numbers")
     page.table("Least torque over rated; below zero it is reversed", losses)
     page.section("Shutdown, in numbers")
@@ -114,7 +114,7 @@ def show_shutdown(
 
 
 def show_others(page: Page, dips: list[Record], knocks: list[Record], swings: list[Record]) -> None:
-    """Dips, backlash and frequencies, in numbers."""
+    """Show dips, backlash and frequencies in numbers."""
     page.section("Dips of the grid, in numbers")
     page.table(
         "Generator off and on again, rotor's torque held: torque of the high-speed shaft over "

@@ -91,7 +91,7 @@ def run(run: Run, page: Page) -> None:
 def check_ripples(
     page: Page, name: str, found: TransmissionError, at: Floats, series: ConvergenceInTime
 ) -> list[Record]:
-    """Ripple in time, of balanced harmonics, and linear, over the mesh frequency."""
+    """Check the ripple in time against balanced harmonics; return it beside the linear one."""
     ripple = np.array(list(series.finest.values.values()))
     check_in_time(
         page,

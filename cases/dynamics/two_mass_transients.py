@@ -182,7 +182,7 @@ def show(page: Page) -> None:
 
 
 def check_brake(page: Page, found: Transient, J: Floats, k: float, one: Rated) -> None:
-    """Torque while it slips, while it holds, and frequency when it stands."""
+    """Check torques while the brake slips and holds, and the frequency at standstill."""
     motion = found.motion
     slipping = (motion.times > 0.5) & (motion.times < found.events[0][0])
     page.equals(

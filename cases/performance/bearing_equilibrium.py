@@ -122,7 +122,7 @@ class Levels:
         self.rows: list[Record] = []
 
     def timed(self, name: str, steps: Floats, solve: Callable[[], Any]) -> Any:
-        """Solve load steps, and keep how many a second; what was found."""
+        """Solve load steps, and keep how many are solved in a second; return the solution."""
         with self.run.step(name):
             found, times = timed_runs(solve, self.repeats)
         self.rows.append(
@@ -138,7 +138,7 @@ class Levels:
 
 
 def check(page: Page, found: Sequence[Equilibrium], lost: int, error: Floats | None) -> None:
-    """Every step converges, to the same from either start; the table is near enough."""
+    """Check that all steps converge, to the same from either start, and the error of the table."""
     whole, cold, _ = found
     page.vanishes(
         "load steps that have not converged to 1e-8",
@@ -170,7 +170,7 @@ def check(page: Page, found: Sequence[Equilibrium], lost: int, error: Floats | N
 def show(
     page: Page, rows: list[Record], repeats: int, starts: dict[str, Equilibrium | RacesEquilibrium]
 ) -> None:
-    """Wall time of each level, and work of a load step."""
+    """Show the wall time of each level, and the work of a load step."""
     page.section("Levels")
     page.table(
         f"Wall time of the load steps, runs of each level: {repeats}; steps a second of the median",

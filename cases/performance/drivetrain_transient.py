@@ -139,7 +139,7 @@ def run(run: Run, page: Page) -> None:
 def show_time(
     page: Page, times: Times, duration: float, repeats: int, seconds: float | None
 ) -> None:
-    """Wall time of the motion, and the goal for ten minutes."""
+    """Show the wall time of the motion, and the goal for ten minutes."""
     page.section("Ten minutes")
     page.table(
         f"Wall time of {duration:g} s of motion at 1 kHz, on one core",
@@ -154,7 +154,7 @@ def show_time(
 
 
 def check_convergence(run: Run, page: Page, short: float, imbalance: float) -> None:
-    """Energy and convergence of a short stretch; what a step of 1 ms leaves open."""
+    """Check energy and convergence over a short time; state what a step of 1 ms leaves open."""
     with run.step("convergence"):
         series = converge_in_time(partial(of_gearbox, short), STEPS[-1], 8)
     page.section("Convergence")
@@ -174,7 +174,7 @@ def check_convergence(run: Run, page: Page, short: float, imbalance: float) -> N
 
 
 def show_errors(page: Page, rows: list[Record], imbalance: float) -> None:
-    """Error of each method over the step, and over its time."""
+    """Show the error of each method over its step and over its computing time."""
     page.section("Error over the step, and over time")
     for key in ("step [s]", TIME):
         page.chart(

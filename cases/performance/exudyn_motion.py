@@ -66,7 +66,7 @@ def exudyn_motion(
 
 
 def fill(system: Any, equations: Equations, loads: Loads, begin: State) -> Any:
-    """Add what moves to Exudyn's system; the sensor of its coordinates."""
+    """Add the equations to Exudyn's system; return the sensor of its coordinates."""
     exudyn, items = import_module("exudyn"), import_module("exudyn.itemInterface")
     n = len(equations.mass)
     node = system.AddNode(

@@ -118,7 +118,7 @@ def run(run: Run, page: Page) -> None:
 
 
 def counted_in_pieces(run: Run, each: int) -> Any:
-    """Count what the turbines made, so many samples of each, in pieces."""
+    """Count the histories of all turbines in pieces, `each` samples of every turbine."""
     pieces = (
         (f"turbine {turbine}", (turbine, number, size))
         for turbine in range(TURBINES)
@@ -133,7 +133,7 @@ def counted_in_pieces(run: Run, each: int) -> Any:
 
 
 def check(page: Page, found: Count, cycles: float, damage: list[ExactSum], samples: int) -> None:
-    """Pieces and one stream count the same."""
+    """Check that pieces and one stream count the same."""
     for m, mine, exact in zip(COUNTING.slopes, found.damage, damage, strict=True):
         page.equals(
             f"sum of n r^{m:g} in pieces [-]",
@@ -165,7 +165,7 @@ def check(page: Page, found: Count, cycles: float, damage: list[ExactSum], sampl
 
 
 def show_counts(page: Page, found: Count) -> None:
-    """Cycles and levels in classes."""
+    """Show cycles and levels in classes."""
     page.section("What is counted")
     for name, classes in (("range of cycles", found.cycles), ("level", found.levels)):
         page.chart(
@@ -177,7 +177,7 @@ def show_counts(page: Page, found: Count) -> None:
 
 
 def show_farm(page: Page, rate: float, own: float, workers: int) -> None:
-    """What a farm takes, by a model of its workers."""
+    """Show the time of a whole farm, by a model of its workers."""
     farm = predicted(rate / workers, own)
     page.table(f"{FARM:.0e} samples, by the model", farm)
     page.data("predicted", farm)

@@ -93,7 +93,7 @@ def run(run: Run, page: Page) -> None:
 
 
 def cheapest(run: Run, page: Page, name: str, rows: list[Record], band: float) -> Record:
-    """The quickest setting that is good enough, measured again."""
+    """The fastest setting that is good enough, measured again."""
     enough = [row for row in rows if row["error"] + band <= ERROR]
     if not enough:
         return {"shaft": name, "setting": "none of these"}
@@ -112,7 +112,7 @@ def cheapest(run: Run, page: Page, name: str, rows: list[Record], band: float) -
 
 
 def show(page: Page, tried: list[Record], best: list[Record]) -> None:
-    """Error against time of all settings, and the quickest ones."""
+    """Show error against time of all settings, and the fastest ones that are good enough."""
     page.section("Error against time")
     page.chart(
         "Error of the 12 x 12, scaled to 1 on its diagonal, against the time from the shaft to the "

@@ -122,7 +122,7 @@ def run(run: Run, page: Page) -> None:
 
 @dataclass(frozen=True)
 class Assembled:
-    """Stiffness of the shaft, and what it took.
+    """Stiffness of the shaft, with times of assembly and solution.
 
     Attributes
     ----------
@@ -160,7 +160,7 @@ class Assembled:
 
 
 def assembled(run: Run, mesh: Mesh, repeats: int) -> Assembled:
-    """Assemble a shaft in each way, and solve it."""
+    """Assemble the stiffness of a shaft in each way, and solve it for one load."""
     lame, points, cells = MATERIALS["steel"].lame, mesh.points, mesh.cells
     with run.step("shaft of curved tetrahedra"):
         K, own = timed_runs(partial(assemble, points, cells, lame), repeats)
@@ -193,7 +193,7 @@ def timed_solution(mesh: Mesh, K: Any, repeats: int) -> tuple[Solution, Times]:
 
 
 def beside(n_nodes: int, cuts: int, repeats: int) -> Record:
-    """Times of one kind of element, and how far both matrices are apart."""
+    """Times of one kind of element, and the difference of both matrices."""
     lame, cube = MATERIALS["steel"].lame, box(n_nodes, cuts)
     K, mine = timed_runs(partial(assemble, *cube, lame), repeats)
     matched, other = timed_runs(partial(generic_form, *cube, lame), repeats)
@@ -210,7 +210,7 @@ def beside(n_nodes: int, cuts: int, repeats: int) -> Record:
 def show(
     page: Page, found: Assembled, rows: list[Record], products: list[Record], repeats: int
 ) -> None:
-    """Times of the shaft, goals, other elements, and products with several columns."""
+    """Show times of the shaft, goals, other elements, and products with several columns."""
     times = {
         "scikit-fem: basis and linear_elasticity": found.generic,
         "ours, sparsity and values": found.own,

@@ -133,7 +133,7 @@ def on_meshes(
     settings: dict[str, Any],
     plan: Plan,
 ) -> list[Row]:
-    """Run the tools that are there on every mesh of a benchmark."""
+    """Run the installed tools on every mesh of a benchmark."""
     rows: list[Row] = []
     problem_file = warm_up.with_name("problem.npz")
     for size in settings["sizes"]:
@@ -150,7 +150,7 @@ def on_meshes(
 
 
 def keep(page: Page, key: str, rows: Sequence[Row]) -> None:
-    """Numbers of one benchmark for other programs."""
+    """Keep the numbers of one benchmark for other programs."""
     page.data(
         key,
         [

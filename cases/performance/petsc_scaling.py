@@ -157,7 +157,7 @@ def run(run: Run, page: Page) -> None:
 def one_size(
     system: ElementSystem, F: Floats, counts: Sequence[int], repeats: int
 ) -> tuple[list[Record], float]:
-    """Times of one system on more and more processes, and how far their answers are from ours."""
+    """Times of one system over the number of processes, and the difference from our solution."""
     exact = solve(system, F, tolerance=TOLERANCE).x
     rows, apart = [], 0.0
     for count in counts:
@@ -168,7 +168,7 @@ def one_size(
 
 
 def extrapolate(page: Page, model: Model, fitted: list[Record], measured_on: str) -> None:
-    """What 1e9 unknowns take by the model, and what it is fitted to."""
+    """Show the cost of 1e9 unknowns by the model, and the points that it is fitted to."""
     predicted = [model.row(TARGET, count) for count in MANY]
     best = min(predicted, key=lambda row: float(row["time [s]"]))
     page.answer(
@@ -193,7 +193,7 @@ def extrapolate(page: Page, model: Model, fitted: list[Record], measured_on: str
 def show(
     page: Page, strong: list[Record], weak: list[Record], halo: list[Record], shown: str
 ) -> None:
-    """Tables of both sweeps, and charts of memory and of what is done twice."""
+    """Show both sweeps, memory, and the elements that are integrated twice."""
     page.section("Measured")
     page.table(f"One size (strong), {shown}", strong)
     page.table(f"So many unknowns a process (weak), {shown}", weak)

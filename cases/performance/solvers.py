@@ -273,7 +273,7 @@ def labels(problem: Problem) -> Record:
 
 
 def side_by_side(problem: Problem, method: str, t: Timing | None) -> Record:
-    """What one solver took for a system; empty where it was not tried."""
+    """Costs of one solver for a system; empty where it was not tried."""
     return {
         **labels(problem),
         "solver": method,
@@ -291,7 +291,7 @@ def side_by_side(problem: Problem, method: str, t: Timing | None) -> Record:
 
 
 def choice(problem: Problem, timing: dict[str, Timing], n_rhs: int) -> Record:
-    """What auto chooses for so many right-hand sides, beside the best of those that were tried."""
+    """The choice of auto for `n_rhs` right-hand sides, beside the best of the solvers tried."""
     costs = cost_model.predict(problem.system, n_rhs)
     predicted = next(c for c in costs if c.method in timing)
     times = {m: t.total(n_rhs) for m, t in timing.items()}

@@ -292,7 +292,7 @@ def show_growth(page: Page, grown: Sequence[Grown], curved: Sequence[Outcome]) -
 
 
 def costs(g: Grown) -> Record:
-    """What one size took, step by step."""
+    """Costs of one size, step by step."""
     return {
         "unknowns": g.unknowns,
         "solver": g.used,
@@ -307,7 +307,7 @@ def costs(g: Grown) -> Record:
 
 
 def cost_curves(rows: Sequence[Record], curved: Sequence[Outcome]) -> list[list[Any]]:
-    """Each cost over the unknowns: of whole runs by step, of each solver by time and memory."""
+    """Costs over the number of unknowns: steps of whole runs, time and memory of each solver."""
     unknowns = column(rows, "unknowns")
     timed = [f"{step} [s]" for step in (*STEPS, "in all")]
     exponents: list[list[Any]] = [

@@ -155,7 +155,7 @@ def press(radii: Sequence[float], misfit: float, materials: Sequence[Material], 
 
 
 def _together(parts: Sequence[Block]) -> Block:
-    """Both bodies, with nodes of their own."""
+    """Both bodies in one block, which share no nodes."""
     n_shaft = len(parts[0].points)
     points = np.vstack([part.points for part in parts])
     cells = np.vstack([parts[0].cells, parts[1].cells + n_shaft])
@@ -169,7 +169,7 @@ def _together(parts: Sequence[Block]) -> Block:
 def _profiles(
     parts: Sequence[Block], lames: Sequence[tuple[float, float]], u: Floats
 ) -> list[Profile]:
-    """Stresses over the radius of each body; see `press`."""
+    """Stresses over the radius, of each body."""
     profiles, first = [], 0
     for part, lame in zip(parts, lames, strict=True):
         own = u[first : first + part.points.size]

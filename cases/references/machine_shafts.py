@@ -60,7 +60,7 @@ def shaft_scene(machine: Machine, name: str, size: float = 0.2) -> Scene:
 
 
 def units_of(machine: Machine, name: str, d: float) -> list[dict[str, Any]]:
-    """Bearing units of a shaft, with seats and housings in proportion to its diameter d [m]."""
+    """Bearing units of a shaft, their seats and housings in proportion to its diameter d [m]."""
     return [
         {
             "bearing": {

@@ -51,7 +51,7 @@ class Bent:
 
 @dataclass(frozen=True)
 class _Beam:
-    """What forces, moments and loads do to deflection and slope; arguments of `macaulay`."""
+    """Deflections and slopes by single forces, moments and loads; arguments of `macaulay`."""
 
     length: float
     EI: float
@@ -60,14 +60,14 @@ class _Beam:
     per_length: float
 
     def effect(self, kind: int, a: float, x: Floats) -> tuple[Floats, Floats]:
-        """Of a unit force (0) or moment (1) at station a."""
+        """Deflection and slope at x by a unit force (kind 0) or moment (kind 1) at station a."""
         d = np.maximum(x - a, 0.0)
         if kind == 0:
             return d**3 / (6 * self.EI) - d / self.kGA, d**2 / (2 * self.EI)
         return -(d**2) / (2 * self.EI), -d / self.EI
 
     def given(self, x: Floats) -> tuple[Floats, Floats]:
-        """Of all loads."""
+        """Deflection and slope at x by all loads."""
         w = self.per_length * (x**4 / (24 * self.EI) - x**2 / (2 * self.kGA))
         phi = self.per_length * x**3 / (6 * self.EI)
         for a, force, moment in self.loads:
@@ -76,7 +76,7 @@ class _Beam:
         return w, phi
 
     def equations(self, unknowns: Sequence[tuple[float, int, float]]) -> tuple[Floats, Floats]:
-        """Of springs and equilibrium, for reactions (station, kind, stiffness), c0 and c1."""
+        """Matrix and right side for reactions (station, kind, stiffness), c0 and c1."""
         n = len(unknowns)
         matrix, right = np.zeros((n + 2, n + 2)), np.zeros(n + 2)
         for row, (station, kind, stiffness) in enumerate(unknowns):

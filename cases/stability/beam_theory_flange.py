@@ -266,7 +266,7 @@ def show(page: Page, found: Map, shown: int, inset: float) -> None:
 
 
 def show_errors(page: Page, found: Map, shown: int, low: float | None) -> None:
-    """Charts and table of the beam's errors; the beam alone is safe from the thickness `low` on."""
+    """Show the beam's errors; the beam alone is safe from the thickness `low` on."""
     thick, error, thin = found.thick, found.error, found.thick <= PLATE
     page.section("Results")
     title = f"Error of the rotation by a moment, flange of {SHOWN:g} d, L = {LENGTH:g} d, against "

@@ -266,7 +266,7 @@ def show_steps(page: Page, found: Map) -> None:
 
 
 def show_errors(page: Page, found: Map, shown: int, safe: float | None) -> None:
-    """Charts and table of sharp steps; bending is safe from the length `safe` on."""
+    """Show the errors at sharp steps; bending is safe from the length `safe` on."""
     step, lengths = found.ratios[shown], found.lengths
     page.section("Sharp steps")
     along = "length of both halves over small diameter"

@@ -276,7 +276,7 @@ def show(page: Page, found: Map) -> None:
 
 
 def state_limits(page: Page, found: Map, safe_corrected: Sequence[float | None]) -> None:
-    """Shortest shafts of both beams, and of each bore with the flexibility of its ends."""
+    """State the shortest shafts of both beams."""
     lengths, bores, shear, error = found.lengths, found.bores, found.shear, found.error
     solid, half = 0, list(bores).index(0.5)
     for level in (1.0, 5.0):
@@ -306,7 +306,7 @@ def state_limits(page: Page, found: Map, safe_corrected: Sequence[float | None])
 
 
 def show_errors(page: Page, found: Map, first: float | None) -> None:
-    """Error over length, and maps; Timoshenko's deflection is safe from the length `first` on."""
+    """Show errors over length and bore; Timoshenko's deflection is safe from `first` on."""
     lengths, bores, shear, error = found.lengths, found.bores, found.shear, found.error
     page.section("Solid shaft")
     curves = {
@@ -346,7 +346,7 @@ def show_errors(page: Page, found: Map, first: float | None) -> None:
 
 
 def show_lengths(page: Page, found: Map) -> None:
-    """Table of the shortest shafts of each bore."""
+    """Show the minimum length of each bore."""
     lengths = found.lengths
     beams = {"Euler-Bernoulli, deflection": found.shear}
     beams |= {f"Timoshenko, {name}": percent for name, percent in found.error.items()}
@@ -366,7 +366,7 @@ def show_lengths(page: Page, found: Map) -> None:
 
 
 def show_ends(page: Page, found: Map) -> None:
-    """Table of what rigid ends take away, and of the errors left with it."""
+    """Show the lengths that rigid ends take away, and the errors that are left with these."""
     page.section("The remedy: the length by which a rigid end shortens a shaft")
     usable = found.lengths >= SHORTEST
     page.table(

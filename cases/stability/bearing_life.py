@@ -93,7 +93,7 @@ def lubricant(page: Page) -> None:
 
 
 def factors(kappas: Floats) -> list[Record]:
-    """a_ISO, and its formula carried on, at two ratios e_C C_u / P."""
+    """Life factor a_ISO, and its formula carried on, at two ratios e_C C_u / P."""
     return [
         {
             KAPPA: float(kappa),
@@ -105,7 +105,7 @@ def factors(kappas: Floats) -> list[Record]:
 
 
 def check_factor(page: Page) -> None:
-    """The formula within its range, its ends beyond, and the time that is counted there."""
+    """Check the life factor within the formula's range and beyond, and the time counted beyond."""
     inside = np.array([k for k in decades(-2, 2, 8) if 0.1 <= k <= 4.0])
     formula = np.array([carried_on(0.5, float(k)) for k in inside], dtype=float)
     formula = np.maximum(formula, 0.1)  # its smallest value, which at kappa 0.1 rounding passes
@@ -280,7 +280,7 @@ def lives_over_load(straight: Setup, profiled: Setup, factors: Floats) -> list[R
 
 
 def limit_fourth_power(page: Page, profiled: Setup, rows: list[Record], size: Floats) -> None:
-    """Range of loads in which the life of profiled rollers goes with the fourth power."""
+    """State the loads in which the life of profiled rollers goes with the fourth power."""
     profile = np.array([row["life, profile [Mrev]"] for row in rows]) * size**4
     few = replace(profiled, bearing=profiled.bearing.with_rows(laminae=200))
     u = equilibrium(few.bearing, size[0] * LOAD, tolerance=1e-12).displacements
@@ -303,7 +303,7 @@ def limit_fourth_power(page: Page, profiled: Setup, rows: list[Record], size: Fl
 
 
 def limit_capacity(page: Page, profiled: Setup, rows: list[Record]) -> None:
-    """Loads above C/2: counted, and what they do."""
+    """Check that time above C/2 is counted; state the limit."""
     heavy = [row for row in rows if row["P / C"] > 0.5]
     at = min(heavy, key=lambda row: row["P / C"])
     page.holds(
@@ -376,7 +376,7 @@ def standstill(page: Page) -> float:
 
 
 def oscillating() -> tuple[list[Record], float]:
-    """Life of the moving ring over that of rotation: of each amplitude, and of a ring at rest."""
+    """Life of the moving ring over that of rotation, for each amplitude and for a ring at rest."""
     psi = np.linspace(-np.pi, np.pi, 1440, endpoint=False)
     q = np.maximum(np.cos(psi), 0.0) ** 1.1
     ring = q**4
@@ -391,7 +391,7 @@ def oscillating() -> tuple[list[Record], float]:
 
 
 def check_time(page: Page) -> None:
-    """Time at standstill, and reversals."""
+    """Check that time at standstill and reversals are counted."""
     setup, grease = own_setup(), Lubricant(*GRADES["VG 460"])
     turning, standing, back = (
         damage(setup, LOAD, grease, speed) for speed in (18.0, 0.01, np.array([18.0, -18.0] * 5))

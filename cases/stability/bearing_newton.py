@@ -55,7 +55,7 @@ def run(run: Run, page: Page) -> None:
 
 
 def check(page: Page, rows: list[Record], preload: list[Record]) -> None:
-    """Every case converges, what no roller carries is refused, a free bearing is not stiff."""
+    """Check convergence, refusals of impossible loads, and the stiffness of a free bearing."""
     for name, of in (("clearances and loads", rows), ("preloads", preload)):
         page.vanishes(
             f"{name}: cases of damped Newton that have not converged",
@@ -88,7 +88,7 @@ def check(page: Page, rows: list[Record], preload: list[Record]) -> None:
 
 
 def state_limits(page: Page, rows: list[Record], arms: list[Record]) -> None:
-    """Loads for plain Newton, and arms for a moment."""
+    """State the loads that plain Newton's method solves, and the arms that carry a moment."""
     worst = max(rows, key=lambda row: row["plain Newton fails [%]"])
     tight = [row for row in rows if row["clearance [µm]"] > 0.0]
     failing = [row[SHARE] for row in tight if row["plain Newton fails [%]"] > 0.0]
@@ -116,7 +116,7 @@ def state_limits(page: Page, rows: list[Record], arms: list[Record]) -> None:
 
 
 def show(page: Page, rows: list[Record], preload: list[Record], arms: list[Record]) -> None:
-    """Charts and tables of the three sweeps."""
+    """Show the three sweeps."""
     page.section("Clearance and load")
     for y in ("plain Newton fails [%]", "evaluations, mean"):
         page.sweep(

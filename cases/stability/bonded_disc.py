@@ -114,7 +114,7 @@ def solve_disc(run: Run) -> DiscSweep:
 
 
 def check_disc(page: Page, found: DiscSweep) -> None:
-    """The remedy holds, and plain tetrahedra lock: checks and limits."""
+    """Check that plain tetrahedra lock and the remedy holds; state both limits."""
     nus, errors = found.nus, found.errors
     remedied, by_size = errors[AVERAGED], found.by_size
     worst = int(np.abs(remedied).argmax())
@@ -157,7 +157,7 @@ def check_disc(page: Page, found: DiscSweep) -> None:
 
 
 def show_disc(page: Page, found: DiscSweep) -> None:
-    """Chart and table of the disc."""
+    """Show the errors of the disc."""
     nus, errors = found.nus, found.errors
     page.chart(
         "Error of the bonded disc's stiffness, tetrahedra (shaded: plain ones of 10 nodes within "
@@ -300,7 +300,7 @@ def iterated(run: Run, of_disc: DiscSweep) -> tuple[dict[str, list[int]], dict[s
 
 
 def check_fallback(run: Run, page: Page, of_disc: DiscSweep) -> tuple[str, str]:
-    """A direct solver steps in where multigrid stops: what solved then, and what auto takes."""
+    """Check the fallback to a direct solver; return the solver used, and that of auto."""
     nus, disc = of_disc.nus, of_disc.disc
     with run.step("disc, fallback"):
         stiffness, used = disc.stiffness(nus[-1], averaged, "multigrid")
@@ -322,7 +322,7 @@ def check_fallback(run: Run, page: Page, of_disc: DiscSweep) -> tuple[str, str]:
 
 
 def check_growth(page: Page, nus: tuple[float, ...], counts: Mapping[str, list[int]]) -> None:
-    """Power of the ratio of moduli with which iterations grow."""
+    """Check how iterations grow with the ratio of moduli."""
     grew = [nus.index(nu) for nu in (0.49, 0.499)]
     at = [solids.bulk_over_shear(nus[k]) for k in grew]
     decades = np.log(at[1] / at[0])

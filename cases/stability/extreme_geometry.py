@@ -180,7 +180,7 @@ def show(page: Page, sweep: Sweep, found: Outcomes, fine: Outcomes) -> str:
 
 
 def check(page: Page, parameter: str, every: Outcomes) -> None:
-    """What was meshed is right, and what was refused says how to put it right."""
+    """Check that meshed shapes are exact, and that each refusal says how to correct the value."""
     page.at_most(
         f"{parameter}: error of volumes and named areas over what parabolas round a circle allow, "
         "and rims drawn back, worst of what was meshed",
@@ -213,7 +213,7 @@ def show_outcomes(
     fine: Outcomes,
     safe: tuple[float | None, float | None],
 ) -> None:
-    """Chart of the errors and table of every value."""
+    """Show the errors and every value."""
     parameter, every = sweep.parameter, [*found, *fine]
     page.section(parameter[0].upper() + parameter[1:])
     traces = [curve("meshed", [o for o in found if not o.sentence])]

@@ -200,7 +200,7 @@ def _say(step: str, lane: int = 0) -> None:
 
 @dataclass(frozen=True)
 class Bench:
-    """The folder of the experiment.
+    """Folders of the experiment.
 
     Attributes
     ----------
@@ -225,7 +225,7 @@ class Bench:
         return self.folder / "reports" / "small"
 
     def reset(self) -> None:
-        """Old results, and no mesh in the cache."""
+        """Put the old results back, and empty the cache of meshes."""
         for path in self.out.parent.glob("*"):
             shutil.rmtree(path)
         shutil.copytree(self.kept, self.out)
@@ -236,7 +236,7 @@ class Bench:
         return hidden(self.out.parent, self.caches)
 
     def kill(self, work: Callable[[Path], int], at: float) -> tuple[Killed, bool]:
-        """Kill a run a time [s] after its begin; what that leaves, and whether it was over."""
+        """Kill a run `at` seconds after its start; return what it leaves and whether it was over."""
         self.reset()
         start = time.perf_counter()
         pid, read = child(lambda: work(self.out))
@@ -265,7 +265,7 @@ class Bench:
         return found
 
     def suffer(self, name: str, work: Callable[[], int], at: Path | None = None) -> Fault:
-        """Make a fault happen to a run, and see what it says, returns and leaves in a folder."""
+        """Run with a fault; return its message, its exit status and what it leaves in a folder."""
         self.reset()
         status, written = ended(*child(work))
         (line,) = written.strip().splitlines()[-1:] or [""]
@@ -325,7 +325,7 @@ def two_runs(bench: Bench) -> Fault:
 
 
 def one_of_three(bench: Bench) -> Fault:
-    """A mesher that fails in one case of three: it keeps its results, and the others finish."""
+    """Let the mesher fail in one case of three: old results stay there, the others finish."""
     many = bench.folder / "many"
     failing = many / "faults" / "fails"
     shutil.copytree(bench.kept, failing)

@@ -128,7 +128,7 @@ def check_kills(page: Page, killed: list[Record], in_place: list[Record], left: 
 
 
 def safe_moment(in_place: list[Record]) -> float | None:
-    """Share of a run after which no kill leaves half a result that is written in place."""
+    """Share of a run after which no kill leaves half a result written in place."""
     last = max((k for k, is_broken in enumerate(broken(in_place)) if is_broken), default=-1)
     shares = column(in_place, "share of a run [-]")
     return shares[last + 1] if last + 1 < len(shares) else None
@@ -166,7 +166,7 @@ def state_limits(
     damaged: tuple[int, int],
     safe_from: float | None,
 ) -> None:
-    """Moments of a kill for results written in place, and damages of kept meshes."""
+    """State when a kill spoils results written in place, and what damages of kept meshes do."""
     tries, wrong = damaged
     page.limit(
         "results written straight into their folder",
@@ -190,7 +190,7 @@ def state_limits(
 
 
 def picture(killed: list[Record], in_place: list[Record], safe_from: float | None) -> Chart:
-    """What kills leave, over their moments."""
+    """Chart of the results that kills leave, over the moment of the kill."""
     heights = {"broken": 0, "old": 1, "new": 2}
     drawn = chart(
         "What a kill leaves in the result folder, against its moment: as the program writes, "
@@ -225,7 +225,7 @@ def picture(killed: list[Record], in_place: list[Record], safe_from: float | Non
 
 
 def show_others(page: Page, found: Any) -> None:
-    """Other faults, and how results are protected."""
+    """Show other faults, and how results are protected."""
     tries, _ = found["damaged"]
     page.section("Other faults")
     page.table(

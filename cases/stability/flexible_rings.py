@@ -110,7 +110,7 @@ def run(run: Run, page: Page) -> None:
 
 
 def show(page: Page, rows: list[Record], shapes: list[Record], harmonics: list[Record]) -> None:
-    """Table of the random loads, and charts of walls, shapes and harmonics."""
+    """Show random loads, walls, shapes and harmonics."""
     page.section("Wall and clearance")
     page.table("Random loads", rows)
     page.sweep(

@@ -188,7 +188,7 @@ def total(series: list[Record]) -> int:
 
 
 def show_sweeps(page: Page, of: Mapping[str, list[Record]], safe: float | None) -> None:
-    """How many elements fold, and what they do to the answer, over the elements to a turn."""
+    """Show how many elements fold, and the errors, over the elements to a turn."""
     page.section("How many fold")
     page.chart(
         "Folded elements, plus 0.1 so that none can be drawn",
@@ -228,7 +228,7 @@ def show_sweeps(page: Page, of: Mapping[str, list[Record]], safe: float | None) 
 
 
 def curves(of: Mapping[str, list[Record]], quantity: str, shift: float = 0.0) -> list[Any]:
-    """A quantity, without its sign, of each series of meshes."""
+    """Curves of the absolute value of a quantity, one for each series of meshes."""
     traces = []
     for name, series in of.items():
         answered = [row for row in series if np.isfinite(row[quantity])]

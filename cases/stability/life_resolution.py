@@ -95,7 +95,7 @@ def laminae(page: Page, quick: bool) -> None:
 
 
 def lives_over_laminae(counts: Sequence[int]) -> list[Record]:
-    """Life of three roller profiles, and what the stress riser leaves under an even load."""
+    """Life of three kinds of rollers, and under an even load, over the number of laminae."""
     rows: list[Record] = []
     for count in counts:
         record: Record = {LAMINAE: count}
@@ -122,7 +122,7 @@ def left_by_riser(count: int) -> float:
 
 
 def limit_laminae(page: Page, rows: list[Record], error: Floats) -> None:
-    """Laminae for straight rollers by their error, and those that the stress riser is made for."""
+    """State how many laminae straight rollers need, and how many the stress riser is made for."""
     enough = [row[LAMINAE] for row, one in zip(rows[:-1], error[:-1], strict=True) if one <= ENOUGH]
     page.limit(
         "basic reference life, straight rollers without stress riser",
@@ -194,7 +194,7 @@ def seeds(page: Page, quick: bool) -> None:
 
 
 def scatter_of_seeds(steps: Floats, draws: int) -> list[Record]:
-    """Damage at a site from some of the seeds: scatter and median, over how many.
+    """Scatter and median of the damage at a site, over the number of seeds.
 
     Parameters
     ----------

@@ -117,7 +117,7 @@ def steps(page: Page, quick: bool) -> float:
 
 
 def judge_bounces(page: Page, rows: list[Record]) -> float:
-    """Order, limit and chart of the bounces; the longest step that is enough."""
+    """Check the order of the bounces' error, show it; return the longest step that is enough."""
     size = [row["height of the bounce, error over the clearance"] for row in rows]
     over_steps = [row[STEP] for row in rows]
     slope, spread = fitted_exponent(over_steps[::-1], size[::-1], (1e-6, 0.3))

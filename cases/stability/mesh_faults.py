@@ -115,7 +115,7 @@ def doubled_nodes(run: Run, page: Page) -> None:
 
 
 def check_crack(page: Page, rows: list[Record], limit: float, fine: float) -> None:
-    """What a crack costs, that it is named, and that merging its nodes undoes it."""
+    """Check the stiffness that a crack costs, its report, and that merging its nodes helps."""
     page.equals(
         "bending stiffness lost by a crack of half the height that the mesh has by mistake",
         limit,
@@ -146,7 +146,7 @@ def check_crack(page: Page, rows: list[Record], limit: float, fine: float) -> No
 
 
 def show_crack(page: Page, rows: list[Record], safe: float) -> None:
-    """Chart of the stiffness that cracks cost."""
+    """Show the stiffness lost by cracks."""
     share, loss = (np.array(column(rows, key)) for key in ("share of the height", "torn mesh"))
     whole = np.isnan(loss)
     traces = [

@@ -195,7 +195,7 @@ def show(page: Page, rows: list[Record]) -> None:
 
 
 def state_limits(page: Page, rows: list[Record]) -> None:
-    """Ratios up to which each tie passes constant and linear stress."""
+    """State the ratios up to which each tie passes constant and linear stress."""
     ratios = np.array(sorted({row["ratio"] for row in rows}))
     dual = series(rows, "dual", "coarser", "bending")
     page.limit(
@@ -234,7 +234,7 @@ def state_limits(page: Page, rows: list[Record]) -> None:
 
 
 def show_stress(page: Page, rows: list[Record], dual_high: float | None) -> None:
-    """Charts of constant and of linear stress."""
+    """Show the errors of constant and of linear stress."""
     page.section("Stress")
     page.chart(
         "Patch test: largest error of a constant stress. Mortar ties pass to round-off, ties node "
@@ -263,7 +263,7 @@ def show_stress(page: Page, rows: list[Record], dual_high: float | None) -> None
 
 
 def show_fill(page: Page, rows: list[Record], ratios: Floats) -> None:
-    """Entries of the stiffness, and all numbers."""
+    """Show the entries of the stiffness, and all numbers."""
     page.section("Fill")
     block = (3 * series(rows, "standard", "coarser", "nodes of the master")) ** 2
     full = trace(

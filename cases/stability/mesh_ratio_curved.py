@@ -305,7 +305,7 @@ def show_facets(
 
 
 def limit_straight(page: Page, ratios: Sequence[int], coarse_slaves: list[Tie]) -> None:
-    """Ratio at which straight facets no longer meet."""
+    """State the ratio at which straight facets no longer meet."""
     refused = next(
         (
             ratio
@@ -326,7 +326,7 @@ def limit_straight(page: Page, ratios: Sequence[int], coarse_slaves: list[Tie]) 
 
 
 def remedied(as_meshed: list[Record]) -> Any:
-    """Curve of straight facets once settled."""
+    """Curve of straight facets after the tie is settled."""
     settled = [r for r in as_meshed if np.isfinite(r["once settled"])]
     return curve(
         "straight hexahedra, settled (remedy)",
@@ -337,7 +337,7 @@ def remedied(as_meshed: list[Record]) -> Any:
 
 
 def refusals(as_meshed: list[Record]) -> list[Any]:
-    """Ties that are refused, at 1."""
+    """Crosses of the ties that are refused, drawn at 1."""
     no_tie = [r for r in as_meshed if np.isnan(r["torque lost"])]
     if not no_tie:
         return []
@@ -393,7 +393,7 @@ def limit_ratios(
     stress: dict[tuple[str, str], Floats],
     most: dict[tuple[str, str], float | None],
 ) -> None:
-    """Ratios up to which each tie has the stress of shared nodes."""
+    """State the ratios up to which each tie has the stress of shared nodes."""
     node = stress["node by node", "coarser"]
     by_node = series(settled, "node by node", "coarser", "stiffness over the exact one")
     page.limit(

@@ -225,12 +225,12 @@ def show(page: Page, rows: list[Record], peak: float) -> None:
 
 
 def over_unknowns(name: str, series: list[Record], key: str) -> Any:
-    """Curve of a quantity."""
+    """Curve of a quantity over the number of unknowns."""
     return marked(name, column(series, "unknowns"), column(series, key))
 
 
 def show_costs(page: Page, rows: list[Record], peak: float) -> None:
-    """Iterations and memory over the unknowns, and all numbers."""
+    """Show iterations and memory over the number of unknowns, and all numbers."""
     page.section("Iterations and memory")
     page.chart(
         "Iterations of conjugate gradients with patches, to an energy error of 1e-9. Shaded: all, "

@@ -92,7 +92,7 @@ class Softened:
 
     @property
     def soft(self) -> tuple[float, tuple[str, ...]]:
-        """The restraint nearest to 1e-12, and its warnings."""
+        """The ratio nearest to 1e-12, and the warnings there."""
         row = min(self.rows, key=lambda row: abs(np.log10(row["ratio"]) + 12.0))
         return row["ratio"], row["warned"]
 
@@ -127,7 +127,7 @@ def sweep(run: Run, page: Page, joint: str, mesh: Mesh) -> list[Record]:
 
 
 def check_errors(run: Run, page: Page, joint: str, found: Softened) -> None:
-    """Errors grow as the program states them, and the remedy has none."""
+    """Check that errors grow as the program states, and that the remedy has none."""
     targets, predicted = found.of("ratio"), found.of("2e-16 over the ratio")
     for motion, error in found.errors.items():
         usable = (error > 0.0) & (error < 0.1) & (targets < 1e-5)
@@ -163,7 +163,7 @@ def check_errors(run: Run, page: Page, joint: str, found: Softened) -> None:
 
 
 def check_words(page: Page, joint: str, found: Softened) -> None:
-    """Warnings and refusals name the motion where digits are lost, and only there."""
+    """Check that warnings and refusals name the motion where digits are lost, and only there."""
     has_warning = found.of("warnings") > 0
     silent = np.isfinite(found.worst) & ~has_warning & ~(found.worst < FOUR_DIGITS)
     _, warned = found.soft
@@ -196,7 +196,7 @@ def check_words(page: Page, joint: str, found: Softened) -> None:
 
 
 def show(page: Page, joint: str, found: Softened, low: float) -> None:
-    """Chart of the errors, and what the program says; safe from the restraint `low` on."""
+    """Show the errors and the program's warning; safe from the ratio `low` on."""
     targets, answered = found.of("ratio"), np.isfinite(found.worst)
     has_warning = found.of("warnings") > 0
     page.section(f"{joint.capitalize()} joint")

@@ -86,7 +86,7 @@ def run(run: Run, page: Page) -> None:
 
 
 def scaled(run: Run, factors: Floats) -> tuple[Floats, Floats, list[str]]:
-    """Imbalance of the sun, difference from a rigid carrier, NaN where refused; the refusals."""
+    """Torque imbalance, difference from a rigid carrier (NaN where refused), refusals."""
     component = library_component("planet_carrier")
     assert isinstance(component, CarrierComponent)
     body = carrier_frame(component)

@@ -153,7 +153,7 @@ def coupled(run: Run, kind: str) -> Penalised:
 
 
 def check_exponents(page: Page, kind: str, found: Penalised, within: float) -> tuple[float, float]:
-    """Power of the penalty with which the error of a soft one falls, and of a stiff one grows."""
+    """Check the exponents of the errors of soft and stiff penalties; return both."""
     penalties, error = found.penalties, found.error
     spread = np.sqrt((found.direct**2).mean(axis=1))
     best = int(np.nanargmin(error))
@@ -183,7 +183,7 @@ def check_exponents(page: Page, kind: str, found: Penalised, within: float) -> t
 
 
 def check_elimination(page: Page, kind: str, found: Penalised) -> None:
-    """Round-off of the reference, and that both solvers agree on it."""
+    """Check the round-off of the reference, and that both solvers agree on it."""
     page.vanishes(
         f"{kind}: elimination, stiffness scaled by a third against unscaled",
         found.uncertain,
@@ -201,7 +201,7 @@ def check_elimination(page: Page, kind: str, found: Penalised) -> None:
 
 
 def state_limits(page: Page, kind: str, found: Penalised) -> tuple[float | None, float | None]:
-    """Ranges of the penalty with both solvers; that of the direct one."""
+    """State the safe penalties of both solvers; return those of the direct one."""
     penalties, error = found.penalties, found.error
     low, high = safe_range(penalties, error, FOUR_DIGITS)
     safe_iterated = safe_range(
@@ -235,7 +235,7 @@ def state_limits(page: Page, kind: str, found: Penalised) -> tuple[float | None,
 
 
 def show(page: Page, kind: str, found: Penalised, safe: tuple[float | None, float | None]) -> None:
-    """Chart of the errors, and all numbers."""
+    """Show the errors, and keep all numbers."""
     penalties, error = found.penalties, found.error
     tried, iterated_error, arrived = found.tried, found.iterated_error, found.arrived
     lost = ~np.isfinite(error)

@@ -130,7 +130,7 @@ def compare(run: Run, page: Page, rows: list[Record], load: str) -> dict[str, fl
 def check(
     page: Page, load: str, slenderness: Floats, of: Mapping[str, Floats], within: float
 ) -> None:
-    """The error grows with slenderness, and shrinks with bits."""
+    """Check how the error grows with slenderness, and falls with the number of bits."""
     usable = (of[LONG] < 0.1 * of[DOUBLE]) & (slenderness >= 2.0)
     page.exponent(
         f"{load}, 64 bits: error against L/D, exponent",
@@ -162,7 +162,7 @@ def check(
 def state_limits(
     page: Page, load: str, slenderness: Floats, of: Mapping[str, Floats]
 ) -> dict[str, float | None]:
-    """The longest tube with four digits in each precision."""
+    """State the maximum slenderness with four digits in each precision; return it."""
     highest: dict[str, float | None] = {}
     for precision, name in LIMITS.items():
         try:
@@ -192,7 +192,7 @@ def state_limits(
 def show(
     page: Page, load: str, slenderness: Floats, of: Mapping[str, Floats], high: float | None
 ) -> None:
-    """Errors of all precisions; safe up to the slenderness `high` in 64 bits."""
+    """Show the errors of all precisions; 64 bits are safe up to the slenderness `high`."""
     answered = np.isfinite(of[PROGRAM])
 
     def clipped(precision: str) -> Floats:

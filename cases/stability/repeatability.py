@@ -150,7 +150,7 @@ def run(run: Run, page: Page) -> None:
 def check(
     page: Page, runs: Mapping[str, Arrays], rows: list[Record], reordered: Renumbered, quick: bool
 ) -> int:
-    """Bits with one thread, digits in another order; how many arrays differ with one thread."""
+    """Check bits and digits of all runs; return how many arrays differ with one thread."""
     one_thread = different(runs["one thread"], runs["one thread, again"])
     page.vanishes(
         f"two runs with one thread, {len(runs['one thread'])} arrays from mesh to stiffness: how "
@@ -195,7 +195,7 @@ def check(
 
 
 def show(page: Page, rows: list[Record], lengths: tuple[float, ...], reordered: Renumbered) -> None:
-    """Table of what differs, and chart of the differences over slenderness."""
+    """Show what differs between runs, and the differences over slenderness."""
     slenderness = reordered.slenderness
     page.section("Runs")
     page.table(

@@ -275,7 +275,7 @@ def show_widths(page: Page, found: Found) -> None:
 
 
 def limit_widths(page: Page, found: Found, narrow: float | None, share: str) -> None:
-    """Widest band that has one stiffness, and that an averaged coupling bounds."""
+    """State the widths with one stiffness, and those that the averaged coupling bounds."""
     averaged, sliding = (over_rigid(found.swept, c) for c in ("averaged", "sliding"))
     bounding = min(np.array(found.widths)[sliding >= averaged], default=None)
     page.limit(
@@ -303,7 +303,7 @@ def limit_widths(page: Page, found: Found, narrow: float | None, share: str) -> 
 
 
 def show_tilt(page: Page, found: Found, narrow: float | None) -> None:
-    """Tilt stiffness over the width of the band: chart and table."""
+    """Show the tilt stiffness over the width of the band."""
     widths, rigid = found.widths, stiffness(found.swept, "rigid")
     averaged, sliding = (over_rigid(found.swept, c) for c in ("averaged", "sliding"))
     percent = [100.0 * w / seat.LENGTH for w in widths]

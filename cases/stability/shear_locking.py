@@ -130,7 +130,7 @@ def run(run: Run, page: Page) -> None:
 
 
 def check_held(page: Page, held: Excesses) -> None:
-    """Elements that hold the parabolas of pure bending have no error."""
+    """Check that elements which contain the parabolas of pure bending have no error."""
     for name, values in held.items():
         page.vanishes(
             f"square bar, {name}, 1 across: stiffness over E I, less one, worst of all lengths",
@@ -143,7 +143,7 @@ def check_held(page: Page, held: Excesses) -> None:
 
 
 def check_estimate(page: Page, estimates: Excesses) -> float:
-    """The least share of the true error that an estimate has."""
+    """Check the minimum of the estimated over the true error; return it."""
     share = min(min(values) for values in estimates.values())
     page.at_least(
         "error estimate of one mesh, hexahedra of 8 nodes in any length: estimated over true error "
@@ -158,7 +158,7 @@ def check_estimate(page: Page, estimates: Excesses) -> float:
 
 
 def show_tables(page: Page, square: Square, tetrahedra: list[Record], estimates: Excesses) -> None:
-    """Tetrahedra as the program meshes, and what an estimate has of the error."""
+    """Show tetrahedra as the program meshes, and the estimated over the true error."""
     page.table(
         f"Tetrahedra as the program meshes, L/D = {SHAFT_SLENDERNESS}; linear ones on the same "
         "corners. Against the circle's E I, linear ones lose by their flat sides a part of what "
@@ -338,7 +338,7 @@ def state_limits(
 
 
 def limit_cubes(page: Page, square: Square, program: str) -> None:
-    """Cubes that a bent bar has to have across it."""
+    """State how many cubes a bent bar needs across."""
     for name, values in square.cubes.items():
         low, worst = first_within(square.across[name], values), max(values, key=abs)
         if abs(worst) > CRITERION and low is not None:

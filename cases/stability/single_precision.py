@@ -271,7 +271,7 @@ def run(run: Run, page: Page) -> None:
 
 
 def check(page: Page, every: list[Trial], in_units: list[Trial]) -> None:
-    """Single precision converges as well, in as many iterations, to the same answers."""
+    """Check that single precision needs as many iterations, to the same answers."""
     page.vanishes(
         "solids on which the double-precision hierarchy converges and the single one does not",
         sum(t.double >= 0 > t.single for t in every),
@@ -315,7 +315,7 @@ def check(page: Page, every: list[Trial], in_units: list[Trial]) -> None:
 
 
 def show(page: Page, name: str, swept: list[Trial]) -> None:
-    """Chart and table of one sweep."""
+    """Show the iterations of one sweep."""
     page.section(name)
     at = [t.value for t in swept if t.double >= 0], [t.value for t in swept if t.single >= 0]
     page.chart(

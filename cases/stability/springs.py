@@ -210,7 +210,7 @@ def spherical(run: Run, page: Page) -> None:
 def check_spherical(
     page: Page, errors: Errors, at_zero: str, low: float | None, within: float
 ) -> None:
-    """Warnings where digits are lost, answers where they are not, and a beam that loses none."""
+    """Check for warnings where digits are lost, answers elsewhere, and a beam that loses none."""
     found, stiffness, error = errors.of, errors.of.stiffness, errors.hub
     silent = found.answered & ~found.warned & ~(errors.worst < FOUR_DIGITS)
     allowed = stiffness <= STIFFEST
@@ -255,7 +255,7 @@ def check_spherical(
 def show_spherical(
     page: Page, errors: Errors, at_zero: str, safe: tuple[float | None, float | None]
 ) -> None:
-    """Chart of the errors, and what the program says of each spring."""
+    """Show the errors, and the message of the program for each spring."""
     found, error, beam_error = errors.of, errors.hub, errors.beam
     stiffness, answered, warned = found.stiffness, found.answered, found.warned
     by_beam = np.isfinite(beam_error)
@@ -313,7 +313,7 @@ def bonded(run: Run, page: Page) -> None:
 
 
 def one_spring(run: Run, k: Floats) -> OneSpring:
-    """Solve a bonded bearing with springs of so many N/m, none, and a rigid one."""
+    """Solve a bonded bearing with springs k [N/m], with none, and held rigidly."""
     scene = scene_of("bonded")
     mesh = mesh_scene(scene)
     model, held = sprung(scene, mesh), sprung(scene_of("bonded", rigid=(2, 3)), mesh)
@@ -337,7 +337,7 @@ def one_spring(run: Run, k: Floats) -> OneSpring:
 
 
 def check_first_order(page: Page, found: OneSpring, within: float) -> None:
-    """Powers of the spring with which errors grow, and both ends are left."""
+    """Check how errors, and departures from both ends, go with the stiffness of the spring."""
     k, reaction_error = found.of.stiffness, found.reaction_error
     above = k > STIFFEST
     between = (k > 1.0 / found.own) & ~above
@@ -368,7 +368,7 @@ def check_first_order(page: Page, found: OneSpring, within: float) -> None:
 
 
 def check_ends(page: Page, found: OneSpring) -> None:
-    """The softest and the stiffest spring leave the free and the held shaft."""
+    """Check that the softest and the stiffest spring give the free and the held shaft."""
     page.equals(
         "bonded: hub motion at the softest spring, over that of the free shaft",
         found.of.hub[0] / found.free,
@@ -394,7 +394,7 @@ def check_ends(page: Page, found: OneSpring) -> None:
 
 
 def show_bonded(page: Page, found: OneSpring, high: float | None) -> None:
-    """Chart of errors and departures; the reaction is safe up to the spring `high`."""
+    """Show errors and departures; the reaction is safe up to the stiffness `high`."""
     page.section("Bonded bearing: from a free end to a held one")
     page.text(
         "The bonded bearing holds the shaft by itself. One spring more moves the hub by what its "

@@ -355,7 +355,7 @@ ITERATED = {
 
 
 def limit_iterated(page: Page, parameter: str, safe: tuple[float | None, float | None]) -> None:
-    """Range of one contrast with multigrid."""
+    """State the range of one contrast with multigrid."""
     method, beyond, remedy = ITERATED[parameter]
     page.limit(
         method,

@@ -90,7 +90,7 @@ def accuracy(page: Page, duration: float) -> float:
 
 
 def judge_accuracy(page: Page, counts: Ints, found: Mapping[str, Floats]) -> float:
-    """Order, limit and chart of the errors; the fewest steps that are enough."""
+    """Check the order of the errors, show them; return the minimum number of steps."""
     page.exponent(
         "average acceleration: error of a mesh force over the steps in its period, exponent",
         counts,

@@ -32,7 +32,7 @@ EXTRA = HALF + 1.0
 
 @dataclass(frozen=True)
 class Sweeps:
-    """Least and largest mesh force over the mean, over the frequency.
+    """Minimum and maximum mesh force over its mean, over the mesh frequency.
 
     Attributes
     ----------
@@ -95,7 +95,7 @@ def run(run: Run, page: Page) -> None:
 
 
 def check_contact(page: Page, found: Sweeps) -> None:
-    """No difference where teeth stay in contact, none is pulled, every step converges."""
+    """Check that backlash changes nothing while teeth stay in contact, and pulls none."""
     least = np.minimum(found.up[:, 0], found.down[:, 0])
     page.vanishes(
         "frequencies at which teeth stay in contact: swings with and without backlash",
@@ -127,7 +127,7 @@ def sweeps(at: Floats) -> Sweeps:
 
 
 def show(page: Page, found: Sweeps, safe: float) -> None:
-    """Charts of largest and least force; a spring that pulls is safe from the frequency on."""
+    """Show maximum and minimum force; the linear model is safe from the frequency `safe` on."""
     at, up, down, linear = found.at, found.up, found.down, found.linear
     page.section("Sweeps")
     for caption, y, k in (

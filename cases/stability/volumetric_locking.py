@@ -243,7 +243,7 @@ def towards_half(
 
 
 def check_highest(page: Page, highest: float, change: float) -> None:
-    """The largest nu of a material is right, and a larger one is refused."""
+    """Check the maximum nu of a material, and that a larger one is refused."""
     try:
         solids.material(0.5 - 1e-7)
         accepted = True

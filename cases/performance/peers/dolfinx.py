@@ -141,7 +141,7 @@ def solve(state: Any, variant: str, clock: Clock) -> list[float]:
 
 
 def _work(u: Any, v: Any, lam: Any, mu: Any) -> Any:
-    """Work of the stress of one displacement on the strain of another."""
+    """Work of the stress of displacement u on the strain of displacement v."""
     import ufl
 
     strain = ufl.sym(ufl.grad(u))
