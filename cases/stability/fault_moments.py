@@ -236,7 +236,7 @@ class Bench:
         return hidden(self.out.parent, self.caches)
 
     def kill(self, work: Callable[[Path], int], at: float) -> tuple[Killed, bool]:
-        """Kill a run `at` seconds after its start; return what it leaves and whether it was over."""
+        """Kill a run `at` seconds after its start; return what it leaves, and if it was over."""
         self.reset()
         start = time.perf_counter()
         pid, read = child(lambda: work(self.out))
