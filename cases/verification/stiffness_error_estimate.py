@@ -151,6 +151,15 @@ def run(run: Run, page: Page) -> None:
         ("x", "y"),
     )
     page.table("Error of the stiffness, which is too high, and its estimate", rows, SHOWN)
+    show_shape(page, rows)
+    page.image(
+        "The shaft with a sharp step", run.sketch(rigid_ended_shafts.SHAFTS["stepped, sharp"])
+    )
+    page.data("effectivity", found)
+
+
+def show_shape(page: Page, rows: list[Record]) -> None:
+    """Errors of the polar moment, which estimates from stresses do not see."""
     page.section("What the estimate does not see")
     page.text(
         "Torsion of a shaft of uniform section moves points by products of two coordinates, which "
@@ -174,7 +183,3 @@ def run(run: Run, page: Page) -> None:
             if row.get(SHAPE)
         ],
     )
-    page.image(
-        "The shaft with a sharp step", run.sketch(rigid_ended_shafts.SHAFTS["stepped, sharp"])
-    )
-    page.data("effectivity", found)
