@@ -5,6 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.special import fresnel
 
+from fe_drivetrain.cases.procedure.swept_modes import Sweep, run_up_peak, swept_response
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.levels import machine_system
 from fe_drivetrain.dynamics.modes import system_modes
@@ -12,7 +13,6 @@ from fe_drivetrain.dynamics.response import crossings
 from fe_drivetrain.dynamics.tables import library_machine
 from fe_drivetrain.procedure.motions import driven_motions
 from fe_drivetrain.procedure.resonance import Excitation, drivetrain_excitations, resonances
-from fe_drivetrain.procedure.run_up import Sweep, run_up_peak, swept_response
 from fe_drivetrain.torsion.orders import mesh_orders
 from fe_drivetrain.torsion.system import Inertia, chain
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.procedure.swept_modes import Sweep, run_up_peak, swept_response
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import InTime, converge_in_time, peak_between, round_off
 from fe_drivetrain.dynamics import (
@@ -22,11 +23,8 @@ from fe_drivetrain.dynamics import (
 from fe_drivetrain.histories import campbell
 from fe_drivetrain.procedure import (
     Meeting,
-    Sweep,
     drivetrain_excitations,
     resonances,
-    run_up_peak,
-    swept_response,
 )
 from fe_drivetrain.report import heat_map, trace
 from fe_drivetrain.suite import Page, Record, Run, check_in_time

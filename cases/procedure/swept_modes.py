@@ -1,4 +1,4 @@
-"""Run-up through a resonance: the exact response of a mode to a frequency that rises evenly.
+"""Exact response of a mode to a frequency that rises evenly: a run-up through a resonance.
 
 PROTEST 2010 (appendix A.3.3) asks for a run-up by steadily rising speed. A mode then answers an
 excitation whose phase is 2 pi (f0 t + r t^2 / 2), with the response of Lewis (1932, Vibration
@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import wofz
 
-from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common import Floats, InputError
 
 Complex = NDArray[np.complex128]
 
