@@ -203,7 +203,7 @@ def gauges(page: Page, mesh: Meridian, held: Ints, rollers: Floats) -> None:
     strains, outwards = on_the_outside(mesh, held, rollers, np.concatenate([dense, at]))
     strain, values = strains[: len(dense)], strains[len(dense) :]
     true = float(np.abs(np.fft.rfft(outwards[: len(dense)])[2])) / (len(dense) / 2)
-    rows = [
+    rows: list[Record] = [
         {
             "waves fitted": ", ".join(map(str, orders)),
             "w2 from strains [µm]": float(np.hypot(fit.shape.cosine[0], fit.shape.sine[0])) * 1e6,

@@ -70,7 +70,8 @@ def check(
     values = [solid.factor(load, DEGREE) for solid in solids]
     limit = richardson([1.0 / n for n in meshes], values, ORDER)
     # what the polynomial itself leaves out, on a profile that is known
-    fitted = abs(solid_fillet.fitted_peak(*f.peak.profile.T, DEGREE) - f.peak.factor)
+    angle, factor = f.peak.profile.T
+    fitted = abs(solid_fillet.fitted_peak(angle, factor, DEGREE) - f.peak.factor)
     band = DOUBTFUL * abs(limit - values[-1]) + fitted
     within = (band + f.band) / f.peak.factor
     why = "the bands of both: grid convergence index of two meshes at second order, safety "
