@@ -15,7 +15,7 @@ from fe_drivetrain.cases.bearing.peak_rollers import (
     timed_rungs,
 )
 from fe_drivetrain.report import rolling_elements
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 REFERENCE_LAMINAE = 400
 THREE = "three degrees, 30 laminae"

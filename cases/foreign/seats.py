@@ -6,8 +6,8 @@ import numpy as np
 
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report import NoPictureError, picture_of_deformation
-from fe_drivetrain.response import Model, Response
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.response import Model, Response
 
 MOTIONS = ("along x", "along y", "along z", "about x", "about y", "about z")
 

@@ -13,7 +13,7 @@ from fe_drivetrain.cases.verification.rigid_balance import check_balance
 from fe_drivetrain.common import Floats
 from fe_drivetrain.geometry import Shaft
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, column, grouped
+from fe_drivetrain.report.suite import Page, Record, Run, column, grouped
 
 SHAFT = "stepped, sharp"
 LOAD = "bending"

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.suite import Record, column
+from fe_drivetrain.report.suite import Record, column
 
 #: Required: share of the bands that hold, and median of the bands over their errors.
 COVERED, WIDE = 0.95, 5.0
