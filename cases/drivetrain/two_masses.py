@@ -1,6 +1,5 @@
 """Rotor and generator on one spring: the NREL 750 kW drivetrain as aeroelastic codes have it."""
 
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -62,10 +61,7 @@ def run(run: Run, page: Page) -> None:
     page.about(TABLE)
     with run.step("frequencies"):
         found = {state: natural_modes(system) for state, system in SYSTEMS.items()}
-        bands = {
-            state: published.rounding_band(NAME, partial(two_masses, generator=state))
-            for state in published.STATES
-        }
+        bands = published.rounding_bands(NAME, two_masses)
     for state, modes in found.items():
         check_frequencies(page, state, modes, bands[state])
     check_momentum(page, found["free"])

@@ -26,23 +26,20 @@ from fe_drivetrain.cases.procedure.slewing_drives import (
     MOMENT,
     PITCH,
     RADIAL,
-    stop_motion,
+    rotor_in_yaw,
+    stopped,
 )
 from fe_drivetrain.cases.references import published_campaigns, published_drivetrains
-from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import round_off
 from fe_drivetrain.dynamics.torsion import GENERATOR as GENERATOR_NAME
 from fe_drivetrain.dynamics.torsion import ROTOR, gear_masses, static_stiffness
 from fe_drivetrain.procedure import (
     Solutions,
     Twist,
-    drive_torque,
     friction_torque,
-    gyroscopic_torque,
     least_squares,
     method_b,
     method_c,
-    printed_drive_torque,
     protest_catalogue,
     ratio_by_ranges,
     shear_between,
@@ -311,13 +308,10 @@ def pitch(page: Page) -> list[Record]:
 
 def pitch_torque() -> list[Record]:
     """Torque and inertia of a pitch drive in a shutdown."""
-    time, angle, speed, acceleration = stop_motion()
-    load: Floats = 8e3 + 3e3 * np.sin(1.8 * time)
-    loads = MOMENT * (0.25 + 0.75 * np.cos(angle)), AXIAL, RADIAL
-    resists = friction_torque(*loads, DIAMETER)
-    right = drive_torque(PITCH, load, resists, speed, acceleration)
-    printed = printed_drive_torque(PITCH, load, resists, speed, acceleration)
-    by_speed = (load + np.sign(speed) * resists + PITCH.inertia * speed) / PITCH.ratio
+    stop = stopped()
+    held = stop.load + np.sign(stop.speed) * stop.friction
+    by_speed = (held + PITCH.inertia * stop.speed) / PITCH.ratio
+    right, printed = (float(np.abs(torque).max()) for torque in (stop.right, stop.printed))
     return [
         row(
             "Eq 5.1, inertia",
@@ -333,7 +327,7 @@ def pitch_torque() -> list[Record]:
             "the same",
             "the same",
             "largest torque of the motor [N m]",
-            (float(np.abs(printed).max()), float(np.abs(right).max())),
+            (printed, right),
         ),
         row(
             "Fig. 5-6, inertia",
@@ -341,7 +335,7 @@ def pitch_torque() -> list[Record]:
             "speed times inertia",
             "acceleration times inertia",
             "largest torque of the motor [N m], the units left aside",
-            (float(np.abs(by_speed).max()), float(np.abs(right).max())),
+            (float(np.abs(by_speed).max()), right),
         ),
     ]
 
@@ -417,9 +411,7 @@ def tower_shear(page: Page) -> Record:
 
 def gyroscopic(page: Page) -> Record:
     """Gyroscopic torque of a rotor that yaws."""
-    spin = 2.0 * np.array([np.cos(0.09), 0.0, np.sin(0.09)])
-    turning = np.array([0.0, 0.0, np.radians(5.0) / 12.0])
-    torque = gyroscopic_torque(4e6, spin, turning) / 1e3
+    torque = rotor_in_yaw() / 1e3
     page.vanishes(
         "gyroscopic torque about the tower [kN m]",
         float(torque[2]),

@@ -10,14 +10,18 @@ from fe_drivetrain.cases.procedure.slewing_drives import (
     BRIDGES,
     DEFICIT,
     DIAMETER,
+    DURATION,
     MOMENT,
     PITCH,
     RADIAL,
     STEP,
     STOP_RAMP,
     TEETH,
+    TURNED,
     YAW,
-    stop_motion,
+    Stop,
+    rotor_in_yaw,
+    stopped,
 )
 from fe_drivetrain.common import Bools, Floats
 from fe_drivetrain.comparison import round_off
@@ -26,10 +30,8 @@ from fe_drivetrain.procedure import (
     drive_torque,
     friction_torque,
     governing_torque,
-    gyroscopic_torque,
     moves,
     peak_times,
-    printed_drive_torque,
     shear_between,
     thermal_torque,
     tooth_counts,
@@ -46,7 +48,7 @@ from fe_drivetrain.turbine_loads.hub_loads import (
     turbine_histories,
 )
 
-PAUSE, DURATION, TURNED = 120.0, 12.0, np.radians(5.0)  # s, s, rad
+PAUSE = 120.0  # s
 BRAKES, MOTOR = (100.0, 200.0, 400.0), 150.0  # N m, at the motors of the yaw drives, all together
 STARTS = 600  # of the yaw motors in a day
 WINDS = (13.0, 16.0, 20.0, 24.0)
@@ -79,29 +81,6 @@ def work(torque: Floats, speed: Floats) -> float:
     """Integral of the power [J]."""
     power = torque * speed
     return float(STEP * (power[1:] + power[:-1]).sum() / 2.0)
-
-
-@dataclass(frozen=True)
-class Stop:
-    """Motion of a pitch drive in a shutdown, and the torques of load, friction and motor [N m]."""
-
-    time: Floats
-    speed: Floats
-    load: Floats
-    friction: Floats
-    right: Floats
-    printed: Floats
-
-
-def stopped() -> Stop:
-    """A shutdown, with the printed signs of Eq 5.1 and with the right ones."""
-    time, angle, speed, acceleration = stop_motion()
-    left = np.cos(angle)
-    load = 8e3 + 3e3 * np.sin(1.8 * time)
-    friction = friction_torque(MOMENT * (0.25 + 0.75 * left), AXIAL, RADIAL, DIAMETER)
-    right = drive_torque(PITCH, load, friction, speed, acceleration)
-    printed = printed_drive_torque(PITCH, load, friction, speed, acceleration)
-    return Stop(time, speed, load, friction, right, printed)
 
 
 def shutdown(page: Page) -> None:
@@ -397,9 +376,7 @@ def show_durations(page: Page, levels: Levels, direct: Levels) -> None:
 
 def gyroscopic(page: Page) -> None:
     """Gyroscopic torque of the rotor while the nacelle yaws."""
-    found = gyroscopic_torque(
-        4e6, 2.0 * np.array([np.cos(0.09), 0.0, np.sin(0.09)]), np.array([0, 0, TURNED / DURATION])
-    )
+    found = rotor_in_yaw()
     page.vanishes(
         "yawing: gyroscopic torque about the tower, over its whole [kN m/(kN m)]",
         float(found[2] / np.linalg.norm(found)),

@@ -30,15 +30,6 @@ MOST = 60_000
 
 
 @dataclass(frozen=True)
-class Found:
-    """Rows and imbalances of all meshes, uniform ones first, and the last adaptive mesh."""
-
-    rows: list[Record]
-    imbalances: list[float]
-    finest: rigid_ended_shafts.Solved
-
-
-@dataclass(frozen=True)
 class Rates:
     """Error [%] of the finest comparable adaptive mesh, that of a uniform one as large, slopes."""
 
@@ -64,8 +55,10 @@ def record(kind: str, solved: rigid_ended_shafts.Solved, exact: float, marks: in
     }
 
 
-def solve_all(run: Run, shaft: Shaft, exact: float) -> Found:
-    """Solve uniform meshes, then refine step by step."""
+def solve_all(
+    run: Run, shaft: Shaft, exact: float
+) -> tuple[list[Record], list[float], rigid_ended_shafts.Solved]:
+    """Rows and imbalances of uniform meshes, then of refined ones, and the last of these."""
     rows: list[Record] = []
     imbalances = []
     for size, turn in QUICK_UNIFORM if run.quick else UNIFORM:
@@ -87,7 +80,7 @@ def solve_all(run: Run, shaft: Shaft, exact: float) -> Found:
         run.report(f"adaptive: {solved.unknowns:,} unknowns, error {error:.2g}")
         if solved.unknowns > MOST:
             break
-    return Found(rows, imbalances, solved)
+    return rows, imbalances, solved
 
 
 def error_curves(rows: list[Record]) -> dict[str, Floats]:
@@ -121,24 +114,26 @@ def run(run: Run, page: Page) -> None:
     with run.step("reference"):
         exact = rigid_ended_shafts.exact(shaft, 0.1, 10)[LOAD]
         rough = rigid_ended_shafts.exact(shaft, 0.1, 5)[LOAD]
-    found = solve_all(run, shaft, exact)
-    curves = error_curves(found.rows)
+    rows, imbalances, finest = solve_all(run, shaft, exact)
+    curves = error_curves(rows)
     rates = convergence_rates(curves)
-    check(page, found, rates, exact, doubt=abs(rough / exact - 1))
+    check_balance(page, imbalances)
+    check(page, finest, rates, exact, doubt=abs(rough / exact - 1))
     page.answer(
         f"At {rates.unknowns:,} unknowns the error of the adaptive mesh is {rates.error:.2g} %, "
         f"that of a uniform one of as many {rates.uniform_error:.2g} %.",
         f"Error falls with unknowns to the power {rates.slope['adaptive']:.2f} on adaptive meshes, "
         f"{rates.slope['uniform']:.2f} on uniform ones: the sharp step holds these back.",
     )
-    show(page, found.rows, curves)
+    show(page, rows, curves)
     page.image("The shaft with a sharp step", run.sketch(shaft))
-    page.data("meshes", found.rows)
+    page.data("meshes", rows)
 
 
-def check(page: Page, found: Found, rates: Rates, exact: float, doubt: float) -> None:
+def check(
+    page: Page, finest: rigid_ended_shafts.Solved, rates: Rates, exact: float, doubt: float
+) -> None:
     """Adaptive meshes beat uniform ones, and the last one's band covers its error."""
-    check_balance(page, found.imbalances)
     page.at_most(
         f"error of the adaptive mesh of {rates.unknowns:,} unknowns over that of a uniform one "
         "of as many",
@@ -147,7 +142,7 @@ def check(page: Page, found: Found, rates: Rates, exact: float, doubt: float) ->
         why="refinement that does not beat uniform meshes is not worth its solves",
         source="uniform meshes of this case, between two of them on logarithmic scales",
     )
-    k, estimate = found.finest.stiffness[LOAD], found.finest.estimate[LOAD]
+    k, estimate = finest.stiffness[LOAD], finest.estimate[LOAD]
     page.equals(
         "bending stiffness on the last adaptive mesh [N m/rad]",
         k,

@@ -13,11 +13,11 @@ from fe_drivetrain.cases.references.shaft_ends import (
     Solid,
     has_fillets,
     imbalance,
+    limit_of,
     solid_stiffness,
 )
 from fe_drivetrain.cases.references.torsion_meridian import torsion_bounds
 from fe_drivetrain.common import Floats
-from fe_drivetrain.comparison import grid_convergence, richardson
 from fe_drivetrain.elasticity.revolution import end_stiffness
 from fe_drivetrain.geometry import Shaft
 from fe_drivetrain.report import trace
@@ -38,22 +38,6 @@ ENTRIES = (
     ("bending", 5, 5, "N m/rad"),
 )
 MERIDIAN_TIME = "meridian, from the shaft to the 12 x 12 [ms]"
-
-
-def limit_of(values: list[float], quick: bool) -> tuple[float, float, str]:
-    """Where a series of meshes goes, its band, and what the band is."""
-    sizes = [1 / cut for cut in CUTS[: len(values)]]
-    if quick:
-        limit = richardson(sizes, values, 1.0)
-        return (
-            limit,
-            abs(values[-1] - values[-2]),
-            "what the finer of two meshes of the solid changed",
-        )
-    grid = grid_convergence(sizes, values, least_order=1.0)
-    limit = grid.extrapolated
-    band = max(grid.extrapolated_uncertainty, abs(values[-1] - limit))
-    return limit, band, f"the band of three meshes of the solid ({grid.behaviour})"
 
 
 @dataclass(frozen=True)
@@ -79,13 +63,13 @@ def compared(run: Run, name: str, cuts: tuple[int, ...]) -> Compared:
     return Compared(flat, np.abs(flat - rough), seconds, solids)
 
 
-def check_entries(page: Page, name: str, found: Compared, quick: bool) -> list[Record]:
+def check_entries(page: Page, name: str, found: Compared, cuts: tuple[int, ...]) -> list[Record]:
     """Each entry against the limit of the solids; rows of a table."""
     solids, rows = found.solids, []
     kind = "curved tetrahedra" if has_fillets(SHAFTS[name]) else "hexahedra of 27 nodes"
     for entry, i, j, unit in ENTRIES:
         values = [s.K[i, j] for s in solids]
-        limit, band, words = limit_of(values, quick)
+        limit, band, words = limit_of(cuts, values)
         page.equals(
             f"{name}: {entry}",
             found.flat[i, j],
@@ -102,7 +86,7 @@ def check_entries(page: Page, name: str, found: Compared, quick: bool) -> list[R
                 "shaft": name,
                 "entry": entry,
                 "unit": unit,
-                **{f"solid, cut {c}": v for c, v in zip(CUTS, values, strict=False)},
+                **{f"solid, cut {c}": v for c, v in zip(cuts, values, strict=True)},
                 "its limit": limit,
                 "its band": band,
                 "meridian": found.flat[i, j],
@@ -125,7 +109,7 @@ def run(run: Run, page: Page) -> None:
     for name in QUICK if run.quick else SHAFTS:
         shaft, found = SHAFTS[name], compared(run, name, cuts)
         by_name[name] = found
-        rows += check_entries(page, name, found, run.quick)
+        rows += check_entries(page, name, found, cuts)
         if not has_fillets(shaft):  # the bounds are of straight outlines
             check_torsion(run, page, name, shaft, found.flat[3, 3], found.bands[3, 3])
         page.vanishes(
