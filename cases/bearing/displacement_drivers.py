@@ -18,7 +18,7 @@ from fe_drivetrain.common import Bools, Floats
 from fe_drivetrain.report import rolling_elements, trace
 from fe_drivetrain.report.suite import Page, Record, Run
 
-#: Of a bearing S with the moment of the rotor's weight alone [N m].
+#: Moment of the rotor's weight alone on a bearing S [N m].
 MOMENT = 8e5
 
 

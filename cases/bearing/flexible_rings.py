@@ -65,7 +65,7 @@ CONTACT_ANGLE = 20.0
 ROLLERS = 36
 PLACES = (-WIDTH / 4.0, WIDTH / 4.0)
 
-#: Of six motions, those that a bearing resists.
+#: The motions, of six, that a bearing resists.
 FIVE = (0, 1, 2, 4, 5)
 
 

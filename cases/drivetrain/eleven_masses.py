@@ -58,12 +58,12 @@ class Restored(NamedTuple):
     Attributes
     ----------
     carrier, planet : float
-        [kg m^2].
+        Inertias [kg m^2].
     spread : float
         Half width of the carrier and its three planets, by the last digits of what they are solved
         for [kg m^2].
     frequencies : Floats
-        Of the table's nine modes [Hz].
+        Frequencies of the table's nine modes [Hz].
     """
 
     carrier: float

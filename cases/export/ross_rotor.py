@@ -29,7 +29,7 @@ PARTS, COUNT = 32, 6
 #: Natural frequencies of the free shaft.
 FREE = 4
 
-#: Of a rigid support: how many times the spring in its place is stiffer than the shaft there.
+#: How many times the spring in place of a rigid support is stiffer than the shaft there.
 STIFFER = 1e6
 
 

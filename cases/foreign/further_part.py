@@ -31,7 +31,7 @@ def with_part(scene: Scene, file: str, tied: Record, held: Record, material: str
     return change_scene(scene, {f"{UNIT}.stands_on": "parts", f"{UNIT}.parts": [part | ties]})
 
 
-def of_modulus(scene: Scene, key: str, modulus: float) -> Scene:
+def with_modulus(scene: Scene, key: str, modulus: float) -> Scene:
     """The scene with another modulus of its housing or part."""
     given = {"youngs_modulus": modulus, "poisson_ratio": 0.3, "density": 7100}
     return change_scene(scene, {"materials.stiff": given, f"{UNIT}.{key}.material": "stiff"})
@@ -75,7 +75,7 @@ def run(run: Run, page: Page) -> None:
         )
     with run.step("stiff bedplates"):
         fixed = give(ground)
-        stiff = [give(of_modulus(on_plate, "parts.0", E)) for E in STIFF]
+        stiff = [give(with_modulus(on_plate, "parts.0", E)) for E in STIFF]
     check_stiff(page, fixed, K, stiff)
     found = {"fixed foot": fixed, "bedplate": K}
     if not run.quick:
@@ -139,7 +139,7 @@ def check_arm(run: Run, page: Page, ground: Scene, file: str) -> Floats:
         write_step(file, [gmsh.model.occ.addCylinder(*ROOT, *(END - ROOT), BAR / 2)])
     ends = [{"point": (1000 * x).tolist(), "normal": [0, 1, 0]} for x in (ROOT, END)]
     with run.step("torque arm"):
-        arm = with_part(of_modulus(ground, "housing", STIFF[1]), file, ends[0], ends[1], "steel")
+        arm = with_part(with_modulus(ground, "housing", STIFF[1]), file, ends[0], ends[1], "steel")
         found = give(arm)
     root = bolt_stiffness(BAR, ROOT, END, MATERIALS["steel"])
     exact, length = np.linalg.inv(stiffness_transport(root, ROOT)), float((END - ROOT)[1])

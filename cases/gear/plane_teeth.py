@@ -165,11 +165,11 @@ def compliances(section: ToothSection, plane: Plane, depth: float = DEPTH) -> Fl
     Parameters
     ----------
     section : ToothSection
-        Of `mesh_teeth`.
+        Meshed gear.
     plane : Plane
         Elastic constants, of plane stress or plane strain.
     depth : float
-        Of the points whose motion it is, as a share of the way to the tooth's centre line.
+        Depth of the points whose motion it is, as a share of the way to the tooth's centre line.
 
     Returns
     -------
@@ -216,7 +216,7 @@ def pressed_surface(
     hub : float
         Radius where the gear is held [m].
     half_width : float
-        Of the contact [m].
+        Half width of the contact [m].
     plane : Plane
         Elastic constants.
 
@@ -269,7 +269,7 @@ class MeshedPair:
     places : (n,) array
         Places of contact from T1, from the start of the path of contact in equal steps [m].
     steps : int
-        In a base pitch.
+        Number of places in a base pitch.
     first, second : (2, n, 2, n) arrays
         `compliances` of the gears; tooth 1 is in contact a base pitch further on the path, on both
         gears, and places of the second are in the order of those of the first.
@@ -290,7 +290,7 @@ class MeshedPair:
         Parameters
         ----------
         load : float
-            On a length of face, for the contact [N/m].
+            Load on a length of face, for the contact [N/m].
 
         Returns
         -------
@@ -307,7 +307,7 @@ class MeshedPair:
         Parameters
         ----------
         load : float
-            On a length of face, for the contact [N/m].
+            Load on a length of face, for the contact [N/m].
         coupled : bool
             Whether a pair feels what the other does to both gear bodies; if not, stiffnesses of
             single pairs add up.
@@ -368,11 +368,11 @@ def meshed_pair(
     plane : Plane
         Elastic constants of the teeth.
     steel : Steel
-        Of the contact, which is in plane strain.
+        Elastic constants of the contact, which is in plane strain.
     steps : int
         Places in a base pitch.
     size : float
-        Of elements in the teeth, in modules.
+        Size of elements in the teeth, in modules.
 
     Returns
     -------

@@ -11,7 +11,7 @@ from fe_drivetrain.turbine_loads.histories import Site, time_factors
 
 STAGES = (PlanetaryStage(29, 58, 145), ParallelStage(108, 27), ParallelStage(111, 29))
 LASTING = 20.0
-"""Of a history [s]."""
+"""Duration of a history [s]."""
 
 
 @case(

@@ -252,9 +252,9 @@ def dips(page: Page) -> None:
     system = damped(free, {"shafts": shaft_damping(RATIO, inertia, float(free.k[0]))})
     frequency = float(natural_modes(system).frequencies[1])
     page.section("Voltage dips")
-    found = converge_in_time(lambda h, _: dips_of(system, h)[0], 1.0 / (200.0 * frequency))
+    found = converge_in_time(lambda h, _: simulate_dips(system, h)[0], 1.0 / (200.0 * frequency))
     check_dips(page, "dip", found)
-    time, shown, reversals = dips_of(system, found.steps[-1])[1:]
+    time, shown, reversals = simulate_dips(system, found.steps[-1])[1:]
     rows: list[Record] = [
         {
             "depth": depth,
@@ -294,7 +294,7 @@ def dips(page: Page) -> None:
     )
 
 
-def dips_of(
+def simulate_dips(
     system: Torsional, step: float
 ) -> tuple[InTime, Floats, dict[str, Floats], dict[tuple[float, float], int]]:
     """Largest and least torque of each dip, and what is shown of them."""
@@ -333,7 +333,7 @@ def tables(page: Page) -> None:
         gear_masses(TABLE, "free"), {e.name: RATIO for e in gear_masses(TABLE, "free").elements}
     )
     elements = [e.name for e in system.elements if e.name.rpartition(" ")[2] not in ("2", "3")]
-    found = converge_in_time(lambda h, _: shapes_of(system, elements, h), 2.5e-4)
+    found = converge_in_time(lambda h, _: simulate_shapes(system, elements, h), 2.5e-4)
     check_dips(page, "dip on all gears", found)
     rows: list[Record] = [
         {
@@ -349,7 +349,7 @@ def tables(page: Page) -> None:
     page.data("dips by table", rows)
 
 
-def shapes_of(system: Torsional, elements: list[str], step: float) -> InTime:
+def simulate_shapes(system: Torsional, elements: list[str], step: float) -> InTime:
     """Ends of the torque of elements over that before, for dips of each shape."""
     time = np.asarray(np.arange(0.0, 3.0, step), dtype=np.float64)
     names = [e.name for e in system.elements]

@@ -133,7 +133,7 @@ def printed(page: Page, run: str, twists: dict[str, Twist]) -> list[Record]:
             ("B, differential", method_b(twist, TURN)),
             ("C, constant", method_c(twist, TURN, stiffness)),
         ):
-            rows.append(of_solutions(run, method, name, found))
+            rows.append(median_line(run, method, name, found))
     if run == "resonance":
         check_resonance(page, stiffness, ratio, rows)
     near = [row for row in rows[2:] if abs(row[OF[0]] - 1.0) < 0.2 and abs(row[OF[1]] - 1.0) < 0.2]
@@ -186,7 +186,7 @@ def check_resonance(page: Page, stiffness: float, ratio: float, rows: list[Recor
         )
 
 
-def of_solutions(run: str, method: str, torque: str, found: Solutions) -> Record:
+def median_line(run: str, method: str, torque: str, found: Solutions) -> Record:
     """Medians over the truth."""
     inertia, damping = found.medians()
     kept = found.medians(plausible=True)

@@ -81,7 +81,7 @@ def run(run: Run, page: Page) -> None:
 def check_steps(page: Page, cases: Sequence[MeasurementCase]) -> None:
     """Energy and convergence of all scripts."""
     page.section("In time")
-    series = converge_in_time(lambda dt, _: of_cases(cases, dt), STEP)
+    series = converge_in_time(lambda dt, _: extremes_of_torque(cases, dt), STEP)
     check_in_time(
         page,
         "scripts",
@@ -108,7 +108,7 @@ def torques_of(of: MeasurementCase, channels: dict[str, Floats]) -> Record:
     }
 
 
-def of_cases(cases: Sequence[MeasurementCase], step: float) -> InTime:
+def extremes_of_torque(cases: Sequence[MeasurementCase], step: float) -> InTime:
     """Ends of the shaft's torque in each case, and the worst error of the energy."""
     values, lost = {}, 0.0
     equations = torsional_equations(SYSTEM)

@@ -40,7 +40,7 @@ from fe_drivetrain.shafts.fidelity import (
 )
 
 SHAFTS, SOLIDS, FILLETS = 200, 25, 19
-#: Of a quick run: shafts of few elements, one of them also as a solid.
+#: Shafts of a quick run, of few elements, one of them also as a solid.
 QUICK, QUICK_SOLIDS, QUICK_FILLETS = (2, 3), (2,), 1
 #: Order of the reference, layers of elements at its corners, in quadrilaterals and where fillets
 #: take triangles, which have no higher order. Elements are half as large as the band's, at most.
@@ -142,7 +142,7 @@ def judged(run: Run, about: Record, scene: Scene, solve: dict[str, Solve]) -> li
     return rows
 
 
-def of_seed(run: Run, seed: int, with_solid: bool) -> list[Record]:
+def judged_seed(run: Run, seed: int, with_solid: bool) -> list[Record]:
     """A random shaft, judged, or what an earlier run found."""
     levels: dict[str, Solve] = {MERIDIAN: banded_meridian}
     if with_solid:
@@ -156,7 +156,7 @@ def of_seed(run: Run, seed: int, with_solid: bool) -> list[Record]:
     return run.kept(content, lambda: judged(run, {"seed": seed}, random_scene(seed), levels))
 
 
-def of_fillet(run: Run, name: str) -> list[Record]:
+def judged_fillet(run: Run, name: str) -> list[Record]:
     """A shaft with one fillet, judged, or what an earlier run found."""
     scene = filleted_scenes()[name]
     levels: dict[str, Solve] = {ONE_FILLET: banded_meridian}
@@ -222,8 +222,8 @@ def all_judged(run: Run, seeds: Sequence[int], solids: Sequence[int]) -> list[Re
     fillets = run.count("fillets", QUICK_FILLETS if run.quick else FILLETS)
     names = list(filleted_scenes())[:fillets]
     with run.side_by_side(1 if run.quick else len(seeds)) as jobs:
-        started = [jobs.start(of_seed, seed, seed in solids) for seed in seeds]
-        started += [jobs.start(of_fillet, name) for name in names]
+        started = [jobs.start(judged_seed, seed, seed in solids) for seed in seeds]
+        started += [jobs.start(judged_fillet, name) for name in names]
         for number, job in enumerate(started, 1):
             run.report(f"shafts ({number} of {len(started)})")
             rows += job.result()

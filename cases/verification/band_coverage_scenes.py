@@ -106,7 +106,7 @@ def reference(scene: Scene, asked: list[Quantity]) -> list[tuple[Floats, Floats]
     return found
 
 
-def of_another_bore(scene: Scene) -> Scene:
+def with_another_bore(scene: Scene) -> Scene:
     """The scene with a wider bore all along its shaft, or with one where it has none."""
     sections = scene.shaft.sections
     smallest = min(min(s.outer_diameter, s.outer_diameter_end or np.inf) for s in sections)
@@ -120,7 +120,7 @@ def changes(
     run: Run, seed: int, scene: Scene, asked: list[Quantity], exact: list[tuple[Floats, Floats]]
 ) -> list[Record]:
     """Bands and errors of the changes of one scene's quantities to those of a like design."""
-    other = of_another_bore(scene)
+    other = with_another_bore(scene)
     exact_after = run.clocked("references", reference, other, asked)
     found = run.clocked(
         "changes with bands", compare_designs, {"first": scene, "other": other}, asked, NEVER

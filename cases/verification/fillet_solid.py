@@ -14,7 +14,7 @@ WIDE, RADIUS = 1.6, 0.25
 PER_FILLET = (6, 11)
 #: With 4 and 6, what meshes of the same sizes scatter by is as much as the band leaves.
 QUICK = (4, 7)
-#: Of stress in elements of second order; and of the polynomial fitted to it along the arc.
+#: Order of stress in elements of second order; degree of the polynomial fitted along the arc.
 ORDER, DEGREE = 2.0, 6
 
 

@@ -39,9 +39,9 @@ class Found:
     tied : dict[TieKind, list[Stiffnesses]]
         By kind of tie, one for each ratio.
     entries : dict[TieKind, list[int]]
-        Of a row of the tie, mean; likewise.
+        Entries of a row of the tie, mean, by kind of tie, one for each ratio.
     whole : dict[int, Stiffnesses]
-        By divisions.
+        Whole bars by divisions.
     across : GridConvergence
         Convergence of the whole bar's stiffness across [N/m].
     exact : dict[str, float]
