@@ -5,12 +5,11 @@ import time
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.references.shaft_ends import SHAFTS, STEEL
+from fe_drivetrain.cases.references.shaft_ends import SHAFTS, STEEL, limit_of
 from fe_drivetrain.common import (
     Floats,
     rigid_motions,
 )
-from fe_drivetrain.comparison import grid_convergence, richardson
 from fe_drivetrain.elasticity.mesh import shaft_hexahedra
 from fe_drivetrain.elasticity.revolution import seat_stiffness
 from fe_drivetrain.elasticity.solve import solve_solid
@@ -58,21 +57,6 @@ def solid(shaft: Shaft, seat: tuple[float, float], cut: int) -> tuple[Floats, in
     nothing = np.zeros((mesh.points.size, 18))
     found = solve_solid(mesh.points, mesh.cells, STEEL.lame, [], nothing, (which, values))
     return found.u.T @ (found.K @ found.u), mesh.points.size
-
-
-def limit_of(cuts: tuple[int, ...], values: list[float]) -> tuple[float, float, str]:
-    """Limit of a solid's entry on ever finer meshes, its band, and how that was found."""
-    sizes = [1 / cut for cut in cuts]
-    if len(cuts) == 2:
-        limit = richardson(sizes, values, 1.0)
-        return (
-            limit,
-            abs(values[-1] - values[-2]),
-            "what the finer of two meshes of the solid changed",
-        )
-    grid = grid_convergence(sizes, values, least_order=1.0)
-    band = max(grid.extrapolated_uncertainty, abs(values[-1] - grid.extrapolated))
-    return grid.extrapolated, band, f"the band of three meshes of the solid ({grid.behaviour})"
 
 
 def rigid_motion_error(K: Floats, where: list[tuple[float, float]]) -> float:

@@ -91,6 +91,7 @@ def test_a_face_says_what_its_room_is_for_and_shows_only_what_is_there(room: str
 #: Modules for users, which one case tries or none: the page that tells them to take its names.
 FOR_USERS = {
     "bearing.subsurface": "procedure.md",
+    # answers of a bearing to millions of loads, from one grid of solves
     "bearing.tables": "bearing.md",
     "dynamics.roller_steps": "transients.md",
     "dynamics.travelling": "transients.md",
@@ -100,11 +101,14 @@ FOR_USERS = {
     "turbine_loads.histories.farm": "clusters.md",
     "turbine_loads.hub_loads.events": "turbine.md",
     "turbine_loads.hub_loads.wind_boxes": "loads.md",
+    # loads at the interfaces of any scene, from a level of the ladder
     "procedure.levels": "procedure.md",
+    # reads the scripts of a user's own campaign
     "procedure.measurement_cases": "procedure.md",
+    # the accelerations at interfaces that a load table asks for, of any three-point drivetrain
     "procedure.moving": "procedure.md",
+    # ranks and locks the degrees of freedom of any machine, under a user's load case
     "procedure.reduction": "procedure.md",
-    "procedure.run_up": "procedure.md",
 }
 
 #: Modules that are started or imported by a name in a string, and by what.
