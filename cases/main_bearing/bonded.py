@@ -9,13 +9,14 @@ import numpy as np
 
 from fe_drivetrain.beam import beam_of_scene, closed_forms, main_bearing_beam, shaft
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import bands, shown, study
+from fe_drivetrain.cases.main_bearing import bands, bearing_scenes, shown
 from fe_drivetrain.common import (
     FORCES,
     Floats,
 )
 from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
 from fe_drivetrain.scene import Scene
+from fe_drivetrain.studies.solved_assembly import timed_mesh
 from fe_drivetrain.suite import Page, Record, Run
 
 #: Thrust [N] and torque [N m] of a typical size, by their place among the hub loads.
@@ -91,12 +92,12 @@ OF_THESIS = "in the thesis, whose gearbox has three translational springs only, 
 )
 def run(run: Run, page: Page) -> None:
     """Solve the bonded scene, and compare its reactions with three beams."""
-    scene = study.scene_of(run, page, "bonded")
+    scene = bearing_scenes.scene_of(run, page, "bonded")
     pinned_beam = main_bearing_beam(scene)  # refuses before the work what it cannot stand for
     with run.side_by_side(4) as jobs:
-        meshed = study.mesh_of(run, scene, "bonded")
-        solving = jobs.start(study.solve_and_write, scene, "bonded", meshed, "mesh")
-        tilting = jobs.start(study.solve_tilt, scene, "without gearbox", meshed)
+        mesh = timed_mesh(run, scene, "bonded")
+        solving = jobs.start(bearing_scenes.solve_and_write, scene, "bonded", mesh, "mesh")
+        tilting = jobs.start(bearing_scenes.solve_seat, scene, "without gearbox", mesh)
         coarser = bands.start(jobs, scene, "bonded", tilted=True)
         solved = solving.result()
         load_factors = np.array([0, 0, -1e5, 0, 0, 0, 0, 0, 0, 0], dtype=float)

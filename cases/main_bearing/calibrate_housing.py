@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import bands, shown, study
+from fe_drivetrain.cases.main_bearing import bands, bearing_scenes, shown
 from fe_drivetrain.cases.main_bearing import housing_dimensions as housings
 from fe_drivetrain.cases.main_bearing.housing_dimensions import (
     BOLTED,
@@ -297,7 +297,7 @@ def method_section(page: Page, families: list[Family], bands_of: dict[str, list[
 )
 def run(run: Run, page: Page) -> None:
     """Sample housings, trace those that give both values, and verify some on finer meshes."""
-    scene = study.scene_of(run, page, "bonded", coarsen=False)
+    scene = bearing_scenes.scene_of(run, page, "bonded", coarsen=False)
     if run.quick:
         scene = scene.model_copy(update={"mesh": scene.mesh.scaled(*QUICK_MESH)})
     counts = {ONE_BODY: QUICK_SAMPLES if run.quick else SAMPLES}

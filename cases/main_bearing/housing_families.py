@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.cases.main_bearing import bands, study
+from fe_drivetrain.cases.main_bearing import bands, bearing_scenes
 from fe_drivetrain.cases.main_bearing import housing_dimensions as housings
 from fe_drivetrain.cases.main_bearing.housing_dimensions import (
     CENTRE,
@@ -22,6 +22,7 @@ from fe_drivetrain.cases.main_bearing.housing_dimensions import (
 )
 from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.scene import Scene
+from fe_drivetrain.studies.solved_assembly import timed_mesh
 from fe_drivetrain.suite import Run
 
 #: Order of the surface through the sampled housings.
@@ -231,7 +232,7 @@ def assembled(run: Run, scene: Scene, family: Family) -> bands.Series:
     assembly = housings.housed(scene, family.form, family.middle.x)
     with run.side_by_side(3) as jobs:
         coarser = bands.start(jobs, assembly, title, solved=False, tilted=True)
-        tilt = study.solve_tilt(run, assembly, title, study.mesh_of(run, assembly, title))
+        tilt = bearing_scenes.solve_seat(run, assembly, title, timed_mesh(run, assembly, title))
         return coarser.below(bands.of_tilt(tilt))
 
 

@@ -5,12 +5,13 @@ from itertools import pairwise
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import bands, shown, study
-from fe_drivetrain.cases.main_bearing.study import Solved, Tilt
+from fe_drivetrain.cases.main_bearing import bands, bearing_scenes, shown
 from fe_drivetrain.common import InputError
 from fe_drivetrain.compare import grid_convergence, richardson
 from fe_drivetrain.mesh import mean_size
 from fe_drivetrain.report import trace
+from fe_drivetrain.studies.seat_stiffness import SeatStiffness
+from fe_drivetrain.studies.solved_assembly import Assembly
 from fe_drivetrain.suite import Page, Run
 
 #: Factors on the scene's mesh sizes, from coarse to fine.
@@ -18,7 +19,7 @@ FACTORS = (2.0, 1.4, 1.0, 0.75)
 QUICK_FACTORS = (2.0, 1.5, 1.2)
 
 
-def quantities(solved: Solved, tilt: Tilt) -> dict[str, float]:
+def quantities(solved: Assembly, tilt: SeatStiffness) -> dict[str, float]:
     """What is followed from mesh to mesh."""
     reaction = solved.response.reactions[solved.bearing]
     motion = solved.response.motions["hub"]
@@ -45,13 +46,13 @@ def quantities(solved: Solved, tilt: Tilt) -> dict[str, float]:
 )
 def run(run: Run, page: Page) -> None:
     """Solve one scene on meshes from coarse to fine."""
-    scene = study.scene_of(run, page, "bonded", coarsen=False)
+    scene = bearing_scenes.scene_of(run, page, "bonded", coarsen=False)
     factors = QUICK_FACTORS if run.quick else FACTORS
     finer_scenes = {f"sizes x {factor:g}": bands.coarser(scene, factor) for factor in factors}
     with run.side_by_side(len(factors)) as jobs:
         # the finest first: it takes longest
         solving = {
-            label: jobs.start(study.solve_level, finer, label)
+            label: jobs.start(bearing_scenes.solve_both, finer, label)
             for label, finer in reversed(finer_scenes.items())
         }
         levels = {label: solving[label].result() for label in finer_scenes}

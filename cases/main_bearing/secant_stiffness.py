@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import secants, shown, study
+from fe_drivetrain.cases.main_bearing import bearing_scenes, secants, shown
 from fe_drivetrain.cases.main_bearing.secants import FULL, LEAN, OF_FORM, QUANTITIES, SINGLE
 from fe_drivetrain.common import (
     FORCES,
@@ -141,8 +141,8 @@ def secant_traces(key: str, unit: Reacted) -> list[Any]:
 )
 def run(run: Run, page: Page) -> None:
     """Secants of three bearings and of made-up springs, and the beams that follow from them."""
-    spherical = study.scene_of(run, page, "spherical", coarsen=False)
-    bonded = study.scene_of(run, page, "bonded", coarsen=False)
+    spherical = bearing_scenes.scene_of(run, page, "spherical", coarsen=False)
+    bonded = bearing_scenes.scene_of(run, page, "bonded", coarsen=False)
     tall_scene = secants.tall(bonded, TALL)
     cases = secants.hub_loads(run, EVERY, bonded)
     hub = cases.hub.values

@@ -6,13 +6,13 @@ import numpy as np
 
 from fe_drivetrain.beam import closed_forms, main_bearing_beam
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import bands, shown, study
-from fe_drivetrain.cases.main_bearing.study import Tilt
+from fe_drivetrain.cases.main_bearing import bands, bearing_scenes, shown
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import resultant
 from fe_drivetrain.hub_loads import Condition, hub_loads
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import Scene, change_scene
+from fe_drivetrain.studies.seat_stiffness import SeatStiffness
 from fe_drivetrain.suite import Page, Record, Run, grouped
 
 KINDS = {"DSRB": "spherical", "DTRB": "bonded"}
@@ -53,7 +53,7 @@ def mean_change(force: Floats, reference: Floats) -> float:
     return 100.0 * float(np.abs(force - reference).mean() / reference.mean())
 
 
-def change_of_beam(loads: Floats, whole: Scene, scene: Scene, tilt: Tilt) -> float:
+def change_of_beam(loads: Floats, whole: Scene, scene: Scene, tilt: SeatStiffness) -> float:
     """Mean change [%] of the torsional-spring beam's radial reaction from one shaft to another."""
     before, after = (
         closed_forms.torsional_spring_model(
@@ -78,7 +78,7 @@ def run(run: Run, page: Page) -> None:
     with run.step("hub loads"):
         history = hub_loads(Condition(16.0, "medium", 0.2, 1)).between(100.0, 110.0)
     walls = QUICK_WALLS if run.quick else WALLS
-    whole_of = {label: study.scene_of(run, page, kind) for label, kind in KINDS.items()}
+    whole_of = {label: bearing_scenes.scene_of(run, page, kind) for label, kind in KINDS.items()}
     for whole in whole_of.values():
         main_bearing_beam(whole)  # refuses before the work what it cannot stand for
     scenes = {
@@ -90,9 +90,9 @@ def run(run: Run, page: Page) -> None:
     extremes = [named(label, wall) for label in KINDS for wall in (walls[0], walls[-1])]
     with run.side_by_side(len(scenes) + 2 * len(extremes)) as jobs:
         # with its second solution it takes longest
-        measuring = jobs.start(study.solve_level, scenes[solid], solid)
+        measuring = jobs.start(bearing_scenes.solve_both, scenes[solid], solid)
         solving = {
-            name: jobs.start(study.solve_scene, scene, name)
+            name: jobs.start(bearing_scenes.solve, scene, name)
             for name, scene in scenes.items()
             if name != solid
         }

@@ -8,8 +8,7 @@ import numpy as np
 
 from fe_drivetrain.beam import beam_of_scene, closed_forms, main_bearing_beam, shaft
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import bands, shown, study
-from fe_drivetrain.cases.main_bearing.study import Solved
+from fe_drivetrain.cases.main_bearing import bands, bearing_scenes, shown
 from fe_drivetrain.common import (
     GRAVITY,
     Floats,
@@ -21,6 +20,7 @@ from fe_drivetrain.response import (
     LOADS,
     bearing_unit_stiffness,
 )
+from fe_drivetrain.studies.solved_assembly import Assembly, timed_mesh
 from fe_drivetrain.suite import Page, Record, Run
 
 FORMS = ("sliding", "averaged", "rigid")
@@ -30,7 +30,7 @@ BEAMS = {False: "beam, bare shaft", True: "beam, ring as shaft"}
 SPREAD, BARE_ERROR = "spread of the forms [%]", "bare beam against sliding [%]"
 
 
-def beam_motions(main: Solved, stiffness: Floats, at: Floats) -> dict[bool, list[Floats]]:
+def beam_motions(main: Assembly, stiffness: Floats, at: Floats) -> dict[bool, list[Floats]]:
     """Motions of both beams at stations, under a vertical force of 1 kN and a moment of 1 kN m."""
     scene = main.scene
     return {
@@ -48,7 +48,7 @@ def beam_motions(main: Solved, stiffness: Floats, at: Floats) -> dict[bool, list
 
 
 def deflections(
-    solved: dict[str, Solved], motion_of_beam: dict[bool, list[Floats]], series: bands.Series
+    solved: dict[str, Assembly], motion_of_beam: dict[bool, list[Floats]], series: bands.Series
 ) -> list[Record]:
     """Deflection and slope at the hub (station -2) and at the bearing (-1), FE and beams."""
     name = solved[FORMS[0]].bearing
@@ -82,7 +82,7 @@ def deflections(
     return rows
 
 
-def causes(main: Solved, beam_load: Floats, mean_load: Floats) -> list[Record]:
+def causes(main: Assembly, beam_load: Floats, mean_load: Floats) -> list[Record]:
     """Vertical loads on the bearing with what a drivetrain has and statics have not."""
     name, weight = main.bearing, main.scene.gearbox.weight
     front = main.scene.shaft.front
@@ -109,7 +109,7 @@ def causes(main: Solved, beam_load: Floats, mean_load: Floats) -> list[Record]:
     ]
 
 
-def axis_deflection(solved: Solved, load: int, n_slices: int) -> tuple[Floats, Floats]:
+def axis_deflection(solved: Assembly, load: int, n_slices: int) -> tuple[Floats, Floats]:
     """Mean vertical displacement of the shaft's nodes in slices along x, by volume."""
     mesh = solved.model.mesh
     weights = solved.model.part_mass["shaft"]
@@ -133,7 +133,7 @@ def axis_deflection(solved: Solved, load: int, n_slices: int) -> tuple[Floats, F
 )
 def run(run: Run, page: Page) -> None:
     """Solve the three forms of the joint and compare them with statics and with a beam."""
-    scene = study.scene_of(run, page, "spherical")
+    scene = bearing_scenes.scene_of(run, page, "spherical")
     if scene.bearing_units[0].interface != FORMS[0]:
         page.note(
             f"The scene's joint is {scene.bearing_units[0].interface}: here stand all three forms "
@@ -141,12 +141,12 @@ def run(run: Run, page: Page) -> None:
         )
     beam = main_bearing_beam(scene)  # refuses before the work what it cannot stand for
     with run.side_by_side(len(FORMS) + 2) as jobs:
-        meshed = study.mesh_of(run, scene, "all forms")  # which differ in their constraints only
-        scenes = {form: study.with_interface(scene, form) for form in FORMS}
+        mesh = timed_mesh(run, scene, "all forms")  # which differ in their constraints only
+        scenes = {form: bearing_scenes.with_interface(scene, form) for form in FORMS}
         solving = {
-            form: jobs.start(study.solve_and_write, scenes[form], form, meshed, "mesh")
+            form: jobs.start(bearing_scenes.solve_and_write, scenes[form], form, mesh, "mesh")
             if form == FORMS[0]
-            else jobs.start(study.solve_scene, scenes[form], form, meshed)
+            else jobs.start(bearing_scenes.solve, scenes[form], form, mesh)
             for form in FORMS
         }
         coarser = bands.start(jobs, scenes[FORMS[0]], FORMS[0])

@@ -3,14 +3,14 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import bands, shown, study
-from fe_drivetrain.cases.main_bearing.study import Solved
+from fe_drivetrain.cases.main_bearing import bands, bearing_scenes, shown
 from fe_drivetrain.report import bars
 from fe_drivetrain.response import PLANES
+from fe_drivetrain.studies.solved_assembly import Assembly, timed_mesh
 from fe_drivetrain.suite import Page, Record, Run
 
 
-def check_energies(page: Page, free: Solved, series: bands.Series) -> None:
+def check_energies(page: Page, free: Assembly, series: bands.Series) -> None:
     """Energy of hub moments: against their work, and that in the overhang against a beam's."""
     response, scene, shaft = free.response, free.scene, free.scene.shaft
     for plane in PLANES:
@@ -50,7 +50,7 @@ def check_energies(page: Page, free: Solved, series: bands.Series) -> None:
     )
 
 
-def by_load(free: Solved, series: bands.Series) -> list[Record]:
+def by_load(free: Assembly, series: bands.Series) -> list[Record]:
     """K_R under a hub moment, and under a hub force with the same moment at the bearing."""
     seat = f"{free.bearing}.seat"
     arm = free.scene.bearing_units[0].bearing.x - free.scene.shaft.front
@@ -91,17 +91,19 @@ def by_load(free: Solved, series: bands.Series) -> list[Record]:
 )
 def run(run: Run, page: Page) -> None:
     """Measure K_R, and show how much it depends on the estimator and on the load."""
-    scene = study.scene_of(run, page, "bonded")
+    scene = bearing_scenes.scene_of(run, page, "bonded")
     with run.side_by_side(3) as jobs:
         coarser = bands.start(jobs, scene, "bonded", solved=False, tilted=True)
-        tilt = study.solve_tilt(run, scene, "without gearbox", study.mesh_of(run, scene, "bonded"))
+        tilt = bearing_scenes.solve_seat(
+            run, scene, "without gearbox", timed_mesh(run, scene, "bonded")
+        )
         series = coarser.below(bands.of_tilt(tilt))
     free = tilt.free
     shown.check_solution(page, free, "without gearbox")
     shown.check_series(page, series, "without gearbox")
     check_energies(page, free, series)
 
-    spread = {plane: study.spread(k) for plane, k in tilt.by_plane.items()}
+    spread = {plane: tilt.spread(plane) for plane in tilt.by_plane}
     vertical, horizontal = (k / 1e6 for k in tilt.both("averaged seat"))
     page.answer(
         f"K_R of bearing and housing is {vertical:.0f} MN m/rad in the vertical and "

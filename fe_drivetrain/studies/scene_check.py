@@ -17,7 +17,8 @@ from fe_drivetrain.scene.left_out import left_out
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.studies.named_bearings import named_bearings
 from fe_drivetrain.studies.result import Result
-from fe_drivetrain.studies.scene_description import checked_model, description
+from fe_drivetrain.studies.scene_description import description
+from fe_drivetrain.studies.solved_assembly import checked_model
 from fe_drivetrain.studies.unused import catalogues_not_used
 from fe_drivetrain.suite.findings import Findings
 from fe_drivetrain.suite.records import Record

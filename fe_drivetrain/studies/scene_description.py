@@ -1,14 +1,13 @@
-"""What a scene is: its model with all that is checked of it, and tables of parts and bearings."""
+"""What a scene is: tables of its parts, bearings and load points."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 from fe_drivetrain.common.components import MOTIONS
-from fe_drivetrain.common.steps import Clock
 from fe_drivetrain.common.typeset import with_prefix
 from fe_drivetrain.geometry import FurtherPart
-from fe_drivetrain.response.model import Model, build_model, mesh_scene
+from fe_drivetrain.response.model import Model
 from fe_drivetrain.scene.bearing_unit import SPHERICAL_JOINTS, BearingUnit, Springs
 from fe_drivetrain.scene.nose import NoseBearing
 from fe_drivetrain.scene.scene import Scene, coarser_scene
@@ -23,27 +22,6 @@ _UNITS = (*3 * ("N/m",), *3 * ("N m/rad",))
 def quick_scene(scene: Scene) -> Scene:
     """The scene on a coarser mesh, for a first look."""
     return coarser_scene(scene, *_QUICK)
-
-
-def checked_model(steps: Clock, scene: Scene) -> Model:
-    """The assembled model of a scene, with all that is checked of a scene before any level.
-
-    Parameters
-    ----------
-    steps : Clock
-        Times its two steps.
-    scene : Scene
-        The scene.
-
-    Raises
-    ------
-    InputError
-        The scene cannot be built, or is a mechanism; see `fe_drivetrain.response.build_model`.
-    """
-    with steps.step("mesh"):
-        mesh = mesh_scene(scene)
-    with steps.step("assembly"):
-        return build_model(scene, mesh)
 
 
 def description(model: Model) -> dict[str, list[Record]]:
