@@ -3,14 +3,14 @@
 from typing import Any
 
 from fe_drivetrain.common import InputError
-from fe_drivetrain.mesh import Mesh, write
-from fe_drivetrain.response import LOADS
-from fe_drivetrain.scene import Scene, change_scene, library_scene
-from fe_drivetrain.solve import METHODS
+from fe_drivetrain.drivetrain_file import Scene, change_scene, library_scene
+from fe_drivetrain.elasticity.mesh import Mesh, write
+from fe_drivetrain.elasticity.solve import METHODS
+from fe_drivetrain.report.suite import Page, Run
+from fe_drivetrain.shafts.response import LOADS
 from fe_drivetrain.studies.scene_description import quick_scene
 from fe_drivetrain.studies.seat_stiffness import SeatStiffness, seat_stiffness
 from fe_drivetrain.studies.solved_assembly import Assembly, solved_assembly, timed_mesh
-from fe_drivetrain.suite import Page, Run
 
 #: Interfaces of a spherical bearing.
 SPHERICAL = ("sliding", "averaged", "rigid")

@@ -11,16 +11,17 @@ from functools import cached_property
 
 import numpy as np
 
-from fe_drivetrain.beam import main_bearing_beam
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import bands, bearing_scenes, shown
 from fe_drivetrain.common import (
     FORCES,
     Floats,
 )
+from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
 from fe_drivetrain.report import Image, Solid, Text
-from fe_drivetrain.scene import Scene
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.beam import main_bearing_beam
 from fe_drivetrain.studies import Assembly, LinearModel, SeatStiffness
 from fe_drivetrain.studies.closed_forms import (
     PINNED,
@@ -29,7 +30,6 @@ from fe_drivetrain.studies.closed_forms import (
     closed_form_models,
 )
 from fe_drivetrain.studies.solved_assembly import timed_mesh
-from fe_drivetrain.suite import Page, Record, Run
 
 #: Thrust [N] and torque [N m] of a typical size, by their place among the hub loads.
 TYPICAL = {0: 200e3, 3: 1.1e6}

@@ -4,13 +4,13 @@ import numpy as np
 
 from fe_drivetrain.cases.main_bearing.comparison import Comparison
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import statistics
-from fe_drivetrain.histories import damage_ratio, good_enough_for
-from fe_drivetrain.histories.damage import SLOPES
-from fe_drivetrain.hub_loads import HubLoadSet
+from fe_drivetrain.comparison import statistics
+from fe_drivetrain.report.suite import Page, Run
 from fe_drivetrain.studies.design_measures import DesignMeasures, load_errors
 from fe_drivetrain.studies.level_errors import ENOUGH
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.turbine_loads.histories import damage_ratio, good_enough_for
+from fe_drivetrain.turbine_loads.histories.damage import SLOPES
+from fe_drivetrain.turbine_loads.hub_loads import HubLoadSet
 
 REACTION = "radial force on the main bearing"
 

@@ -9,13 +9,13 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import bands, bearing_scenes, shown
 from fe_drivetrain.common import InputError
-from fe_drivetrain.compare import GridConvergence, grid_convergence, richardson
-from fe_drivetrain.mesh import mean_size
+from fe_drivetrain.comparison import GridConvergence, grid_convergence, richardson
+from fe_drivetrain.drivetrain_file import Scene
+from fe_drivetrain.elasticity.mesh import mean_size
 from fe_drivetrain.report import trace
-from fe_drivetrain.scene import Scene
+from fe_drivetrain.report.suite import Page, Run
 from fe_drivetrain.studies.seat_stiffness import SeatStiffness
 from fe_drivetrain.studies.solved_assembly import Assembly
-from fe_drivetrain.suite import Page, Run
 
 #: Factors on the scene's mesh sizes, from coarse to fine.
 FACTORS = (2.0, 1.4, 1.0, 0.75)

@@ -5,16 +5,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.beam import main_bearing_beam
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import bands, bearing_scenes, shown
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import resultant
-from fe_drivetrain.hub_loads import Condition, LoadHistory, hub_loads
+from fe_drivetrain.comparison import resultant
+from fe_drivetrain.drivetrain_file import Scene, change_scene
 from fe_drivetrain.report import trace
-from fe_drivetrain.scene import Scene, change_scene
+from fe_drivetrain.report.suite import Page, Record, Run, grouped
+from fe_drivetrain.shafts.beam import main_bearing_beam
 from fe_drivetrain.studies import Assembly, LinearModel, SeatStiffness
-from fe_drivetrain.suite import Page, Record, Run, grouped
+from fe_drivetrain.turbine_loads.hub_loads import Condition, LoadHistory, hub_loads
 
 KINDS = {"DSRB": "spherical", "DTRB": "bonded"}
 WALLS = (100, 75, 50)

@@ -10,25 +10,25 @@ from functools import cached_property
 
 import numpy as np
 
-from fe_drivetrain.beam import beam_of_scene, main_bearing_beam, shaft
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import bands, bearing_scenes, shown
 from fe_drivetrain.common import (
     GRAVITY,
     Floats,
 )
+from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
-from fe_drivetrain.hub_loads import PointLoads
 from fe_drivetrain.report import Image, Solid, Text, trace
-from fe_drivetrain.response import (
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.beam import beam_of_scene, main_bearing_beam, shaft
+from fe_drivetrain.shafts.response import (
     LOADS,
     bearing_unit_stiffness,
 )
-from fe_drivetrain.scene import Scene
 from fe_drivetrain.studies import Assembly, LinearModel
 from fe_drivetrain.studies.closed_forms import PINNED, closed_form_models
 from fe_drivetrain.studies.solved_assembly import timed_mesh
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.turbine_loads.hub_loads import PointLoads
 
 FORMS = ("sliding", "averaged", "rigid")
 

@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 
-from fe_drivetrain.hub_loads import Condition, HubLoadSet, hub_load_set, not_kept
+from fe_drivetrain.report.suite import Jobs, Run, RunJob
 from fe_drivetrain.studies.study_loads import (
     surrogate_conditions,
     surrogate_set,
     surrogate_statement,
 )
-from fe_drivetrain.suite import Jobs, Run, RunJob
+from fe_drivetrain.turbine_loads.hub_loads import Condition, HubLoadSet, hub_load_set, not_kept
 
 #: Seeds of each group under --quick: the least that has a standard deviation.
 QUICK_SEEDS = 2

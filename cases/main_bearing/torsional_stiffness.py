@@ -5,10 +5,10 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import bands, bearing_scenes, shown
 from fe_drivetrain.report import bars
-from fe_drivetrain.response import PLANES
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.response import PLANES
 from fe_drivetrain.studies import Assembly, SeatStiffness
 from fe_drivetrain.studies.solved_assembly import timed_mesh
-from fe_drivetrain.suite import Page, Record, Run
 
 
 def check_energies(page: Page, free: Assembly, series: bands.Series) -> None:

@@ -6,12 +6,12 @@ from pathlib import Path
 
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.typeset import with_prefix
+from fe_drivetrain.drivetrain_file.bearing_unit import SPHERICAL_JOINTS, BearingUnit, Springs
+from fe_drivetrain.drivetrain_file.nose import NoseBearing
+from fe_drivetrain.drivetrain_file.scene import Scene, coarser_scene
 from fe_drivetrain.geometry import FurtherPart
-from fe_drivetrain.response.model import Model
-from fe_drivetrain.scene.bearing_unit import SPHERICAL_JOINTS, BearingUnit, Springs
-from fe_drivetrain.scene.nose import NoseBearing
-from fe_drivetrain.scene.scene import Scene, coarser_scene
-from fe_drivetrain.suite.records import Record
+from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.shafts.response.model import Model
 
 #: Coarsening of the mesh of a quick study: factor of the sizes, and elements a turn.
 _QUICK = (2.0, 8)

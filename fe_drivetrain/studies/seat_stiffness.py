@@ -10,16 +10,16 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.steps import Clock
-from fe_drivetrain.mesh.mesh import Mesh
-from fe_drivetrain.response.bearing_stiffness import (
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.elasticity.mesh.mesh import Mesh
+from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.shafts.response.bearing_stiffness import (
     PLANES,
     bearing_unit_stiffness,
     tilt_stiffness,
     without_gearbox,
 )
-from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.studies.solved_assembly import Assembly, solved_assembly
-from fe_drivetrain.suite.records import Record
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +30,7 @@ class SeatStiffness:
     ----------
     by_plane : Mapping[str, Mapping[str, float]]
         K_R [N m/rad] by plane ("vertical", "horizontal") and estimator, see
-        `fe_drivetrain.response.tilt_stiffness`.
+        `fe_drivetrain.shafts.response.tilt_stiffness`.
     matrix : ndarray, (6, 6)
         Condensed stiffness at the bearing's centre [N/m, N, N m/rad].
     free : Assembly
@@ -47,7 +47,7 @@ class SeatStiffness:
         Parameters
         ----------
         estimator : str
-            One of `fe_drivetrain.response.ESTIMATORS`.
+            One of `fe_drivetrain.shafts.response.ESTIMATORS`.
         """
         return self.by_plane["vertical"][estimator], self.by_plane["horizontal"][estimator]
 
@@ -90,7 +90,7 @@ def seat_stiffness(
     mesh : Mesh, optional
         The mesh of the scene, where there is one already.
     method : str
-        Solver, see `fe_drivetrain.solve.solve`.
+        Solver, see `fe_drivetrain.elasticity.solve.solve`.
 
     Raises
     ------

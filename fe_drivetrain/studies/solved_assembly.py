@@ -7,12 +7,12 @@ from dataclasses import dataclass, field, replace
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.steps import Clock
-from fe_drivetrain.fidelity.assembly_bands import cached_reaction_errors
-from fe_drivetrain.mesh.mesh import Mesh
-from fe_drivetrain.response.cached import cached_response
-from fe_drivetrain.response.model import Model, build_model, mesh_scene
-from fe_drivetrain.response.unit_loads import Response
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.elasticity.mesh.mesh import Mesh
+from fe_drivetrain.shafts.fidelity.assembly_bands import cached_reaction_errors
+from fe_drivetrain.shafts.response.cached import cached_response
+from fe_drivetrain.shafts.response.model import Model, build_model, mesh_scene
+from fe_drivetrain.shafts.response.unit_loads import Response
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +86,7 @@ def checked_model(steps: Clock, scene: Scene, label: str = "", mesh: Mesh | None
     Raises
     ------
     InputError
-        The scene cannot be built, or is a mechanism; see `fe_drivetrain.response.build_model`.
+        The scene cannot be built, or is a mechanism; see `fe_drivetrain.shafts.response.build_model`.
     """
     mesh = timed_mesh(steps, scene, label) if mesh is None else mesh
     with steps.step(f"assembly{_of(label)}"):
@@ -117,7 +117,7 @@ def solved_assembly(
     mesh : Mesh, optional
         The mesh, where there is one already.
     method : str
-        Solver, see `fe_drivetrain.solve.solve`.
+        Solver, see `fe_drivetrain.elasticity.solve.solve`.
     with_errors : bool
         Whether errors of its reactions are estimated, which takes a solution for each support.
 
