@@ -86,7 +86,8 @@ def checked_model(steps: Clock, scene: Scene, label: str = "", mesh: Mesh | None
     Raises
     ------
     InputError
-        The scene cannot be built, or is a mechanism; see `fe_drivetrain.shafts.response.build_model`.
+        The scene cannot be built, or is a mechanism; see
+        `fe_drivetrain.shafts.response.build_model`.
     """
     mesh = timed_mesh(steps, scene, label) if mesh is None else mesh
     with steps.step(f"assembly{_of(label)}"):
