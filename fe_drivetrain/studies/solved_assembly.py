@@ -142,10 +142,16 @@ def solved_model(
 
     Parameters
     ----------
-    steps, label, method, with_errors
-        As for `solved_assembly`.
+    steps : Clock
+        Times each step.
     model : Model
         The model, with the operators of its parts.
+    label : str
+        Added to the names of the steps in brackets.
+    method : str
+        Solver, see `solved_assembly`.
+    with_errors : bool
+        Whether errors of its reactions are estimated.
     """
     with steps.step(f"assembly of solids{_of(label)}") as step:
         response = cached_response(model, method)
