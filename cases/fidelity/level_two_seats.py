@@ -188,10 +188,11 @@ def judge(page: Page, one: Seated, cuts: tuple[int, ...]) -> list[Record]:
 
 def largest_error(one: Seated, rows: list[Record]) -> float:
     """Largest error of an entry against its limit, of the root of both diagonal terms."""
-    return max(
+    errors = [
         abs(row[MERIDIAN] - row[LIMIT]) / float(one.unit[i, j])
         for row, (_, i, j, _) in zip(rows, ENTRIES, strict=True)
-    )
+    ]
+    return float(max(errors))
 
 
 @case(

@@ -25,6 +25,7 @@ from fe_drivetrain.shafts.fidelity.judgement import Judgement, judge_levels
 from fe_drivetrain.shafts.fidelity.ladder import statics_level
 from fe_drivetrain.shafts.fidelity.over_loads import Levels, imbalance, levels_of, reaction_history
 from fe_drivetrain.shafts.fidelity.quantities import UNIT, unit_numbers
+from fe_drivetrain.shafts.response.bearing_stiffness import check_one_tilting_bearing
 from fe_drivetrain.shafts.response.entering import Factors, Loads
 from fe_drivetrain.shafts.response.model import Model
 from fe_drivetrain.shafts.response.stated import Stated, stated_reactions
@@ -210,10 +211,13 @@ def study(
     Raises
     ------
     InputError
-        The scene cannot be solved, a slope is out of range, or the loads are refused.
+        The scene cannot be solved, a slope is out of range, the loads are refused, or the scene
+        has no K_R at a seat.
     """
     for slope in slopes:
         check_slope(slope)
+    if seat:
+        check_one_tilting_bearing(scene)
     found, steps = Findings(), Steps(report)
     scene = quick_scene(scene) if quick else scene
     scene = scene if weight else weightless(scene)

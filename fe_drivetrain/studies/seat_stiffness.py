@@ -16,6 +16,7 @@ from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.shafts.response.bearing_stiffness import (
     PLANES,
     bearing_unit_stiffness,
+    check_one_tilting_bearing,
     tilt_stiffness,
     without_gearbox,
 )
@@ -95,9 +96,10 @@ def seat_stiffness(
     Raises
     ------
     InputError
-        The scene has another number of bearing units, a housing that is a stiffness alone, or is a
-        mechanism without its gearbox springs.
+        `fe_drivetrain.shafts.response.bearing_stiffness.check_one_tilting_bearing` refuses the
+        scene, or it is a mechanism without its gearbox springs.
     """
+    check_one_tilting_bearing(scene)  # before what takes long
     free = solved_assembly(steps, without_gearbox(scene), label, mesh, method)
     with warnings.catch_warnings():
         # four nodes against the averaged seat: both stand side by side
