@@ -168,7 +168,7 @@ class BySet:
     @property
     def rated(self) -> int:
         """Place of rated wind."""
-        return self.winds.tolist().index(12.0)
+        return int(np.flatnonzero(self.winds == 12.0)[0])
 
     def of(self, what: str, own: str = BASE) -> Floats:
         """A quantity of a set at each wind speed."""

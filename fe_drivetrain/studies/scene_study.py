@@ -250,6 +250,7 @@ def study(
     found.assume_all(left_out(scene))
     found.assume_all(given.assumptions)
     options = {"loads": given.statement, "slopes": slopes, "weight": weight, "quick": quick}
+    options["seat"] = seat
     if with_seat is not None:
         found.data("seat_stiffness", with_seat.rows())
     return StudyResult(
