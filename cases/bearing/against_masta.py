@@ -10,7 +10,7 @@ from fe_drivetrain.bearing import (
     effective_centre,
     equilibrium,
     ratings,
-    read_catalogue,
+    read_bearing_catalogue,
 )
 from fe_drivetrain.cases import case
 from fe_drivetrain.report import rolling_elements
@@ -96,7 +96,7 @@ def check_stiffness(page: Page) -> None:
 
 def check_ratings(page: Page) -> list[Record]:
     """Fatigue load limit and dynamic rating of a tapered bearing."""
-    entry = read_catalogue()["masta_single"]
+    entry = read_bearing_catalogue()["masta_single"]
     found, printed = ratings(entry.bearing("masta_single")), entry.ratings
     assert printed is not None
     assert printed.Cu is not None

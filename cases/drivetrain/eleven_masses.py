@@ -22,7 +22,7 @@ from fe_drivetrain.comparison import digit, round_off
 from fe_drivetrain.dynamics.torsion import (
     GENERATOR,
     ROTOR,
-    Drivetrain,
+    GearTable,
     GeneratorState,
     Modes,
     changed,
@@ -307,13 +307,13 @@ def readings() -> list[Record]:
     return sorted(rows, key=lambda row: float(row["largest difference [%]"]))
 
 
-def seen_of(table: Drivetrain) -> Floats:
+def seen_of(table: GearTable) -> Floats:
     """Frequencies of the table's nine modes [Hz], generator fixed."""
     modes = natural_modes(gear_masses(table))
     return modes.frequencies[published.observable(modes)]
 
 
-def with_parts(carrier: float, planet: float) -> Drivetrain:
+def with_parts(carrier: float, planet: float) -> GearTable:
     """The table with another carrier and planet [kg m^2]."""
     return published.with_values(TABLE, {CARRIER: carrier, PLANET: planet})
 

@@ -24,7 +24,7 @@ from fe_drivetrain.comparison import round_off
 from fe_drivetrain.dynamics.torsion import (
     GENERATOR,
     ROTOR,
-    Drivetrain,
+    GearTable,
     GeneratorState,
     Modes,
     Torsional,
@@ -188,7 +188,7 @@ def fitted_stage(mode: int, target: float) -> float:
 def check_table_6_1(page: Page, restored: float, frequencies: Floats) -> None:
     """One inertia for two modes."""
 
-    def model(table: Drivetrain) -> Torsional:
+    def model(table: GearTable) -> Torsional:
         return changed(stage_masses(table), {"stage 1": restored})
 
     check_printed(

@@ -10,7 +10,7 @@ from fe_drivetrain.comparison import round_off
 from fe_drivetrain.dynamics.torsion import (
     GENERATOR,
     ROTOR,
-    Drivetrain,
+    GearTable,
     GeneratorRow,
     Modes,
     ParallelStage,
@@ -22,7 +22,7 @@ from fe_drivetrain.dynamics.torsion import (
     gear_speeds,
     modal_damping,
     natural_modes,
-    read_drivetrain,
+    read_gear_table,
     stage_masses,
     static_stiffness,
     two_masses,
@@ -56,7 +56,7 @@ def frequency_rows(model: str, system: Torsional, modes: Modes, state: str) -> l
 def run(run: Run, page: Page) -> None:
     """Frequencies, shapes, shares of energy and damping at three levels of detail."""
     given = run.settings.get("table")
-    table = published.table("nrel_750kw") if given is None else read_drivetrain(str(given))
+    table = published.table("nrel_750kw") if given is None else read_gear_table(str(given))
     page.about(table)
     states = [s for s in published.STATES if s == "free" or table.generator.stiffness > 0]
     rows: list[Record] = []
@@ -105,7 +105,7 @@ def run(run: Run, page: Page) -> None:
     page.data("damping_ratios", damped_modes(gears).ratios)
 
 
-def check_gears_and_stages(page: Page, table: Drivetrain) -> tuple[float, float]:
+def check_gears_and_stages(page: Page, table: GearTable) -> tuple[float, float]:
     """Angular momentum and stiffness, generator free.
 
     Returns
@@ -135,7 +135,7 @@ def check_gears_and_stages(page: Page, table: Drivetrain) -> tuple[float, float]
     return static_stiffness(gears, ROTOR, GENERATOR), rigid
 
 
-def show_keys(page: Page, table: Drivetrain) -> None:
+def show_keys(page: Page, table: GearTable) -> None:
     """How a drivetrain is described."""
     page.section("The table")
     page.text(
@@ -153,7 +153,7 @@ def show_keys(page: Page, table: Drivetrain) -> None:
                 "needed": field.is_required() or key == "kind",
             }
             for owner, model in (
-                ("drivetrain", Drivetrain),
+                ("drivetrain", GearTable),
                 ("each of shafts", ShaftRow),
                 ("stage of kind planetary", PlanetaryStage),
                 ("stage of kind parallel", ParallelStage),

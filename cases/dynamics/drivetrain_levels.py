@@ -26,7 +26,7 @@ from fe_drivetrain.dynamics import (
     torsional,
     turning_modes,
 )
-from fe_drivetrain.dynamics.torsion import Drivetrain, gear_masses, natural_modes, static_stiffness
+from fe_drivetrain.dynamics.torsion import GearTable, gear_masses, natural_modes, static_stiffness
 from fe_drivetrain.report import marked
 from fe_drivetrain.report.suite import Page, Record, Run
 
@@ -213,13 +213,13 @@ def stiffness_of_5mw(page: Page) -> None:
     page.data("nrel_5mw_stiffness_MN_m_per_rad", stiffness)
 
 
-def with_teeth(table: Drivetrain) -> Drivetrain:
+def with_teeth(table: GearTable) -> GearTable:
     """Table 4.2 with the teeth that its ratios are rounded from."""
     data = table.model_dump(exclude_none=True)
     for stage, teeth in zip(data["stages"], ((99, 21), (82, 23), (88, 22)), strict=True):
         del stage["ratio"]
         stage["teeth"] = teeth
-    return Drivetrain.model_validate(data)
+    return GearTable.model_validate(data)
 
 
 RPM = {"nrel_5mw": 12.1, "nrel_750kw": 22.1, "synthetic_2mw": 18.1}

@@ -357,8 +357,8 @@ def show_files(run: Run, page: Page, element: Superelement) -> None:
             if form.extra or not hasattr(module, "read") or name == "mtx-mass":
                 continue
             path = run.folder / f"{element.name}_{name}{form.suffix}"
-            export.write(path, element, name)
-            back = export.read(path, name)
+            export.write_superelement(path, element, name)
+            back = export.read_superelement(path, name)
             rows.append(
                 {
                     "format": name,

@@ -128,9 +128,9 @@ class _Written:
         names, worst = [], 0.0
         for format in FORMATS:
             path = folder / f"{element.name}{export.FORMATS[format].suffix}"
-            export.write(path, element, format)
+            export.write_superelement(path, element, format)
             names.append(path.name)
-            again = export.read(path, format)
+            again = export.read_superelement(path, format)
             worst = max(worst, largest_difference(again.stiffness, element.stiffness))
         return cls(what, element, again, names, worst)
 

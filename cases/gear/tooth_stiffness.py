@@ -29,7 +29,7 @@ from fe_drivetrain.gear import (
     contact_depths,
     contact_half_width,
     energy_law,
-    iso_stiffness,
+    iso_gear_stiffness,
     kuang_yang_law,
     meshing_without_backlash,
     parabolic_law,
@@ -104,7 +104,7 @@ def methods_of(
     pair: Pair, hubs: tuple[float, float], places: Floats, steps: int
 ) -> dict[str, Callable[[], Floats]]:
     """Mesh stiffness over the phases by each method, cheap to expensive."""
-    iso = iso_stiffness(pair)
+    iso = iso_gear_stiffness(pair)
 
     def elements(plane: Plane, coupled: bool) -> Floats:
         return meshed_pair(pair, hubs, plane, STEEL, steps, COARSE).mesh(LOAD, coupled)
@@ -198,7 +198,7 @@ def show_phase(page: Page, name: str, exact: Floats, waves: dict[str, Floats]) -
 def show_path(page: Page, name: str, fine: MeshedPair, hubs: tuple[float, float]) -> None:
     """Stiffness of one pair along the path of contact."""
     pair, places = fine.pair, fine.places
-    iso = iso_stiffness(pair)
+    iso = iso_gear_stiffness(pair)
     along = (places - pair.path.pitch) / pair.first.base_pitch
     page.chart(
         f"{name}: stiffness of one pair along the path of contact",
@@ -242,7 +242,7 @@ def checks(
         rows = check_split(page, name, fine.pair, hubs, run.quick)
     with run.step(f"{name}: hubs and loads"):
         ends = stiffness_of_ends(fine.pair)
-    check_standard(page, name, iso_stiffness(fine.pair), ends)
+    check_standard(page, name, iso_gear_stiffness(fine.pair), ends)
     energy = energy_law(fine.pair, hubs, LOAD)(fine.places)
     middle = np.abs(fine.places - fine.places.mean()) < 0.3 * np.ptp(fine.places)
     page.vanishes(

@@ -14,7 +14,7 @@ from fe_drivetrain.turbine_loads.histories import (
     rainflow_cycles,
     spectrum,
 )
-from fe_drivetrain.turbine_loads.hub_loads import LoadHistory, read_recorded, write_csv
+from fe_drivetrain.turbine_loads.hub_loads import LoadHistory, read_recorded, write_hub_loads
 
 HERTZ = 0.2  # of the rotor
 SIX = 6.0 * HERTZ
@@ -267,7 +267,7 @@ def refused(page: Page) -> None:
     )
     with scratch_folder() as folder:
         file = folder / "constant.csv"
-        write_csv(LoadHistory("constant", time, np.full((len(time), 6), 3.0)), file)
+        write_hub_loads(LoadHistory("constant", time, np.full((len(time), 6), 3.0)), file)
         read = read_recorded(file).history
     page.holds(
         "a file of constant loads is read, and counts nothing",

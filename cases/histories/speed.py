@@ -27,7 +27,7 @@ from fe_drivetrain.turbine_loads.histories import (
     time_at_level,
     window_statistics,
 )
-from fe_drivetrain.turbine_loads.hub_loads import LoadHistory, Recorded, find_loops, write_csv
+from fe_drivetrain.turbine_loads.hub_loads import LoadHistory, Recorded, find_loops, write_hub_loads
 
 STEP = 0.05
 SIZES = (12_000, 120_000, 1_200_000)
@@ -300,7 +300,7 @@ def many_files(run: Run, page: Page) -> None:
     size, few, many = (FILE // 20, 4, 8) if run.quick else (FILE // 10, 4, 40)
     with tempfile.TemporaryDirectory() as folder, run.step("few files and many"):
         file = Path(folder, "made.csv")
-        write_csv(made_history(0, size), file)
+        write_hub_loads(made_history(0, size), file)
         with run.side_by_side(2) as jobs:
             started = [jobs.start(peak_over_files, file, count) for count in (few, many)]
             peaks = [job.result() for job in started]

@@ -13,6 +13,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.comparison import statistics
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.report.suite.records import Record
@@ -46,6 +47,8 @@ class LinearModel:
 
     matrix: Floats
     constant: Floats
+
+    __repr__ = short_repr
 
     @classmethod
     def of_fe(cls, scene: Scene, response: Response, gravity: float = 0.0) -> LinearModel:
