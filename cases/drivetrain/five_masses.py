@@ -1,7 +1,6 @@
 """A mass for each gear stage, meshes rigid: the NREL 750 kW drivetrain with five masses."""
 
 from collections.abc import Mapping
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -65,10 +64,7 @@ def run(run: Run, page: Page) -> None:
     page.about(TABLE)
     with run.step("frequencies of Table 4.2"):
         found = {state: natural_modes(system) for state, system in SYSTEMS.items()}
-        bands = {
-            state: published.rounding_band(NAME, partial(stage_masses, generator=state))
-            for state in published.STATES
-        }
+        bands = published.rounding_bands(NAME, stage_masses)
         for state, modes in found.items():
             check_printed(
                 page,

@@ -12,9 +12,11 @@ from fe_drivetrain.dynamics.torsion import (
     ROTOR,
     GearTable,
     GeneratorRow,
+    Modes,
     ParallelStage,
     PlanetaryStage,
     ShaftRow,
+    Torsional,
     damped_modes,
     gear_masses,
     gear_speeds,
@@ -29,6 +31,21 @@ from fe_drivetrain.report.suite import Page, Record, Run
 
 GEARS = "a mass for each gear"
 MAKERS = {"two masses": two_masses, "a mass for each stage": stage_masses, GEARS: gear_masses}
+
+
+def frequency_rows(model: str, system: Torsional, modes: Modes, state: str) -> list[Record]:
+    """Frequencies and damping ratios of one model."""
+    ratios = modal_damping(system)
+    return [
+        {
+            "model": model,
+            "generator": state,
+            "mode": m,
+            "frequency [Hz]": float(f),
+            "damping ratio": float(z) if np.isfinite(z) else None,
+        }
+        for m, (f, z) in enumerate(zip(modes.frequencies, ratios, strict=True), start=1)
+    ]
 
 
 @case(
@@ -49,18 +66,7 @@ def run(run: Run, page: Page) -> None:
             system = make(table, state)
             modes = found[name, state] = natural_modes(system)
             check_count(page, f"{name}, generator {state}", certified(system, modes.frequencies))
-            rows += [
-                {
-                    "model": name,
-                    "generator": state,
-                    "mode": m + 1,
-                    "frequency [Hz]": float(f),
-                    "damping ratio": float(z) if np.isfinite(z) else None,
-                }
-                for m, (f, z) in enumerate(
-                    zip(modes.frequencies, modal_damping(system), strict=True)
-                )
-            ]
+            rows += frequency_rows(name, system, modes, state)
     whole, rigid = check_gears_and_stages(page, table)
     first = [found[name, "free"].frequencies[1] for name in MAKERS]
     page.answer(

@@ -5,6 +5,7 @@ the frequencies of Tables 6.1, 6.2 and 6.4 stand here.
 """
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from importlib.resources import files
 from typing import Any
 
@@ -143,6 +144,11 @@ def _numbers(data: Any, key: str) -> Iterator[tuple[str, str]]:
                 yield from _numbers(value, f"{key}.{name}".removeprefix("."))
     elif data[:1].isdecimal():
         yield key, data
+
+
+def rounding_bands(name: str, model: Callable[..., Torsional]) -> dict[GeneratorState, Floats]:
+    """Bands as those of `rounding_band`, by state of the generator."""
+    return {state: rounding_band(name, partial(model, generator=state)) for state in STATES}
 
 
 def rounding_band(
