@@ -15,13 +15,16 @@ NULL = 1e-9
 _AXES = ("x", "y", "z")
 
 
-def null_space(restraints: Sequence[Floats]) -> Floats:
-    """(n_null, m) orthonormal combinations of motions that no restraint (k, m) feels."""
+def null_space(restraints: Sequence[Floats], known: int = 0) -> Floats:
+    """(n_null, m) orthonormal combinations of motions that no restraint (k, m) feels.
+
+    None where there are no more of them than are `known`.
+    """
     A = linalg.qr(np.vstack(restraints), mode="r")[0]
     sizes = linalg.svdvals(A) if A.size else np.zeros(0)
     rank = int((sizes > NULL * max(sizes[0], 1.0)).sum()) if sizes.size else 0
-    if rank == A.shape[1]:  # mostly, and vectors take ten times as long
-        return np.zeros((0, rank))
+    if A.shape[1] - rank <= known:  # mostly, and vectors take ten times as long
+        return np.zeros((0, A.shape[1]))
     return np.asarray(np.linalg.svd(A)[2][rank:])
 
 

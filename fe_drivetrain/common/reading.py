@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from copy import deepcopy
 from difflib import get_close_matches
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -151,7 +153,7 @@ def parse_mapping(text: str, source: str) -> dict[str, Any]:
         The text is not such YAML, or not a mapping.
     """
     try:
-        data = yaml.load(text, Loader=PlainLoader)
+        data = deepcopy(_parsed(text))
     except (yaml.YAMLError, RecursionError, ValueError) as error:
         raise InputError(f"{source} is not plain YAML: {' '.join(str(error).split())}") from error
     if not isinstance(data, dict):
@@ -159,6 +161,12 @@ def parse_mapping(text: str, source: str) -> dict[str, Any]:
             f"{source} must be a mapping of keys to values: write lines such as 'KEY: VALUE'"
         )
     return data
+
+
+@lru_cache(maxsize=16)
+def _parsed(text: str) -> Any:
+    """Content of plain YAML: commands read one file several times, and parsing is most of it."""
+    return yaml.load(text, Loader=PlainLoader)
 
 
 def validated(model: type[_Model], data: Any, source: str) -> _Model:

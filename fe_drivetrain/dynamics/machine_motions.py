@@ -97,8 +97,9 @@ def _check_free(machine: MachineTable, made: Assembly, system: System) -> None:
     scaled = system.rows / np.where(turns, length, 1.0)
     sizes = np.linalg.norm(scaled, axis=1)
     felt = (system.stiffness > 0) & (sizes > 0)
-    null = null_space([np.zeros((1, len(turns))), scaled[felt] / sizes[felt][:, None]])
-    if len(null) <= free_count(machine):
+    rows = [np.zeros((1, len(turns))), scaled[felt] / sizes[felt][:, None]]
+    null = null_space(rows, known=free_count(machine))
+    if not len(null):
         return
     at_bodies = system.expansion / np.where(turns, length, 1.0)
     at_bodies[np.arange(len(at_bodies)) % 6 > 2] *= length
