@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +25,7 @@ from fe_drivetrain.turbine_loads.hub_loads.aero_rotor import (
 from fe_drivetrain.turbine_loads.hub_loads.controller import (
     CUT_IN_SHARE,
     FULL_SHARE,
+    Controller,
     Tuning,
     designed_controller,
     speed_poles,
@@ -65,8 +67,18 @@ NREL_5MW = Rotor(
     blade_start=9.5,
 )
 LEVEL = similar_turbine(Rotor(shaft_tilt=0.0))
-CONTROLLER = designed_controller(LEVEL)
-NO_FILTER = replace(CONTROLLER, tuning=Tuning(filter=1e3))
+
+
+@cache
+def controller() -> Controller:
+    """Gains of the default tuning."""
+    return designed_controller(LEVEL)
+
+
+@cache
+def no_filter() -> Controller:
+    """The same, hearing the speed as it is."""
+    return replace(controller(), tuning=Tuning(filter=1e3))
 
 
 def waves(signal: Floats, azimuth: Floats, orders: int = 9) -> Floats:
@@ -125,19 +137,19 @@ def test_gains_of_a_similar_rotor_are_near_those_published_for_the_nrel_5_mw() -
 
 
 def test_torque_is_continuous_from_region_to_region() -> None:
-    full = FULL_SHARE * CONTROLLER.torque_speed
-    for speed in (full, CONTROLLER.transition, CONTROLLER.torque_speed):
-        below, above = (CONTROLLER.torque(speed * (1.0 + e)) for e in (-1e-9, 1e-9))
+    full = FULL_SHARE * controller().torque_speed
+    for speed in (full, controller().transition, controller().torque_speed):
+        below, above = (controller().torque(speed * (1.0 + e)) for e in (-1e-9, 1e-9))
         assert below == pytest.approx(above, rel=1e-6)
-    assert CONTROLLER.torque(CUT_IN_SHARE * CONTROLLER.torque_speed) == 0.0
+    assert controller().torque(CUT_IN_SHARE * controller().torque_speed) == 0.0
 
 
 @pytest.mark.parametrize("wind", [4.0, 8.0, 10.0, 17.0])
 def test_speed_and_pitch_come_to_the_state_of_momentum_theory(wind: float) -> None:
-    begin = steady_operation(LEVEL, CONTROLLER, wind)
+    begin = steady_operation(LEVEL, controller(), wind)
     start = 0.95 * begin.rotor_speed, begin.pitch + 0.02 * (wind > 12.0)
     inflow = even_inflow(LEVEL, wind, np.zeros(4000), 10.0)
-    loads, beside = simulate(LEVEL, CONTROLLER, inflow, RIGID, start=start)
+    loads, beside = simulate(LEVEL, controller(), inflow, RIGID, start=start)
     assert beside[-1, SPEED] == pytest.approx(begin.rotor_speed, rel=1e-6)
     assert beside[-1, PITCH] == pytest.approx(begin.pitch, abs=1e-6)
     assert loads[-1, [FX, MX]] == pytest.approx([begin.thrust, begin.torque], rel=1e-5)
@@ -148,10 +160,10 @@ def test_speed_and_pitch_come_to_the_state_of_momentum_theory(wind: float) -> No
 
 def test_wake_follows_a_step_of_pitch_late_so_that_thrust_overshoots() -> None:
     wind = even_inflow(LEVEL, 14.0, np.zeros(1200), 10.0)
-    point = steady_operation(LEVEL, CONTROLLER, 14.0)
+    point = steady_operation(LEVEL, controller(), 14.0)
     heavy = replace(LEVEL, rotor_inertia=1e15, generator_inertia=1e15)  # keeps its speed
     start = point.rotor_speed, point.pitch + math.radians(2.0)
-    loads, _ = simulate(heavy, CONTROLLER, wind, RIGID, held=True, start=start)
+    loads, _ = simulate(heavy, controller(), wind, RIGID, held=True, start=start)
     end = steady_state(LEVEL.rotor, 14.0, *start)
     assert loads[-1, FX] == pytest.approx(end.thrust, rel=1e-4)
     assert loads[0, FX] < end.thrust - 0.05 * (point.thrust - end.thrust)
@@ -164,7 +176,7 @@ def test_energy_of_the_air_is_generated_kept_in_rotation_or_lost_in_the_shaft(
     time = np.arange(2400) / 80.0
     inflow = even_inflow(LEVEL, 8.0, 1.5 * np.sin(0.7 * time), 80.0)
     physics = replace(FROZEN, torsion=torsion)  # a wake that moves has energy, too
-    _, beside = simulate(LEVEL, CONTROLLER, inflow, physics)
+    _, beside = simulate(LEVEL, controller(), inflow, physics)
     _, torque, power = beside[:, :3].T
     rotor, twist, generator = beside[:, [SPEED, TWIST, GENERATOR]].T
     lost = LEVEL.shaft_damping * (rotor - generator) ** 2 * torsion
@@ -182,8 +194,8 @@ def test_energy_of_the_air_is_generated_kept_in_rotation_or_lost_in_the_shaft(
 
 @pytest.mark.parametrize("wind", [13.0, 22.0])
 def test_speed_decays_with_the_poles_of_the_linear_equation(wind: float) -> None:
-    point = steady_operation(LEVEL, NO_FILTER, wind)
-    one, other = speed_poles(LEVEL, NO_FILTER, point)
+    point = steady_operation(LEVEL, no_filter(), wind)
+    one, other = speed_poles(LEVEL, no_filter(), point)
     time = np.arange(1500) / 100.0
     begin = 1e-4 * point.rotor_speed
     # from x(0) = 1, x'(0) = one + other, since pitch begins with the error's proportional part
@@ -191,7 +203,7 @@ def test_speed_decays_with_the_poles_of_the_linear_equation(wind: float) -> None
     inflow = even_inflow(LEVEL, wind, np.zeros(time.size), 100.0)
     physics = replace(RIGID, wake="frozen")
     start = point.rotor_speed + begin, point.pitch
-    _, beside = simulate(LEVEL, NO_FILTER, inflow, physics, start=start)
+    _, beside = simulate(LEVEL, no_filter(), inflow, physics, start=start)
     found = (beside[:, SPEED] - point.rotor_speed) / begin
     # the controller acts in steps of 0.01 s: a lag of half a step
     assert np.abs(found - linear.real).max() < 0.01
@@ -200,10 +212,10 @@ def test_speed_decays_with_the_poles_of_the_linear_equation(wind: float) -> None
 
 def test_pitch_and_torque_keep_their_rate_limits() -> None:
     gust = np.where(np.arange(600) > 100, 8.0, 0.0)
-    loads, beside = simulate(LEVEL, CONTROLLER, even_inflow(LEVEL, 11.0, gust, 20.0), RIGID)
+    loads, beside = simulate(LEVEL, controller(), even_inflow(LEVEL, 11.0, gust, 20.0), RIGID)
     pitch, torque = np.diff(beside[:, :2], axis=0).T * 20.0
-    assert np.abs(pitch).max() == pytest.approx(CONTROLLER.tuning.pitch_rate, rel=1e-9)
-    limit = CONTROLLER.tuning.torque_rate * CONTROLLER.rated_torque
+    assert np.abs(pitch).max() == pytest.approx(controller().tuning.pitch_rate, rel=1e-9)
+    limit = controller().tuning.torque_rate * controller().rated_torque
     assert np.abs(torque).max() <= limit * (1.0 + 1e-9)
     assert np.isfinite(loads).all()
 
@@ -214,7 +226,7 @@ def test_pitch_and_torque_keep_their_rate_limits() -> None:
 @pytest.fixture(scope="module")
 def calm() -> tuple[Floats, Floats]:
     """Rigid, even wind, pitch, torque and wake held."""
-    return simulate(HEAVY, CONTROLLER, STEADY, FROZEN, held=True)
+    return simulate(HEAVY, controller(), STEADY, FROZEN, held=True)
 
 
 HEAVY = replace(LEVEL, rotor_inertia=3e12, generator_inertia=1e12)  # keeps its speed
@@ -227,7 +239,7 @@ def test_surplus_of_mass_pulls_with_its_centrifugal_force_and_weighs_on_the_torq
 ) -> None:
     moment = 500.0
     spoilt = replace(HEAVY, mass_imbalance=moment)
-    loads, beside = simulate(spoilt, CONTROLLER, STEADY, FROZEN, held=True)
+    loads, beside = simulate(spoilt, controller(), STEADY, FROZEN, held=True)
     found = waves(loads - calm[0], beside[:, STATE])
     speed = beside[:, SPEED].mean()
     assert found[0, [FY, FZ]] == pytest.approx(2 * [moment * speed**2], rel=1e-6)
@@ -241,7 +253,7 @@ def test_one_blade_at_another_pitch_shakes_at_1p_and_three_do_not(
 ) -> None:
     error = math.radians(0.3)
     one, all_three = (
-        simulate(replace(HEAVY, pitch_errors=errors), CONTROLLER, STEADY, FROZEN, held=True)
+        simulate(replace(HEAVY, pitch_errors=errors), controller(), STEADY, FROZEN, held=True)
         for errors in ((error, 0.0, 0.0), (error, error, error))
     )
     single = waves(one[0], one[1][:, STATE])
@@ -304,7 +316,7 @@ def test_edge_modes_stand_in_the_spectrum_of_the_side_force_one_turn_beside_thei
     found = {}
     for blades in (True, False):
         made = turbine_history(
-            condition, turbine, CONTROLLER, replace(RIGID, blades=blades), 160.0, 10.0
+            condition, turbine, controller(), replace(RIGID, blades=blades), 160.0, 10.0
         )
         found[blades] = spectrum(made.history.component("Fy"), 0.1)
     turn = float(made.rotor_speed.mean()) / (2.0 * np.pi)
@@ -328,7 +340,7 @@ def test_tower_slows_the_wind_as_a_cylinder_does_and_shakes_at_3p_alone(
     assert air.slowed(parts, radius, 0.0) == 1.0
     beside = [air.slowed(parts, radius, math.pi + e) for e in (-0.1, 0.1)]
     assert left < beside[0] == pytest.approx(beside[1], rel=1e-12)
-    loads, state = simulate(HEAVY, CONTROLLER, STEADY, physics, held=True)
+    loads, state = simulate(HEAVY, controller(), STEADY, physics, held=True)
     found = waves(loads, state[:, STATE])
     for component in (FX, MY, MZ):
         assert found[2, component] > 20.0 * found[[0, 1, 3, 4], component].max()
@@ -365,11 +377,11 @@ def test_histories_that_were_kept_are_those_that_are_made(tmp_path: Path) -> Non
     grid = [Condition(12.0, "medium", 0.2, seed) for seed in (1, 2)]
     done: list[int] = []
     settings = {"duration": 20.0, "rate": 10.0, "cache": Cache(tmp_path), "progress": done.append}
-    first = next(iter(turbine_histories(grid, turbine, CONTROLLER, **settings)))  # stopped
-    again = list(turbine_histories(grid, turbine, CONTROLLER, **settings))
+    first = next(iter(turbine_histories(grid, turbine, controller(), **settings)))  # stopped
+    again = list(turbine_histories(grid, turbine, controller(), **settings))
     assert done == [1, 1, 2]
     assert np.array_equal(first.history.loads, again[0].history.loads)
-    alone = turbine_history(grid[1], turbine, CONTROLLER, duration=20.0, rate=10.0)
+    alone = turbine_history(grid[1], turbine, controller(), duration=20.0, rate=10.0)
     for name in ("azimuth", "rotor_speed", "pitch", "generator_torque", "power", "wind_speed"):
         assert np.array_equal(getattr(again[1], name), getattr(alone, name))
     assert alone.history.loads.shape == (200, 6)
@@ -402,7 +414,7 @@ def test_what_has_no_motion_is_refused() -> None:
     with pytest.raises(InputError, match="2 blades"):
         similar_turbine(Rotor(blades=2))
     with pytest.raises(InputError, match="is no history"):
-        turbine_history(Condition(12.0, "low", 0.2, 1), LEVEL, CONTROLLER, duration=0.0)
+        turbine_history(Condition(12.0, "low", 0.2, 1), LEVEL, controller(), duration=0.0)
     with pytest.raises(InputError, match="pitch_rate is 0"):
         Tuning(pitch_rate=0.0)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import math
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from fe_drivetrain.turbine_loads.hub_loads import turbine_air as air
 from fe_drivetrain.turbine_loads.hub_loads import turbine_energy as energy
 from fe_drivetrain.turbine_loads.hub_loads import turbine_kernel as kernel
 from fe_drivetrain.turbine_loads.hub_loads.aero_rotor import Rotor
-from fe_drivetrain.turbine_loads.hub_loads.controller import designed_controller
+from fe_drivetrain.turbine_loads.hub_loads.controller import Controller, designed_controller
 from fe_drivetrain.turbine_loads.hub_loads.moving_turbine import (
     accounted_history,
     energy_account,
@@ -30,13 +31,18 @@ from fe_drivetrain.turbine_loads.hub_loads.wind import at_azimuth
 TURBINE = similar_turbine(
     Rotor(elements=5, harmonics=3), mass_imbalance=4e3, pitch_errors=(0.01, 0.0, -0.005)
 )
-CONTROLLER = designed_controller(TURBINE)
 TIME = np.arange(300) / 20.0
 GUST = even_inflow(TURBINE, 13.0, 3.0 * np.sin(0.8 * TIME), 20.0, 0.2)
 """Pitch acts most of the time, and the wind has no kinks between its samples."""
 SMOOTH = Physics(shadow=False)
 
 Moving = Callable[..., None]
+
+
+@cache
+def controller() -> Controller:
+    """Gains of the default tuning."""
+    return designed_controller(TURBINE)
 
 
 def out_of_balance(moving: Moving, seed: int, physics: Physics = SMOOTH) -> float:
@@ -114,7 +120,7 @@ def test_a_wrong_sign_of_one_term_of_the_equations_breaks_the_balance(
 def test_the_error_of_the_account_falls_with_the_order_of_the_method() -> None:
     errors = [
         energy_account(
-            TURBINE, CONTROLLER, GUST, SMOOTH, start=(1.7, 0.1), longest_step=step
+            TURBINE, controller(), GUST, SMOOTH, start=(1.7, 0.1), longest_step=step
         ).relative_imbalance
         for step in (0.05, 0.025, 0.0125)
     ]
@@ -126,8 +132,8 @@ def test_an_account_with_one_coupling_wrong_has_an_error_that_no_step_takes_away
     parts = kernel_parts(TURBINE, SMOOTH, GUST)
     wrong = parts._replace(imbalance=-parts.imbalance)
     for step in (0.05, 0.0125):
-        account = energy_account(TURBINE, CONTROLLER, GUST, SMOOTH, longest_step=step)
-        _, beside = simulate(TURBINE, CONTROLLER, GUST, SMOOTH, longest_step=step)
+        account = energy_account(TURBINE, controller(), GUST, SMOOTH, longest_step=step)
+        _, beside = simulate(TURBINE, controller(), GUST, SMOOTH, longest_step=step)
         found = {}
         for name, own in (("right", parts), ("wrong", wrong)):
             stored = np.zeros((len(beside), energy.ENERGIES))
@@ -141,12 +147,12 @@ def test_an_account_with_one_coupling_wrong_has_an_error_that_no_step_takes_away
 
 
 def test_each_term_is_on_the_account_once() -> None:
-    account = energy_account(TURBINE, CONTROLLER, GUST, SMOOTH)
+    account = energy_account(TURBINE, controller(), GUST, SMOOTH)
     found = account.greatest()
     assert set(found) == {f"stored: {n}" for n in STORED} | {f"work: {n}" for n in WORKS}
     assert min(found.values()) > 0.0
     assert account.works[0].max() == 0.0 == account.works[0].min()
-    rigid = energy_account(TURBINE, CONTROLLER, GUST, RIGID).greatest()
+    rigid = energy_account(TURBINE, controller(), GUST, RIGID).greatest()
     still = {name for name, value in rigid.items() if value == 0.0}
     assert {name for name in rigid if "blades" in name and "rotor" not in name} <= still
     assert rigid["work: air"] > 1e6
@@ -154,13 +160,13 @@ def test_each_term_is_on_the_account_once() -> None:
 
 def test_an_account_changes_nothing_in_the_history() -> None:
     condition = Condition(12.0, "medium", 0.2, 3)
-    made, account = accounted_history(condition, TURBINE, CONTROLLER, None, 10.0, 20.0)
-    alone = turbine_history(condition, TURBINE, CONTROLLER, None, 10.0, 20.0)
+    made, account = accounted_history(condition, TURBINE, controller(), None, 10.0, 20.0)
+    alone = turbine_history(condition, TURBINE, controller(), None, 10.0, 20.0)
     assert np.array_equal(made.history.loads, alone.history.loads)
     assert len(account.energy) == 70 * 20
     assert account.relative_imbalance < 1e-3
     with pytest.raises(InputError, match=r"longest_step is 0\.0 s; it must be above zero"):
-        simulate(TURBINE, CONTROLLER, GUST, longest_step=0.0)
+        simulate(TURBINE, controller(), GUST, longest_step=0.0)
 
 
 def test_fewer_harmonics_are_the_same_wind_without_the_others() -> None:
