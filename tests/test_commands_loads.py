@@ -207,8 +207,8 @@ def test_a_digest_of_another_form_is_made_again_and_said(
     command = ("loads", str(histories / "a.csv"), "--out", str(out), *COLUMNS)
     assert invoke(*command)[0] == 0
     sound = read_results(out / "results.json").figures
-    columns = {"wind speed": "Vhub", "rotor speed": "N"}
-    content = LoadOptions(columns).content(histories / "a.csv")
+    channels = ChannelMap(channels={"wind speed": "Vhub", "rotor speed": "N"})
+    content = LoadOptions(channels=channels).content(histories / "a.csv")
     kept = cache.load("load-digests", content)
     assert kept is not None
     del kept["hub/torque/turns"]
@@ -228,7 +228,8 @@ def test_the_study_finds_what_the_command_writes(
     out = histories.parent / "out"
     assert invoke("loads", str(histories), "--out", str(out), *COLUMNS, "--site", "IIB")[0] == 0
     files = [histories / "a.csv", histories / "b.csv"]
-    options = LoadOptions({"wind speed": "Vhub", "rotor speed": "N"})
+    channels = ChannelMap(channels={"wind speed": "Vhub", "rotor speed": "N"})
+    options = LoadOptions(channels=channels)
     found = loads(files, options, site=site_of_class("IIB"))
     results = read_results(out / "results.json")
     assert results.summary == list(found.answer)
@@ -328,7 +329,7 @@ def test_reactions_balance_hub_loads_and_weights(rng: np.random.Generator) -> No
 
 
 def test_files_together_are_what_they_are_apart(rng: np.random.Generator) -> None:
-    options = LoadOptions(slopes=(3.0,), rotor_speed=1.5)
+    options = LoadOptions(slopes=(3.0,), rotor_speed_rpm=45.0 / np.pi)
     walk = 1e5 * rng.standard_normal((2400, 6)).cumsum(axis=0)
     parts = [walk[:1200], walk[1200:]]
     sums, first = LoadSums(), LoadSums()

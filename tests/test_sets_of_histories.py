@@ -15,7 +15,7 @@ from fe_drivetrain.studies.load_comparison import LoadSet, compare_sets, feature
 from fe_drivetrain.studies.load_digest import LoadOptions, digest
 from fe_drivetrain.studies.load_reactions import FileDigest
 
-OPTIONS = LoadOptions(slopes=(3.0, 10.0), rotor_speed=1.5)
+OPTIONS = LoadOptions(slopes=(3.0, 10.0), rotor_speed_rpm=45.0 / np.pi)
 
 
 def set_of(histories: Iterable[Recorded]) -> LoadSet:

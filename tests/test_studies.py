@@ -118,7 +118,7 @@ def loaded(tmp_path_factory: pytest.TempPathFactory) -> LoadsResult:
     samples = np.random.default_rng(3).standard_normal((301, 6))
     samples[:, 4] = 1e3 * np.sin(2.0 * np.pi * time / 10.0)
     write_csv(LoadHistory("wave", time, samples), file)
-    options = LoadOptions(slopes=(3.0, 5.0), rotor_speed=1.5, ultimate={"My": 1e6})
+    options = LoadOptions(slopes=(3.0, 5.0), rotor_speed_rpm=45.0 / np.pi, ultimate={"My": 1e6})
     return loads([file], options, scene=coarse_scene("bonded"))
 
 
@@ -195,7 +195,8 @@ def test_numbers_that_are_none_are_words_in_the_json(compared: CompareResult) ->
         ({"frequency": 0.0}, "frequency of equivalent loads is 0 Hz but must be above 0"),
         ({"gate": 1.0}, "gate is 1 of the largest range but must be at least 0 and below 1"),
         ({"skip": -1.0}, "skip is -1 s but must be at least 0"),
-        ({"rotor_speed": math.nan}, "rotor speed is nan rad/s but must be above 0"),
+        ({"rotor_speed_rpm": math.nan}, "rotor speed is nan 1/min but must be at least 0"),
+        ({"rotor_speed_rpm": 0.0}, "rotor speed is 0 1/min but must be above 0"),
         ({"residue": "none"}, "residue of cycles"),
     ],
 )
@@ -351,13 +352,13 @@ def test_a_mesh_is_counted_by_part(kind: Literal["mesh", "model"]) -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"kind": "modes", "what": "seats"}, "--modes is for the free shaft, not for --what seats"),
-        ({"kind": "modes", "level": 3}, "--modes is for the shaft of level 2, not --level 3"),
+        ({"kind": "modes", "what": "seats"}, "is for the free shaft, not for `what='seats'`"),
+        ({"kind": "modes", "level": 3}, "is for the shaft of level 2, not `level=3`"),
         ({"what": "tower"}, "'tower' cannot be exported: use one of shaft"),
         ({"level": 7}, "level 7 of shaft is unknown"),
-        ({"modes": 3}, "modes is not used by an export of kind 'superelement': leave it out"),
-        ({"kind": "mesh", "at": ["hub"]}, "at is not used by an export of kind 'mesh'"),
-        ({"kind": "summary", "at": ["hub"]}, "--at hub is not used by --what summary"),
+        ({"modes": 3}, "`modes` is not used by an export of kind 'superelement': leave it out"),
+        ({"kind": "mesh", "at": ["hub"]}, "`at` is not used by an export of kind 'mesh'"),
+        ({"kind": "summary", "at": ["hub"]}, "is not used by `kind='summary'`"),
     ],
 )
 def test_what_cannot_be_exported_is_refused(options: dict[str, Any], message: str) -> None:
@@ -366,7 +367,7 @@ def test_what_cannot_be_exported_is_refused(options: dict[str, Any], message: st
 
 
 def test_points_of_a_mesh_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="--held foot names points of a superelement"):
+    with pytest.raises(InputError, match=r"`held=.*foot.*` names points of a superelement"):
         part(tmp_path / "any.vtu", held=["foot"])
 
 
@@ -375,7 +376,7 @@ def test_a_component_is_no_model() -> None:
     for kind in ("model", "summary"):
         with pytest.raises(InputError, match="is a component: export its mesh"):
             prepare_export(component, kind)
-    with pytest.raises(InputError, match="--modes is for the shaft of a scene"):
+    with pytest.raises(InputError, match="`kind='modes'` is for the shaft of a scene"):
         prepare_export(component, "modes", modes=1)
 
 
@@ -424,7 +425,7 @@ def test_loads_without_files_winds_or_slopes_are_refused(tmp_path: Path) -> None
         loads([])
     still = tmp_path / "still.csv"
     write_csv(LoadHistory("still", np.arange(20) * 0.1, np.ones((20, 6))), still)
-    with pytest.raises(InputError, match="no wind speed, by which --site weights"):
+    with pytest.raises(InputError, match="no wind speed, by which `site` weights"):
         loads([still], site=Site(8.5))
     with pytest.raises(InputError, match="give a site, too"):
         loads(still, transients=[(700.0, still)])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -30,9 +30,6 @@ from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
 from fe_drivetrain.scene.named_scenes import named_scene
 from fe_drivetrain.studies.life_options import ASSUMED, LifeOptions
-
-if TYPE_CHECKING:
-    from fe_drivetrain.hub_loads.channel_map import ChannelMap
 
 _KEPT = "files that are done are kept: run again with --resume"
 
@@ -177,7 +174,7 @@ def life_command(
         check_result_folder(target)
         found = named_scene(scene, parse_settings(set_ or ()))
         from fe_drivetrain.commands.life_page import show_life
-        from fe_drivetrain.commands.loads_words import parse_site
+        from fe_drivetrain.commands.loads_words import parse_mapping, parse_site
         from fe_drivetrain.hub_loads.recorded import recorded_files
         from fe_drivetrain.studies.bearing_lives import DrivetrainBearings, lives_under
         from fe_drivetrain.suite.case import Case
@@ -242,29 +239,6 @@ def parse_lubricant(text: str) -> str | tuple[float, float]:
     except ValueError:
         return text  # a grade, or refused with those that there are
     return at_40, at_100
-
-
-def parse_mapping(file: Path | None, channels: Iterable[str]) -> ChannelMap:
-    """How files call their channels, by ``--mapping`` and ``--channel``.
-
-    Parameters
-    ----------
-    file : Path or None
-        File of ``--mapping``.
-    channels : iterable of str
-        Words of ``--channel``, which goes before the mapping.
-
-    Raises
-    ------
-    InputError
-        The mapping cannot be read, or an option has another form.
-    """
-    from fe_drivetrain.commands.loads_words import parse_channels
-    from fe_drivetrain.hub_loads.channel_map import read_channel_map
-    from fe_drivetrain.hub_loads.recorded import OWN_NAMES
-
-    names = OWN_NAMES if file is None else read_channel_map(file)
-    return names.with_columns(parse_channels(channels))
 
 
 def _pairs(texts: Iterable[str]) -> dict[str, str]:

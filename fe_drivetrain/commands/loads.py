@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from math import pi
 from pathlib import Path
 from typing import Annotated
 
@@ -180,7 +179,7 @@ def loads_command(
         from fe_drivetrain.commands.loads_page import show_loads
         from fe_drivetrain.commands.loads_tables import parquet_writer
         from fe_drivetrain.commands.loads_words import (
-            parse_channels,
+            parse_mapping,
             parse_share,
             parse_site,
             parse_transients,
@@ -190,8 +189,7 @@ def loads_command(
         from fe_drivetrain.commands.showing import shown
         from fe_drivetrain.histories.cycles import RESIDUES
         from fe_drivetrain.histories.damage import SLOPES
-        from fe_drivetrain.hub_loads.channel_map import read_channel_map
-        from fe_drivetrain.hub_loads.recorded import OWN_NAMES, recorded_files
+        from fe_drivetrain.hub_loads.recorded import recorded_files
         from fe_drivetrain.scene.named_scenes import named_scene
         from fe_drivetrain.studies.load_digest import LoadOptions
         from fe_drivetrain.studies.load_histories import loads
@@ -203,16 +201,15 @@ def loads_command(
         if residue not in RESIDUES:
             raise InputError(f"--residue {residue}: choose one of {', '.join(RESIDUES)}")
         options = LoadOptions(
-            parse_channels(channel or ()),
-            skip,
-            tuple(slope or SLOPES),
-            residue,  # type: ignore[arg-type]
-            parse_share(gate),
-            None if rotor_speed is None else rotor_speed * pi / 30.0,
-            parse_ultimate(ultimate or ()),
-            frequency,
-            OWN_NAMES if mapping is None else read_channel_map(mapping),
-            tuple(also or ()),
+            channels=parse_mapping(mapping, channel or ()),
+            rotor_speed_rpm=rotor_speed,
+            skip=skip,
+            slopes=tuple(slope or SLOPES),
+            residue=residue,  # type: ignore[arg-type]
+            gate=parse_share(gate),
+            ultimate=parse_ultimate(ultimate or ()),
+            frequency=frequency,
+            also=tuple(also or ()),
         )
         wanted = parse_winds(winds, target)
         place = None if site is None else parse_site(site, shape, years)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, TypeVar
 
+from fe_drivetrain.commands.option_names import result_with_options
+
 if TYPE_CHECKING:
     from fe_drivetrain.studies.result import Result
     from fe_drivetrain.suite.page import Page
@@ -30,7 +32,7 @@ def shown(
     def work(run: Run, page: Page) -> None:
         result = study(run)
         run.take(result)
-        page.take(result)
+        page.take(result_with_options(result))
         show(run, page, result)
 
     return work

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.components import FORCES, MOTIONS
@@ -218,7 +219,7 @@ def advise(
     if not 0 < tolerance < 1:
         raise InputError(
             f"tolerance is {100 * tolerance:g} % but must be between 0 and 100 %: "
-            "give it as in --tolerance 1%"
+            f"give it as in {argument('tolerance', 0.01)}"
         )
     length = scene.shaft.length
     results: list[LevelResult] = []

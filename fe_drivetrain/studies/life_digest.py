@@ -10,6 +10,7 @@ import numpy as np
 
 from fe_drivetrain.bearing.answers import race_pressures
 from fe_drivetrain.bearing.geometry import RollerRow
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
@@ -187,7 +188,8 @@ def digest(
     else:
         raise InputError(
             f"hub loads '{file}': there is no rotor speed, by which lives count turns: give "
-            "--rotor-speed in 1/min, or --channel 'rotor speed=COLUMN'"
+            f"{argument('LifeOptions.rotor_speed_rpm')} in 1/min, or its channel, as in "
+            "`ChannelMap(channels={'rotor speed': 'RotSpeed'})`"
         )
     require_samples(file, len(history), reading.every, MIN_SAMPLES)
     loads, speed = entering(scene, history)[:: reading.every], speed[:: reading.every]

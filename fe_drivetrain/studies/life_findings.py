@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.histories.sites import Site
 from fe_drivetrain.hub_loads.recorded import short_name
 from fe_drivetrain.hub_loads.turbines import different_turbines
@@ -211,25 +212,36 @@ def assumptions(found: Findings, lives: Sequence[BearingLife], options: LifeOpti
         _of_entry(found, life, rules)
     oil = rules.lubricant
     if oil is not None:
-        found.assume("temperature", oil.temperature, "degC", "--temperature")
-        found.assume("viscosity there", oil.viscosity, "mm2/s", "--lubricant, by ASTM D341")
-        found.assume("lubrication", oil.supply, "", "--supply")
-        found.assume("cleanliness", oil.cleanliness, "", "--cleanliness")
+        found.assume("temperature", oil.temperature, "degC", _option("temperature"))
+        found.assume(
+            "viscosity there", oil.viscosity, "mm2/s", f"{_option('lubricant')}, by ASTM D341"
+        )
+        found.assume("lubrication", oil.supply, "", _option("supply"))
+        found.assume("cleanliness", oil.cleanliness, "", _option("cleanliness"))
     found.assume(
         "lambda nu taken out of C", rules.reduction, "-", "0.83 with a stress riser, else 1"
     )
-    found.assume("a_1", rules.reliability, "-", "--reliability, as public code has it")
+    found.assume(
+        "a_1", rules.reliability, "-", f"{_option('reliability_percent')}, as public code has it"
+    )
     share = "C_u over the number of rows" if rules.limit_per_row else "the whole C_u"
     found.assume("fatigue limit of a row", share, "", "loads P_ks are those of a row")
-    found.assume("ring that turns against the load", rules.turning, "", "--turning")
+    found.assume("ring that turns against the load", rules.turning, "", _option("turning"))
     words = {
         "rollers": "bearings in equilibrium with the shaft, a beam",
         "pinned": "pinned bearings: no moment on them",
     }.get(str(options.support), f"springs with K_R of {options.support} N m/rad")
-    found.assume("shaft", words, "", "--support")
-    found.assume("rings", options.rings, "", "--rings; housings are rigid but for 'housing'")
+    found.assume("shaft", words, "", _option("support"))
+    found.assume(
+        "rings", options.rings, "", f"{_option('rings')}; housings are rigid but for 'housing'"
+    )
     files = len(lives[0].files)
-    found.assume("samples", f"one of {options.every}", "", f"--every; {files} files")
+    found.assume("samples", f"one of {options.every}", "", f"{_option('every')}; {files} files")
+
+
+def _option(name: str) -> str:
+    """The option that a value comes from."""
+    return argument(f"LifeOptions.{name}")
 
 
 def _of_entry(found: Findings, life: BearingLife, rules: LifeRules) -> None:
@@ -244,7 +256,9 @@ def _of_entry(found: Findings, life: BearingLife, rules: LifeRules) -> None:
     if "clearance" not in entry.model_fields_set:
         found.assume(f"{name}: clearance", 0.0, "m", "not stated in its catalogue entry")
     words = rollers_in_words(life.bearing, rules.riser)
-    found.assume(f"{name}: rolling elements", words, "", "--profile and --riser")
+    found.assume(
+        f"{name}: rolling elements", words, "", f"{_option('profile')} and {_option('riser')}"
+    )
 
 
 def checks(found: Findings, lives: Sequence[BearingLife]) -> None:

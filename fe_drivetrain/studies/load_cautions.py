@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.histories.faults import FAR
 from fe_drivetrain.histories.windows import TEN_MINUTES
 from fe_drivetrain.hub_loads.turbines import different_turbines
@@ -84,6 +85,7 @@ def _residue(found: LoadTotals, options: LoadOptions) -> list[str]:
     more = 100.0 * ((1.0 + share[c, k]) ** (1.0 / slope) - 1.0)
     return [
         f"{LOADS[int(c)]}, m = {slope:g}: {100 * share[c, k]:.3g} % of the damage is of half "
-        f"cycles that the ends of files leave open; counted as whole ones (--residue closed) "
+        f"cycles that the ends of files leave open; counted as whole ones "
+        f"({argument('LoadOptions.residue', 'closed')}) "
         f"they make its equivalent load {more:.2g} % larger."
     ]

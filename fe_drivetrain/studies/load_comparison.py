@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.histories.sets import CHANCE, Difference, differences
@@ -221,7 +222,7 @@ def compare_sets(
         )
     if not winds:
         raise InputError(
-            f"--against: no mean wind speed, to {WIND_BIN:g} m/s, has histories of both sets and "
-            "three or more together: give more histories of the same winds"
+            f"{argument('against')}: no mean wind speed, to {WIND_BIN:g} m/s, has histories of "
+            "both sets and three or more together: give more histories of the same winds"
         )
     return Comparison(names, tuple(winds), tuple(alone))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -39,12 +39,9 @@ from fe_drivetrain.studies.load_records import (
 from fe_drivetrain.studies.load_totals import EquivalentLoad, LoadSums, LoadTotals
 from fe_drivetrain.studies.load_winds import Capture, CaptureTarget, captured, winds_not_used
 from fe_drivetrain.studies.result import Result
-from fe_drivetrain.studies.unused import RPM, speed_not_used
+from fe_drivetrain.studies.unused import speed_not_used
 from fe_drivetrain.suite.findings import Findings
 from fe_drivetrain.suite.records import Record
-
-if TYPE_CHECKING:
-    pass
 
 _NAMED = 3  # files that are sampled too slowly
 
@@ -274,7 +271,7 @@ def _speed_not_used(
     found: Findings, options: LoadOptions, stated: Sequence[Sequence[Floats]]
 ) -> None:
     """Note files that state a speed of their own where another one is given."""
-    given = None if options.rotor_speed is None else options.rotor_speed * RPM
+    given = options.rotor_speed_rpm
     if unused := speed_not_used(given, [speeds for own in stated for speeds in own]):
         found.note(unused)
 
@@ -429,15 +426,14 @@ def _options(
     """What was asked for, as plain data."""
     return {
         "files": [path.name for path in files],
-        "columns": dict(options.columns),
         "skip": options.skip,
         "slopes": [float(slope) for slope in options.slopes],
         "residue": options.residue,
         "gate": options.gate,
-        "rotor_speed": options.rotor_speed,
+        "rotor_speed_rpm": options.rotor_speed_rpm,
         "ultimate": dict(options.ultimate),
         "frequency": options.frequency,
-        "mapping": options.mapping.content(),
+        "channels": options.names.content(),
         "also": list(options.also),
         "target": asdict(target),
         "site": None if site is None else asdict(site),

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
@@ -86,7 +87,7 @@ class EnteredLoads:
 
 
 def own_loads(
-    patterns: str | Sequence[str], skip: float, scene: Scene, mapping: ChannelMap | None = None
+    patterns: str | Sequence[str], skip: float, scene: Scene, channels: ChannelMap | None = None
 ) -> StudyLoads:
     """Read the user's files.
 
@@ -98,7 +99,7 @@ def own_loads(
         What is left out at the beginning of each file [s].
     scene : Scene
         Says which point of the shaft they are about.
-    mapping : ChannelMap, optional
+    channels : ChannelMap, optional
         How files of other programs call their channels, and their frame and origin.
 
     Raises
@@ -106,9 +107,9 @@ def own_loads(
     InputError
         A file cannot be read, or all loads are zero.
     """
-    read = read_hub_loads if mapping is None else partial(read_mapped, mapping)
+    read = read_hub_loads if channels is None else partial(read_mapped, channels)
     histories = read_hub_load_files(patterns, skip, read)
-    return _of_the_user(histories, scene, f"--loads {patterns!r}", ("file", "files"), skip)
+    return _of_the_user(histories, scene, argument("loads", patterns), ("file", "files"), skip)
 
 
 def given_loads(histories: Sequence[LoadHistory], scene: Scene) -> StudyLoads:
@@ -128,7 +129,7 @@ def given_loads(histories: Sequence[LoadHistory], scene: Scene) -> StudyLoads:
     """
     if not histories:
         raise InputError("there is no load history to study: give one or more, or None")
-    return _of_the_user(histories, scene, "loads", ("history", "histories"))
+    return _of_the_user(histories, scene, argument("loads"), ("history", "histories"))
 
 
 def _of_the_user(
@@ -176,7 +177,8 @@ def surrogate_loads(steps: Clock, quick: bool = False) -> StudyLoads:
     return StudyLoads(
         list(found),
         f"Hub loads are a surrogate, not those of your turbine: {len(grid)} ten-minute histories "
-        "of a generic 2 MW, 80 m rotor in turbulent wind. Give your own with --loads.",
+        "of a generic 2 MW, 80 m rotor in turbulent wind. Give your own with "
+        f"{argument('loads')}.",
         False,
         list(assumptions()),
     )
