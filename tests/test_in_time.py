@@ -121,11 +121,9 @@ def checked(found: ConvergenceInTime, **given: object) -> Page:
 
 def test_what_has_converged_is_checked() -> None:
     page = checked(series(1.16, 1.04, 1.01))
-    assert [v.passed for v in page.verdicts] == [True, True]
-    assert (
-        page.verdicts[1].quantity == "step: left uncertain by the step, of largest force, over it"
-    )
-    assert page.verdicts[1].computed == pytest.approx(0.03 / 1.01, rel=1e-6)
+    assert [v.passed for v in page.checks] == [True, True]
+    assert page.checks[1].quantity == "step: left uncertain by the step, of largest force, over it"
+    assert page.checks[1].computed == pytest.approx(0.03 / 1.01, rel=1e-6)
     assert not page.unsettled
 
 
@@ -133,7 +131,7 @@ def test_what_has_not_converged_fails_or_is_open_but_never_passes() -> None:
     coarse = series(1.9, 1.5, 1.1)
     assert [v.passed for v in checked(coarse).verdicts] == [True, False]
     page = checked(coarse, open_for=[FORCE])
-    assert [v.passed for v in page.verdicts] == [True]
+    assert [v.passed for v in page.checks] == [True]
     assert page.unsettled == [
         "Not converged: step: largest force, uncertain by ± 1\u00a0N by the step."
     ]

@@ -244,6 +244,9 @@ def test_a_level_that_is_enough_is_within_the_tolerance(advised: AdviseResult) -
     (figure,), (check,) = advised.figures, advised.checks
     assert figure.computed == pytest.approx(100 * check.computed)
     assert check.computed <= advised.advice.tolerance
+    # one figure, from the advice and from the result
+    mine, its = advised.plot().data, advised.advice.plot().data
+    assert [(t.name, t.x, t.y) for t in mine] == [(t.name, t.x, t.y) for t in its]
     # the change of each detail, the largest first
     changes = [abs(effect.change) for effect in advised.effects]
     assert changes == sorted(changes, reverse=True)
@@ -489,8 +492,8 @@ def test_a_life_is_a_number_with_what_takes_it(lived: LifeResult) -> None:
 
 def test_tables_of_lives_by_file_and_place_are_frames(lived: LifeResult) -> None:
     pytest.importorskip("pandas")
-    assert list(lived.to_frame("files")["file"]) == ["v14.csv", "v8.csv"]
-    places, rings = lived.to_frame("places"), lived.to_frame("main_bearing: rows and rings")
+    assert list(lived.to_frame("files")["file"]) == ["v14", "v8"]
+    places, rings = lived.to_frame("places"), lived.to_frame("rings")
     (one,) = lived.bearings.values()
     by_place = places["outer ring, damage by L10mr"].sum()
     outer = rings[rings["ring"] == "outer"]["share of L10mr's damage [%]"].sum()

@@ -12,6 +12,7 @@ from fe_drivetrain.life.roller_damage import KINDS
 from fe_drivetrain.response.stated import HUB_LOADS
 from fe_drivetrain.studies.bearing_lives import LifeResult
 from fe_drivetrain.studies.life_sums import BearingLife
+from fe_drivetrain.studies.life_tables import ring_rows
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
 from fe_drivetrain.suite.run import Run
@@ -38,7 +39,7 @@ def show_life(run: Run, page: Page, result: LifeResult) -> None:
     for life in result.lives:
         page.section(f"Bearing {life.name}: {life.bearing.entry.title}")
         winds(page, life)
-        places(page, life, result.tables[f"{life.name}: rows and rings"])
+        places(page, life, ring_rows(life))
         laminae(page, life)
     known = result.all_tables()
     tables: dict[str, list[Record]] = {

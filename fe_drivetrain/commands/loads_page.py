@@ -30,7 +30,7 @@ from fe_drivetrain.suite.run import Run
 
 _SHOWN = 20
 _MOST_BINS = 60
-_SCALE = {"N": (1e3, "kN"), "N m": (1e3, "kN\u00a0m"), "rad/s": (1.0, "rad/s"), "m/s": (1.0, "m/s")}
+_SCALE = {"N": (1e3, "kN"), "N m": (1e3, "kN m"), "rad/s": (1.0, "rad/s"), "m/s": (1.0, "m/s")}
 
 Tables = Mapping[str, Sequence[Record]]
 

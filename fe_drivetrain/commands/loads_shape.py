@@ -15,8 +15,9 @@ from fe_drivetrain.report.results import Chart
 from fe_drivetrain.studies.load_digest import LOADS, UNITS
 from fe_drivetrain.studies.load_histories import LoadsResult
 from fe_drivetrain.studies.load_planes import SECTORS
-from fe_drivetrain.studies.load_records import multiple_columns, shown_unit
+from fe_drivetrain.studies.load_records import multiple_columns
 from fe_drivetrain.studies.load_totals import LoadTotals
+from fe_drivetrain.studies.shown_units import shown_unit
 from fe_drivetrain.suite.page import Page
 
 _SEEN = {

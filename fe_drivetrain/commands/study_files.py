@@ -12,9 +12,9 @@ from fe_drivetrain.common.csv_cells import SafeWriter, comment_line, table_row
 from fe_drivetrain.export.formats.stiffness_file import stiffness_matrix, write_stiffness_json
 from fe_drivetrain.histories.cycles import RULE
 from fe_drivetrain.histories.damage import FREQUENCY
+from fe_drivetrain.histories.windows import COLUMNS
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.studies.load_facts import channels_of
-from fe_drivetrain.studies.reaction_statistics import COLUMNS
 from fe_drivetrain.studies.scene_study import StudyResult
 
 STATISTICS = "reaction_statistics.csv"
@@ -37,7 +37,7 @@ def write_statistics(path: Path, result: StudyResult) -> None:
         **result.stated.facts(),
         "loads": result.loads.statement,
         "DEL": f"range of a sine of {FREQUENCY:g} Hz with the same damage; {RULE}",
-        "mesh band": "by how much the mesh may change least, mean, largest or standard deviation",
+        "mesh band": "by how much the mesh may change min, mean, max or standard deviation",
     }
     histories = result.loads.histories
     if result.loads.own:

@@ -131,13 +131,15 @@ class Advice:
         plotly.graph_objects.Figure
             See `fe_drivetrain.plots.error_against_time`; of the last level its estimated own error.
         """
-        return error_against_time(
+        return error_against_time(*self.ladder, self.tolerance, self.chosen, self.quantity.name)
+
+    @property
+    def ladder(self) -> tuple[list[str], list[float], list[float]]:
+        """Name, time [s] and relative error of each level; of the last one its own error."""
+        return (
             [f"level {result.model.level}, {result.model.title}" for result in self.results],
             [result.seconds for result in self.results],
             [*(result.error for result in self.results[:-1]), self.top.estimate],
-            self.tolerance,
-            self.chosen,
-            self.quantity.name,
         )
 
     def sentence(self) -> str:

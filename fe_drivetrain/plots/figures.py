@@ -12,7 +12,7 @@ from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.plots.style import LEGEND, PALETTE, styled
 
-LEAST = 1e-6
+LEAST = 1e-8
 """Relative errors that are smaller are drawn here: a logarithmic axis has no zero."""
 
 _NOTHING = 1e-9  # share of the diagonal: round-off, of what symmetry makes zero
@@ -181,6 +181,37 @@ def stiffness_map(points: Sequence[str], stiffness: Floats, title: str = "") -> 
     return figure([trace], layout)
 
 
+def error_traces(
+    names: Sequence[str],
+    seconds: Sequence[float],
+    errors: Sequence[float],
+    tolerance: float,
+    chosen: int | None = None,
+) -> list[dict[str, Any]]:
+    """Traces of `error_against_time`, for a figure of one's own; the arguments are its.
+
+    Returns
+    -------
+    list of dict
+        A point for each model whose error is known, and the tolerance as a line.
+    """
+    known = [k for k, error in enumerate(errors) if np.isfinite(error)]
+    traces: list[dict[str, Any]] = [
+        {
+            "type": "scatter",
+            "mode": "markers",
+            "name": names[k],
+            "x": [seconds[k]],
+            "y": [100.0 * max(errors[k], LEAST)],
+            "marker": {"size": 14 if k == chosen else 9},
+        }
+        for k in known
+    ]
+    reach = [seconds[k] for k in known] or [1.0]
+    limit = {"x": [min(reach), max(reach)], "y": [100.0 * tolerance] * 2, "line": {"dash": "dash"}}
+    return [*traces, {"type": "scatter", "mode": "lines", "name": "tolerance", **limit}]
+
+
 def error_against_time(
     names: Sequence[str],
     seconds: Sequence[float],
@@ -212,21 +243,7 @@ def error_against_time(
     plotly.graph_objects.Figure
         Figure with both axes logarithmic, the tolerance as a line.
     """
-    known = [k for k, error in enumerate(errors) if np.isfinite(error)]
-    traces: list[dict[str, Any]] = [
-        {
-            "type": "scatter",
-            "mode": "markers",
-            "name": names[k],
-            "x": [seconds[k]],
-            "y": [100.0 * max(errors[k], LEAST)],
-            "marker": {"size": 14 if k == chosen else 9},
-        }
-        for k in known
-    ]
-    reach = [seconds[k] for k in known] or [1.0]
-    limit = {"x": [min(reach), max(reach)], "y": [100.0 * tolerance] * 2, "line": {"dash": "dash"}}
-    traces.append({"type": "scatter", "mode": "lines", "name": "tolerance", **limit})
+    traces = error_traces(names, seconds, errors, tolerance, chosen)
     axes = {
         "xaxis": {"title": {"text": "time [s]"}, "type": "log"},
         "yaxis": {"title": {"text": "error [%]"}, "type": "log"},

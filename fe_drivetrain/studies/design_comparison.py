@@ -157,10 +157,11 @@ def compare(
         [
             {
                 "quantity": one.quantity.name,
+                "unit": one.quantity.unit,
                 "values": [value.values for value in one.values],
                 "levels": [value.level for value in one.values],
-                "changes": _sensible(one),
-                "bands": one.rank_bands,
+                "changes [-]": _sensible(one),
+                "bands [-]": one.rank_bands,
             }
             for one in differences
         ],

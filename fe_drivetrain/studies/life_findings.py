@@ -59,7 +59,7 @@ def answers(
             which = f"L10mr of bearing {life.name} [years]"
             found.found(which, years["L10mr"], band, (TORQUE_AND_BENDING,))
         if band is not None:
-            shown = value_with_band(found.answers[-1])
+            shown = value_with_band(found.figures[-1])
             words = f"Bearing {life.name} lives {shown} {_under(life, site)} (L10mr, ± two "
             words += "standard errors of files of the same wind"
         words += f"; L10r {in_years(years['L10r'])}, L10 {in_years(years['L10'])})"

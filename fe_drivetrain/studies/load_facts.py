@@ -9,10 +9,11 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.compare.time_weighted import weighted_statistics
+from fe_drivetrain.histories.windows import COLUMNS
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.point_loads import PointLoads
 from fe_drivetrain.scene.scene import Scene
-from fe_drivetrain.studies.reaction_statistics import COLUMNS, SHOWN_UNITS
+from fe_drivetrain.studies.shown_units import SHOWN_UNITS
 from fe_drivetrain.studies.study_loads import EnteredLoads
 from fe_drivetrain.suite.records import Record
 

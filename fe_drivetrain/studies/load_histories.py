@@ -24,21 +24,23 @@ from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.studies import load_tables as rows
 from fe_drivetrain.studies.load_cautions import cautions
 from fe_drivetrain.studies.load_comparison import Comparison, LoadSet, compare_sets
-from fe_drivetrain.studies.load_digest import CHANNELS, LOADS, LoadOptions
+from fe_drivetrain.studies.load_digest import LOADS, UNIT_OF, LoadOptions
 from fe_drivetrain.studies.load_lifetime import Event, Lifetime, event, lifetime
 from fe_drivetrain.studies.load_reactions import SceneReactions, digests, scene_reactions
 from fe_drivetrain.studies.load_records import (
-    by_slope,
     lifetime_rows,
     loop_rows,
     other_rows,
     reaction_loop_rows,
     reaction_rows,
+    slope_rows,
+    statistics_rows,
     torque_rows,
 )
 from fe_drivetrain.studies.load_totals import EquivalentLoad, LoadSums, LoadTotals
 from fe_drivetrain.studies.load_winds import Capture, CaptureTarget, captured, winds_not_used
 from fe_drivetrain.studies.result import Result
+from fe_drivetrain.studies.shown_units import shown_unit
 from fe_drivetrain.studies.unused import speed_not_used
 from fe_drivetrain.suite.findings import Findings
 from fe_drivetrain.suite.records import Record
@@ -136,7 +138,7 @@ class LoadsResult(Result):
         for name in loads:
             classes = self.hub.cycles.ranges[name]
             traces.append(trace(name, classes.edges()[:-1] / 1e3, classes.at_least))
-        unit = "kN" if loads[0].startswith("F") else "kN m"
+        unit = shown_unit(UNIT_OF[loads[0]])
         caption = f"Cycles of a range or a larger one; {self.asked.counted}"
         return caption, traces, f"range [{unit}]", "cycles", "y"
 
@@ -336,7 +338,7 @@ def _answer(found: Findings, hub: LoadTotals, options: LoadOptions) -> None:
         band = None if one.band is None else one.band / 1e3
         quantity = f"equivalent load of {name}, slope {slope:g} [kN m]"
         found.found(quantity, one.load / 1e3, band, (ROTOR_TORQUE,) if name == "Mx" else ())
-        words.append(f"{value_with_band(found.answers[-1])} in {name}")
+        words.append(f"{value_with_band(found.figures[-1])} in {name}")
     open_ends = " (± what whole cycles in place of half ones would add)"
     rule = open_ends if options.residue == "half" else ""
     said = (
@@ -373,26 +375,22 @@ def _aliased(hub: LoadTotals) -> list[str]:
 
 def _data(found: Findings, hub: LoadTotals, options: LoadOptions, capture: Capture | None) -> None:
     """Numbers of the hub loads for other programs."""
-    overall = hub.statistics.overall
-    found.data("statistics", dict(zip(CHANNELS, overall.tolist(), strict=True)))
+    found.data("statistics", statistics_rows(hub))
     if capture is not None:
         found.data(
             "capture",
             {
-                "wind": capture.matrix.wind,
-                "turbulence": capture.matrix.turbulence,
-                "counts": capture.matrix.counts,
-                "missing": capture.missing,
+                "wind [m/s]": capture.matrix.wind,
+                "turbulence [-]": capture.matrix.turbulence,
+                "windows": capture.matrix.counts,
+                "missing windows": capture.missing,
             },
         )
     found.data("loops", loop_rows(hub))
-    found.data("equivalent_loads", by_slope(hub.equivalent_loads(options), options))
+    found.data("equivalent_loads", slope_rows(hub.equivalent_loads(options), options))
     if options.ultimate:
-        about_zero = by_slope(hub.equivalent_loads_about_zero(options), options)
-        found.data(
-            "equivalent_loads_about_zero",
-            {name: row for name, row in about_zero.items() if name in options.ultimate},
-        )
+        about_zero = slope_rows(hub.equivalent_loads_about_zero(options), options)
+        found.data("equivalent_loads_about_zero", about_zero)
     found.data("torque", {row["quantity"]: row["value"] for row in torque_rows(hub)})
 
 

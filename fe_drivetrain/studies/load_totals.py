@@ -72,7 +72,7 @@ class LoadStatistics:
 
     @property
     def overall(self) -> Floats:
-        """(channels, 4) least, mean, largest, standard deviation of all samples."""
+        """(channels, 4) min, mean, max, standard deviation of all samples."""
         return self.joined.together()
 
     def mean_of(self, channel: str) -> Floats:

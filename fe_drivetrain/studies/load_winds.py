@@ -46,7 +46,7 @@ class Condition:
     windows : int
         How many windows.
     statistics : ndarray, (channels, 4)
-        Least, mean, largest, standard deviation.
+        Min, mean, max, standard deviation.
     """
 
     wind: float

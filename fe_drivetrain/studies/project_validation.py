@@ -294,7 +294,7 @@ def _judge(
             why="; ".join(state.lacks) or "decision, evidence and rules of the step",
             source="PROTEST 2010, section 3: each step is taken once, whatever the order",
         )
-    found.verdicts += measured.verdicts
+    found.checks += measured.verdicts
     for one in project.signed:
         found.holds(
             f"signature of {one.name}: of these six steps, complete",

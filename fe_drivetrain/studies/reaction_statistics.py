@@ -14,16 +14,13 @@ from fe_drivetrain.fidelity.ladder import LevelModel
 from fe_drivetrain.fidelity.over_loads import Levels, reaction_history
 from fe_drivetrain.histories.cycles import Cycles, rainflow_cycles
 from fe_drivetrain.histories.damage import damage_equivalent_load
+from fe_drivetrain.histories.windows import COLUMNS
 from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.studies.shown_units import SHOWN_UNITS
 from fe_drivetrain.studies.study_loads import EnteredLoads
 from fe_drivetrain.suite.records import Record
 
-COLUMNS = ("least", "mean", "largest", "standard deviation")
-"""Columns of `Statistics.values`."""
-
 _ROUND_OFF = 1e-9  # of a reaction's largest component: shown as zero
-SHOWN_UNITS = 3 * ("kN",) + 3 * ("kN\u00a0m",)
-"""Units in which the components of a load are shown."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -155,7 +155,7 @@ class StudyResult(Result):
         others = list(self.levels.models)[:-1]
         return bars(
             "Error of each reaction against the assembly over all load steps",
-            {m: {of: 100.0 * share[m] for of, share in self.errors.shares.items()} for m in others},
+            {m: {of.name: 100.0 * of.shares[m] for of in self.errors.vectors} for m in others},
             "error [%]",
         )
 
@@ -343,7 +343,7 @@ def _stiffness(found: Findings, units: Mapping[str, UnitBounds]) -> None:
                 {
                     "bearing": name,
                     "quantity": words,
-                    "unit": "MN/m" if component < 3 else "MN\u00a0m/rad",
+                    "unit": "MN/m" if component < 3 else "MN m/rad",
                     "face on average (soft)": low[quantity] / 1e6,
                     "face in shape (stiff)": high[quantity] / 1e6,
                     "range [%]": 100.0 * (high[quantity] / low[quantity] - 1.0),
@@ -388,14 +388,8 @@ def _errors(
     """Each level against the assembly, and which one is enough."""
     errors = level_errors(scene, levels, loads)
     judgement = judge_levels(errors.judged, ENOUGH, scene.shaft.length)
-    found.data(
-        "error_percent",
-        [
-            {"reaction": reaction, **{label: 100.0 * share for label, share in of.items()}}
-            for reaction, of in errors.shares.items()
-        ],
-    )
-    found.data("rmse_kN", list(errors.components))
+    found.data("error_percent", [one.row() for one in errors.vectors])
+    found.data("rmse_kN", [one.row() for one in errors.components])
     found.answer(enough(judgement, levels.bounds))
     found.data("advice", needed_levels(errors.judged, levels.coarser is not None))
     judged = [q.name for q in errors.judged if q not in judgement.slight]

@@ -14,12 +14,12 @@ class Checks:
 
     Attributes
     ----------
-    verdicts : list of Verdict
+    checks : list of Verdict
         Of all checks so far.
     """
 
     def __init__(self) -> None:
-        self.verdicts: list[Verdict] = []
+        self.checks: list[Verdict] = []
         self._of = ""
 
     def equals(
@@ -225,7 +225,7 @@ class Checks:
         if not unit:
             quantity, unit = split_unit(quantity)
             measure = measure or MEASURES.get(unit)
-        self.verdicts.append(
+        self.checks.append(
             judge(
                 quantity,
                 computed,

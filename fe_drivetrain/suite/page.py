@@ -58,9 +58,9 @@ class Page(Findings):
         found : Found
             Its answer, numbers, checks, cautions, and what it is of.
         """
-        self.summary += found.answer
-        self.answers += found.figures
-        self.verdicts += found.checks
+        self.sentences += found.answer
+        self.figures += found.figures
+        self.checks += found.checks
         self.unsettled += found.unsettled
         self.skipped += found.skipped
         self.limits += found.limits
@@ -68,7 +68,7 @@ class Page(Findings):
         for sentence in found.notes:
             self.note(sentence)
         self.drivetrains += [one for one in found.drivetrains if one not in self.drivetrains]
-        self.figures |= found.tables
+        self.tables |= found.tables
         self.scene = found.scene or self.scene
         self.seed = found.seed
 
