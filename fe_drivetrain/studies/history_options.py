@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from fe_drivetrain.common.errors import InputError
 
 if TYPE_CHECKING:
-    from fe_drivetrain.hub_loads.channel_map import ChannelMap
+    from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,7 +44,7 @@ class HistoryOptions:
     @property
     def names(self) -> ChannelMap:
         """How files call their channels, where that is not given, too."""
-        from fe_drivetrain.hub_loads.recorded import OWN_NAMES
+        from fe_drivetrain.turbine_loads.hub_loads.recorded import OWN_NAMES
 
         return OWN_NAMES if self.channels is None else self.channels
 
