@@ -1,8 +1,9 @@
 """Arguments of functions, as sentences for a user name them.
 
 A sentence names an argument as Python has it, between backticks: "`every=10` leaves 2 samples".
-The command line puts the option that stands for it in its place
-(`fe_drivetrain.command_line.option_names`), so that each reader finds the name that is theirs to give.
+The command line puts the option that stands for it in its place, see
+`fe_drivetrain.command_line.option_names`, so that each reader finds the name that is theirs to
+give.
 """
 
 from __future__ import annotations

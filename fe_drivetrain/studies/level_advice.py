@@ -8,11 +8,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.plots.figures import LEAST, error_traces
-from fe_drivetrain.report.charts import chart, rounded
+from fe_drivetrain.report.charts import chart
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
