@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from tiny_case import Result
 
-from fe_drivetrain.commands.life import parse_lubricant
+from fe_drivetrain.commands.life_request import parse_lubricant
 from fe_drivetrain.common.array_records import as_arrays
 from fe_drivetrain.common.cache import CACHE_VARIABLE
 from fe_drivetrain.common.components import FORCES

@@ -34,6 +34,7 @@ from fe_drivetrain.response.model import LOADS, Model, build_model
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
 from fe_drivetrain.scene.reading import change_scene, library_scene
 from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.studies.input_effects import input_effects
 from fe_drivetrain.uncertainty import resolver as resolver_module
 from fe_drivetrain.uncertainty.input_study import Study, study
 from fe_drivetrain.uncertainty.numbers import figures
@@ -289,7 +290,8 @@ def test_the_model_error_of_a_level_without_a_top_is_half_its_bounds(found: Stud
 
 
 def test_the_page_has_every_number(found: Study) -> None:
-    sections = {section.title: section for section in (bands(found), inputs(found))}
+    effects = input_effects(found)
+    sections = {section.title: section for section in (bands(effects), inputs(effects))}
     (table,) = (i for i in sections["Uncertainty of the results"].items if i.kind == "table")
     assert [row[0] for row in table.rows] == stiffness_names(found.scene)
     values, surfaces = (i for i in sections["Uncertain values"].items if i.kind == "table")

@@ -33,6 +33,7 @@ from fe_drivetrain.response import (
     without_gearbox,
 )
 from fe_drivetrain.scene import Scene, change_scene, library_scene
+from fe_drivetrain.studies.input_effects import input_effects
 from fe_drivetrain.suite import Page, Record, Run, column
 from fe_drivetrain.uncertainty import (
     Study,
@@ -107,7 +108,7 @@ def run(run: Run, page: Page) -> None:
         with run.step("K_R of the assembly"):
             tilt = _tilt(scene)
         _show_tilt(page, found, tilt)
-    page.sections.append(bands(found))
+    page.sections.append(bands(input_effects(found)))
     page.data("cheap", {q: dict(found.slopes[q]) for q in (*HUB, MOMENT)})
     page.data("assembly", top)
     page.data("assembly, coarser", coarse)

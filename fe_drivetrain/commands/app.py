@@ -33,13 +33,10 @@ from fe_drivetrain.commands.run import (
     run_command,
 )
 from fe_drivetrain.commands.settings import CaseSettings
-from fe_drivetrain.commands.studies import (
-    advise_command,
-    check_command,
-    study_command,
-    uncertainty_command,
-)
+from fe_drivetrain.commands.studies import advise_command, check_command
+from fe_drivetrain.commands.study import study_command
 from fe_drivetrain.commands.terminal import ended, prepare_streams, write
+from fe_drivetrain.commands.uncertainty import uncertainty_command
 from fe_drivetrain.commands.validate import validate_command
 from fe_drivetrain.common.memory import collect_lasting_seldom
 from fe_drivetrain.common.remarks import show_remarks, show_remarks_if_asked

@@ -343,6 +343,20 @@ def results_text(results: Results, page: Path) -> str:
     return "".join(f"{line}\n" for line in lines)
 
 
+def say_outcome(results: Results, page: Path) -> int:
+    """Print the outcome of one case; its exit status.
+
+    Parameters
+    ----------
+    results : Results
+        Results of the case.
+    page : Path
+        Its report.
+    """
+    write(sys.stdout, results_text(results, page))
+    return PASSED if results.passed else FAILED
+
+
 def tables_text(results: Results, page: Path) -> str:
     """Summary and tables of a case in plain text, and where its report is.
 

@@ -10,13 +10,10 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.compare.time_weighted import weighted_statistics
 from fe_drivetrain.hub_loads.histories import LoadHistory
-from fe_drivetrain.hub_loads.point_loads import PointLoads
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.studies.reaction_statistics import COLUMNS, SHOWN_UNITS
 from fe_drivetrain.studies.study_loads import EnteredLoads
 from fe_drivetrain.suite.records import Record
-
-_SHOWN = 60.0  # seconds of the history whose beginning is kept
 
 
 @dataclass(frozen=True)
@@ -47,25 +44,6 @@ class HistoryFacts:
 
 
 @dataclass(frozen=True, eq=False)
-class Beginning:
-    """The first minute of a history, for a chart.
-
-    Attributes
-    ----------
-    name : str
-        Name of the history.
-    time : Floats
-        (n,) [s].
-    loads : PointLoads
-        (n, 6 + 6 m) as they enter the scene [N, N m].
-    """
-
-    name: str
-    time: Floats
-    loads: PointLoads
-
-
-@dataclass(frozen=True, eq=False)
 class LoadFacts:
     """Hub loads of a study.
 
@@ -84,8 +62,6 @@ class LoadFacts:
         Factors of the unit loads of the mean load with all weights.
     histories : tuple of HistoryFacts
         Each history.
-    beginning : Beginning
-        The first minute of the middle history.
     """
 
     statement: str
@@ -94,7 +70,6 @@ class LoadFacts:
     statistics: Floats
     mean: Floats
     histories: tuple[HistoryFacts, ...]
-    beginning: Beginning
 
 
 def load_facts(scene: Scene, loads: EnteredLoads) -> LoadFacts:
@@ -118,7 +93,6 @@ def load_facts(scene: Scene, loads: EnteredLoads) -> LoadFacts:
         statistics,
         np.concatenate([mean[:6], weights, mean[6:]]),
         tuple(_facts(history, given.seconds) for history in given.histories),
-        _beginning(loads),
     )
 
 
@@ -137,13 +111,6 @@ def _facts(history: LoadHistory, whole: float) -> HistoryFacts:
         history.seconds / whole,
         channels_of(history),
     )
-
-
-def _beginning(loads: EnteredLoads) -> Beginning:
-    middle = len(loads.each) // 2
-    history = loads.given.histories[middle]
-    shown = history.time - history.time[0] <= _SHOWN
-    return Beginning(history.name, history.time[shown], loads.each[middle][shown])
 
 
 def hub_load_rows(statistics: Floats) -> list[Record]:

@@ -20,6 +20,7 @@ from fe_drivetrain.procedure.failure_modes import ROTOR_TORQUE
 from fe_drivetrain.report.answer import value_with_band
 from fe_drivetrain.report.charts import chart, trace
 from fe_drivetrain.report.results import Chart
+from fe_drivetrain.response.stated import Stated, stated_hub_loads
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.studies import load_tables as rows
 from fe_drivetrain.studies.load_cautions import cautions
@@ -88,6 +89,12 @@ class LoadsResult(Result):
     lifetime: Lifetime | None
     comparison: Comparison | None
     scene_reactions: SceneReactions | None
+
+    @property
+    def stated(self) -> Stated:
+        """What the hub loads are: sign, frame, origin."""
+        of = self.scene_reactions
+        return stated_hub_loads(None if of is None else of.scene)
 
     @property
     def equivalent_loads(self) -> dict[str, dict[float, EquivalentLoad]]:

@@ -6,10 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fe_drivetrain.commands.life_sections import laminae, places, winds
-from fe_drivetrain.commands.loads_tables import write_tables
 from fe_drivetrain.life.roller_damage import KINDS
-from fe_drivetrain.response.stated import HUB_LOADS
+from fe_drivetrain.pages.life_bearings import laminae, places, winds
 from fe_drivetrain.studies.bearing_lives import LifeResult
 from fe_drivetrain.studies.life_sums import BearingLife
 from fe_drivetrain.suite.page import Page
@@ -21,12 +19,12 @@ _OF_SAFETY = 7
 
 
 def show_life(run: Run, page: Page, result: LifeResult) -> None:
-    """Show lives, what takes them, and where methods end; write the tables.
+    """Show lives, what takes them, and where methods end.
 
     Parameters
     ----------
     run : Run
-        Its folder takes the tables.
+        Not used: the page has no pictures.
     page : Page
         Takes tables and charts.
     result : LifeResult
@@ -40,19 +38,6 @@ def show_life(run: Run, page: Page, result: LifeResult) -> None:
         winds(page, life)
         places(page, life, result.tables[f"{life.name}: rows and rings"])
         laminae(page, life)
-    known = result.all_tables()
-    tables: dict[str, list[Record]] = {
-        name: known[name] for name in ("lives", "files", "winds", "places", "laminae")
-    }
-    facts = {
-        "frame": f"{HUB_LOADS.frame}; places of rollers: 0 right, 90 deg on top",
-        "units": "as in the heads of columns",
-        "lives": "with 90 % reliability but for a_1 of modified ones",
-    }
-    write_tables(run.folder, tables, dict.fromkeys(tables, facts))
-    page.section("Tables")
-    names = ", ".join(f"{name}.csv" for name, rows in tables.items() if rows)
-    page.text(f"Beside this page: {names}, and results.json with the numbers of all charts.")
 
 
 def _lives(page: Page, result: LifeResult) -> None:

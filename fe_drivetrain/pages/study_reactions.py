@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from fe_drivetrain.commands.study_files import STATISTICS
 from fe_drivetrain.histories.cycles import RULE
 from fe_drivetrain.histories.damage import FREQUENCY
 from fe_drivetrain.studies.load_facts import hub_load_rows
 from fe_drivetrain.studies.scene_study import StudyResult
 from fe_drivetrain.suite.page import Page
+
+STATISTICS = "reaction_statistics.csv"
+"""The file beside the page that has the statistics of each history."""
 
 
 def show_reactions(page: Page, result: StudyResult) -> None:

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fe_drivetrain.commands.life_charts import along_rollers, damage_map, load_zone
 from fe_drivetrain.life.roller_damage import KINDS
+from fe_drivetrain.pages.life_charts import along_rollers, damage_map, load_zone
 from fe_drivetrain.report.charts import bars
 from fe_drivetrain.studies.life_sums import BearingLife, row_names
 from fe_drivetrain.studies.life_tables import has_rollers, site_maps, wind_rows
