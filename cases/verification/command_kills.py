@@ -22,7 +22,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from fe_drivetrain.commands import main as command
+from fe_drivetrain.command_line import main as command
 from fe_drivetrain.common import CACHE_VARIABLE, FORCES, MANIFEST, read_manifest
 from fe_drivetrain.report import read_results
 
@@ -276,7 +276,7 @@ def main() -> None:
     folder, kills, names = Path(sys.argv[1]), int(sys.argv[2]), sys.argv[3:]
     os.environ[CACHE_VARIABLE] = str(folder / "cache")
     kinds = {name: words for name, words in (QUICK | OTHERS).items() if name in names}
-    load(f"fe_drivetrain.commands.{name}" for name in ("run", "studies", "export"))
+    load(f"fe_drivetrain.command_line.{name}" for name in ("run", "studies", "export"))
     load(f"fe_drivetrain.pages.{name}" for name in PAGES)
     load(f"fe_drivetrain.cases.{name.replace('/', '.')}" for name in CASES)
     load(iter(("fe_drivetrain.report.page", "fe_drivetrain.report.index", "rich.progress")))

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from fe_drivetrain.report.pictures import NoPictureError, picture_of_model
-from fe_drivetrain.response.model import Model
+from fe_drivetrain.report.suite.page import Page
+from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.report.suite.run import Run
+from fe_drivetrain.shafts.response.model import Model
 from fe_drivetrain.studies.scene_check import CheckResult
-from fe_drivetrain.suite.page import Page
-from fe_drivetrain.suite.records import Record
-from fe_drivetrain.suite.run import Run
 
 
 def show_check(run: Run, page: Page, result: CheckResult) -> None:

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from fe_drivetrain.report.results import Cell
+from fe_drivetrain.report.suite.page import Page
+from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.report.suite.run import Run
 from fe_drivetrain.studies.design_comparison import CompareResult, LevelTwoError
-from fe_drivetrain.suite.page import Page
-from fe_drivetrain.suite.records import Record
-from fe_drivetrain.suite.run import Run
 
 
 def show_compare(run: Run, page: Page, result: CompareResult) -> None:

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fe_drivetrain.life.roller_damage import KINDS
+from fe_drivetrain.bearing_life.life.roller_damage import KINDS
 from fe_drivetrain.pages.life_bearings import laminae, places, winds
+from fe_drivetrain.report.suite.page import Page
+from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.report.suite.run import Run
 from fe_drivetrain.studies.bearing_lives import LifeResult
 from fe_drivetrain.studies.life_sums import BearingLife
-from fe_drivetrain.suite.page import Page
-from fe_drivetrain.suite.records import Record
-from fe_drivetrain.suite.run import Run
 
 #: Columns of the table of limits that are about static safety; the others are shares of the time.
 _OF_SAFETY = 7

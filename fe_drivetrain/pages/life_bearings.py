@@ -6,14 +6,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fe_drivetrain.life.roller_damage import KINDS
+from fe_drivetrain.bearing_life.life.roller_damage import KINDS
 from fe_drivetrain.pages.life_charts import along_rollers, damage_map, load_zone
 from fe_drivetrain.report.charts import bars
+from fe_drivetrain.report.suite.page import Page
+from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.life_sums import BearingLife, row_names
 from fe_drivetrain.studies.life_tables import has_rollers, site_maps, wind_rows
 from fe_drivetrain.studies.rolling_bearings import rollers_in_words
-from fe_drivetrain.suite.page import Page
-from fe_drivetrain.suite.records import Record
 
 
 def winds(page: Page, life: BearingLife) -> None:

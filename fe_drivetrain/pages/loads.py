@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from fe_drivetrain.histories.sites import WIND_BIN
-from fe_drivetrain.histories.windows import COLUMNS
 from fe_drivetrain.pages.loads_against import beside
 from fe_drivetrain.pages.loads_counts import counts
 from fe_drivetrain.pages.loads_lifetime import lifetime_section
 from fe_drivetrain.pages.loads_reactions import others_section, reactions_section
 from fe_drivetrain.pages.loads_shape import shape
 from fe_drivetrain.report.charts import trace
+from fe_drivetrain.report.suite.page import Page
+from fe_drivetrain.report.suite.run import Run
 from fe_drivetrain.studies.load_histories import LoadsResult
 from fe_drivetrain.studies.load_tables import capture_rows
 from fe_drivetrain.studies.load_winds import TURBULENCE_BIN
 from fe_drivetrain.studies.wind_statistics import bending_rows, channel_rows, wind_rows
-from fe_drivetrain.suite.page import Page
-from fe_drivetrain.suite.run import Run
+from fe_drivetrain.turbine_loads.histories.sites import WIND_BIN
+from fe_drivetrain.turbine_loads.histories.windows import COLUMNS
 
 _SHOWN = 20
 _MOST_BINS = 60

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from fe_drivetrain.histories.sets import CHANCE
-from fe_drivetrain.histories.spectra import SEGMENT
 from fe_drivetrain.report.charts import trace
+from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.studies.load_comparison import Comparison, WindComparison
 from fe_drivetrain.studies.load_tables import difference_rows
-from fe_drivetrain.suite.page import Page
+from fe_drivetrain.turbine_loads.histories.sets import CHANCE
+from fe_drivetrain.turbine_loads.histories.spectra import SEGMENT
 
 _MOST = 40  # differences that are shown
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from fe_drivetrain.report.charts import heat_map, trace
+from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.studies.load_digest import LOADS, MOMENTS_BY_MEAN, UNITS
 from fe_drivetrain.studies.load_histories import LoadsResult
 from fe_drivetrain.studies.load_records import shown_unit, slope_columns, torque_rows
-from fe_drivetrain.suite.page import Page
 
 
 def counts(page: Page, result: LoadsResult) -> None:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from fe_drivetrain.report.charts import trace
+from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.studies.load_histories import LoadsResult
 from fe_drivetrain.studies.load_lifetime import CYCLES, Lifetime
 from fe_drivetrain.studies.load_tables import leading_damage_rows, transient_rows
-from fe_drivetrain.suite.page import Page
 
 
 def lifetime_section(page: Page, found: Lifetime, result: LoadsResult) -> None:

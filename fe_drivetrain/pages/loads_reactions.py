@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from fe_drivetrain.histories.spectra import SEGMENT
 from fe_drivetrain.report.charts import trace
+from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.studies.load_digest import LOADS
 from fe_drivetrain.studies.load_histories import LoadsResult
 from fe_drivetrain.studies.load_reactions import SceneReactions
 from fe_drivetrain.studies.load_records import reaction_loop_rows
 from fe_drivetrain.studies.load_totals import LoadTotals
-from fe_drivetrain.suite.page import Page
+from fe_drivetrain.turbine_loads.histories.spectra import SEGMENT
 
 
 def reactions_section(page: Page, result: LoadsResult, of: SceneReactions) -> None:

@@ -7,17 +7,17 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.histories.spectra import MULTIPLES, NEAR, SEGMENT, WINDOW, Campbell
-from fe_drivetrain.histories.spectrum_sums import HIGHEST
-from fe_drivetrain.hub_loads.loops import LONGEST, ROUNDNESS, SHARE
 from fe_drivetrain.report.charts import heat_map, rounded, trace
 from fe_drivetrain.report.results import Chart
+from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.studies.load_digest import LOADS, UNITS
 from fe_drivetrain.studies.load_histories import LoadsResult
 from fe_drivetrain.studies.load_planes import SECTORS
 from fe_drivetrain.studies.load_records import multiple_columns, shown_unit
 from fe_drivetrain.studies.load_totals import LoadTotals
-from fe_drivetrain.suite.page import Page
+from fe_drivetrain.turbine_loads.histories.spectra import MULTIPLES, NEAR, SEGMENT, WINDOW, Campbell
+from fe_drivetrain.turbine_loads.histories.spectrum_sums import HIGHEST
+from fe_drivetrain.turbine_loads.hub_loads.loops import LONGEST, ROUNDNESS, SHARE
 
 _SEEN = {
     "force": "it points from the origin ({}); right is 0 deg, up is 90 deg",

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from fe_drivetrain.fidelity.judgement import Judgement
-from fe_drivetrain.fidelity.over_loads import COARSER_ASSEMBLY, Levels
-from fe_drivetrain.fidelity.shaft_bands import COARSER
 from fe_drivetrain.pages.check import describe
 from fe_drivetrain.pages.study_reactions import show_reactions
 from fe_drivetrain.pages.uncertainty import bands, inputs
@@ -12,10 +9,13 @@ from fe_drivetrain.pages.uncertainty import slopes as slopes_section
 from fe_drivetrain.report.charts import trace
 from fe_drivetrain.report.pictures import NoPictureError, picture_of_model
 from fe_drivetrain.report.solid_view import deformed_shape
+from fe_drivetrain.report.suite.page import Page
+from fe_drivetrain.report.suite.run import Run
+from fe_drivetrain.shafts.fidelity.judgement import Judgement
+from fe_drivetrain.shafts.fidelity.over_loads import COARSER_ASSEMBLY, Levels
+from fe_drivetrain.shafts.fidelity.shaft_bands import COARSER
 from fe_drivetrain.studies.level_errors import ENOUGH
 from fe_drivetrain.studies.scene_study import StudyResult
-from fe_drivetrain.suite.page import Page
-from fe_drivetrain.suite.run import Run
 
 _DASHES = ("solid", "dash", "dot")
 

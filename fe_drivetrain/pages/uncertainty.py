@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from fe_drivetrain.drivetrain_file.scene import Spread
 from fe_drivetrain.report.charts import chart, rounded
 from fe_drivetrain.report.results import Cell, Chart, Section, Table, Text
-from fe_drivetrain.scene.scene import Spread
+from fe_drivetrain.report.suite.page import Page
+from fe_drivetrain.report.suite.run import Run
+from fe_drivetrain.shafts.uncertainty.input_study import result_at
+from fe_drivetrain.shafts.uncertainty.sampling import SHARE
 from fe_drivetrain.studies.input_effects import InputEffects, QuantityEffects, Scatter
 from fe_drivetrain.studies.input_uncertainty import UncertaintyResult, half_bands, horizontal_bars
-from fe_drivetrain.suite.page import Page
-from fe_drivetrain.suite.run import Run
-from fe_drivetrain.uncertainty.input_study import result_at
-from fe_drivetrain.uncertainty.sampling import SHARE
 
 _LEAST = 1e-4  # smaller numbers in tables are round-off
 _SEEN = 0.01  # smallest total Sobol index in the table

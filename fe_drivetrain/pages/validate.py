@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from fe_drivetrain.pages.validate_steps import STEP_SECTIONS, evidence_table
 from fe_drivetrain.procedure.iteration_log import Entry, procedure_of
 from fe_drivetrain.procedure.steps import STEPS
+from fe_drivetrain.report.suite.page import Page
+from fe_drivetrain.report.suite.run import Run
 from fe_drivetrain.studies.project_validation import ValidateResult
-from fe_drivetrain.suite.page import Page
-from fe_drivetrain.suite.run import Run
 
 
 def show_validate(run: Run, page: Page, result: ValidateResult) -> None:

@@ -14,9 +14,9 @@ from fe_drivetrain.procedure.sensors import sampling_rates
 from fe_drivetrain.report.charts import heat_map
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.results import Table
+from fe_drivetrain.report.suite.page import Page
+from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.project_validation import ValidateResult, as_record
-from fe_drivetrain.suite.page import Page
-from fe_drivetrain.suite.records import Record
 
 
 def evidence_table(evidence: Sequence[Found], reports: Path, folder: Path) -> Table:

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.fidelity.over_loads import Levels, reaction_history
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.shafts.fidelity.over_loads import Levels, reaction_history
 from fe_drivetrain.studies.study_loads import EnteredLoads
 
 ASSEMBLY = "assembly"

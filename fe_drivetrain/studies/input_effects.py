@@ -9,13 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.fidelity.adviser import Advice
-from fe_drivetrain.fidelity.quantities import Number
-from fe_drivetrain.scene.scene import Spread
-from fe_drivetrain.uncertainty.input_study import ModelError, Study
-from fe_drivetrain.uncertainty.numbers import first_order, half_band, relative_spread
-from fe_drivetrain.uncertainty.response_surface import UnitSurface
-from fe_drivetrain.uncertainty.sampling import (
+from fe_drivetrain.drivetrain_file.scene import Spread
+from fe_drivetrain.shafts.fidelity.adviser import Advice
+from fe_drivetrain.shafts.fidelity.quantities import Number
+from fe_drivetrain.shafts.uncertainty.input_study import ModelError, Study
+from fe_drivetrain.shafts.uncertainty.numbers import first_order, half_band, relative_spread
+from fe_drivetrain.shafts.uncertainty.response_surface import UnitSurface
+from fe_drivetrain.shafts.uncertainty.sampling import (
     SHARE,
     Band,
     Samples,

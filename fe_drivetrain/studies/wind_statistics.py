@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fe_drivetrain.histories.windows import COLUMNS
+from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.load_digest import CHANNELS, UNIT_OF
 from fe_drivetrain.studies.load_totals import LoadStatistics
 from fe_drivetrain.studies.load_winds import by_wind, by_wind_and_turbulence
-from fe_drivetrain.suite.records import Record
+from fe_drivetrain.turbine_loads.histories.windows import COLUMNS
 
 _SCALE = {"N": (1e3, "kN"), "N m": (1e3, "kN\u00a0m"), "rad/s": (1.0, "rad/s"), "m/s": (1.0, "m/s")}
 

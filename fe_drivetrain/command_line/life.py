@@ -1,0 +1,63 @@
+"""The command ``life``: rating life of the rolling bearings of a scene under load histories."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import typer
+
+from fe_drivetrain.command_line.life_request import LifeRequest
+from fe_drivetrain.command_line.options import with_options
+from fe_drivetrain.command_line.progress import show_steps
+from fe_drivetrain.command_line.run import say_outcome
+from fe_drivetrain.command_line.settings import parse_settings
+from fe_drivetrain.command_line.showing import shown
+from fe_drivetrain.command_line.terminal import as_typed
+from fe_drivetrain.common.jobs import scheduled_by
+from fe_drivetrain.common.threads import hold_threads
+from fe_drivetrain.drivetrain_file.named_scenes import named_scene
+
+
+@with_options(LifeRequest, kept="files that are done are kept: run again with --resume")
+def life_command(context: typer.Context, asked: LifeRequest) -> int:
+    """Rating life of a scene's rolling bearings under load histories, by ISO 281 and ISO/TS 16281.
+
+    Each load step is brought to equilibrium with shaft and rollers; lives L10, L10m, L10r and L10mr
+    stand side by side, with the damage by wind speed, row, ring and place of the rollers, and with
+    the time in which the methods do not hold. Tables stand beside the page as CSV.
+
+    The exit status is 0 if every check passes.
+    """
+    hold_threads()
+    from fe_drivetrain.report.suite.ownership import check_result_folder
+
+    check_result_folder(asked.folder)
+    scene = named_scene(asked.scene, parse_settings(asked.set_ or ()))
+    from fe_drivetrain.command_line.life_files import write_life
+    from fe_drivetrain.pages.life import show_life
+    from fe_drivetrain.report.suite.case import Case
+    from fe_drivetrain.report.suite.result_folders import run_case
+    from fe_drivetrain.studies.bearing_lives import DrivetrainBearings, lives_under
+    from fe_drivetrain.turbine_loads.hub_loads.recorded import recorded_files
+
+    options, place = asked.options(context), asked.place
+    files = recorded_files(asked.loads)
+    with show_steps() as report, scheduled_by(asked.scheduler):
+        # before the run: a mistake leaves no trace in a folder of reports
+        report("bearings")
+        drivetrain = DrivetrainBearings(scene, options)
+        case = Case(
+            f"life/{Path(asked.scene).stem}",
+            f"{drivetrain.scene.title}: rating life of its bearings",
+            "the user's scene and files",
+            shown(
+                lambda run: lives_under(
+                    drivetrain, files, place, resume=asked.resume, report=run.report
+                ),
+                show_life,
+                write_life,
+            ),
+            command=as_typed(),
+        )
+        results = run_case(case, asked.folder.resolve(), report=report)
+    return say_outcome(results, asked.folder / "report.html")

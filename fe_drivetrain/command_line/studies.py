@@ -1,0 +1,199 @@
+"""The commands ``check`` and ``advise``, and how a study of scenes is run with a report."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fe_drivetrain.command_line.options import (
+    Catalogues,
+    SceneName,
+)
+from fe_drivetrain.command_line.progress import show_steps
+from fe_drivetrain.command_line.run import results_text, tables_text
+from fe_drivetrain.command_line.settings import (
+    Loads,
+    SceneSettings,
+    Tolerance,
+    parse_loads,
+    parse_settings,
+    parse_tolerance,
+)
+from fe_drivetrain.command_line.showing import shown
+from fe_drivetrain.command_line.terminal import FAILED, PASSED, as_typed, guarded, write
+from fe_drivetrain.common.jobs import scheduled_by
+from fe_drivetrain.common.threads import hold_threads
+from fe_drivetrain.drivetrain_file.named_scenes import named_scene
+
+if TYPE_CHECKING:
+    from fe_drivetrain.report.results import Results
+    from fe_drivetrain.report.suite.page import Page
+    from fe_drivetrain.report.suite.run import Run
+
+OutFolder = Annotated[
+    Path | None,
+    typer.Option("--out", metavar="DIR", help="Result folder. Default: reports/COMMAND/SCENE."),
+]
+
+
+def check_command(
+    scene: SceneName,
+    catalogue: Catalogues = None,
+    out: OutFolder = None,
+    set_: SceneSettings = None,
+) -> None:
+    """Check a scene, describe and draw it, and predict what each level of the ladder costs.
+
+    Prints parts, bearings, supports, masses and costs; the report has the picture, too. Entries
+    that the scene names under 'catalogue' must be in the program's bearing catalogue, or in yours.
+
+    The exit status is 0 if the scene can be solved, 2 if it cannot.
+    """
+
+    def work() -> int:
+        hold_threads()
+        found = named_scene(scene, parse_settings(set_ or ()))
+        from fe_drivetrain.pages.check import show_check
+        from fe_drivetrain.studies.scene_check import check
+
+        title = f"{found.title}: what the scene is, and what it costs"
+        results, page = _results_of_scene(
+            "check",
+            [scene],
+            title,
+            out,
+            shown(lambda run: check(found, tuple(catalogue or ()), report=run.report), show_check),
+        )
+        write(sys.stdout, tables_text(results, page))
+        return PASSED
+
+    raise typer.Exit(guarded(work))
+
+
+def advise_command(
+    scene: SceneName,
+    quantity: Annotated[
+        str | None,
+        typer.Option(
+            "--quantity",
+            metavar="NAME",
+            help="The quantity that must be accurate: a reaction, as in main_bearing.My or "
+            "gearbox.Fz, or a stiffness, hub.stiffness.ux to hub.stiffness.rz. Default: Fz of the "
+            "first bearing.",
+        ),
+    ] = None,
+    tolerance: Tolerance = "1%",
+    load: Loads = None,
+    to_the_top: Annotated[
+        bool,
+        typer.Option(
+            "--to-the-top", help="Run every level, even if a cheaper one is accurate enough."
+        ),
+    ] = False,
+    out: OutFolder = None,
+    set_: SceneSettings = None,
+) -> None:
+    """Find the cheapest model of a scene that is accurate enough for a quantity.
+
+    Runs models of rising cost until one is accurate enough: statics, beam, meridian in Fourier
+    harmonics, assembly of solids. Ranks the details of the scene by the change that leaving each
+    one out causes.
+
+    The exit status is 0 if a level is known to be within the tolerance, 1 if none is.
+    """
+
+    def work() -> int:
+        hold_threads()
+        found = named_scene(scene, parse_settings(set_ or ()))
+        from fe_drivetrain.pages.advise import show_advise
+        from fe_drivetrain.shafts.fidelity.quantity import Quantity
+        from fe_drivetrain.shafts.response.model import scene_loads
+        from fe_drivetrain.studies.level_advice import advise
+
+        name = quantity or f"{found.bearing_names[0]}.Fz"
+        loads = parse_loads(load or (), scene_loads(found))
+        Quantity(name).check(found)
+        share = parse_tolerance(tolerance)
+        return run_on_scene(
+            "advise",
+            [scene],
+            f"{found.title}: the model level that {name} needs",
+            out,
+            shown(
+                lambda run: advise(found, name, share, loads, to_the_top, report=run.report),
+                show_advise,
+            ),
+        )
+
+    raise typer.Exit(guarded(work))
+
+
+def run_on_scene(
+    command: str,
+    scenes: Sequence[str],
+    title: str,
+    out: Path | None,
+    study: Callable[[Run, Page], None],
+    quick: bool = False,
+    scheduler: str | None = None,
+) -> int:
+    """Run a study as a case of its own and print its outcome.
+
+    Parameters
+    ----------
+    command : str
+        What is done, for the folder.
+    scenes : sequence of str
+        Names or files of the scenes, for the folder and the source.
+    title : str
+        Of the page.
+    out : Path or None
+        The folder, where the user named one.
+    study : callable
+        Fills the page.
+    quick : bool
+        Whether it is a quick run.
+    scheduler : str or None
+        Address of the cluster that does the work.
+
+    Returns
+    -------
+    int
+        The exit status.
+    """
+    with scheduled_by(scheduler):
+        results, page = _results_of_scene(command, scenes, title, out, study, quick)
+    write(sys.stdout, results_text(results, page))
+    return PASSED if results.passed else FAILED
+
+
+def _results_of_scene(
+    command: str,
+    scenes: Sequence[str],
+    title: str,
+    out: Path | None,
+    study: Callable[[Run, Page], None],
+    quick: bool = False,
+) -> tuple[Results, Path]:
+    """Run a study as a case of its own; its results, and its report."""
+    from fe_drivetrain.report.suite.case import Case
+    from fe_drivetrain.report.suite.result_folders import run_case
+
+    stems = [Path(scene).stem for scene in scenes]
+    names = " and ".join(stems if len(set(stems)) == len(stems) else scenes)
+    source = f"the scene{'s' * (len(scenes) > 1)} {names}"
+    name = _name_of(scenes)
+    case = Case(f"{command}/{name}", title, source, study, command=as_typed())
+    folder = Path("reports", command, name) if out is None else out
+    with show_steps() as report:
+        results = run_case(case, folder.resolve(), quick=quick, report=report)
+    return results, folder / "report.html"
+
+
+def _name_of(scenes: Sequence[str]) -> str:
+    """Their names, each once, as the folder has them."""
+    return "-".join(dict.fromkeys(Path(scene).stem for scene in scenes))
