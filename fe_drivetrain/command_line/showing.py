@@ -1,4 +1,4 @@
-"""A study and its page as the work of a case: compute, then show."""
+"""A study, its page and its files as the work of a case: compute, show, write."""
 
 from __future__ import annotations
 
@@ -16,9 +16,11 @@ if TYPE_CHECKING:
 
 
 def shown(
-    study: Callable[[Run], _R], show: Callable[[Run, Page, _R], None]
+    study: Callable[[Run], _R],
+    show: Callable[[Run, Page, _R], None],
+    write: Callable[[Run, Page, _R], None] | None = None,
 ) -> Callable[[Run, Page], None]:
-    """The work of a case that makes a study and shows its result.
+    """The work of a case that makes a study, shows its result, and writes its files.
 
     Parameters
     ----------
@@ -26,7 +28,9 @@ def shown(
         Makes the study; it takes whether it is quick, and whom to report to, from the run.
     show : callable
         Adds sections to a page that has answer, figures, checks and cautions of the result
-        already; files go to the folder of the run.
+        already; pictures go to the folder of the run.
+    write : callable, optional
+        Writes files to the folder of the run, and lists them in the last section.
     """
 
     def work(run: Run, page: Page) -> None:
@@ -34,5 +38,7 @@ def shown(
         run.take(result)
         page.take(result_with_options(result))
         show(run, page, result)
+        if write is not None:
+            write(run, page, result)
 
     return work

@@ -139,46 +139,53 @@ def stiffness_map(points: Sequence[str], stiffness: Floats, title: str = "") -> 
             f"the stiffness has shape {K.shape} for {n} points: give {6 * n} rows and columns"
         )
     before = [f"{point} " if n > 1 else "" for point in points]
-    rows = [f"{point}{force}" for point in before for force in FORCES]
-    columns = [f"{point}{motion}" for point in before for motion in MOTIONS]
-    roots = np.sqrt(np.clip(K.diagonal(), 0.0, None))
-    sizes = np.outer(roots, roots)
-    share = np.divide(np.abs(K), sizes, out=np.zeros_like(K), where=sizes > 0)
+    share = _coupling(K)
     block = np.kron([[0, 1], [1, 2]], np.ones((3, 3), dtype=int))
     units = np.array(["N/m", "N", "N m/rad"])[np.tile(block, (n, n))]
-    written = [
-        [
-            "0" if coupling < _NOTHING else f"{value:.3g}"
-            for value, coupling in zip(*row, strict=True)
-        ]
-        for row in zip(K, share, strict=True)
-    ]
     trace: dict[str, Any] = {
         "type": "heatmap",
-        "x": columns,
-        "y": rows,
+        "x": [f"{point}{motion}" for point in before for motion in MOTIONS],
+        "y": [f"{point}{force}" for point in before for force in FORCES],
         "z": share.tolist(),
         "zmin": 0.0,
         "zmax": 1.0,
-        "text": written,
+        "text": _written(K, share),
         "customdata": units.tolist(),
         "hovertemplate": "%{y} to %{x}: %{text} %{customdata}<extra></extra>",
         "colorbar": {"title": {"text": "coupling", "side": "right"}, "thickness": 12},
     }
     if 6 * n <= _READABLE:
         trace["texttemplate"] = "%{text}"
-    layout = {
-        **_titled(title),
-        "xaxis": {"title": {"text": "motion"}, "constrain": "domain"},
-        "yaxis": {
-            "title": {"text": "force"},
-            "autorange": "reversed",
-            "scaleanchor": "x",
-            "constrain": "domain",
-        },
-        "height": 560,
-    }
-    return figure([trace], layout)
+    return figure([trace], {**_titled(title), **_MATRIX_LAYOUT})
+
+
+_MATRIX_LAYOUT = {
+    "xaxis": {"title": {"text": "motion"}, "constrain": "domain"},
+    "yaxis": {
+        "title": {"text": "force"},
+        "autorange": "reversed",
+        "scaleanchor": "x",
+        "constrain": "domain",
+    },
+    "height": 560,
+}
+
+
+def _coupling(stiffness: Floats) -> Floats:
+    """Each entry over the root of the product of its two diagonal entries."""
+    roots = np.sqrt(np.clip(stiffness.diagonal(), 0.0, None))
+    sizes = np.outer(roots, roots)
+    share = np.zeros_like(stiffness)
+    np.divide(np.abs(stiffness), sizes, out=share, where=sizes > 0)
+    return share
+
+
+def _written(stiffness: Floats, coupling: Floats) -> list[list[str]]:
+    """Entries as text, round-off as zero."""
+    return [
+        ["0" if share < _NOTHING else f"{value:.3g}" for value, share in zip(*row, strict=True)]
+        for row in zip(stiffness, coupling, strict=True)
+    ]
 
 
 def error_traces(

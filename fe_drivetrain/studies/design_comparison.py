@@ -27,6 +27,8 @@ _NAMED, _CURVES = 3, 6
 _FROM_ZERO = 0.9
 #: Share of the largest value that is round-off.
 _NOTHING = 1e-6
+#: The level of the assembly of solids.
+_ASSEMBLY = 4
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,36 @@ class Varied:
 
     key: str
     values: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class LevelTwoError:
+    """Error bounds of level 2 in a quantity that needs the assembly, relative [%].
+
+    Attributes
+    ----------
+    quantity : str
+        Name of the quantity.
+    design : str
+        The design in which the bound of level 2 is largest.
+    housing : float
+        Half of what two bounds of the housings' seats differ by there.
+    shaft : float
+        What beam and meridian of the shaft differ by there.
+    assembly : float
+        Largest error bound of level 4, of designs whose value is more than round-off.
+    """
+
+    quantity: str
+    design: str
+    housing: float
+    shaft: float
+    assembly: float
+
+    @property
+    def whole(self) -> float:
+        """Error bound of level 2."""
+        return self.housing + self.shaft
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -78,6 +110,15 @@ class CompareResult(Result):
         """Values in which each further design differs from the first: key, first, its own."""
         first, *others = self.designs.items()
         return {name: scene_changes(first[1], scene) for name, scene in others}
+
+    @property
+    def level_two_errors(self) -> list[LevelTwoError]:
+        """Error bounds of level 2 in each quantity that comes from the assembly."""
+        return [
+            level_two_error(one, self.names)
+            for one in self.differences
+            if one.values[0].level == _ASSEMBLY
+        ]
 
     def rows(self) -> list[Record]:
         """Values, changes and bands of each quantity, with units in the keys."""
@@ -218,6 +259,29 @@ def sizes(one: Difference) -> list[float]:
     found = [value.size for value in one.values]
     least = _NOTHING * max(map(abs, found))
     return [0.0 if abs(size) < least else size for size in found]
+
+
+def level_two_error(one: Difference, names: Sequence[str]) -> LevelTwoError:
+    """Error bounds of level 2 in a quantity that comes from the assembly.
+
+    Parameters
+    ----------
+    one : Difference
+        At level 4.
+    names : sequence of str
+        Names of the designs.
+    """
+    parts = [value.cheaper or (0.0, 0.0) for value in one.values]
+    worst = max(range(len(parts)), key=lambda k: sum(parts[k]))
+    housing, shaft = parts[worst]
+    bands = (value.band for value, size in zip(one.values, sizes(one), strict=True) if size)
+    return LevelTwoError(
+        one.quantity.name,
+        names[worst],
+        100 * housing,
+        100 * shaft,
+        100 * max(bands, default=0.0),
+    )
 
 
 def _number(value: float) -> str:

@@ -15,7 +15,6 @@ from fe_drivetrain.report.charts import chart
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
-from fe_drivetrain.shafts.fidelity.quantities import Number
 from fe_drivetrain.shafts.fidelity.quantity import named_load
 from fe_drivetrain.shafts.uncertainty.input_study import (
     ModelError,
@@ -24,11 +23,10 @@ from fe_drivetrain.shafts.uncertainty.input_study import (
     result_at,
     study,
 )
-from fe_drivetrain.shafts.uncertainty.numbers import figures, half_band
+from fe_drivetrain.shafts.uncertainty.numbers import figures
 from fe_drivetrain.shafts.uncertainty.sampling import SHARE, Band, Shares
+from fe_drivetrain.studies.input_effects import InputEffects, input_effects
 from fe_drivetrain.studies.result import Result
-
-_CHARTED = 6  # quantities with their own charts; the tables have all of them
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -51,9 +49,10 @@ class UncertaintyResult(Result):
         Relative change of each quantity for the relative change of each uncertain value, by key.
     shares : Mapping[str, Shares]
         Sobol indices of the quantities that vary; empty where they were not asked for.
+    effects : InputEffects
+        What the values do to each quantity, as the page has it.
     study : Study
-        Samples and surfaces that all this comes from, of which pages draw histograms; not part of
-        the JSON but for the samples.
+        Samples and surfaces that all this comes from; not part of the JSON but for the samples.
     """
 
     STUDY: ClassVar[str] = "uncertainty"
@@ -65,21 +64,22 @@ class UncertaintyResult(Result):
     errors: Mapping[str, ModelError]
     sensitivities: Mapping[str, Mapping[str, float]]
     shares: Mapping[str, Shares]
+    effects: InputEffects = field(repr=False)
     study: Study = field(repr=False)
 
     def rows(self) -> list[Record]:
         """Nominal value, band and errors of each quantity, with units in the keys."""
         return [
             {
-                "quantity": name,
-                "unit": self.units[name],
-                "nominal": self.nominal[name],
-                "2.5 %": band.low,
-                "97.5 %": band.high,
-                "inputs: half the band [%]": 100 * half_band(self.study.samples[name]),
-                "model: error [%]": 100 * self.errors[name].share,
+                "quantity": one.name,
+                "unit": one.unit,
+                "nominal": one.nominal,
+                "2.5 %": one.band.low,
+                "97.5 %": one.band.high,
+                "inputs: half the band [%]": 100 * one.half,
+                "model: error [%]": 100 * one.error.share,
             }
-            for name, band in self.bands.items()
+            for one in self.effects.quantities
         ]
 
     def all_tables(self) -> Mapping[str, Any]:
@@ -88,7 +88,7 @@ class UncertaintyResult(Result):
 
     def chart(self) -> Chart:
         """Half of each band beside the error of the level."""
-        return half_bands(self.study)
+        return half_bands(self.effects)
 
 
 MIN_SAMPLES = 40
@@ -152,7 +152,8 @@ def uncertainty(
         known = study(
             scene, quantities, factors, tolerance, level, samples, seed, base, steps.report
         )
-    found.answer(*_sentences(known))
+    effects = input_effects(known)
+    found.answer(*_sentences(effects))
     _judge(found, known, tolerance)
     for name, value in figures(known).items():
         found.data(name, value)
@@ -172,31 +173,22 @@ def uncertainty(
         errors=known.errors,
         sensitivities=known.slopes,
         shares=known.shares,
+        effects=effects,
         study=known,
         **found.frozen(steps.times, **options),
     )
 
 
-def charted(found: Study) -> list[Number]:
-    """Quantities that have charts of their own: those requested, else stiffnesses at the hub."""
-    asked = [number for number in found.numbers if found.is_asked(number)]
-    return (asked or [n for n in found.numbers if n.name.startswith("hub.stiffness.")])[:_CHARTED]
-
-
-def sample_count(found: Study) -> int:
-    """Samples of the hypercube."""
-    return len(next(iter(found.samples.values())).values)
-
-
-def half_bands(found: Study) -> Chart:
+def half_bands(found: InputEffects) -> Chart:
     """Half bands and model errors, a pair of bars for each quantity."""
-    shown = [number.name for number in reversed(found.numbers)]
-    halves = [100 * half_band(found.samples[name]) for name in shown]
-    errors = [100 * found.errors[name].share for name in shown]
+    shown = list(reversed(found.quantities))
     return horizontal_bars(
         "Uncertainty from the inputs, and error of the model",
-        {"model: error of the level": errors, "inputs: half the band": halves},
-        shown,
+        {
+            "model: error of the level": [100 * one.error.share for one in shown],
+            "inputs: half the band": [100 * one.half for one in shown],
+        },
+        [one.name for one in shown],
         "± [%]",
     )
 
@@ -217,17 +209,15 @@ def horizontal_bars(
     return figure
 
 
-def _sentences(found: Study) -> list[str]:
+def _sentences(found: InputEffects) -> list[str]:
     """The answer: the band of each quantity that was asked for, and the error of the model."""
     sentences = []
-    for number in charted(found):
-        samples, error = found.samples[number.name], found.errors[number.name]
-        band = samples.band()
-        low, high = (100 * (end / samples.nominal - 1.0) for end in (band.low, band.high))
+    for one in found.charted:
+        low, high = (100 * (end / one.nominal - 1.0) for end in (one.band.low, one.band.high))
         sentences.append(
-            f"{number.name}: {samples.nominal:.4g} {number.unit}, {min(low, high):+.2g} to "
-            f"{max(low, high):+.2g} % from the inputs ({100 * SHARE:g} % of {sample_count(found)} "
-            f"samples), ± {100 * error.share:.2g} % from the model at level {found.level}."
+            f"{one.name}: {one.nominal:.4g} {one.unit}, {min(low, high):+.2g} to "
+            f"{max(low, high):+.2g} % from the inputs ({100 * SHARE:g} % of {found.samples} "
+            f"samples), ± {100 * one.error.share:.2g} % from the model at level {found.level}."
         )
     return sentences
 

@@ -15,9 +15,6 @@ from fe_drivetrain.studies.shown_units import SHOWN_UNITS
 from fe_drivetrain.studies.study_loads import EnteredLoads
 from fe_drivetrain.turbine_loads.histories.windows import COLUMNS
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
-from fe_drivetrain.turbine_loads.hub_loads.point_loads import PointLoads
-
-_SHOWN = 60.0  # seconds of the history whose beginning is kept
 
 
 @dataclass(frozen=True)
@@ -48,25 +45,6 @@ class HistoryFacts:
 
 
 @dataclass(frozen=True, eq=False)
-class Beginning:
-    """The first minute of a history, for a chart.
-
-    Attributes
-    ----------
-    name : str
-        Name of the history.
-    time : Floats
-        (n,) [s].
-    loads : PointLoads
-        (n, 6 + 6 m) as they enter the scene [N, N m].
-    """
-
-    name: str
-    time: Floats
-    loads: PointLoads
-
-
-@dataclass(frozen=True, eq=False)
 class LoadFacts:
     """Hub loads of a study.
 
@@ -85,8 +63,6 @@ class LoadFacts:
         Factors of the unit loads of the mean load with all weights.
     histories : tuple of HistoryFacts
         Each history.
-    beginning : Beginning
-        The first minute of the middle history.
     """
 
     statement: str
@@ -95,7 +71,6 @@ class LoadFacts:
     statistics: Floats
     mean: Floats
     histories: tuple[HistoryFacts, ...]
-    beginning: Beginning
 
 
 def load_facts(scene: Scene, loads: EnteredLoads) -> LoadFacts:
@@ -119,7 +94,6 @@ def load_facts(scene: Scene, loads: EnteredLoads) -> LoadFacts:
         statistics,
         np.concatenate([mean[:6], weights, mean[6:]]),
         tuple(_facts(history, given.seconds) for history in given.histories),
-        _beginning(loads),
     )
 
 
@@ -138,13 +112,6 @@ def _facts(history: LoadHistory, whole: float) -> HistoryFacts:
         history.seconds / whole,
         channels_of(history),
     )
-
-
-def _beginning(loads: EnteredLoads) -> Beginning:
-    middle = len(loads.each) // 2
-    history = loads.given.histories[middle]
-    shown = history.time - history.time[0] <= _SHOWN
-    return Beginning(history.name, history.time[shown], loads.each[middle][shown])
 
 
 def hub_load_rows(statistics: Floats) -> list[Record]:

@@ -20,6 +20,7 @@ from fe_drivetrain.report.charts import chart, trace
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.shafts.response.stated import Stated, stated_hub_loads
 from fe_drivetrain.studies import load_tables as rows
 from fe_drivetrain.studies.load_cautions import cautions
 from fe_drivetrain.studies.load_comparison import Comparison, LoadSet, compare_sets
@@ -87,6 +88,12 @@ class LoadsResult(Result):
     lifetime: Lifetime | None
     comparison: Comparison | None
     scene_reactions: SceneReactions | None
+
+    @property
+    def stated(self) -> Stated:
+        """What the hub loads are: sign, frame, origin."""
+        of = self.scene_reactions
+        return stated_hub_loads(None if of is None else of.scene)
 
     @property
     def equivalent_loads(self) -> dict[str, dict[float, EquivalentLoad]]:

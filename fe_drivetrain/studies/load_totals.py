@@ -75,6 +75,10 @@ class LoadStatistics:
         """(channels, 4) min, mean, max, standard deviation of all samples."""
         return self.joined.together()
 
+    def of_windows(self, channel: str) -> Floats:
+        """(windows, 4) least, mean, largest, standard deviation of one of `CHANNELS`."""
+        return np.asarray(self.joined.values[:, CHANNELS.index(channel)])
+
     def mean_of(self, channel: str) -> Floats:
         """(files,) means of one of `CHANNELS`."""
         return np.asarray(self.means[:, CHANNELS.index(channel)])

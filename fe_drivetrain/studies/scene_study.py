@@ -34,6 +34,8 @@ from fe_drivetrain.shafts.uncertainty import input_study
 from fe_drivetrain.shafts.uncertainty.numbers import figures
 from fe_drivetrain.studies.closed_forms import ForceErrors, closed_form_errors, closed_form_rows
 from fe_drivetrain.studies.design_measures import DesignMeasures, design_measures
+from fe_drivetrain.studies.history_beginning import ASSEMBLY, Beginning, history_beginning
+from fe_drivetrain.studies.input_effects import InputEffects, input_effects
 from fe_drivetrain.studies.level_errors import (
     ENOUGH,
     LevelErrors,
@@ -60,9 +62,6 @@ from fe_drivetrain.studies.tilt_secants import TiltSecant, secant_rows, tilt_sec
 from fe_drivetrain.turbine_loads.histories.damage import SLOPES, check_slope
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
 
-ASSEMBLY = "assembly"
-"""Name of the assembly of solids among the models."""
-
 _SAMPLES, _QUICK_SAMPLES = 128, 40
 
 
@@ -87,10 +86,12 @@ class StudyResult(Result):
         Errors of each level by what a part is designed for.
     closed_forms : Mapping[str, ForceErrors]
         Errors of the closed forms of one bearing on a uniform shaft; empty where they do not apply.
-    uncertainty : Study or None
+    uncertainty : InputEffects or None
         Effect of the spreads that the scene states; None where it states none.
     loads : LoadFacts
         What the hub loads are; not their samples.
+    beginning : Beginning
+        Radial force of each bearing over the first minute of the middle history, FE and beams.
     stated : Stated
         What the reactions are: sign, frame, origin, weights.
     slopes : tuple of float
@@ -112,14 +113,25 @@ class StudyResult(Result):
     judgement: Judgement
     measures: DesignMeasures
     closed_forms: Mapping[str, ForceErrors]
-    uncertainty: input_study.Study | None
+    uncertainty: InputEffects | None
     loads: LoadFacts
+    beginning: Beginning
     stated: Stated
     slopes: tuple[float, ...]
     described: Mapping[str, Sequence[Record]]
     model: Model = field(repr=False)
     response: Response = field(repr=False)
     levels: Levels = field(repr=False)
+
+    @property
+    def aligning(self) -> list[str]:
+        """Bearings that give way to tilt: they have no K_R."""
+        return [name for name, of in _stiff(self.units).items() if of["tilt"] == of["yaw"] == 0.0]
+
+    @property
+    def floating(self) -> list[str]:
+        """Bearings without axial stiffness, which leave axial force to the others."""
+        return [name for name, of in _stiff(self.units).items() if of["axial"] == 0.0]
 
     def reactions(self, loads: Loads, model: str = ASSEMBLY) -> dict[str, Floats]:
         """Reactions to further loads, with the weights that the study has.
@@ -238,6 +250,7 @@ def study(
         closed_forms=forms,
         uncertainty=uncertainty,
         loads=facts,
+        beginning=history_beginning(scene, levels, entered),
         stated=_stated(model, facts.gravity),
         slopes=tuple(slopes),
         described=description(model),
@@ -329,6 +342,11 @@ def _stated(model: Model, gravity: float) -> Stated:
     return stated_reactions(model.scene, masses, gravity)
 
 
+def _stiff(units: Mapping[str, UnitBounds]) -> dict[str, dict[str, float]]:
+    """Stiffnesses of each unit with its face in shape."""
+    return {name: unit_numbers(bounds.stiff) for name, bounds in units.items()}
+
+
 def _stiffness(found: Findings, units: Mapping[str, UnitBounds]) -> None:
     """K_R and the other stiffnesses of each unit between two bounds."""
     rows: list[Record] = []
@@ -402,7 +420,7 @@ def _errors(
 
 def _uncertainty(
     found: Findings, steps: Steps, scene: Scene, level: int, mean_load: Floats, quick: bool
-) -> input_study.Study | None:
+) -> InputEffects | None:
     """Effect of the spreads that the scene states on stiffnesses and bearing forces."""
     if not scene.uncertainty:
         return None
@@ -417,4 +435,4 @@ def _uncertainty(
         )
     found.data("uncertainty", figures(spreads))
     found.seed = 0 if found.seed is None else found.seed
-    return spreads
+    return input_effects(spreads)

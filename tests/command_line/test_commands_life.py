@@ -14,7 +14,7 @@ from tiny_case import Result
 
 from fe_drivetrain.bearing_life.life.load_series import years
 from fe_drivetrain.bearing_life.life.roller_damage import LifeRules, step_lives
-from fe_drivetrain.command_line.life import parse_lubricant
+from fe_drivetrain.command_line.life_request import parse_lubricant
 from fe_drivetrain.command_line.option_names import result_with_options
 from fe_drivetrain.common.array_records import as_arrays
 from fe_drivetrain.common.cache import CACHE_VARIABLE

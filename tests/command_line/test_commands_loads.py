@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from tiny_case import Result
 
-from fe_drivetrain.command_line.loads_tables import write_tables
+from fe_drivetrain.command_line.table_files import write_tables
 from fe_drivetrain.common.cache import CACHE_VARIABLE, Cache
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError

@@ -40,6 +40,7 @@ from fe_drivetrain.shafts.uncertainty.numbers import figures
 from fe_drivetrain.shafts.uncertainty.resolver import Resolver, shaft_content, unit_content
 from fe_drivetrain.shafts.uncertainty.response_surface import touching, unit_surface
 from fe_drivetrain.shafts.uncertainty.sampling import check_spreads, nominal_value, with_values
+from fe_drivetrain.studies.input_effects import input_effects
 
 BEARING = "main_bearing"
 STEEL, IRON = "materials.steel.youngs_modulus", "materials.ductile_iron.youngs_modulus"
@@ -289,7 +290,8 @@ def test_the_model_error_of_a_level_without_a_top_is_half_its_bounds(found: Stud
 
 
 def test_the_page_has_every_number(found: Study) -> None:
-    sections = {section.title: section for section in (bands(found), inputs(found))}
+    effects = input_effects(found)
+    sections = {section.title: section for section in (bands(effects), inputs(effects))}
     (table,) = (i for i in sections["Uncertainty of the results"].items if i.kind == "table")
     assert [row[0] for row in table.rows] == stiffness_names(found.scene)
     values, surfaces = (i for i in sections["Uncertain values"].items if i.kind == "table")

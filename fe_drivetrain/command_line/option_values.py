@@ -1,4 +1,4 @@
-"""What the options of ``loads`` say in words of their own."""
+"""Values of options of ``loads`` and ``life`` that are typed in a form of their own."""
 
 from __future__ import annotations
 

@@ -9,11 +9,7 @@ from fe_drivetrain.report.results import Cell
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.report.suite.run import Run
-from fe_drivetrain.shafts.fidelity.designs import Difference
-from fe_drivetrain.studies.design_comparison import CompareResult, sizes
-
-#: The level of the assembly of solids.
-_ASSEMBLY = 4
+from fe_drivetrain.studies.design_comparison import CompareResult, LevelTwoError
 
 
 def show_compare(run: Run, page: Page, result: CompareResult) -> None:
@@ -22,7 +18,7 @@ def show_compare(run: Run, page: Page, result: CompareResult) -> None:
     Parameters
     ----------
     run : Run
-        Not used: the page needs no files.
+        Not used: the page has no pictures.
     page : Page
         Takes charts and tables.
     result : CompareResult
@@ -39,12 +35,12 @@ def show_compare(run: Run, page: Page, result: CompareResult) -> None:
         "Every quantity: changes larger than their bands first, the largest before the others",
         result.rows(),
     )
-    solid = [one for one in result.differences if one.values[0].level == _ASSEMBLY]
-    if solid:
-        page.text(why_solid(solid[0], names, result.tolerance))
+    errors = result.level_two_errors
+    if errors:
+        page.text(why_solid(errors[0], result.tolerance))
         page.table(
-            "What level 2 may be wrong by, of the quantities that need level 4",
-            [what_level_two_lacks(one, names) for one in solid],
+            "Error bounds of level 2, for the quantities that need level 4",
+            [error_row(one) for one in errors],
         )
     page.text(
         "A change is relative to the value of the first design. Its band is found as that of a "
@@ -63,59 +59,44 @@ def show_compare(run: Run, page: Page, result: CompareResult) -> None:
         page.table(f"{name} against {names[0]}", cells, ["value of the scene", names[0], name])
 
 
-def why_solid(one: Difference, names: Sequence[str], tolerance: float) -> str:
+def why_solid(error: LevelTwoError, tolerance: float) -> str:
     """Why a quantity comes from the assembly of solids, by the design that needs it most.
 
     Parameters
     ----------
-    one : Difference
-        At level 4.
-    names : sequence of str
-        Of the designs.
+    error : LevelTwoError
+        Error bounds of level 2 in that design.
     tolerance : float
-        Allowed error of a change.
+        Allowed error of a change, relative.
     """
-    name, housing, shaft = _at_level_two(one, names)
     cause = (
-        "it is not known how much of their shape the seats of the housings keep, and the bounds of "
-        f"that differ by {2 * housing:.2g} %"
-        if housing > shaft
-        else f"beam and meridian of the shaft differ by {shaft:.2g} %"
+        "the seats of the housings may stay round or deform freely, and these two bounds differ by "
+        f"{2 * error.housing:.2g} %"
+        if error.housing > error.shaft
+        else f"beam and meridian of the shaft differ by {error.shaft:.2g} %"
     )
     return (
-        f"{one.quantity.name} needs level 4, since level 2 may be wrong by {housing + shaft:.2g} % "
-        f"in {name}, and the change by more than {100 * tolerance:.2g} %, the tolerance. Most of "
-        f"that: {cause}."
+        f"{error.quantity} needs level 4, since level 2 may be wrong by {error.whole:.2g} % in "
+        f"{error.design}, and the change by more than {100 * tolerance:.2g} %, the tolerance. The "
+        f"larger part: {cause}."
     )
 
 
-def _at_level_two(one: Difference, names: Sequence[str]) -> tuple[str, float, float]:
-    """The design of the largest band, and its two parts [%]."""
-    parts = [value.cheaper or (0.0, 0.0) for value in one.values]
-    worst = max(range(len(parts)), key=lambda k: sum(parts[k]))
-    housing, shaft = parts[worst]
-    return names[worst], 100 * housing, 100 * shaft
-
-
-def what_level_two_lacks(one: Difference, names: Sequence[str]) -> Record:
-    """A row of what level 2 may be wrong by, and level 4 where a value is more than round-off.
+def error_row(error: LevelTwoError) -> Record:
+    """A row of the error bounds of level 2, in the design where they are largest.
 
     Parameters
     ----------
-    one : Difference
-        At level 4.
-    names : sequence of str
-        Of the designs.
+    error : LevelTwoError
+        Error bounds of a quantity.
     """
-    name, housing, shaft = _at_level_two(one, names)
     return {
-        "quantity": one.quantity.name,
-        "± at level 2 [%]": housing + shaft,
-        "of it shape of the seats [%]": housing,
-        "of it beam for the shaft [%]": shaft,
-        "largest in": name,
-        "± at level 4 [%]": 100
-        * max((v.band for v, n in zip(one.values, sizes(one), strict=True) if n), default=0.0),
+        "quantity": error.quantity,
+        "± at level 2 [%]": error.whole,
+        "from the shape of the seats [%]": error.housing,
+        "from the shaft as a beam [%]": error.shaft,
+        "largest in": error.design,
+        "± at level 4 [%]": error.assembly,
     }
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from fe_drivetrain.command_line.study_files import STATISTICS
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.studies.load_facts import hub_load_rows
 from fe_drivetrain.studies.scene_study import StudyResult
 from fe_drivetrain.turbine_loads.histories.cycles import RULE
 from fe_drivetrain.turbine_loads.histories.damage import FREQUENCY
+
+STATISTICS = "reaction_statistics.csv"
+"""The file beside the page that has the statistics of each history."""
 
 
 def show_reactions(page: Page, result: StudyResult) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fe_drivetrain.bearing_life.life.roller_damage import KINDS
-from fe_drivetrain.command_line.life_charts import along_rollers, damage_map, load_zone
+from fe_drivetrain.pages.life_charts import along_rollers, damage_map, load_zone
 from fe_drivetrain.report.charts import bars
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.records import Record
