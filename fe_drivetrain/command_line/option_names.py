@@ -5,11 +5,12 @@ from __future__ import annotations
 import ast
 import re
 import shlex
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
+    from fe_drivetrain.report.results import Section
     from fe_drivetrain.studies.result import Result
 
     _R = TypeVar("_R", bound="Result")
@@ -40,12 +41,15 @@ OPTIONS: Mapping[str, str] = {
     "riser": "--riser",
     "rotor_speed_rpm": "--rotor-speed",
     "site": "--site",
+    "slopes": "--slope",
     "supply": "--supply",
     "support": "--support",
     "temperature": "--temperature",
     "tolerance": "--tolerance",
+    "transients": "--transient",
     "turning": "--turning",
     "what": "--what",
+    "windows": "--target",
     "winds": "--winds",
 }
 """Option by argument."""
@@ -92,6 +96,28 @@ def result_with_options(result: _R) -> _R:
         skipped=tuple(map(with_options, result.skipped)),
         assumptions=tuple(rows),
     )
+
+
+def sections_with_options(sections: Sequence[Section]) -> list[Section]:
+    """Sections of a page with options in place of the arguments that paragraphs and tables name.
+
+    Parameters
+    ----------
+    sections : sequence of Section
+        As the page has them.
+    """
+    return [
+        section.model_copy(update={"items": [_item_with_options(item) for item in section.items]})
+        for section in sections
+    ]
+
+
+def _item_with_options(item: Any) -> Any:
+    """A paragraph, or a table with its caption; charts and pictures as they are."""
+    named = {"text": "text", "table": "caption"}.get(item.kind)
+    if named is None:
+        return item
+    return item.model_copy(update={named: with_options(getattr(item, named))})
 
 
 def typed(code: str) -> str | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, TypeVar
 
-from fe_drivetrain.command_line.option_names import result_with_options
+from fe_drivetrain.command_line.option_names import result_with_options, sections_with_options
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.suite.page import Page
@@ -38,6 +38,7 @@ def shown(
         run.take(result)
         page.take(result_with_options(result))
         show(run, page, result)
+        page.sections = sections_with_options(page.sections)
         if write is not None:
             write(run, page, result)
 

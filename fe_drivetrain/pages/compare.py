@@ -45,7 +45,7 @@ def show_compare(run: Run, page: Page, result: CompareResult) -> None:
     page.text(
         "A change is relative to the value of the first design. Its band is found as that of a "
         "value, from the change itself (errors that both designs have cancel), and holds a share "
-        "of the bands of both values as large as the change; a change inside its band may be none. "
+        "of the bands of both values as large as the change; a change inside its band may be zero. "
         "Without a load, a reaction is "
         "compared by its response to each of the six hub loads, moments scaled to forces by the "
         "length of the shaft, and its change has no sign."

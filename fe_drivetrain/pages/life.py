@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fe_drivetrain.bearing_life.life.roller_damage import KINDS
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.pages.life_bearings import laminae, places, winds
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.records import Record
@@ -117,5 +118,6 @@ def _assumed(page: Page, result: LifeResult) -> None:
         "do. The clearance is 1/4000 of the pitch diameter, rounded, along the contact normal, "
         "and the preload a tenth of it: a size to compare with, of no table. Give the clearance of "
         "the mounted bearing in its catalogue entry, and the others by their options. How rings, "
-        "housing and the shaft's support give way is not varied here: see --rings and --support."
+        "housing and the shaft's support give way is not varied here: see "
+        f"{argument('LifeOptions.rings')} and {argument('LifeOptions.support')}."
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.pages.loads_against import beside
 from fe_drivetrain.pages.loads_counts import counts
 from fe_drivetrain.pages.loads_lifetime import lifetime_section
@@ -95,8 +96,9 @@ def _capture(page: Page, result: LoadsResult) -> None:
         return
     page.table(
         f"Windows by mean wind speed and turbulence intensity; {capture.target.windows} of each "
-        "wind speed are asked for (IEC 61400-1 asks for six ten-minute series; --target takes "
-        "another number, --winds the range of wind speeds)",
+        "wind speed are asked for (IEC 61400-1 asks for six ten-minute series; "
+        f"{argument('CaptureTarget.windows')} takes another number, "
+        f"{argument('CaptureTarget.low')} the range of wind speeds)",
         capture_rows(capture),
     )
     if capture.unknown:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.report.charts import trace
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.studies.load_histories import LoadsResult
@@ -27,7 +28,11 @@ def lifetime_section(page: Page, found: Lifetime, result: LoadsResult) -> None:
     page.table(
         f"Range of {CYCLES:.0e} cycles that do the damage of {site.years:g} years at a mean wind "
         f"of {site.mean_wind:g} m/s (Weibull, k = {site.shape:g}), {winds}"
-        + ("" if found.events else "; starts and stops are not among these files (--transient)"),
+        + (
+            ""
+            if found.events
+            else f"; starts and stops are not among these files ({argument('transients')})"
+        ),
         result.tables["lifetime"],
     )
     page.table(

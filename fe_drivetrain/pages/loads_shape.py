@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats, rounded
 from fe_drivetrain.report.charts import heat_map, trace
 from fe_drivetrain.report.results import Chart
@@ -174,8 +175,9 @@ def _multiples(page: Page, found: LoadTotals) -> None:
     amplitudes = found.spectra.multiples
     if amplitudes is None:
         page.text(
-            "No file has a rotor speed, so that multiples of it have no names: give --rotor-speed "
-            "in rpm, or --channel 'rotor speed=NAME'."
+            "No file has a rotor speed, so that multiples of it have no names: give "
+            f"{argument('LoadOptions.rotor_speed_rpm')}, or the channel, as in "
+            "`ChannelMap(channels={'rotor speed': 'RotSpeed'})`."
         )
         return
     page.table(

@@ -32,7 +32,7 @@ from fe_drivetrain.studies.life_tables import limit_rows, long_tables, result_ta
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.rolling_bearings import bearings_of
 from fe_drivetrain.turbine_loads.histories.sites import Site
-from fe_drivetrain.turbine_loads.hub_loads.recorded import Files, recorded_files
+from fe_drivetrain.turbine_loads.hub_loads.recorded import Files, recorded_files, short_name
 
 _MANY = 8  # files, each of every bearing, for which it pays to start processes
 
@@ -56,6 +56,7 @@ class LifeResult(Result):
     """
 
     STUDY: ClassVar[str] = "life"
+    SCHEMA_VERSION: ClassVar[int] = 2
 
     bearings: Mapping[str, BearingLife]
     site: Site | None
@@ -238,6 +239,6 @@ def _stated(files: Sequence[Path], site: Site | None, options: LifeOptions) -> d
     return asked | {
         "catalogues": [Path(path).name for path in options.catalogues],
         "channels": None if channels is None else channels.model_dump(mode="json"),
-        "files": [file.name for file in files],
+        "files": [short_name(file, files) for file in files],
         "site": None if site is None else asdict(site),
     }

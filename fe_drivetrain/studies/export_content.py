@@ -128,19 +128,10 @@ def prepare_export(
     found.seed = None
     require_known("kind of export", kind, get_args(Kind))
     _refuse_unused(kind, what, at, level, modes)
-    content: Content
     if kind in ("model", "mesh"):
         content = _model_or_mesh(found, steps, drivetrain, kind)
-    elif kind == "modes":
-        scene = _scene_of_modes(drivetrain, what, level)
-        content = steps.timed("condense", craig_bampton_shaft, scene, modes, at)
-    elif kind == "summary":
-        scene = _require_scene(drivetrain, "a summary is")
-        content = steps.timed(
-            "condense", summary, scene, _SUMMARY_LEVEL if level is None else level
-        )
     else:
-        content = steps.timed("condense", _superelement, drivetrain, what, at, level)
+        content = _condensed(steps, drivetrain, kind, what, at, level, modes)
     found.answer(_description(content))
     _data(found, content)
     return ExportResult(
@@ -152,6 +143,26 @@ def prepare_export(
         band=content.band if isinstance(content, Superelement) else None,
         **found.frozen(steps.times, kind=kind, what=what, at=at, level=level, modes=modes),
     )
+
+
+def _condensed(
+    steps: Steps,
+    drivetrain: Scene | Component,
+    kind: Kind,
+    what: str,
+    at: Sequence[str] | None,
+    level: int | None,
+    modes: int,
+) -> Content:
+    """A superelement, with modes or without, or a summary."""
+    if kind == "modes":
+        scene = _scene_of_modes(drivetrain, what, level)
+        return steps.timed("condense", craig_bampton_shaft, scene, modes, at)
+    if kind == "summary":
+        scene = _require_scene(drivetrain, "a summary is")
+        number = _SUMMARY_LEVEL if level is None else level
+        return steps.timed("condense", summary, scene, number)
+    return steps.timed("condense", _superelement, drivetrain, what, at, level)
 
 
 def _refuse_unused(

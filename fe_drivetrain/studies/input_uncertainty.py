@@ -35,37 +35,50 @@ class UncertaintyResult(Result):
 
     Attributes
     ----------
-    level : int
-        Model level that was sampled: 1 beam, 2 meridian.
-    units : Mapping[str, str]
-        Unit of each quantity; the mappings below have the same keys, those asked for first.
-    nominal : Mapping[str, float]
-        Value of each quantity without uncertainty.
-    bands : Mapping[str, Band]
-        Between which values 95 % of the samples of each quantity are, with standard errors.
-    errors : Mapping[str, ModelError]
-        Error of the level itself in each quantity, relative.
-    sensitivities : Mapping[str, Mapping[str, float]]
-        Relative change of each quantity for the relative change of each uncertain value, by key.
-    shares : Mapping[str, Shares]
-        Sobol indices of the quantities that vary; empty where they were not asked for.
     effects : InputEffects
-        What the values do to each quantity, as the page has it.
-    study : Study
-        Samples and surfaces that all this comes from; not part of the JSON but for the samples.
+        What the uncertain values do to each quantity: digests of the samples, no samples.
     """
 
     STUDY: ClassVar[str] = "uncertainty"
+    SCHEMA_VERSION: ClassVar[int] = 2
 
-    level: int
-    units: Mapping[str, str]
-    nominal: Mapping[str, float]
-    bands: Mapping[str, Band]
-    errors: Mapping[str, ModelError]
-    sensitivities: Mapping[str, Mapping[str, float]]
-    shares: Mapping[str, Shares]
     effects: InputEffects = field(repr=False)
-    study: Study = field(repr=False)
+
+    @property
+    def level(self) -> int:
+        """Model level that was sampled: 1 beam, 2 meridian."""
+        return self.effects.level
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of each quantity; the mappings below have the same keys, those asked for first."""
+        return {one.name: one.unit for one in self.effects.quantities}
+
+    @property
+    def nominal(self) -> dict[str, float]:
+        """Value of each quantity without uncertainty."""
+        return {one.name: one.nominal for one in self.effects.quantities}
+
+    @property
+    def bands(self) -> dict[str, Band]:
+        """Between which values 95 % of the samples of each quantity are, with standard errors."""
+        return {one.name: one.band for one in self.effects.quantities}
+
+    @property
+    def errors(self) -> dict[str, ModelError]:
+        """Error of the level itself in each quantity, relative."""
+        return {one.name: one.error for one in self.effects.quantities}
+
+    @property
+    def sensitivities(self) -> dict[str, Mapping[str, float]]:
+        """Relative change of each quantity for the relative change of each uncertain value."""
+        return {one.name: one.sensitivities for one in self.effects.quantities}
+
+    @property
+    def shares(self) -> dict[str, Shares]:
+        """Sobol indices of the quantities that vary; empty where they were not asked for."""
+        every = self.effects.quantities
+        return {one.name: one.shares for one in every if one.shares is not None}
 
     def rows(self) -> list[Record]:
         """Nominal value, band and errors of each quantity, with units in the keys."""
@@ -139,10 +152,7 @@ def uncertainty(
         See `fe_drivetrain.shafts.uncertainty.input_study.study`; the load has an unknown name, or
         there are too few samples for a band.
     """
-    if samples < MIN_SAMPLES:
-        raise InputError(
-            f"uncertainty: {samples} samples show no band of 95 %: take {MIN_SAMPLES} or more"
-        )
+    _require_samples(samples)
     found, steps = Findings(), Steps(report)
     found.about(scene)
     found.seed = seed
@@ -152,31 +162,28 @@ def uncertainty(
         known = study(
             scene, quantities, factors, tolerance, level, samples, seed, base, steps.report
         )
+    effects = _digested(found, known, tolerance)
+    options = {"quantities": quantities, "load": load, "tolerance": tolerance, "level": level}
+    options |= {"samples": samples, "sobol": sobol}
+    return UncertaintyResult(effects=effects, **found.frozen(steps.times, **options))
+
+
+def _digested(found: Findings, known: Study, tolerance: float) -> InputEffects:
+    """State answer, checks and numbers of the samples; what is kept of them."""
     effects = input_effects(known)
     found.answer(*_sentences(effects))
     _judge(found, known, tolerance)
     for name, value in figures(known).items():
         found.data(name, value)
-    options = {
-        "quantities": quantities,
-        "load": load,
-        "tolerance": tolerance,
-        "level": level,
-        "samples": samples,
-        "sobol": sobol,
-    }
-    return UncertaintyResult(
-        level=known.level,
-        units={number.name: number.unit for number in known.numbers},
-        nominal={number.name: known.samples[number.name].nominal for number in known.numbers},
-        bands={number.name: known.samples[number.name].band() for number in known.numbers},
-        errors=known.errors,
-        sensitivities=known.slopes,
-        shares=known.shares,
-        effects=effects,
-        study=known,
-        **found.frozen(steps.times, **options),
-    )
+    return effects
+
+
+def _require_samples(samples: int) -> None:
+    """Refuse fewer samples than a band needs."""
+    if samples < MIN_SAMPLES:
+        raise InputError(
+            f"uncertainty: {samples} samples show no band of 95 %: take {MIN_SAMPLES} or more"
+        )
 
 
 def half_bands(found: InputEffects) -> Chart:

@@ -42,6 +42,7 @@ class AdviseResult(Result):
     """
 
     STUDY: ClassVar[str] = "advise"
+    SCHEMA_VERSION: ClassVar[int] = 2
 
     drivetrain: Scene
     advice: Advice = field(repr=False)

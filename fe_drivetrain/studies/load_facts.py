@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -95,6 +96,21 @@ def load_facts(scene: Scene, loads: EnteredLoads) -> LoadFacts:
         np.concatenate([mean[:6], weights, mean[6:]]),
         tuple(_facts(history, given.seconds) for history in given.histories),
     )
+
+
+def history_rows(histories: Sequence[HistoryFacts]) -> list[Record]:
+    """Records of histories: when each is, and its share of the time."""
+    return [
+        {
+            "history": one.name,
+            "from [s]": one.start,
+            "to [s]": one.end,
+            "step [s]": one.step,
+            "samples": one.samples,
+            "share of the time [%]": 100.0 * one.share,
+        }
+        for one in histories
+    ]
 
 
 def channels_of(history: LoadHistory) -> str:

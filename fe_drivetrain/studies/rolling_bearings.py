@@ -24,7 +24,7 @@ from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.scene import Scene
-from fe_drivetrain.studies.named_bearings import named_bearings
+from fe_drivetrain.studies.named_bearings import NamedBearing, named_bearings
 
 SUPPORTS = ("rollers", "pinned")
 """How the shaft stands on its bearings; a number is K_R [N m/rad] of springs."""
@@ -130,28 +130,8 @@ def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
         none.
     """
     stiffness = _stiffness(choices.support)
-    if choices.rings not in RINGS_OF:
-        raise InputError(
-            f"{argument('LifeOptions.rings', choices.rings)}: choose one of {', '.join(RINGS_OF)}"
-        )
-    units = {unit.bearing.name: unit for unit in scene.bearing_units}
-    if wrong := [name for name in choices.named if name not in units]:
-        raise InputError(
-            f"{_named(wrong[0], choices.named[wrong[0]])}: the scene has no bearing {wrong[0]!r}; "
-            f"name one of {', '.join(units)}"
-        )
-    if choices.only is not None and choices.only not in units:
-        raise InputError(
-            f"{argument('LifeOptions.only', choices.only)}: the scene has no such bearing; name "
-            f"one of {', '.join(units)}"
-        )
-    named = named_bearings(scene, choices.catalogues, choices.named)
-    if nameless := [name for name in units if name not in named]:
-        raise InputError(
-            f"bearing {nameless[0]!r} of the scene has no rollers: name its entry of the catalogue "
-            f"with {_named(nameless[0], 'ENTRY')}, or under 'catalogue' in the scene; there are "
-            f"{', '.join(read_catalogue(*choices.catalogues))}"
-        )
+    _require_choices(scene, choices)
+    named = _all_named(scene, choices)
     rated = {
         name: rated_from_catalogue(
             one.name, *choices.catalogues, **_profile(one.entry, choices.profiled)
@@ -176,6 +156,38 @@ def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
         )
         result.append(OneBearing(name, entry_name, entry, rated[name], path, seat, rollers, misfit))
     return result
+
+
+def _require_choices(scene: Scene, choices: Choices) -> None:
+    """Refuse a model of rings, or bearings, that there are not."""
+    if choices.rings not in RINGS_OF:
+        raise InputError(
+            f"{argument('LifeOptions.rings', choices.rings)}: choose one of {', '.join(RINGS_OF)}"
+        )
+    units = [unit.bearing.name for unit in scene.bearing_units]
+    if wrong := [name for name in choices.named if name not in units]:
+        raise InputError(
+            f"{_named(wrong[0], choices.named[wrong[0]])}: the scene has no bearing {wrong[0]!r}; "
+            f"name one of {', '.join(units)}"
+        )
+    if choices.only is not None and choices.only not in units:
+        raise InputError(
+            f"{argument('LifeOptions.only', choices.only)}: the scene has no such bearing; name "
+            f"one of {', '.join(units)}"
+        )
+
+
+def _all_named(scene: Scene, choices: Choices) -> dict[str, NamedBearing]:
+    """The catalogue entry of every bearing of the scene."""
+    named = named_bearings(scene, choices.catalogues, choices.named)
+    units = [unit.bearing.name for unit in scene.bearing_units]
+    if nameless := [name for name in units if name not in named]:
+        raise InputError(
+            f"bearing {nameless[0]!r} of the scene has no rollers: name its entry of the catalogue "
+            f"with {_named(nameless[0], 'ENTRY')}, or under 'catalogue' in the scene; there are "
+            f"{', '.join(read_catalogue(*choices.catalogues))}"
+        )
+    return named
 
 
 def _named(bearing: str, entry: str) -> str:

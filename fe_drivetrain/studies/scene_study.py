@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import ClassVar
-
-import numpy as np
+from typing import Any, ClassVar
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
@@ -22,8 +20,7 @@ from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.shafts.fidelity.bearing_units import UnitBounds
 from fe_drivetrain.shafts.fidelity.foot_opening import foot_warnings
 from fe_drivetrain.shafts.fidelity.judgement import Judgement, judge_levels
-from fe_drivetrain.shafts.fidelity.ladder import statics_level
-from fe_drivetrain.shafts.fidelity.over_loads import Levels, imbalance, levels_of, reaction_history
+from fe_drivetrain.shafts.fidelity.over_loads import Levels, levels_of, reaction_history
 from fe_drivetrain.shafts.fidelity.quantities import UNIT, unit_numbers
 from fe_drivetrain.shafts.response.cached import cached_response
 from fe_drivetrain.shafts.response.entering import Factors, Loads
@@ -43,7 +40,8 @@ from fe_drivetrain.studies.level_errors import (
     level_errors,
     needed_levels,
 )
-from fe_drivetrain.studies.load_facts import LoadFacts, load_facts
+from fe_drivetrain.studies.load_facts import LoadFacts, history_rows, load_facts
+from fe_drivetrain.studies.model_checks import check_models
 from fe_drivetrain.studies.reaction_statistics import (
     ReactionStatistics,
     peak_across,
@@ -63,6 +61,7 @@ from fe_drivetrain.turbine_loads.histories.damage import SLOPES, check_slope
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
 
 _SAMPLES, _QUICK_SAMPLES = 128, 40
+_SEED = 0  # of the samples; that of made wind is the surrogate's
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -105,6 +104,7 @@ class StudyResult(Result):
     """
 
     STUDY: ClassVar[str] = "study"
+    SCHEMA_VERSION: ClassVar[int] = 2
 
     units: Mapping[str, UnitBounds]
     secants: tuple[TiltSecant, ...]
@@ -208,6 +208,66 @@ def study(
     for slope in slopes:
         check_slope(slope)
     found, steps = Findings(), Steps(report)
+    at = _solved(found, steps, scene, loads, weight, quick)
+    _answer(found, at, quick)
+    _stiffness(found, at.levels.units)
+    with steps.step("reactions of all load steps"):
+        reactions, secants = _reactions(found, at, slopes, report)
+    with steps.step("beams against FE"):
+        errors, judgement, measures, forms = _errors(found, at, slopes)
+    facts = load_facts(at.scene, at.entered)
+    level = int(judgement.nearest[0])
+    uncertainty = _uncertainty(found, steps, at.scene, level, facts.mean, quick)
+    stated = _stated(at.model, facts.gravity)
+    _state(found, at, facts, stated)
+    options = {**at.entered.given.asked(), "slopes": slopes, "weight": weight, "quick": quick}
+    return StudyResult(
+        secants=secants,
+        reaction_statistics=reactions,
+        errors=errors,
+        judgement=judgement,
+        measures=measures,
+        closed_forms=forms,
+        uncertainty=uncertainty,
+        loads=facts,
+        stated=stated,
+        slopes=tuple(slopes),
+        **at.fields(),
+        **found.frozen(steps.times, **options),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Solved:
+    """A scene whose models are solved for unit loads, and the loads that enter it."""
+
+    scene: Scene
+    model: Model
+    response: Response
+    levels: Levels
+    entered: EnteredLoads
+
+    def fields(self) -> dict[str, Any]:
+        """Those of the result that need no more than this."""
+        return {
+            "units": self.levels.units,
+            "beginning": history_beginning(self.scene, self.levels, self.entered),
+            "described": description(self.model),
+            "model": self.model,
+            "response": self.response,
+            "levels": self.levels,
+        }
+
+
+def _solved(
+    found: Findings,
+    steps: Steps,
+    scene: Scene,
+    loads: StudyLoads | Sequence[LoadHistory] | None,
+    weight: bool,
+    quick: bool,
+) -> _Solved:
+    """Every model of the scene as it is asked for, checked, and the loads that enter it."""
     scene = quick_scene(scene) if quick else scene
     scene = scene if weight else weightless(scene)
     found.about(scene)
@@ -220,121 +280,29 @@ def study(
         if response.kept:
             step.name += ", from the cache"
     with steps.step("levels 1 and 2"):
-        levels = levels_of(scene, response, report)
-    units = levels.units
-    _check(found, scene, response, levels)
-    _answer(found, model, response, entered, quick)
-    _stiffness(found, units)
-    with steps.step("reactions of all load steps"):
-        reactions = _reactions(found, scene, levels, entered, slopes, report)
-        secants = tilt_secants(scene, response, units, entered)
-        found.data("secants", secant_rows(secants))
-    with steps.step("beams against FE"):
-        errors, judgement, measures = _errors(found, scene, levels, entered, slopes)
-        forms = closed_form_errors(scene, response, units, entered)
-        found.data("closed_forms", closed_form_rows(forms))
-    facts = load_facts(scene, entered)
-    found.seed = None if given.own else 1
-    level = int(judgement.nearest[0])
-    uncertainty = _uncertainty(found, steps, scene, level, facts.mean, quick)
-    found.assume_all(left_out(scene))
+        levels = levels_of(scene, response, steps.report)
+    check_models(found, scene, response, levels)
+    return _Solved(scene, model, response, levels, entered)
+
+
+def _state(found: Findings, at: _Solved, facts: LoadFacts, stated: Stated) -> None:
+    """State what nobody gave, which histories were studied, and what the reactions are."""
+    given = at.entered.given
+    found.assume_all(left_out(at.scene))
     found.assume_all(given.assumptions)
-    options = {"loads": given.statement, "slopes": slopes, "weight": weight, "quick": quick}
-    return StudyResult(
-        units=units,
-        secants=secants,
-        reaction_statistics=reactions,
-        errors=errors,
-        judgement=judgement,
-        measures=measures,
-        closed_forms=forms,
-        uncertainty=uncertainty,
-        loads=facts,
-        beginning=history_beginning(scene, levels, entered),
-        stated=_stated(model, facts.gravity),
-        slopes=tuple(slopes),
-        described=description(model),
-        model=model,
-        response=response,
-        levels=levels,
-        **found.frozen(steps.times, **options),
-    )
+    found.data("histories", history_rows(facts.histories))
+    found.data("reactions_stated", stated.facts())
 
 
-def _check(found: Findings, scene: Scene, response: Response, levels: Levels) -> None:
-    """Equilibrium and linearity of the assembly, and balance of every level."""
-    found.vanishes(
-        "assembly: total equilibrium, applied less reacted",
-        response.equilibrium_error,
-        within=1e-8,
-        why="reactions come from the residual on constrained degrees of freedom: solver accuracy",
-        source="exact",
-    )
-    found.vanishes(
-        "assembly: linearity, a random load solved directly against superposed",
-        response.superposition_error,
-        within=1e-8,
-        why="the scene is linear: solver accuracy",
-        source="exact",
-    )
-    found.vanishes(
-        "every level: reactions to unit hub loads balance the load, the worst",
-        max(imbalance(scene, model) for model in levels.models.values()),
-        within=1e-6,
-        why="each level must be in equilibrium, whatever its stiffness",
-        source="statics",
-    )
-    worst, count = statics_error(scene, response)
-    if count:
-        found.vanishes(
-            f"{count} reactions to unit hub loads that statics decides, assembly against statics",
-            worst,
-            within=1e-6,
-            why="solver accuracy; the nodes of a curved raceway meet at its centre to the mesh's "
-            "order",
-            source="statics: what has no stiffness in it",
-        )
-
-
-def statics_error(scene: Scene, response: Response) -> tuple[float, int]:
-    """Largest error of the reactions to unit hub loads that equilibrium alone decides.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    response : Response
-        Unit loads on its assembly.
-
-    Returns
-    -------
-    worst, count : float, int
-        Error, relative to a unit load with moments divided by the length of the shaft, and how
-        many of these reactions are not zero.
-    """
-    worst, count = 0.0, 0
-    size = np.array([1.0, 1.0, 1.0, *3 * (scene.shaft.length,)])
-    for name, matrix in statics_level(scene).reaction_matrices.items():
-        exact = matrix[:, :6]
-        known = np.isfinite(exact)
-        count += int((known & (exact != 0.0)).sum())
-        error = np.abs(response.reactions[name][:, :6] - exact)[known]
-        scale = np.outer(size, 1.0 / size)[known]
-        worst = max(worst, float((error / scale).max(initial=0.0)))
-    return worst, count
-
-
-def _answer(
-    found: Findings, model: Model, response: Response, loads: EnteredLoads, quick: bool
-) -> None:
+def _answer(found: Findings, at: _Solved, quick: bool) -> None:
     """What the loads are, and what the model warns of."""
     if quick:
         found.answer(
             "Quick: on a coarser mesh than the scene's, for a first look; figures will change."
         )
-    given = loads.given
-    opening = foot_warnings(model.scene, response, loads.together, given.weights, given.gravity)
-    found.answer(given.statement, *model.warnings, *opening)
+    given, together = at.entered.given, at.entered.together
+    opening = foot_warnings(at.scene, at.response, together, given.weights, given.gravity)
+    found.answer(given.statement, *at.model.warnings, *opening)
 
 
 def _stated(model: Model, gravity: float) -> Stated:
@@ -377,34 +345,28 @@ def _stiffness(found: Findings, units: Mapping[str, UnitBounds]) -> None:
 
 
 def _reactions(
-    found: Findings,
-    scene: Scene,
-    levels: Levels,
-    loads: EnteredLoads,
-    slopes: Sequence[float],
-    report: Progress,
-) -> dict[str, ReactionStatistics]:
-    """Statistics of each reaction of the assembly."""
-    names = list(levels.reference.reaction_matrices)
+    found: Findings, at: _Solved, slopes: Sequence[float], report: Progress
+) -> tuple[dict[str, ReactionStatistics], tuple[TiltSecant, ...]]:
+    """Statistics of each reaction of the assembly, and K_R as a secant."""
+    names = list(at.levels.reference.reaction_matrices)
     every = {}
     for number, name in enumerate(names, 1):
         report(f"reactions of all load steps ({number} of {len(names)})")
-        every[name] = reaction_statistics(name, scene, levels, loads, slopes)
-    for name in (bearing for bearing in scene.bearing_names if bearing in every):
+        every[name] = reaction_statistics(name, at.scene, at.levels, at.entered, slopes)
+    for name in (bearing for bearing in at.scene.bearing_names if bearing in every):
         found.found(*peak_across(name, every[name].whole))
     rows = [row for name, of in every.items() for row in statistics_rows(name, of.whole, slopes)]
     found.data("reactions_kN", rows)
-    return every
+    secants = tilt_secants(at.scene, at.response, at.levels.units, at.entered)
+    found.data("secants", secant_rows(secants))
+    return every, secants
 
 
 def _errors(
-    found: Findings,
-    scene: Scene,
-    levels: Levels,
-    loads: EnteredLoads,
-    slopes: Sequence[float],
-) -> tuple[LevelErrors, Judgement, DesignMeasures]:
-    """Each level against the assembly, and which one is enough."""
+    found: Findings, at: _Solved, slopes: Sequence[float]
+) -> tuple[LevelErrors, Judgement, DesignMeasures, Mapping[str, ForceErrors]]:
+    """Each level against the assembly, which one is enough, and the errors of closed forms."""
+    scene, levels, loads = at.scene, at.levels, at.entered
     errors = level_errors(scene, levels, loads)
     judgement = judge_levels(errors.judged, ENOUGH, scene.shaft.length)
     found.data("error_percent", [one.row() for one in errors.vectors])
@@ -415,13 +377,16 @@ def _errors(
     measures = design_measures(scene, levels, loads, slopes, ENOUGH, judged)
     found.data("design_measures", measures.rows(slopes))
     found.answer(measures.sentence())
-    return errors, judgement, measures
+    forms = closed_form_errors(scene, at.response, levels.units, loads)
+    found.data("closed_forms", closed_form_rows(forms))
+    return errors, judgement, measures, forms
 
 
 def _uncertainty(
     found: Findings, steps: Steps, scene: Scene, level: int, mean_load: Floats, quick: bool
 ) -> InputEffects | None:
     """Effect of the spreads that the scene states on stiffnesses and bearing forces."""
+    found.seed = None
     if not scene.uncertainty:
         return None
     with steps.step("uncertainty"):
@@ -431,8 +396,9 @@ def _uncertainty(
             Factors(mean_load),
             level=level,
             count=_QUICK_SAMPLES if quick else _SAMPLES,
+            seed=_SEED,
             report=steps.report,
         )
     found.data("uncertainty", figures(spreads))
-    found.seed = 0 if found.seed is None else found.seed
+    found.seed = _SEED
     return input_effects(spreads)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from typing import Any
 
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
@@ -42,6 +43,10 @@ class StudyLoads:
         Name, value, unit and source of what a surrogate assumes.
     gravity : float
         Along -z, that gives all parts their weight [m/s^2]; 0 where weights are left out.
+    skip : float
+        Time that was left out at the beginning of each [s].
+    seeds : tuple of int
+        Seeds of made wind, which the program fixes; none of histories of the user.
     """
 
     histories: Sequence[LoadHistory]
@@ -49,6 +54,17 @@ class StudyLoads:
     own: bool
     assumptions: Sequence[tuple[str, float, str, str]] = field(default_factory=tuple)
     gravity: float = GRAVITY
+    skip: float = 0.0
+    seeds: tuple[int, ...] = ()
+
+    def asked(self) -> dict[str, Any]:
+        """What they are, as plain data."""
+        return {
+            "loads": self.statement,
+            "histories": [history.name for history in self.histories],
+            "skip": self.skip,
+            "seeds of the loads": list(self.seeds),
+        }
 
     @property
     def seconds(self) -> float:
@@ -156,6 +172,7 @@ def _of_the_user(
         + about
         + (f" {unlike}" if unlike else ""),
         True,
+        skip=skip,
     )
 
 
@@ -181,4 +198,5 @@ def surrogate_loads(steps: Clock, quick: bool = False) -> StudyLoads:
         f"{argument('loads')}.",
         False,
         list(assumptions()),
+        seeds=tuple(sorted({condition.seed for condition in grid})),
     )

@@ -17,12 +17,15 @@ from fe_drivetrain.command_line.option_names import (
     OPTIONS,
     WORDS,
     result_with_options,
+    sections_with_options,
     with_options,
 )
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file import change_scene, library_scene
 from fe_drivetrain.geometry import MeshSizes
+from fe_drivetrain.report.results import Table, Text
+from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.shafts.fidelity.assembly_bands import finer_mesh
 from fe_drivetrain.studies import CaptureTarget, LifeOptions, LoadOptions, check, prepare_export
 from fe_drivetrain.studies.load_winds import winds_not_used
@@ -136,6 +139,18 @@ def test_notes_of_a_result_have_options_where_a_page_shows_them() -> None:
     assert shown.assumptions[0].source == "--supply"
     assert "name another entry with `bearings={'main_bearing': 'ENTRY'}`" in found.answer[1]
     assert "name another entry with --bearing main_bearing=ENTRY" in shown.answer[1]
+
+
+def test_paragraphs_and_captions_of_a_page_have_options() -> None:
+    page = Page()
+    page.text(f"see {argument('LifeOptions.rings')}")
+    page.table(f"by {argument('CaptureTarget.windows')}", [{"`site`": 1}])
+    (section,) = sections_with_options(page.sections)
+    text, table = section.items
+    assert isinstance(text, Text)
+    assert text.text == "see --rings"
+    assert isinstance(table, Table)
+    assert (table.caption, table.columns) == ("by --target", ["`site`"])
 
 
 def test_only_arguments_that_have_an_option_are_exchanged() -> None:

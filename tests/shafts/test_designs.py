@@ -302,7 +302,7 @@ def test_what_may_be_no_change_is_named() -> None:
         result = compare(dict.fromkeys(("a", "b"), coarse_scene("bonded")))
     said = " ".join(result.answer)
     assert "hub.stiffness.rx of b against a: -10 % ± 0.19 %" in said
-    assert "The change of hub.stiffness.ry is smaller than its band: it may be none." in said
+    assert "The change of hub.stiffness.ry is smaller than its band: it may be zero." in said
 
 
 def test_a_page_names_all_its_scenes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -299,7 +299,9 @@ def test_the_page_has_every_number(found: Study) -> None:
     assert [row[1] for row in surfaces.rows] == ["rigid", "averaged"]
     numbers = figures(found)["quantities"]
     assert numbers["main_bearing.tilt"]["half_band"] > 0
-    assert len(numbers["main_bearing.tilt"]["samples"]) == COUNT
+    tilt = found.samples["main_bearing.tilt"]
+    assert figures(found)["samples"] == len(tilt.values) == COUNT
+    assert numbers["main_bearing.tilt"]["standard_deviation"] == np.std(tilt.values, ddof=1)
 
 
 def test_the_library_scene_is_uncertain_and_can_be_solved() -> None:

@@ -15,7 +15,7 @@ from fe_drivetrain.comparison import statistics
 from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.shafts.fidelity import statics_level
 from fe_drivetrain.studies import StudyResult, study
-from fe_drivetrain.studies.scene_study import statics_error
+from fe_drivetrain.studies.model_checks import statics_error
 from fe_drivetrain.turbine_loads.hub_loads import LoadHistory, PointLoads
 
 

@@ -430,7 +430,7 @@ def test_loads_without_files_winds_or_slopes_are_refused(tmp_path: Path) -> None
     write_csv(LoadHistory("still", np.arange(20) * 0.1, np.ones((20, 6))), still)
     with pytest.raises(InputError, match="no wind speed, by which `site` weights"):
         loads([still], site=Site(8.5))
-    with pytest.raises(InputError, match="give a site, too"):
+    with pytest.raises(InputError, match="events of a lifetime: give `site`, too"):
         loads(still, transients=[(700.0, still)])
     with pytest.raises(InputError, match="no slope of an S-N curve"):
         LoadOptions(slopes=())
