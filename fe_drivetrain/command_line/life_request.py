@@ -48,7 +48,7 @@ class LifeRequest:
             "--site",
             metavar="CLASS",
             help="Weight winds: a class of IEC 61400-1, as in class-II, or the mean wind speed of "
-            "a Rayleigh distribution in m/s. Without it the files follow each other for ever.",
+            "a Rayleigh distribution in m/s. Without it the files repeat for ever.",
         ),
     ] = None
     bearing: Annotated[

@@ -50,7 +50,7 @@ class LifeResult(Result):
     bearings : Mapping[str, BearingLife]
         Life by bearing, in the scene's order.
     site : Site or None
-        Whose winds are weighted; None where files follow each other for ever.
+        Whose winds are weighted; None where files repeat for ever.
     rules : LifeRules
         Choices that change lives.
     """
@@ -109,7 +109,7 @@ def life(
         Hub loads: files (.out, .outb of OpenFAST, or .csv), folders, or patterns as
         ``"outputs/*.outb"``.
     site : Site or None
-        Whose winds weight the files; without one they follow each other for ever.
+        Whose winds weight the files; without one they repeat for ever.
     options : LifeOptions or None
         Bearings, lubricant, models and how files are read; None takes all defaults.
     resume : bool

@@ -69,7 +69,7 @@ def answers(
 def _under(life: BearingLife, site: Site | None) -> str:
     """Under what the bearing lives."""
     if site is None or life.site is None:
-        return "if these files followed each other for ever"
+        return "if these files repeat for ever"
     return (
         f"at a mean wind of {site.mean_wind:g} m/s, where the winds of these files blow "
         f"{100 * life.site.covered:.3g} % of the time and the rest is taken to do no damage"

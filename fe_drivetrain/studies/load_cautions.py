@@ -35,8 +35,8 @@ def cautions(found: LoadTotals, options: LoadOptions) -> list[str]:
     said += _lone(found.suspects)
     count = len(names)
     said += [
-        f"{channel} does not vary in {number} of {count} files: it counts no cycles, as of a "
-        "turbine at rest, or of a channel that was not recorded."
+        f"{channel} does not vary in {number} of {count} files: no cycles are "
+        "counted. The turbine may be at rest, or the channel not recorded."
         for channel, number in found.suspects.still.items()
     ]
     short = sum(span.seconds < 0.99 * TEN_MINUTES for span in found.files.spans)

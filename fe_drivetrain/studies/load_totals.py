@@ -76,7 +76,7 @@ class LoadStatistics:
         return self.joined.together()
 
     def of_windows(self, channel: str) -> Floats:
-        """(windows, 4) least, mean, largest, standard deviation of one of `CHANNELS`."""
+        """(windows, 4) min, mean, max, standard deviation of one of `CHANNELS`."""
         return np.asarray(self.joined.values[:, CHANNELS.index(channel)])
 
     def mean_of(self, channel: str) -> Floats:
