@@ -40,12 +40,13 @@ def show_compare(run: Run, page: Page, result: CompareResult) -> None:
         page.text(why_solid(errors[0], result.tolerance))
         page.table(
             "Error bounds of level 2, for the quantities that need level 4",
-            [error_row(one) for one in errors],
+            [_error_row(one) for one in errors],
         )
     page.text(
-        "A change is relative to the value of the first design. Its band is found as that of a "
-        "value, from the change itself (errors that both designs have cancel), and holds a share "
-        "of the bands of both values as large as the change; a change inside its band may be zero. "
+        "A change is relative to the value of the first design. Its band is estimated from the "
+        "change itself, in the way of a value's band, since errors that both designs share cancel. "
+        "It is widened by a share of both values' own bands: the relative change, or what the "
+        "squared element sizes differ by. A change smaller than its band may be zero. "
         "Without a load, a reaction is "
         "compared by its response to each of the six hub loads, moments scaled to forces by the "
         "length of the shaft, and its change has no sign."
@@ -82,7 +83,7 @@ def why_solid(error: LevelTwoError, tolerance: float) -> str:
     )
 
 
-def error_row(error: LevelTwoError) -> Record:
+def _error_row(error: LevelTwoError) -> Record:
     """A row of the error bounds of level 2, in the design where they are largest.
 
     Parameters

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fe_drivetrain.pages.check import describe
-from fe_drivetrain.pages.study_reactions import show_reactions
+from fe_drivetrain.pages.study_reactions import reaction_sections
 from fe_drivetrain.pages.uncertainty import bands, inputs
 from fe_drivetrain.pages.uncertainty import slopes as slopes_section
 from fe_drivetrain.report.charts import trace
@@ -39,7 +39,7 @@ def show_study(run: Run, page: Page, result: StudyResult) -> None:
         page.section("Stiffness of the bearing units")
         _stiffness(page, result)
     page.section("Reactions")
-    show_reactions(page, result)
+    reaction_sections(page, result)
     page.section("Beams against FE")
     _errors(page, result)
     page.section("Over time")

@@ -13,7 +13,7 @@ STATISTICS = "reaction_statistics.csv"
 """The file beside the page that has the statistics of each history."""
 
 
-def show_reactions(page: Page, result: StudyResult) -> None:
+def reaction_sections(page: Page, result: StudyResult) -> None:
     """Show extremes, means, standard deviations and damage-equivalent loads of every reaction.
 
     Parameters

@@ -33,9 +33,9 @@ def show_uncertainty(run: Run, page: Page, result: UncertaintyResult) -> None:
         What was found.
     """
     found = result.effects
-    page.sections += [bands(found), inputs(found), slopes(found), variance(found)]
+    page.sections += [bands(found), inputs(found), slopes(found), _variance(found)]
     if found.advices:
-        page.sections.append(ladder(found))
+        page.sections.append(_ladder(found))
 
 
 def inputs(found: InputEffects) -> Section:
@@ -128,7 +128,7 @@ def slopes(found: InputEffects) -> Section:
     return Section(title="Influence of each value", items=[*items, table, Text(text=_SLOPE)])
 
 
-def variance(found: InputEffects) -> Section:
+def _variance(found: InputEffects) -> Section:
     """Shares of the variance: of a linear fit to the samples, and Sobol indices if requested."""
     rows: list[list[Cell]] = [
         [
@@ -161,7 +161,7 @@ def variance(found: InputEffects) -> Section:
     return Section(title="Contributions to the variance", items=items)
 
 
-def ladder(found: InputEffects) -> Section:
+def _ladder(found: InputEffects) -> Section:
     """The errors of the model levels, and the level that was chosen."""
     rows: list[list[Cell]] = []
     for advice in found.advices:

@@ -128,6 +128,7 @@ def prepare_export(
     found.seed = None
     require_known("kind of export", kind, get_args(Kind))
     _refuse_unused(kind, what, at, level, modes)
+    content: Content
     if kind in ("model", "mesh"):
         content = _model_or_mesh(found, steps, drivetrain, kind)
     else:

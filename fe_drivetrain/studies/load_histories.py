@@ -250,7 +250,7 @@ def _counted(asked: _Asked, scene: Scene | None, steps: Steps) -> LoadsResult:
     """Count the files, weight them over a lifetime, and compare them, as far as that is asked."""
     found, options = Findings(), asked.options
     found.seed = None
-    reactions = None if scene is None else _reactions(found, steps, scene, asked.level)
+    reactions = None if scene is None else _reactions(found, steps, scene, asked.level or 1)
     mine, its = LoadSet(options.slopes), LoadSet(options.slopes)
     sums = _added_up(asked, steps, reactions, mine)
     if not sums.hub.has_loads:
@@ -281,9 +281,7 @@ def _counted(asked: _Asked, scene: Scene | None, steps: Steps) -> LoadsResult:
     )
 
 
-def _reactions(
-    found: Findings, steps: Steps, scene: Scene, level: Literal[1, 4] | None
-) -> SceneReactions:
+def _reactions(found: Findings, steps: Steps, scene: Scene, level: int) -> SceneReactions:
     """The scene, solved for unit loads."""
     found.about(scene)
     return steps.timed("scene", scene_reactions, scene, level)
