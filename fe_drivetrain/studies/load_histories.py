@@ -194,10 +194,11 @@ def loads(
         site,
         [(a_year, recorded_files(of)) for a_year, of in transients],
         recorded_files(against),
-        None if scene is None else level,
+        scene,
+        level,
         resume,
     )
-    return _counted(asked, scene, Steps(report))
+    return _counted(asked, Steps(report))
 
 
 @dataclass(frozen=True)
@@ -210,7 +211,8 @@ class _Asked:
     site: Site | None
     transients: Sequence[_Event]
     against: Sequence[Path]
-    level: Literal[1, 4] | None
+    scene: Scene | None
+    level: int
     resume: bool
 
     def __post_init__(self) -> None:
@@ -242,15 +244,15 @@ class _Asked:
                 [a_year, [short_name(path, of) for path in of]] for a_year, of in self.transients
             ],
             "against": [short_name(path, self.against) for path in self.against],
-            "level": self.level,
+            "level": None if self.scene is None else self.level,
         }
 
 
-def _counted(asked: _Asked, scene: Scene | None, steps: Steps) -> LoadsResult:
+def _counted(asked: _Asked, steps: Steps) -> LoadsResult:
     """Count the files, weight them over a lifetime, and compare them, as far as that is asked."""
-    found, options = Findings(), asked.options
+    found, options, scene = Findings(), asked.options, asked.scene
     found.seed = None
-    reactions = None if scene is None else _reactions(found, steps, scene, asked.level or 1)
+    reactions = None if scene is None else _reactions(found, steps, scene, asked.level)
     mine, its = LoadSet(options.slopes), LoadSet(options.slopes)
     sums = _added_up(asked, steps, reactions, mine)
     if not sums.hub.has_loads:

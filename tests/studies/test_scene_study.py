@@ -14,7 +14,7 @@ from fe_drivetrain.common import GRAVITY, InputError
 from fe_drivetrain.comparison import statistics
 from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.shafts.fidelity import statics_level
-from fe_drivetrain.studies import StudyResult, study
+from fe_drivetrain.studies import StudyLoads, StudyResult, study
 from fe_drivetrain.studies.model_checks import statics_error
 from fe_drivetrain.turbine_loads.hub_loads import LoadHistory, PointLoads
 
@@ -195,6 +195,28 @@ def test_two_bearings_and_a_brake_are_studied(tmp_path: Path) -> None:
     # a housing that gives makes the hub softer
     assert (hub["rigid"][[1, 2, 4, 5]] < hub["stiff"][[1, 2, 4, 5]]).all()
     assert (hub["stiff"][[1, 2, 4, 5]] < hub["soft"][[1, 2, 4, 5]]).all()
+
+
+def test_the_json_has_histories_skip_and_what_reactions_are(studied: StudyResult) -> None:
+    found = studied.to_dict()
+    assert found["options"]["histories"] == ["calm", "storm"]
+    assert found["options"]["skip"] == 0.0
+    rows = found["tables"]["histories"]
+    assert [row["history"] for row in rows] == ["calm", "storm"]
+    assert sum(row["share of the time [%]"] for row in rows) == pytest.approx(100.0)
+    assert found["tables"]["reactions_stated"] == studied.stated.facts()
+    assert (found["seed"], found["options"]["seeds of the loads"]) == (None, [])
+
+
+def test_the_seed_is_that_of_the_samples_not_of_made_wind() -> None:
+    made = StudyLoads(HISTORIES, "Made for a test.", False, seeds=(1, 2))
+    spread = {"gearbox.stiffness.2": {"uniform": 0.1}}
+    scene = coarse_scene("bonded", uncertainty=spread)
+    found = study(scene, made, slopes=(4.0,), quick=True)
+    assert found.uncertainty is not None
+    assert found.seed == 0
+    assert found.options["seeds of the loads"] == [1, 2]
+    assert found.options["skip"] == 0.0
 
 
 def test_histories_without_loads_are_refused_before_any_work() -> None:

@@ -28,6 +28,7 @@ from fe_drivetrain.studies import (
     CheckResult,
     CompareResult,
     ExportResult,
+    LifeOptions,
     LifeResult,
     LoadOptions,
     LoadsResult,
@@ -269,6 +270,22 @@ def test_a_band_is_of_the_inputs_and_stands_beside_the_error(uncertain: Uncertai
     assert [row["quantity"] for row in uncertain.all_tables()["bands"]] == list(uncertain.bands)
 
 
+def test_no_samples_of_uncertain_values_are_in_the_json(uncertain: UncertaintyResult) -> None:
+    found = uncertain.to_dict()
+    assert found["tables"]["samples"] == found["options"]["samples"] == 40
+
+    def longest(value: Any) -> int:
+        if isinstance(value, dict):
+            return max(map(longest, value.values()), default=0)
+        if isinstance(value, list):
+            return max([len(value), *map(longest, value)])
+        return 0
+
+    # the longest list is the quantities, each with its digest
+    assert longest(found["tables"]) == len(uncertain.bands) < 40
+    assert (uncertain.seed, found["seed"]) == (0, 0)
+
+
 def test_a_load_that_a_scene_does_not_have_is_refused() -> None:
     scene = coarse_scene("bonded")
     with pytest.raises(InputError, match=r"load 'hub.Fq' is unknown: use one of hub.Fx"):
@@ -473,6 +490,18 @@ def test_a_lifetime_is_that_of_its_winds_and_events(tmp_path: Path) -> None:
     assert equivalent == pytest.approx((sum(parts) / 1e7) ** (1.0 / slope), rel=1e-6)
     of_events = 500.0 * 20.0 * 20.1 / 3600.0
     assert found.hours_at_level["Mx"].amount.sum() == pytest.approx(hours.sum() + of_events)
+
+
+def test_files_of_one_stem_are_told_apart(tmp_path: Path) -> None:
+    files = [tmp_path / folder / "same.csv" for folder in "ab"]
+    for file, wind in zip(files, (8.0, 14.0), strict=True):
+        file.parent.mkdir()
+        write_history(file, wind)
+    found = life(library_scene("main_bearing_spherical"), files, options=LifeOptions(every=4))
+    names = [str(file) for file in files]
+    assert [row["file"] for row in found.all_tables()["files"]] == names
+    assert found.options["files"] == names
+    assert loads(files).options["files"] == names
 
 
 def test_a_life_is_a_number_with_what_takes_it(lived: LifeResult) -> None:
