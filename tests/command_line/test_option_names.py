@@ -25,7 +25,7 @@ from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file import change_scene, library_scene
 from fe_drivetrain.geometry import MeshSizes
-from fe_drivetrain.report.results import Table, Text
+from fe_drivetrain.report.results import AssumptionRow, Table, Text
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.shafts.fidelity.assembly_bands import finer_mesh
 from fe_drivetrain.studies import CaptureTarget, LifeOptions, LoadOptions, check, prepare_export
@@ -137,7 +137,8 @@ def test_notes_of_a_result_have_options_where_a_page_shows_them() -> None:
     found = check(coarse_scene("bonded"))
     misfit = f"name another entry with {argument('bearings', {'main_bearing': 'ENTRY'})}"
     note, *_ = winds_not_used(CaptureTarget(6, 4.0, 24.0), None)
-    row = found.assumptions[0].model_copy(update={"source": argument("LifeOptions.supply")})
+    source = argument("LifeOptions.supply")
+    row = AssumptionRow(name="lubrication", value="grease", unit="", source=source)
     shown = result_with_options(replace(found, answer=(misfit,), notes=(note,), assumptions=(row,)))
     assert shown.notes[0].startswith("--winds 4:24 m/s is not used")
     assert shown.assumptions[0].source == "--supply"
