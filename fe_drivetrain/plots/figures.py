@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.arrays import Floats, rounded
 from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.plots.style import LEGEND, PALETTE, styled
@@ -208,14 +208,18 @@ def error_traces(
             "type": "scatter",
             "mode": "markers",
             "name": names[k],
-            "x": [seconds[k]],
-            "y": [100.0 * max(errors[k], LEAST)],
+            "x": rounded([seconds[k]]),
+            "y": rounded([100.0 * max(errors[k], LEAST)]),
             "marker": {"size": 14 if k == chosen else 9},
         }
         for k in known
     ]
     reach = [seconds[k] for k in known] or [1.0]
-    limit = {"x": [min(reach), max(reach)], "y": [100.0 * tolerance] * 2, "line": {"dash": "dash"}}
+    limit = {
+        "x": rounded([min(reach), max(reach)]),
+        "y": [100.0 * tolerance] * 2,
+        "line": {"dash": "dash"},
+    }
     return [*traces, {"type": "scatter", "mode": "lines", "name": "tolerance", **limit}]
 
 
