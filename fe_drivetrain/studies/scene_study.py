@@ -22,14 +22,20 @@ from fe_drivetrain.shafts.fidelity.foot_opening import foot_warnings
 from fe_drivetrain.shafts.fidelity.judgement import Judgement, judge_levels
 from fe_drivetrain.shafts.fidelity.over_loads import Levels, levels_of, reaction_history
 from fe_drivetrain.shafts.fidelity.quantities import UNIT, unit_numbers
-from fe_drivetrain.shafts.response.cached import cached_response
+from fe_drivetrain.shafts.response.bearing_stiffness import check_one_tilting_bearing
 from fe_drivetrain.shafts.response.entering import Factors, Loads
 from fe_drivetrain.shafts.response.model import Model
 from fe_drivetrain.shafts.response.stated import Stated, stated_reactions
 from fe_drivetrain.shafts.response.unit_loads import Response
 from fe_drivetrain.shafts.uncertainty import input_study
 from fe_drivetrain.shafts.uncertainty.numbers import figures
-from fe_drivetrain.studies.closed_forms import ForceErrors, closed_form_errors, closed_form_rows
+from fe_drivetrain.studies.closed_forms import (
+    ForceErrors,
+    LinearModel,
+    closed_form_errors,
+    closed_form_models,
+    closed_form_rows,
+)
 from fe_drivetrain.studies.design_measures import DesignMeasures, design_measures
 from fe_drivetrain.studies.history_beginning import ASSEMBLY, Beginning, history_beginning
 from fe_drivetrain.studies.input_effects import InputEffects, input_effects
@@ -49,7 +55,9 @@ from fe_drivetrain.studies.reaction_statistics import (
     statistics_rows,
 )
 from fe_drivetrain.studies.result import Result
-from fe_drivetrain.studies.scene_description import checked_model, description, quick_scene
+from fe_drivetrain.studies.scene_description import description, quick_scene
+from fe_drivetrain.studies.seat_stiffness import SeatStiffness, seat_stiffness
+from fe_drivetrain.studies.solved_assembly import checked_model, solved_model
 from fe_drivetrain.studies.study_loads import (
     EnteredLoads,
     StudyLoads,
@@ -62,6 +70,7 @@ from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
 
 _SAMPLES, _QUICK_SAMPLES = 128, 40
 _SEED = 0  # of the samples; that of made wind is the surrogate's
+_QUICK_SEEDS = 1
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -83,8 +92,13 @@ class StudyResult(Result):
         The cheapest level that is enough for all reactions that count.
     measures : DesignMeasures
         Errors of each level by what a part is designed for.
+    seat : SeatStiffness or None
+        K_R as the seat shows it in the assembly with its gearbox springs removed, by three
+        estimators; None where it was not asked for.
     closed_forms : Mapping[str, ForceErrors]
         Errors of the closed forms of one bearing on a uniform shaft; empty where they do not apply.
+    closed_form_models : Mapping[str, LinearModel]
+        These closed forms, for further hub loads; not part of the JSON.
     uncertainty : InputEffects or None
         Effect of the spreads that the scene states; None where it states none.
     loads : LoadFacts
@@ -112,7 +126,9 @@ class StudyResult(Result):
     errors: LevelErrors
     judgement: Judgement
     measures: DesignMeasures
+    seat: SeatStiffness | None
     closed_forms: Mapping[str, ForceErrors]
+    closed_form_models: Mapping[str, LinearModel] = field(repr=False)
     uncertainty: InputEffects | None
     loads: LoadFacts
     beginning: Beginning
@@ -179,6 +195,7 @@ def study(
     weight: bool = True,
     quick: bool = False,
     *,
+    seat: bool = False,
     report: Progress = silent,
 ) -> StudyResult:
     """Study a scene over load histories: K_R, reactions, and every level against the assembly.
@@ -197,30 +214,38 @@ def study(
         Whether the reactions have the weight of all parts.
     quick : bool
         Whether a coarser mesh, fewer made histories and fewer samples are enough.
+    seat : bool
+        Whether K_R is also measured at the seat in the assembly, its gearbox springs removed. This
+        takes a second solution, and one bearing unit, which carries moments.
     report : Progress
         Called with the name of each step as it begins.
 
     Raises
     ------
     InputError
-        The scene cannot be solved, a slope is out of range, or the loads are refused.
+        The scene cannot be solved, a slope is out of range, the loads are refused, or the scene
+        has no K_R at a seat.
     """
     for slope in slopes:
         check_slope(slope)
+    if seat:
+        check_one_tilting_bearing(scene)
     found, steps = Findings(), Steps(report)
-    at = _solved(found, steps, scene, loads, weight, quick)
+    at = _solved(found, steps, scene, loads, weight, quick, seat)
     _answer(found, at, quick)
     _stiffness(found, at.levels.units)
     with steps.step("reactions of all load steps"):
         reactions, secants = _reactions(found, at, slopes, report)
     with steps.step("beams against FE"):
-        errors, judgement, measures, forms = _errors(found, at, slopes)
+        errors, judgement, measures = _errors(found, at, slopes)
+        models, forms = _closed_forms(found, at)
     facts = load_facts(at.scene, at.entered)
     level = int(judgement.nearest[0])
     uncertainty = _uncertainty(found, steps, at.scene, level, facts.mean, quick)
     stated = _stated(at.model, facts.gravity)
     _state(found, at, facts, stated)
     options = {**at.entered.given.asked(), "slopes": slopes, "weight": weight, "quick": quick}
+    options["seat"] = seat
     return StudyResult(
         secants=secants,
         reaction_statistics=reactions,
@@ -228,6 +253,7 @@ def study(
         judgement=judgement,
         measures=measures,
         closed_forms=forms,
+        closed_form_models=models,
         uncertainty=uncertainty,
         loads=facts,
         stated=stated,
@@ -246,11 +272,13 @@ class _Solved:
     response: Response
     levels: Levels
     entered: EnteredLoads
+    seat: SeatStiffness | None
 
     def fields(self) -> dict[str, Any]:
         """Those of the result that need no more than this."""
         return {
             "units": self.levels.units,
+            "seat": self.seat,
             "beginning": history_beginning(self.scene, self.levels, self.entered),
             "described": description(self.model),
             "model": self.model,
@@ -266,6 +294,7 @@ def _solved(
     loads: StudyLoads | Sequence[LoadHistory] | None,
     weight: bool,
     quick: bool,
+    seat: bool,
 ) -> _Solved:
     """Every model of the scene as it is asked for, checked, and the loads that enter it."""
     scene = quick_scene(scene) if quick else scene
@@ -273,16 +302,14 @@ def _solved(
     found.about(scene)
     given = loads if loads is None or isinstance(loads, StudyLoads) else given_loads(loads, scene)
     model = checked_model(steps, scene)
-    given = surrogate_loads(steps, quick) if given is None else given
+    given = surrogate_loads(steps, _QUICK_SEEDS if quick else None) if given is None else given
     entered = (given if weight else replace(given, gravity=0.0)).entering(scene)
-    with steps.step("assembly of solids") as step:
-        response = cached_response(model)
-        if response.kept:
-            step.name += ", from the cache"
+    response = solved_model(steps, model).response
+    with_seat = seat_stiffness(steps, scene, "without gearbox", model.mesh) if seat else None
     with steps.step("levels 1 and 2"):
         levels = levels_of(scene, response, steps.report)
     check_models(found, scene, response, levels)
-    return _Solved(scene, model, response, levels, entered)
+    return _Solved(scene, model, response, levels, entered, with_seat)
 
 
 def _state(found: Findings, at: _Solved, facts: LoadFacts, stated: Stated) -> None:
@@ -292,6 +319,8 @@ def _state(found: Findings, at: _Solved, facts: LoadFacts, stated: Stated) -> No
     found.assume_all(given.assumptions)
     found.data("histories", history_rows(facts.histories))
     found.data("reactions_stated", stated.facts())
+    if at.seat is not None:
+        found.data("seat_stiffness", at.seat.rows())
 
 
 def _answer(found: Findings, at: _Solved, quick: bool) -> None:
@@ -364,8 +393,8 @@ def _reactions(
 
 def _errors(
     found: Findings, at: _Solved, slopes: Sequence[float]
-) -> tuple[LevelErrors, Judgement, DesignMeasures, Mapping[str, ForceErrors]]:
-    """Each level against the assembly, which one is enough, and the errors of closed forms."""
+) -> tuple[LevelErrors, Judgement, DesignMeasures]:
+    """Each level against the assembly, and which one is enough."""
     scene, levels, loads = at.scene, at.levels, at.entered
     errors = level_errors(scene, levels, loads)
     judgement = judge_levels(errors.judged, ENOUGH, scene.shaft.length)
@@ -377,9 +406,17 @@ def _errors(
     measures = design_measures(scene, levels, loads, slopes, ENOUGH, judged)
     found.data("design_measures", measures.rows(slopes))
     found.answer(measures.sentence())
-    forms = closed_form_errors(scene, at.response, levels.units, loads)
+    return errors, judgement, measures
+
+
+def _closed_forms(
+    found: Findings, at: _Solved
+) -> tuple[Mapping[str, LinearModel], Mapping[str, ForceErrors]]:
+    """Closed forms of one bearing on a uniform shaft, and their errors."""
+    models = closed_form_models(at.scene, at.levels.units, at.seat)
+    forms = closed_form_errors(at.scene, at.response, models, at.entered)
     found.data("closed_forms", closed_form_rows(forms))
-    return errors, judgement, measures, forms
+    return models, forms
 
 
 def _uncertainty(

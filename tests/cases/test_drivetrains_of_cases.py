@@ -24,8 +24,8 @@ PLACES = {fe_drivetrain.cases.__name__: Path(fe_drivetrain.cases.__path__[0])}
 READERS = frozenset(
     {
         *("library_machine", "named_machine", "read_machine", "parse_machine"),
-        *("library_scene", "named_scene", "read_scene", "parse_scene"),
-        *("read_drivetrain", "parse_drivetrain"),
+        *("library_scene", "read_drivetrain", "read_scene", "parse_scene"),
+        *("read_gear_table", "parse_gear_table"),
     }
 )
 """Functions that give a machine, a scene or a gear table."""

@@ -20,6 +20,7 @@ from fe_drivetrain.studies import load_reactions, loads
 from fe_drivetrain.studies.load_digest import LoadOptions, digest
 from fe_drivetrain.studies.load_reactions import scene_reactions
 from fe_drivetrain.studies.load_totals import LoadSums
+from fe_drivetrain.studies.wind_statistics import bending_rows, channel_rows, wind_rows
 from fe_drivetrain.turbine_loads.histories.sites import site_of_class
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
@@ -347,6 +348,19 @@ def test_files_together_are_what_they_are_apart(rng: np.random.Generator) -> Non
     assert (together.cycles.damage >= single.cycles.damage).all()
     np.testing.assert_allclose(together.damages.sum(axis=0), together.cycles.damage)
     assert together.levels.turns["Mx"].amount.sum() == pytest.approx(240.0 * 1.5 / 2 / np.pi)
+
+
+def test_statistics_of_a_wave_are_those_of_a_sine() -> None:
+    time, samples = np.arange(3000) * 0.1, np.zeros((3000, 6))
+    samples[:, 4] = 1e3 * np.sin(2.0 * np.pi * time / 10.0)
+    sums = LoadSums()
+    sums.add("wave", digest(Recorded(LoadHistory("wave", time, samples)), LoadOptions()))
+    statistics = sums.totals().statistics
+    rows = {row["channel"]: row for row in channel_rows(statistics)}
+    found = rows["My [kN\u00a0m]"]
+    assert list(found.values())[1:] == pytest.approx([-1.0, 0.0, 1.0, np.sqrt(0.5)], abs=1e-6)
+    assert not [name for name in rows if name.startswith(("wind speed", "rotor speed"))]
+    assert wind_rows(statistics) == bending_rows(statistics) == []
 
 
 def test_mistakes_are_one_sentence(invoke: Callable[..., Result], histories: Path) -> None:

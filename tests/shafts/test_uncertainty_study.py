@@ -272,6 +272,21 @@ def test_a_small_spread_gives_the_band_of_first_order(found: Study) -> None:
         assert deviation == pytest.approx(expected, rel=allowed), number.name
 
 
+def test_a_value_moves_a_quantity_by_its_deviation_times_its_slope(found: Study) -> None:
+    sizes = {STEEL: 0.03, IRON: 0.05, SPRING: 0.2 / np.sqrt(3), FRONT: 0.01 / np.sqrt(3)}
+    effects = input_effects(found)
+    assert [one.name for one in effects.quantities] == [number.name for number in found.numbers]
+    for one in effects.quantities:
+        expected = {key: one.sensitivities[key] * size for key, size in sizes.items()}
+        assert one.changes == pytest.approx(expected, rel=2e-3)
+        moved = [abs(change) for change in one.changes.values()]
+        assert moved == sorted(moved)
+        assert one.half == pytest.approx((one.band.high - one.band.low) / 2 / abs(one.nominal))
+        if one.scatter is not None:
+            assert one.scatter.first_order == pytest.approx(float(np.linalg.norm(moved)))
+            assert one.scatter.counts.sum() == effects.samples == COUNT
+
+
 def test_stiffness_is_homogeneous_in_moduli_and_springs(found: Study) -> None:
     """Elasticities add up to one; the other springs do nothing in the vertical plane."""
     for slopes in (found.slopes, found.soft_slopes):

@@ -70,6 +70,22 @@ def test_statistics_are_of_the_reactions_each_history_by_its_time(studied: Study
     assert [one.samples for one in studied.loads.histories] == [40, 60]
 
 
+def test_the_first_minute_has_the_radial_force_of_the_assembly_and_of_beams(
+    studied: StudyResult,
+) -> None:
+    history = HISTORIES[len(HISTORIES) // 2]
+    beginning = studied.beginning
+    count = len(beginning.time)
+    assert beginning.name == history.name
+    np.testing.assert_array_equal(beginning.time, history.time[:count])
+    forces = beginning.radial_forces["main_bearing"]
+    beams = [names for level, names in studied.levels.bounds.items() if level.startswith("1")]
+    assert list(forces) == ["assembly", *beams[-1]]
+    for model, force in forces.items():
+        reaction = studied.reactions(history, model)["main_bearing"][:count]
+        np.testing.assert_allclose(force, np.hypot(reaction[:, 1], reaction[:, 2]), rtol=1e-12)
+
+
 def test_stiffness_of_a_unit_is_between_its_bounds(studied: StudyResult) -> None:
     for axis, at in (("y", 4), ("z", 5)):
         figure = studied[f"K_R about {axis} of main_bearing"]
