@@ -133,7 +133,7 @@ def loads_from_channels(
         if found is None:
             raise InputError(
                 f"hub loads '{source}': no channel for the {what}; add one of "
-                f"{', '.join(names)} to OutList and run again, or map yours (--mapping)"
+                f"{', '.join(names)} to OutList and run again, or map yours (`ChannelMap`)"
             )
         return found
 
@@ -153,7 +153,7 @@ def loads_from_channels(
     if shear is None:
         raise InputError(
             f"hub loads '{source}': no pair of shear-force channels; add LSShftFys and LSShftFzs "
-            "to OutList and run again, or map yours, both Fy and Fz (--mapping)"
+            "to OutList and run again, or map yours, both Fy and Fz (`ChannelMap`)"
         )
     bending = pair(("LSSTipM*s",), ("LSSTipM*a",))
     at_gage = bending is None
@@ -162,7 +162,7 @@ def loads_from_channels(
         if bending is None:
             raise InputError(
                 f"hub loads '{source}': no pair of bending-moment channels; add LSSTipMys and "
-                "LSSTipMzs to OutList and run again, or map yours, both My and Mz (--mapping)"
+                "LSSTipMzs to OutList and run again, or map yours, both My and Mz (`ChannelMap`)"
             )
         if gage_distance is None:
             raise InputError(
