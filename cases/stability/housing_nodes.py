@@ -20,7 +20,7 @@ from fe_drivetrain.shafts.response import (
     build_model,
     cached_response,
     mesh_scene,
-    tilt_by_plane,
+    tilt_stiffness,
     without_gearbox,
 )
 
@@ -70,7 +70,7 @@ def tilted(factor: float) -> Tilted:
     return Tilted(
         model,
         response,
-        tilt_by_plane(model, response, BEARING),
+        {plane.name: tilt_stiffness(model, response, BEARING, plane) for plane in PLANES},
         {plane.name: float(1.0 / compliance[plane.moment, plane.moment]) for plane in PLANES},
     )
 
