@@ -7,6 +7,7 @@ OpenFAST 5 (r-test, SD_Spring_Case1); its spring, cosine matrix and member go in
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -23,6 +24,104 @@ from fe_drivetrain.export.superelement import ALLOWED, Superelement
 TERMS = tuple(f"k{i}{j}" for i in range(1, 7) for j in range(i, 7))
 _COSINES = tuple(f"COSM{i}{j}" for i in range(1, 4) for j in range(1, 4))
 _INERTIAS = ("JMXX", "JMYY", "JMZZ", "JMXY", "JMXZ", "JMYZ")
+
+
+_INPUT = """\
+----------- SubDyn input file: one spring element --------------------------------------
+{name}, scene {scene}; N, m, kg, rad; more at the end
+-------------------------- SIMULATION CONTROL ------------------------------------------
+False       Echo
+"DEFAULT"   SDdeltaT
+3           IntMethod
+True        SttcSolve
+-------------------- FEA and CRAIG-BAMPTON PARAMETERS ----------------------------------
+3           FEMMod
+1           NDiv
+{modes}           Nmodes       - all of the second joint, where it has mass
+0           JDampings    - (%)
+0           GuyanDampMod
+0.0 0.0     RayleighDamp
+6           GuyanDampSize
+{zeros}
+------- INITIAL RIGID-BODY POSITION ----------------------------------------------------
+RBSurge RBSway RBHeave RBRoll RBPitch RBYaw
+(m) (m) (m) (deg) (deg) (deg)
+0.0 0.0 0.0 0.0 0.0 0.0
+---- STRUCTURE JOINTS ------------------------------------------------------------------
+2           NJoints      - the ground and {point}, in one place
+JointID JointXss JointYss JointZss JointType JointDirX JointDirY JointDirZ JointStiff
+(-) (m) (m) (m) (-) (-) (-) (-) (Nm/rad)
+1 {place} 1 0.0 0.0 0.0 0.0
+2 {place} 1 0.0 0.0 0.0 0.0
+------------------- BASE REACTION JOINTS -----------------------------------------------
+0           NReact
+RJointID RctTDXss RctTDYss RctTDZss RctRDXss RctRDYss RctRDZss SSIfile
+(-) (flag) (flag) (flag) (flag) (flag) (flag) (string)
+------- INTERFACE JOINTS ---------------------------------------------------------------
+1           NInterf
+IJointID TPID ItfTDXss ItfTDYss ItfTDZss ItfRDXss ItfRDYss ItfRDZss
+(-) (-) (flag) (flag) (flag) (flag) (flag) (flag)
+1 1 {held}
+----------------------------------- MEMBERS --------------------------------------------
+1           NMembers
+MemberID MJointID1 MJointID2 MPropSetID1 MPropSetID2 MType MSpin/COSMID
+(-) (-) (-) (-) (-) (-) (deg/-)
+1 1 2 1 1 5 1
+------------------ CIRCULAR BEAM CROSS-SECTION PROPERTIES ------------------------------
+1           NPropSetsCyl - no member has it
+PropSetID YoungE ShearG MatDens XsecD XsecT
+(-) (N/m2) (N/m2) (kg/m3) (m) (m)
+1 2.1e11 8.0e10 7850.0 1.0 0.025
+----------------- RECTANGULAR BEAM CROSS-SECTION PROPERTIES ----------------------------
+0           NPropSetsRec
+PropSetID YoungE ShearG MatDens XsecSa XsecSb XsecT
+(-) (N/m2) (N/m2) (kg/m3) (m) (m) (m)
+----------------- ARBITRARY BEAM CROSS-SECTION PROPERTIES ------------------------------
+0           NXPropSets
+PropSetID YoungE ShearG MatDens XsecA XsecAsx XsecAsy XsecJxx XsecJyy XsecJ0 XsecJt
+(-) (N/m2) (N/m2) (kg/m3) (m2) (m2) (m2) (m4) (m4) (m4) (m4)
+-------------------------- CABLE PROPERTIES --------------------------------------------
+0           NCablePropSets
+PropSetID EA MatDens T0 CtrlChannel
+(-) (N) (kg/m) (N) (-)
+----------------------- RIGID LINK PROPERTIES ------------------------------------------
+0           NRigidPropSets
+PropSetID MatDens
+(-) (kg/m)
+----------------------- SPRING ELEMENT PROPERTIES --------------------------------------
+1           NSpringPropSets
+PropSetID {names}
+(-) {units}
+1 {terms}
+---------------------- MEMBER COSINE MATRICES COSM(i,j) --------------------------------
+1           NCOSMs       - rows: the element's x, y, z in SubDyn's frame
+COSMID {cosine_names}
+(-) {cosine_units}
+1 {cosines}
+------------------------ JOINT ADDITIONAL CONCENTRATED MASSES --------------------------
+{masses}           NCmass
+CMJointID JMass {inertia_names} MCGX MCGY MCGZ
+(-) (kg) {inertia_units} (m) (m) (m)
+{added}---------------------------- OUTPUT: SUMMARY & OUTFILE ---------------------------------
+False       SumPrint
+0           OutCBModes
+0           OutFEMModes
+False       OutCOSM
+False       OutAll
+1           OutSwtch
+True        TabDelim
+1           OutDec
+"ES11.4e2"  OutFmt
+"A11"       OutSFmt
+------------------------- MEMBER OUTPUT LIST -------------------------------------------
+1           NMOutputs
+MemberID NOutCnt NodeCnt
+(-) (-) (-)
+1 2 1 2
+------------------------- SSOutList ----------------------------------------------------
+"M1N2TDzss"  - displacement of the second joint along z
+END of output channels
+"""
 
 
 class Spring(NamedTuple):
@@ -75,6 +174,37 @@ def write(path: Path, element: Superelement, axes: Floats | None = None) -> None
         The superelement has more points, no supports, or another mass; or the axes are not a
         right-handed orthonormal frame.
     """
+    A = _checked_axes(element, axes)
+    mass, inertia = _rigid_mass(element)
+    inertia = A.T @ inertia @ A
+    inertias = [
+        inertia["xyz".index(name[2].lower()), "xyz".index(name[3].lower())] for name in _INERTIAS
+    ]
+    text = _INPUT.format(
+        name=element.name,
+        scene=element.origin.scene_hash[:16] or "unknown",
+        modes=6 if mass else 0,
+        zeros="\n".join([" ".join(["0.0"] * 6)] * 6),
+        point=element.points[0],
+        place=_numbers(A.T @ element.positions[0]),
+        held=" ".join(["1"] * 6),
+        names=" ".join(TERMS),
+        units=" ".join(_unit(term) for term in TERMS),
+        terms=_numbers(element.stiffness[np.triu_indices(6)]),
+        cosine_names=" ".join(_COSINES),
+        cosine_units=" ".join(["(-)"] * 9),
+        cosines=_numbers(A.ravel()),
+        masses=1 if mass else 0,
+        inertia_names=" ".join(_INERTIAS),
+        inertia_units=" ".join(["(kg*m^2)"] * 6),
+        added=f"2 {mass!r} {_numbers(inertias)} 0.0 0.0 0.0\n" if mass else "",
+    )
+    comments = "\n".join(comment_lines(statement(element), "!"))
+    path.write_text(f"{text}{comments}\n", encoding="utf-8")
+
+
+def _checked_axes(element: Superelement, axes: Floats | None) -> Floats:
+    """Axes of a frame, of a superelement that a spring can hold."""
     if len(element.points) != 1 or not element.supported:
         raise InputError(
             f"superelement {element.name!r} has {len(element.points)} points and supports "
@@ -87,121 +217,11 @@ def write(path: Path, element: Superelement, axes: Floats | None = None) -> None
         np.abs(A @ A.T - np.eye(3)).max() < 1e-12 and np.linalg.det(A) > 0
     ):
         raise InputError("the axes must be a (3, 3) right-handed orthonormal frame, to 12 digits")
-    mass, inertia = _rigid_mass(element)
-    inertia = A.T @ inertia @ A
-    place = " ".join(repr(float(value)) for value in A.T @ element.positions[0])
-    terms = " ".join(repr(float(value)) for value in element.stiffness[np.triu_indices(6)])
-    cosines = " ".join(repr(float(value)) for value in A.ravel())
-    inertias = " ".join(
-        repr(float(inertia["xyz".index(name[2].lower()), "xyz".index(name[3].lower())]))
-        for name in _INERTIAS
-    )
-    held = " ".join(["1"] * 6)
-    zeros = "\n".join([" ".join(["0.0"] * 6)] * 6)
-    text = f"""\
------------ SubDyn input file: one spring element --------------------------------------
-{element.name}, scene {element.origin.scene_hash[:16] or "unknown"}; N, m, kg, rad; more at the end
--------------------------- SIMULATION CONTROL ------------------------------------------
-False       Echo
-"DEFAULT"   SDdeltaT
-3           IntMethod
-True        SttcSolve
--------------------- FEA and CRAIG-BAMPTON PARAMETERS ----------------------------------
-3           FEMMod
-1           NDiv
-{6 if mass else 0}           Nmodes       - all of the second joint, where it has mass
-0           JDampings    - (%)
-0           GuyanDampMod
-0.0 0.0     RayleighDamp
-6           GuyanDampSize
-{zeros}
-------- INITIAL RIGID-BODY POSITION ----------------------------------------------------
-RBSurge RBSway RBHeave RBRoll RBPitch RBYaw
-(m) (m) (m) (deg) (deg) (deg)
-0.0 0.0 0.0 0.0 0.0 0.0
----- STRUCTURE JOINTS ------------------------------------------------------------------
-2           NJoints      - the ground and {element.points[0]}, in one place
-JointID JointXss JointYss JointZss JointType JointDirX JointDirY JointDirZ JointStiff
-(-) (m) (m) (m) (-) (-) (-) (-) (Nm/rad)
-1 {place} 1 0.0 0.0 0.0 0.0
-2 {place} 1 0.0 0.0 0.0 0.0
-------------------- BASE REACTION JOINTS -----------------------------------------------
-0           NReact
-RJointID RctTDXss RctTDYss RctTDZss RctRDXss RctRDYss RctRDZss SSIfile
-(-) (flag) (flag) (flag) (flag) (flag) (flag) (string)
-------- INTERFACE JOINTS ---------------------------------------------------------------
-1           NInterf
-IJointID TPID ItfTDXss ItfTDYss ItfTDZss ItfRDXss ItfRDYss ItfRDZss
-(-) (-) (flag) (flag) (flag) (flag) (flag) (flag)
-1 1 {held}
------------------------------------ MEMBERS --------------------------------------------
-1           NMembers
-MemberID MJointID1 MJointID2 MPropSetID1 MPropSetID2 MType MSpin/COSMID
-(-) (-) (-) (-) (-) (-) (deg/-)
-1 1 2 1 1 5 1
------------------- CIRCULAR BEAM CROSS-SECTION PROPERTIES ------------------------------
-1           NPropSetsCyl - no member has it
-PropSetID YoungE ShearG MatDens XsecD XsecT
-(-) (N/m2) (N/m2) (kg/m3) (m) (m)
-1 2.1e11 8.0e10 7850.0 1.0 0.025
------------------ RECTANGULAR BEAM CROSS-SECTION PROPERTIES ----------------------------
-0           NPropSetsRec
-PropSetID YoungE ShearG MatDens XsecSa XsecSb XsecT
-(-) (N/m2) (N/m2) (kg/m3) (m) (m) (m)
------------------ ARBITRARY BEAM CROSS-SECTION PROPERTIES ------------------------------
-0           NXPropSets
-PropSetID YoungE ShearG MatDens XsecA XsecAsx XsecAsy XsecJxx XsecJyy XsecJ0 XsecJt
-(-) (N/m2) (N/m2) (kg/m3) (m2) (m2) (m2) (m4) (m4) (m4) (m4)
--------------------------- CABLE PROPERTIES --------------------------------------------
-0           NCablePropSets
-PropSetID EA MatDens T0 CtrlChannel
-(-) (N) (kg/m) (N) (-)
------------------------ RIGID LINK PROPERTIES ------------------------------------------
-0           NRigidPropSets
-PropSetID MatDens
-(-) (kg/m)
------------------------ SPRING ELEMENT PROPERTIES --------------------------------------
-1           NSpringPropSets
-PropSetID {" ".join(TERMS)}
-(-) {" ".join(_unit(term) for term in TERMS)}
-1 {terms}
----------------------- MEMBER COSINE MATRICES COSM(i,j) --------------------------------
-1           NCOSMs       - rows: the element's x, y, z in SubDyn's frame
-COSMID {" ".join(_COSINES)}
-(-) {" ".join(["(-)"] * 9)}
-1 {cosines}
------------------------- JOINT ADDITIONAL CONCENTRATED MASSES --------------------------
-{1 if mass else 0}           NCmass
-CMJointID JMass {" ".join(_INERTIAS)} MCGX MCGY MCGZ
-(-) (kg) {" ".join(["(kg*m^2)"] * 6)} (m) (m) (m)
-{f"2 {mass!r} {inertias} 0.0 0.0 0.0" if mass else ""}
----------------------------- OUTPUT: SUMMARY & OUTFILE ---------------------------------
-False       SumPrint
-0           OutCBModes
-0           OutFEMModes
-False       OutCOSM
-False       OutAll
-1           OutSwtch
-True        TabDelim
-1           OutDec
-"ES11.4e2"  OutFmt
-"A11"       OutSFmt
-------------------------- MEMBER OUTPUT LIST -------------------------------------------
-1           NMOutputs
-MemberID NOutCnt NodeCnt
-(-) (-) (-)
-1 2 1 2
-------------------------- SSOutList ----------------------------------------------------
-"M1N2TDzss"  - displacement of the second joint along z
-END of output channels
-"""
-    if not mass:
-        text = text.replace("(m) (m) (m)\n\n---------------------------- OUTPUT", _NO_MASS)
-    comments = "\n".join(comment_lines(statement(element), "!"))
-    path.write_text(f"{text}{comments}\n", encoding="utf-8")
+    return A
 
 
-_NO_MASS = "(m) (m) (m)\n---------------------------- OUTPUT"
+def _numbers(values: Iterable[float]) -> str:
+    return " ".join(repr(float(value)) for value in values)
 
 
 def read_spring(path: str | Path) -> Spring:

@@ -8,7 +8,7 @@ average.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
@@ -170,8 +170,6 @@ def study(
         unit.bearing.name: _touching(scene, unit.bearing.name) for unit in scene.bearing_units
     }
     designs = {n: surface_scenes(scene, some, seed) for n, some in touched.items() if some}
-    surfaces = []
-    bounds = []
     # bearing units do not depend on the level: they are solved beside the ladders that select it
     with pool(min(cores(), 1 + sum(map(len, designs.values()))), report) as workers:
         report("nominal values")
@@ -188,21 +186,10 @@ def study(
         if level != solver.level:
             solver = replace(solver, level=level, bodies={})
         solved = solver(scene)
-        for coupling in _BOUNDS:
-            exact = replace(solver, coupling=coupling, units={})
-            known = [
-                unit_surface(scene, name, touched[name], exact, seed, report) for name in designs
-            ]
-            bounds.append(replace(exact, units={surface.name: surface for surface in known}))
-            surfaces += known
+        spreads = {name: touched[name] for name in designs}
+        bounds, surfaces = _bounded(scene, solver, spreads, seed, report)
     found = [*wanted, *(n for n in stiffnesses if n.of(solved) > 0.0)]
-    of_housings = [n for n in found if not n.name.startswith("shaft.")]
-
-    def evaluate(changed: Scene) -> dict[str, float]:
-        stiff, soft = (bound(changed) for bound in bounds)
-        values = {number.name: number.of(stiff) for number in found}
-        return values | {_SOFT + number.name: number.of(soft) for number in of_housings}
-
+    evaluate = _evaluation(found, bounds)
     report("sensitivities")
     slopes = sensitivities(scene, evaluate, list(scene.uncertainty))
     content = {
@@ -232,6 +219,39 @@ def study(
         surfaces,
         shares,
     )
+
+
+def _bounded(
+    scene: Scene,
+    solver: Resolver,
+    spreads: Mapping[str, Mapping[str, Spread]],
+    seed: int,
+    report: Progress,
+) -> tuple[list[Resolver], list[UnitSurface]]:
+    """Resolvers that take bearing units from surfaces, of each bound, and these surfaces."""
+    bounds, surfaces = [], []
+    for coupling in _BOUNDS:
+        exact = replace(solver, coupling=coupling, units={})
+        known = [
+            unit_surface(scene, name, some, exact, seed, report) for name, some in spreads.items()
+        ]
+        bounds.append(replace(exact, units={surface.name: surface for surface in known}))
+        surfaces += known
+    return bounds, surfaces
+
+
+def _evaluation(
+    found: Sequence[Number], bounds: Sequence[Resolver]
+) -> Callable[[Scene], dict[str, float]]:
+    """What a sampled scene is asked for: all numbers, those of housings by both bounds."""
+    of_housings = [n for n in found if not n.name.startswith("shaft.")]
+
+    def evaluate(changed: Scene) -> dict[str, float]:
+        stiff, soft = (bound(changed) for bound in bounds)
+        values = {number.name: number.of(stiff) for number in found}
+        return values | {_SOFT + number.name: number.of(soft) for number in of_housings}
+
+    return evaluate
 
 
 def _touching(scene: Scene, name: str) -> dict[str, Spread]:
