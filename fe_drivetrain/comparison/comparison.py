@@ -32,7 +32,7 @@ class Comparison:
     Attributes
     ----------
     names, units : tuple of str, (k,)
-        Of the quantities.
+        Names and units of the quantities.
     samples : int
         Per history.
     reference_rms, rmse, bias : ndarray
@@ -149,7 +149,7 @@ def compare_streamed(
         Called twice; gives the same chunks in the same order each time. Twice, because what the
         percentage leaves out, and the residuals of the model uncertainty, depend on sums over all.
     names, units, negligible, exclude_below : see `compare`
-        As for `compare`.
+        The same as for `compare`.
 
     Returns
     -------

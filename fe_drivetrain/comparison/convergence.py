@@ -146,7 +146,7 @@ def grid_convergence(
     safety : float
         Factor on the distance to the limit: 1.25 with three meshes (Roache 1994).
     expected_order : float or None
-        Of the theory. A higher observed order is not believed; where the two are more than a tenth
+        Order of the theory. A higher observed one is not believed; where they are more than a tenth
         apart, the safety factor is 3, as Roache has it where the observed order is unreasonable
         (2011, J. Fluids Eng. 133, 115501); the tenth is recalled of Oberkampf and Roy 2010, 8.7.
     least_order : float or None

@@ -47,11 +47,11 @@ class Interface:
         Body, or `GROUND`, that gives the loads, and body that takes them; it takes them reversed
         the other way.
     position : ndarray, (3,)
-        Of the loads [m].
+        Place of the loads [m].
     loads : ndarray, (n, 6)
         Forces [N] and moments [N m] on `on`.
     displacements, accelerations : ndarray, (n, 6), optional
-        Of the interface [m, rad], [m/s^2, rad/s^2].
+        Motion of the interface [m, rad], [m/s^2, rad/s^2].
     source : str
         "measured", "simulated", "estimated".
     """
@@ -75,7 +75,7 @@ class Body:
     name : str
         Unique in a table.
     centre : ndarray, (3,)
-        Of mass [m].
+        Centre of mass [m].
     own : ndarray, (6,) or (n, 6)
         Weight and inertia, mass times gravity less acceleration, about the centre [N, N m].
     """
@@ -92,7 +92,7 @@ class LoadTable:
     Attributes
     ----------
     time : ndarray, (n,)
-        Of uniform step [s].
+        Times of uniform step [s].
     interfaces : tuple of Interface
     bodies : tuple of Body
 
@@ -132,7 +132,7 @@ class LoadTable:
         Parameters
         ----------
         name : str
-            Of an interface.
+            Name of an interface.
 
         Raises
         ------
@@ -214,7 +214,7 @@ def analysed(table: LoadTable, slopes: Sequence[float] = (4.0, 10.0)) -> list[di
     Parameters
     ----------
     table : LoadTable
-        Of uniform step.
+        Table of uniform step.
     slopes : sequence of float
         Exponents of damage-equivalent loads at 1 Hz.
 
@@ -306,7 +306,7 @@ def write_load_json(table: LoadTable, path: str | Path) -> None:
     Parameters
     ----------
     table : LoadTable
-        Of uniform step.
+        Table of uniform step.
     path : str or Path
         File, which appears whole.
     """

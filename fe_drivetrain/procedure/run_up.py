@@ -80,7 +80,7 @@ def swept_response(frequency: float, ratio: float, sweep: Sweep, time: ArrayLike
     ratio : float
         Damping ratio zeta, from 0 and below 1.
     sweep : Sweep
-        Of the excitation.
+        Sweep of the excitation.
     time : array_like, (n,)
         From 0 on [s].
 
@@ -137,7 +137,7 @@ class RunUpPeak:
     share : float
         Over the response at rest in the resonance.
     frequency : float
-        Of the excitation at that time [Hz].
+        Frequency of the excitation at that time [Hz].
     """
 
     amplification: float

@@ -29,7 +29,7 @@ class Effect:
     detail : str
         What was left out.
     change : float
-        Of the quantity, relative: with its sign for one load, else of the whole row.
+        Change of the quantity, relative: with its sign for one load, else of the whole row.
     """
 
     detail: str

@@ -98,7 +98,7 @@ class Study:
     soft_slopes, soft_samples : Mapping[str, Mapping[str, float]], Mapping[str, Samples]
         The same with housings whose faces move on average, where that matters.
     surfaces : Sequence[UnitSurface]
-        Of bearing units that depend on uncertain values, two of each.
+        Surfaces of bearing units that depend on uncertain values, two of each.
     shares : Mapping[str, Shares]
         Sobol's, of those numbers that vary; empty where not wanted.
     """
@@ -144,12 +144,12 @@ def study(
     load : Factors, Floats or None
         (n,) factors of `model.scene_loads`, for reactions.
     tolerance : float
-        Of the level, relative.
+        Maximum error of the level, relative.
     level : int or None
         1 or 2; where not given, the cheapest of these that the adviser finds good enough for all
         that was asked, and the better one where neither is.
     count, seed : int
-        Of the Latin hypercube.
+        Number of samples and seed of the Latin hypercube.
     sobol : int
         Base samples of Sobol's shares, a power of two; none for 0.
     report : Progress
