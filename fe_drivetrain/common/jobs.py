@@ -80,7 +80,7 @@ def pool(
     report : Progress
         Shows the steps of all jobs; it is called from several threads.
     each_for_itself : bool
-        Whether each item is a task of its own, see `Processes`.
+        Whether what one job raises ends it alone, see `Processes`.
     """
     if _client is None:
         return Processes(local, report, each_for_itself=each_for_itself)

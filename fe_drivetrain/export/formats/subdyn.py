@@ -162,8 +162,8 @@ def write(path: Path, element: Superelement, axes: Floats | None = None) -> None
     path : Path
         The file.
     element : Superelement
-        Of one point, with its supports. A mass must be that of a rigid body with its centre at the
-        point.
+        Superelement of one point, with its supports. A mass must be that of a rigid body with its
+        centre at the point.
     axes : Floats or None
         (3, 3) whose rows are x, y, z of the superelement's frame in SubDyn's; the same frame where
         not given. Both have their origin in one place.

@@ -54,10 +54,10 @@ class Rotor:
     stations : Floats
         (n,) x of its nodes [m].
     supports : Mapping[str, tuple[int, Floats]]
-        Of each support by name: its node, and its stiffness (6, 6) [N/m, N, N m/rad] in this
+        Node and stiffness (6, 6) of each support by name [N/m, N, N m/rad] in this
         project's frame and order, as it went in.
     inertia : Mapping[str, Floats]
-        Of supports that have a mass: (6, 6) [kg, kg m, kg m^2].
+        Mass (6, 6) of supports that have one [kg, kg m, kg m^2].
     """
 
     rotor: Any
@@ -152,8 +152,8 @@ def ross_rotor(
     stations : Sequence[float]
         Where nodes must be [m], besides the ends of sections and the supports.
     longest : float or None
-        Of its elements [m]; a sixteenth of the beam where not given. What is static is exact
-        between nodes; frequencies, and cones, want short elements.
+        Maximum length of its elements [m]; a sixteenth of the beam where not given. What is static
+        is exact between nodes; frequencies, and cones, want short elements.
     stiffer : float
         How many times a support that is rigid is stiffer than the shaft at its node.
     inertia : Mapping[str, Floats] or None
@@ -272,7 +272,7 @@ def rotor_of_scene(
     rings : bool
         Whether the shaft has its rings, see `fe_drivetrain.shafts.fidelity.shafts.ringed_shaft`.
     longest, stiffer : float or None, float
-        As for `ross_rotor`.
+        The same as for `ross_rotor`.
     inertia : Mapping[str, Floats] or None
         (6, 6) by bearing [kg, kg m, kg m^2], as `fe_drivetrain.shafts.fidelity.unit_matrices` gives
         it; supports have no mass where it is not given.

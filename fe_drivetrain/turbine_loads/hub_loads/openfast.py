@@ -105,7 +105,7 @@ def loads_from_channels(
     channels : mapping
         Channels by their names in lower case.
     gage_distance, azimuth_blade1_up : float
-        As of `read_openfast`.
+        The same as for `read_openfast`.
 
     Returns
     -------
@@ -119,7 +119,7 @@ def loads_from_channels(
     Raises
     ------
     InputError
-        As of `read_openfast`.
+        The same as for `read_openfast`.
     """
     chosen = _Chosen(source, channels)
     time = chosen.needed(("Time",), "time")

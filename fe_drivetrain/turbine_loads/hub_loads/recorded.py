@@ -230,7 +230,7 @@ def read_mapped(mapping: ChannelMap, path: Path, skip: float = 0.0) -> LoadHisto
     Raises
     ------
     InputError
-        As of `read_recorded`, or the loads never vary.
+        The same as for `read_recorded`, or the loads never vary.
     """
     history = read_recorded(path, mapping, skip).history
     require_variation(f"hub loads '{path}'", history.loads)

@@ -113,7 +113,8 @@ def moving(
     _shaft_loads(parts, state, sums, hub, blades, in_shaft, rates, loads)
 
 
-# What `moving` is made of is written into it: handing the turbine on takes longer than the work.
+# What `moving` and the loop are made of is written into them: handing the turbine on takes longer
+# than the work.
 
 
 class _Blades(NamedTuple):
@@ -375,9 +376,9 @@ def run_turbine(
     wake : ndarray, (4, r)
         Induced velocities there, twice; overwritten.
     sample : float
-        Between two samples [s].
+        Time between two samples [s].
     steps : int
-        Of the integration in each.
+        Number of steps of the integration in each.
     accounted : bool
         Whether to keep an account of the energy, whose works are integrated as the state is.
 
@@ -408,12 +409,13 @@ def run_turbine(
     acts = np.zeros(4)
     acts[FILTERED], acts[INTEGRAL], acts[PITCH] = state[GENERATOR], pitch, pitch
     acts[TORQUE] = asked_torque(control, state[GENERATOR], pitch)
+    smoothing = 1.0 - math.exp(-2.0 * math.pi * control.filter * step)
     for n in range(count):
         for part in range(steps):
             if accounted:
                 stored(parts, state, acts[PITCH], energy)
             if not control.held:
-                _controlled(control, state[GENERATOR], step, acts)
+                _controlled(control, state[GENERATOR], smoothing, step, acts)
             pitch, torque = acts[PITCH], acts[TORQUE]
             if accounted:
                 stored(parts, state, pitch, pitched)
@@ -452,10 +454,11 @@ def run_turbine(
     return made, beside, books
 
 
-@njit(cache=True)
-def _controlled(control: Control, speed: float, step: float, acts: Floats) -> None:
+@njit(cache=True, inline="always")
+def _controlled(
+    control: Control, speed: float, smoothing: float, step: float, acts: Floats
+) -> None:
     """Pitch and torque after a step, at the limits of their rates."""
-    smoothing = 1.0 - math.exp(-2.0 * math.pi * control.filter * step)
     acts[FILTERED] += smoothing * (speed - acts[FILTERED])
     # each step of the integral is scaled by itself, so that its sum is a pitch
     error = acts[FILTERED] - control.rated_speed
@@ -471,7 +474,7 @@ def _controlled(control: Control, speed: float, step: float, acts: Floats) -> No
     acts[TORQUE] += min(max(goal - acts[TORQUE], -change), change)
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _wind_at(turbulence: Singles, n: int, share: float, now: Floats) -> None:
     """Harmonics of the wind between a sample and the next."""
     after = min(n + 1, len(turbulence) - 1)
@@ -482,7 +485,7 @@ def _wind_at(turbulence: Singles, n: int, share: float, now: Floats) -> None:
             now[m, i] = one + share * (other - one)
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _noted(
     parts: Parts, state: Floats, acts: Floats, sums: Floats, free: Floats, beside: Floats
 ) -> None:
@@ -499,7 +502,7 @@ def _noted(
         beside[4 + j] = state[j]
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _advanced(values: Floats, rates: Floats, step: float) -> None:
     """Add a step of Runge and Kutta's with rates (4, n) of its stages."""
     for j in range(len(values)):
