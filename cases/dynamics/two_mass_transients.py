@@ -3,7 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.dynamics.drivetrains import drivetrains
+from fe_drivetrain.cases.dynamics.drivetrains import Rated, drivetrains
 from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import InTime, converge_in_time, peak_between
 from fe_drivetrain.dynamics import (
@@ -164,6 +164,25 @@ def show(page: Page) -> None:
         why="average acceleration conserves the energy of a linear system, and events end steps",
     )
     found = braked(2e-3)
+    check_brake(page, found, J, k, one)
+    motion = found.motion
+    page.chart(
+        "Drivetrain D as two masses: "
+        + ", ".join(f"{what} at {when:.3f} s" for when, what in found.events),
+        [
+            trace("shaft", motion.times, motion.forces[:, 0] / one.torque),
+            trace("brake", motion.times, found.brake / one.torque),
+            trace(
+                "generator's speed over its first", motion.times, motion.velocity[:, 1] / one.speed
+            ),
+        ],
+        "time [s]",
+        "torque over rated; speed",
+    )
+
+
+def check_brake(page: Page, found: Transient, J: Floats, k: float, one: Rated) -> None:
+    """Check torques while the brake slips and holds, and the frequency at standstill."""
     motion = found.motion
     slipping = (motion.times > 0.5) & (motion.times < found.events[0][0])
     page.equals(
@@ -199,17 +218,4 @@ def show(page: Page) -> None:
         within=1e-3,
         why="crossings are found to a step",
         source="sqrt(k / J1) / 2 pi",
-    )
-    page.chart(
-        "Drivetrain D as two masses: "
-        + ", ".join(f"{what} at {when:.3f} s" for when, what in found.events),
-        [
-            trace("shaft", motion.times, motion.forces[:, 0] / one.torque),
-            trace("brake", motion.times, found.brake / one.torque),
-            trace(
-                "generator's speed over its first", motion.times, motion.velocity[:, 1] / one.speed
-            ),
-        ],
-        "time [s]",
-        "torque over rated; speed",
     )

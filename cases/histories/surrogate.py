@@ -62,36 +62,17 @@ def run(run: Run, page: Page) -> None:
     names = list(real)[: 1 if run.quick else None]
     seeds = range(1, 4 if run.quick else 7)
     chosen = (DEFAULT, ALL) if run.quick else tuple(MODELS)
-    counts: list[Record] = []
-    of_model: dict[tuple[str, str], list[dict[str, float]]] = {}
+    of_model = {}
     for name in names:
-        row = given["histories"][name]
         for model in chosen:
             with run.step(f"{name}: {model}"):
-                made = surrogates(given, row, MODELS[model], seeds)
-            found = differences([real[name]], made)
-            counts.append(
-                {
-                    "history": name,
-                    "model": model,
-                    **{family: beyond(found, starts) for family, starts in FAMILIES.items()},
-                    "all": beyond(found, ("",)),
-                    "of": len(found),
-                }
-            )
-            of_model[name, model] = made
-    for name in names:
-        before, after = (
-            next(c for c in counts if (c["history"], c["model"]) == (name, model))
-            for model in (DEFAULT, ALL)
-        )
-        most = max(FAMILIES, key=lambda family: int(after[family]))
-        page.answer(
-            f"{name}: {before['all']} of {before['of']} quantities of OpenFAST are beyond what "
-            f"{len(seeds)} seeds of the default surrogate scatter, and {after['all']} with "
-            "controller, blade and tower modes, torsion and tower shadow, most of them "
-            f"({after[most]}) of {most}."
-        )
+                row = given["histories"][name]
+                of_model[name, model] = surrogates(given, row, MODELS[model], seeds)
+    counts = [
+        counted(name, model, differences([real[name]], made))
+        for (name, model), made in of_model.items()
+    ]
+    answer(page, names, counts, len(seeds))
     page.section("What each part of the turbine adds")
     page.table(
         f"Quantities of OpenFAST beyond what {len(seeds)} seeds of a model scatter, by load; each "
@@ -131,6 +112,33 @@ FAMILIES = {
     "My, Mz, bending": ("My", "Mz", "bending"),
     "loops": ("loops",),
 }
+
+
+def counted(name: str, model: str, found: Sequence[Difference]) -> Record:
+    """How many quantities of a history a model does not have, by load."""
+    return {
+        "history": name,
+        "model": model,
+        **{family: beyond(found, starts) for family, starts in FAMILIES.items()},
+        "all": beyond(found, ("",)),
+        "of": len(found),
+    }
+
+
+def answer(page: Page, names: Sequence[str], counts: Sequence[Record], seeds: int) -> None:
+    """What each history has beyond the default surrogate, and beyond the fullest one."""
+    for name in names:
+        before, after = (
+            next(c for c in counts if (c["history"], c["model"]) == (name, model))
+            for model in (DEFAULT, ALL)
+        )
+        most = max(FAMILIES, key=lambda family: int(after[family]))
+        page.answer(
+            f"{name}: {before['all']} of {before['of']} quantities of OpenFAST are beyond what "
+            f"{seeds} seeds of the default surrogate scatter, and {after['all']} with "
+            "controller, blade and tower modes, torsion and tower shadow, most of them "
+            f"({after[most]}) of {most}."
+        )
 
 
 def beyond(found: Sequence[Difference], starts: tuple[str, ...]) -> int:

@@ -12,14 +12,13 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.cases.references import solid_shafts
 from fe_drivetrain.cases.references.shaft_theory import (
-    Spring,
     Tube,
     evenly_loaded_shear,
-    macaulay,
     parabola_shortfall,
     sag,
 )
 from fe_drivetrain.cases.references.solid_shafts import Compliance, Supported
+from fe_drivetrain.cases.references.sprung_beams import Spring, macaulay
 from fe_drivetrain.shafts.beam import Beam, BeamSection, Support, solve
 
 EVENLY = "Macaulay's brackets with shear of evenly loaded sections (Hutchinson 2001, as quoted by "

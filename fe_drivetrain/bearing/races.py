@@ -26,6 +26,7 @@ from fe_drivetrain.bearing.rolling import (
 )
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 
 TYPICAL_APPROACH = 5e-5
 """An approach at which the stiffness of a contact is compared with that of the races [m]."""
@@ -55,6 +56,8 @@ class Races:
 
     bearing: Bearing
     compliance: Floats
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         size = 2 * sum(self.bearing.counts)
@@ -142,6 +145,8 @@ class RacesEquilibrium:
     converged: Bools
     iterations: Ints
     evaluations: Ints
+
+    __repr__ = short_repr
 
     @property
     def recession(self) -> Floats:

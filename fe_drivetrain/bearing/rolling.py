@@ -29,6 +29,7 @@ from fe_drivetrain.bearing.contact_forces import (
 from fe_drivetrain.bearing.geometry import Bearing, RollerRow, angles
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 
 TOLERANCE = 1e-8
 """Residual over load, moments over the pitch radius."""
@@ -70,6 +71,8 @@ class Equilibrium:
     iterations: Ints
     evaluations: Ints
     phases: Floats | None = None
+
+    __repr__ = short_repr
 
     @cached_property
     def unbalanced(self) -> Floats:

@@ -272,7 +272,7 @@ def _write(result: ExportResult, wanted: Export) -> None:
 
     content = result.content
     if isinstance(content, Superelement):
-        export.write(wanted.out, content, wanted.format or "", wanted.overwrite)
+        export.write_superelement(wanted.out, content, wanted.format or "", wanted.overwrite)
     elif isinstance(content, CraigBampton):
         write_craig_bampton(wanted.out, content)
     elif isinstance(content, SummaryFile):

@@ -28,7 +28,7 @@ from fe_drivetrain.command_line.terminal import FAILED, PASSED, as_typed, guarde
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
-from fe_drivetrain.drivetrain_file.named_scenes import named_scene
+from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 from fe_drivetrain.studies.life_options import ASSUMED, LifeOptions
 
 if TYPE_CHECKING:
@@ -175,7 +175,7 @@ def life_command(
         name = Path(scene).stem
         target = out or Path("reports") / "life" / name
         check_result_folder(target)
-        found = named_scene(scene, parse_settings(set_ or ()))
+        found = read_drivetrain(scene, parse_settings(set_ or ()))
         from fe_drivetrain.command_line.life_page import show_life
         from fe_drivetrain.command_line.loads_words import parse_site
         from fe_drivetrain.report.suite.case import Case

@@ -188,7 +188,7 @@ def loads_command(
             parse_winds,
         )
         from fe_drivetrain.command_line.showing import shown
-        from fe_drivetrain.drivetrain_file.named_scenes import named_scene
+        from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
         from fe_drivetrain.report.suite.case import Case
         from fe_drivetrain.report.suite.ownership import check_result_folder
         from fe_drivetrain.report.suite.result_folders import run_case
@@ -230,7 +230,7 @@ def loads_command(
             raise InputError(f"--level {level}: choose 1, a beam, or 4, the assembly of solids")
         if scene is None:
             require_beside(context, {"level": "--level"}, "--scene", "is the model of a scene")
-        of_scene = None if scene is None else named_scene(scene, {})
+        of_scene = None if scene is None else read_drivetrain(scene, {})
         writer = parquet_writer() if parquet else None
         found = recorded_files(files)
         others = recorded_files(against or [])

@@ -33,7 +33,7 @@ from fe_drivetrain.command_line.terminal import FAILED, PASSED, as_typed, guarde
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
-from fe_drivetrain.drivetrain_file.named_scenes import named_scene
+from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 from fe_drivetrain.report.suite.ownership import check_result_folder
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def check_command(
 
     def work() -> int:
         hold_threads()
-        found = named_scene(scene, parse_settings(set_ or ()))
+        found = read_drivetrain(scene, parse_settings(set_ or ()))
         from fe_drivetrain.command_line.scene_page import show_check
         from fe_drivetrain.studies.scene_check import check
 
@@ -121,7 +121,7 @@ def study_command(
     def work() -> int:
         hold_threads()
         check_result_folder(out or Path("reports", "study", _name_of([scene])))
-        found = named_scene(scene, parse_settings(set_ or ()))
+        found = read_drivetrain(scene, parse_settings(set_ or ()))
         if skip and loads is None:
             raise InputError(
                 f"--skip {skip:g} leaves out the beginning of your own files, and there are none: "
@@ -194,7 +194,7 @@ def advise_command(
 
     def work() -> int:
         hold_threads()
-        found = named_scene(scene, parse_settings(set_ or ()))
+        found = read_drivetrain(scene, parse_settings(set_ or ()))
         from fe_drivetrain.pages.advice import show_advise
         from fe_drivetrain.shafts.fidelity.quantity import Quantity
         from fe_drivetrain.shafts.response.model import scene_loads
@@ -279,7 +279,7 @@ def uncertainty_command(
 
     def work() -> int:
         hold_threads()
-        found = named_scene(scene, parse_settings(set_ or ()))
+        found = read_drivetrain(scene, parse_settings(set_ or ()))
         from fe_drivetrain.pages.uncertainty import show_uncertainty
         from fe_drivetrain.shafts.response.model import scene_loads
         from fe_drivetrain.studies.input_uncertainty import uncertainty

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.comparison.moments import Moments, moments
 from fe_drivetrain.comparison.statistics import CONSTANT, check_excluded, ratio
 
@@ -62,6 +63,8 @@ class Comparison:
     correlation: Floats
     slope: Floats
     cov: Floats
+
+    __repr__ = short_repr
 
     def index(self, name: str) -> int:
         """Column of a quantity.

@@ -14,7 +14,6 @@ from .bodies import Body as Body
 from .bodies import Superelement as Superelement
 from .bodies import assemble as assemble
 from .bodies import disc as disc
-from .bodies import stretched as stretched
 from .brakes import Brake as Brake
 from .brakes import Phase as Phase
 from .brakes import Transient as Transient

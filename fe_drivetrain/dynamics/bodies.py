@@ -1,6 +1,6 @@
 """Rigid bodies with six degrees of freedom each, held, tied to each other or free."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -8,6 +8,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.dynamics.springs import Spring
 from fe_drivetrain.dynamics.system import System
@@ -82,6 +83,8 @@ class Superelement:
     stiffness: Floats
     mass: Floats | None = field(default=None)
     weight: Floats | None = field(default=None)
+
+    __repr__ = short_repr
 
 
 def assemble(
@@ -216,10 +219,3 @@ def _check(bodies: Sequence[Body], names: Sequence[str], springs: Sequence[Sprin
                     f"spring {spring.name!r}: {what} is {value:g} but must be a finite number of "
                     "at least 0: change it"
                 )
-
-
-def stretched(springs: Sequence[Spring], motions: Mapping[str, Floats]) -> Floats:
-    """(m,) elongation of springs by motions (6,) of bodies; those not given stand still."""
-    return np.array(
-        [sum(float(row @ motions[b]) for b, row in s.by.items() if b in motions) for s in springs]
-    )

@@ -16,6 +16,7 @@ from scipy.optimize import brentq
 
 from fe_drivetrain.common.arrays import Bools, Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.equations import (
     Equations,
     Loads,
@@ -63,6 +64,8 @@ class Brake:
     start: float
     rise: float = 0.0
 
+    __repr__ = short_repr
+
     def size(self, t: float) -> float:
         """Maximum torque at a time [N m]."""
         if t < self.start:
@@ -100,6 +103,8 @@ class Transient:
     brake: Floats
     held: Bools
     events: tuple[tuple[float, str], ...]
+
+    __repr__ = short_repr
 
 
 def transient(

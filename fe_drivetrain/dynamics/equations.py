@@ -21,6 +21,7 @@ from scipy.interpolate import CubicSpline
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import least_eigenvalue
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.system import System
 
 CONSTANT = -1
@@ -83,6 +84,8 @@ class SpringLaws:
     error_phase: Floats
     error_turns: Floats
     errors: Floats
+
+    __repr__ = short_repr
 
     @property
     def special(self) -> Bools:
@@ -360,6 +363,8 @@ class Loads:
     times: Floats
     histories: Floats
 
+    __repr__ = short_repr
+
     def at(self, t: ArrayLike) -> Floats:
         """(..., n) loads at times."""
         when = np.asarray(t, dtype=np.float64)
@@ -420,6 +425,8 @@ class Equations:
     springs: SpringLaws
     damping: Floats
     extra: Floats
+
+    __repr__ = short_repr
 
     @property
     def K(self) -> Floats:

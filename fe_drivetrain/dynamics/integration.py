@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.equations import Equations, Loads
 from fe_drivetrain.dynamics.steady_state import restoring
 from fe_drivetrain.dynamics.time_steps import (
@@ -121,6 +122,8 @@ class State:
     acceleration: Floats
     time: float = 0.0
 
+    __repr__ = short_repr
+
 
 @dataclass(frozen=True)
 class Motion:
@@ -157,6 +160,8 @@ class Motion:
     most_iterations: int
     not_converged: int
     end: State
+
+    __repr__ = short_repr
 
     @property
     def converged(self) -> bool:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.equations import Equations, Loads
 from fe_drivetrain.dynamics.integration import (
     AVERAGE,
@@ -55,6 +56,8 @@ class Adaptive:
     errors: Floats
     rejected: int
     matrices: int
+
+    __repr__ = short_repr
 
 
 def integrate_adaptively(

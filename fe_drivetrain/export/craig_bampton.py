@@ -25,6 +25,7 @@ from scipy.sparse.linalg import splu
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.materials import Material
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.elasticity.revolution import harmonics
@@ -69,6 +70,8 @@ class CraigBampton:
     omega: Floats
     coupling: Floats
     origin: Origin = field(default_factory=Origin)
+
+    __repr__ = short_repr
 
     @property
     def stiffness(self) -> Floats:

@@ -11,6 +11,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import least_eigenvalue, symmetry_error
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import point_motions
 from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.plots.figures import stiffness_map
@@ -116,6 +117,8 @@ class Superelement:
     supported: bool = False
     band: StiffnessBands | None = None
     origin: Origin = field(default_factory=Origin)
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         """Refuse what is no superelement.

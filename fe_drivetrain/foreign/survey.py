@@ -11,6 +11,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.elasticity.mesh.facets import facet_points
 from fe_drivetrain.elasticity.mesh.measures import enclosed_volume, mass_moments, scaled_jacobians
 from fe_drivetrain.elasticity.mesh.mesh import Mesh, boundary
@@ -125,6 +126,8 @@ class Survey(NamedTuple):
     volume_band: float | None
     bores: tuple[Bore, ...]
     planes: tuple[Plane, ...]
+
+    __repr__ = short_repr
 
 
 def surveyed(path: str | Path) -> Survey:

@@ -8,6 +8,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.histories.levels import Levels
 
 THERMAL = 600.0
@@ -35,6 +36,8 @@ class Moves:
     angle: Floats
     step: float
     samples: int
+
+    __repr__ = short_repr
 
     @property
     def durations(self) -> Floats:

@@ -22,6 +22,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.common.reading import unreadable
 from fe_drivetrain.common.regular_files import text_of
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.turbine_loads.histories.cycles import Cycles, rainflow_cycles
 from fe_drivetrain.turbine_loads.histories.damage import damage_equivalent_load
@@ -65,6 +66,8 @@ class Interface:
     accelerations: Floats | None = None
     source: Source = "simulated"
 
+    __repr__ = short_repr
+
 
 @dataclass(frozen=True, eq=False)
 class Body:
@@ -83,6 +86,8 @@ class Body:
     name: str
     centre: Floats
     own: Floats
+
+    __repr__ = short_repr
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,6 +110,8 @@ class LoadTable:
     time: Floats
     interfaces: tuple[Interface, ...]
     bodies: tuple[Body, ...]
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         names = [*(i.name for i in self.interfaces), *(b.name for b in self.bodies)]

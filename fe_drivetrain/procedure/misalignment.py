@@ -20,6 +20,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.bodies import assemble
 from fe_drivetrain.dynamics.levels import Level, assembly
 from fe_drivetrain.dynamics.tables import Machine
@@ -41,6 +42,8 @@ class Misalignment:
 
     names: tuple[str, ...]
     influence: Floats
+
+    __repr__ = short_repr
 
     @property
     def degree(self) -> int:

@@ -14,6 +14,7 @@ from scipy.linalg import expm
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.equations import varying
 from fe_drivetrain.dynamics.stopping import torsional_equations
 from fe_drivetrain.dynamics.superposition import energy_error
@@ -36,6 +37,8 @@ class Motions:
     angle: Floats
     speed: Floats
     acceleration: Floats
+
+    __repr__ = short_repr
 
     @property
     def time(self) -> Floats:

@@ -83,8 +83,9 @@ def drivetrain_excitations(stages: Iterable[Geared], blades: int = 3) -> tuple[E
     Parameters
     ----------
     stages : iterable of Geared
-        Rows of a gear table (`torsion.Drivetrain`) or of a machine (`dynamics.Machine`). Those
-        without teeth have no mesh frequency, and are left out of the register.
+        Rows of a gear table (`dynamics.torsion.GearTable`) or of a machine
+        (`dynamics.Machine`). Those without teeth have no mesh frequency, and are left out of the
+        register.
     blades : int
         Number of blades of the rotor.
 

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 
 GAUGES = tuple(np.radians([-6.1, 13.2, 17.2, 39.1, 84.37, 129.6, 168.0, 187.0]).tolist())
 """Places of eight strain gauges, from the leading edge [rad] (PROTEST 2010, Table 5.4)."""
@@ -44,6 +45,8 @@ class RingShape:
     orders: Ints
     cosine: Floats
     sine: Floats
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         if self.radius <= 0.0 or np.min(self.orders, initial=2) < 2:

@@ -17,6 +17,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.elasticity.mesh.facets import outside
 from fe_drivetrain.elasticity.mesh.mesh import Mesh
 from fe_drivetrain.elasticity.operator.stress import nodal_stresses, von_mises
@@ -68,6 +69,8 @@ class Parts:
 
     points: Floats
     cells: Mapping[str, Ints]
+
+    __repr__ = short_repr
 
 
 def deformed_shape(

@@ -8,6 +8,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.comparison.time_weighted import weighted_statistics
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.report.suite.records import Record
@@ -95,6 +96,8 @@ class LoadFacts:
     mean: Floats
     histories: tuple[HistoryFacts, ...]
     beginning: Beginning
+
+    __repr__ = short_repr
 
 
 def load_facts(scene: Scene, loads: EnteredLoads) -> LoadFacts:

@@ -68,10 +68,10 @@ def named_bearings(
     if not entries and not catalogues:
         return {}
     # late, since it loads the compiled loops of bearings
-    from fe_drivetrain.bearing.catalogue import read_catalogue
+    from fe_drivetrain.bearing.catalogue import read_bearing_catalogue
     from fe_drivetrain.bearing.seats import check_seat
 
-    known, found = read_catalogue(*catalogues), {}
+    known, found = read_bearing_catalogue(*catalogues), {}
     for name in (unit.bearing.name for unit in scene.bearing_units):
         entry = entries.get(name)
         if entry is None:

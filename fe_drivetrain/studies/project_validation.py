@@ -9,7 +9,7 @@ from typing import ClassVar
 
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
-from fe_drivetrain.drivetrain_file.named_scenes import named_scene
+from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.dynamics.tables import Machine, named_machine
 from fe_drivetrain.procedure.assessment import Measured, StepState, assessed, claims_of
@@ -205,7 +205,7 @@ def _drivetrain(project: Project, folder: Path) -> Scene | Machine | None:
     name = project.model.scene or project.model.machine
     file = folder / name
     given = str(file) if file.is_file() else name
-    return named_scene(given, {}) if project.model.scene else named_machine(given)
+    return read_drivetrain(given, {}) if project.model.scene else named_machine(given)
 
 
 def _evidence(

@@ -9,6 +9,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.comparison.time_weighted import weighted_statistics
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.report.suite.records import Record
@@ -43,6 +44,8 @@ class Statistics:
     values: Floats
     band: Floats | None
     equivalent: Floats
+
+    __repr__ = short_repr
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from fe_drivetrain.bearing.catalogue import Entry, read_catalogue
+from fe_drivetrain.bearing.catalogue import Entry, read_bearing_catalogue
 from fe_drivetrain.bearing.geometry import Bearing, RollerRow
 from fe_drivetrain.bearing.races import Races
 from fe_drivetrain.bearing_life.coupled.load_paths import PINNED, LoadPath
@@ -146,7 +146,7 @@ def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
         raise InputError(
             f"bearing {nameless[0]!r} of the scene has no rollers: name its entry of the catalogue "
             f"with --bearing {nameless[0]}=ENTRY, or under 'catalogue' in the scene; there are "
-            f"{', '.join(read_catalogue(*choices.catalogues))}"
+            f"{', '.join(read_bearing_catalogue(*choices.catalogues))}"
         )
     rated = {
         name: rated_from_catalogue(

@@ -19,7 +19,8 @@ from fe_drivetrain.shafts.fidelity.level_costs import Forecast, forecast
 from fe_drivetrain.shafts.response.model import Model
 from fe_drivetrain.studies.named_bearings import named_bearings
 from fe_drivetrain.studies.result import Result
-from fe_drivetrain.studies.scene_description import checked_model, description
+from fe_drivetrain.studies.scene_description import description
+from fe_drivetrain.studies.solved_assembly import checked_model
 from fe_drivetrain.studies.unused import catalogues_not_used
 
 

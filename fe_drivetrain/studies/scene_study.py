@@ -25,14 +25,20 @@ from fe_drivetrain.shafts.fidelity.judgement import Judgement, judge_levels
 from fe_drivetrain.shafts.fidelity.ladder import statics_level
 from fe_drivetrain.shafts.fidelity.over_loads import Levels, imbalance, levels_of, reaction_history
 from fe_drivetrain.shafts.fidelity.quantities import UNIT, unit_numbers
-from fe_drivetrain.shafts.response.cached import cached_response
+from fe_drivetrain.shafts.response.bearing_stiffness import check_one_tilting_bearing
 from fe_drivetrain.shafts.response.entering import Factors, Loads
 from fe_drivetrain.shafts.response.model import Model
 from fe_drivetrain.shafts.response.stated import Stated, stated_reactions
 from fe_drivetrain.shafts.response.unit_loads import Response
 from fe_drivetrain.shafts.uncertainty import input_study
 from fe_drivetrain.shafts.uncertainty.numbers import figures
-from fe_drivetrain.studies.closed_forms import ForceErrors, closed_form_errors, closed_form_rows
+from fe_drivetrain.studies.closed_forms import (
+    ForceErrors,
+    LinearModel,
+    closed_form_errors,
+    closed_form_models,
+    closed_form_rows,
+)
 from fe_drivetrain.studies.design_measures import DesignMeasures, design_measures
 from fe_drivetrain.studies.level_errors import (
     ENOUGH,
@@ -49,7 +55,9 @@ from fe_drivetrain.studies.reaction_statistics import (
     statistics_rows,
 )
 from fe_drivetrain.studies.result import Result
-from fe_drivetrain.studies.scene_description import checked_model, description, quick_scene
+from fe_drivetrain.studies.scene_description import description, quick_scene
+from fe_drivetrain.studies.seat_stiffness import SeatStiffness, seat_stiffness
+from fe_drivetrain.studies.solved_assembly import checked_model, solved_model
 from fe_drivetrain.studies.study_loads import (
     EnteredLoads,
     StudyLoads,
@@ -64,6 +72,7 @@ ASSEMBLY = "assembly"
 """Name of the assembly of solids among the models."""
 
 _SAMPLES, _QUICK_SAMPLES = 128, 40
+_QUICK_SEEDS = 1
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -85,8 +94,13 @@ class StudyResult(Result):
         The cheapest level that is enough for all reactions that count.
     measures : DesignMeasures
         Errors of each level by what a part is designed for.
+    seat : SeatStiffness or None
+        K_R as the seat shows it in the assembly with its gearbox springs removed, by three
+        estimators; None where it was not asked for.
     closed_forms : Mapping[str, ForceErrors]
         Errors of the closed forms of one bearing on a uniform shaft; empty where they do not apply.
+    closed_form_models : Mapping[str, LinearModel]
+        These closed forms, for further hub loads; not part of the JSON.
     uncertainty : Study or None
         Effect of the spreads that the scene states; None where it states none.
     loads : LoadFacts
@@ -111,7 +125,9 @@ class StudyResult(Result):
     errors: LevelErrors
     judgement: Judgement
     measures: DesignMeasures
+    seat: SeatStiffness | None
     closed_forms: Mapping[str, ForceErrors]
+    closed_form_models: Mapping[str, LinearModel] = field(repr=False)
     uncertainty: input_study.Study | None
     loads: LoadFacts
     stated: Stated
@@ -167,6 +183,7 @@ def study(
     weight: bool = True,
     quick: bool = False,
     *,
+    seat: bool = False,
     report: Progress = silent,
 ) -> StudyResult:
     """Study a scene over load histories: K_R, reactions, and every level against the assembly.
@@ -185,28 +202,32 @@ def study(
         Whether the reactions have the weight of all parts.
     quick : bool
         Whether a coarser mesh, fewer made histories and fewer samples are enough.
+    seat : bool
+        Whether K_R is also measured at the seat in the assembly, its gearbox springs removed. This
+        takes a second solution, and one bearing unit, which carries moments.
     report : Progress
         Called with the name of each step as it begins.
 
     Raises
     ------
     InputError
-        The scene cannot be solved, a slope is out of range, or the loads are refused.
+        The scene cannot be solved, a slope is out of range, the loads are refused, or the scene
+        has no K_R at a seat.
     """
     for slope in slopes:
         check_slope(slope)
+    if seat:
+        check_one_tilting_bearing(scene)
     found, steps = Findings(), Steps(report)
     scene = quick_scene(scene) if quick else scene
     scene = scene if weight else weightless(scene)
     found.about(scene)
     given = loads if loads is None or isinstance(loads, StudyLoads) else given_loads(loads, scene)
     model = checked_model(steps, scene)
-    given = surrogate_loads(steps, quick) if given is None else given
+    given = surrogate_loads(steps, _QUICK_SEEDS if quick else None) if given is None else given
     entered = (given if weight else replace(given, gravity=0.0)).entering(scene)
-    with steps.step("assembly of solids") as step:
-        response = cached_response(model)
-        if response.kept:
-            step.name += ", from the cache"
+    response = solved_model(steps, model).response
+    with_seat = seat_stiffness(steps, scene, "without gearbox", model.mesh) if seat else None
     with steps.step("levels 1 and 2"):
         levels = levels_of(scene, response, report)
     units = levels.units
@@ -219,7 +240,8 @@ def study(
         found.data("secants", secant_rows(secants))
     with steps.step("beams against FE"):
         errors, judgement, measures = _errors(found, scene, levels, entered, slopes)
-        forms = closed_form_errors(scene, response, units, entered)
+        models = closed_form_models(scene, units, with_seat)
+        forms = closed_form_errors(scene, response, models, entered)
         found.data("closed_forms", closed_form_rows(forms))
     facts = load_facts(scene, entered)
     found.seed = None if given.own else 1
@@ -228,6 +250,9 @@ def study(
     found.assume_all(left_out(scene))
     found.assume_all(given.assumptions)
     options = {"loads": given.statement, "slopes": slopes, "weight": weight, "quick": quick}
+    options["seat"] = seat
+    if with_seat is not None:
+        found.data("seat_stiffness", with_seat.rows())
     return StudyResult(
         units=units,
         secants=secants,
@@ -235,7 +260,9 @@ def study(
         errors=errors,
         judgement=judgement,
         measures=measures,
+        seat=with_seat,
         closed_forms=forms,
+        closed_form_models=models,
         uncertainty=uncertainty,
         loads=facts,
         stated=_stated(model, facts.gravity),

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.steps import Clock
@@ -19,10 +20,14 @@ from fe_drivetrain.turbine_loads.hub_loads.files import read_hub_load_files, rea
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
 from fe_drivetrain.turbine_loads.hub_loads.point_loads import PointLoads
 from fe_drivetrain.turbine_loads.hub_loads.recorded import read_mapped
-from fe_drivetrain.turbine_loads.hub_loads.surrogate import hub_load_set, surrogate_grid
+from fe_drivetrain.turbine_loads.hub_loads.surrogate import (
+    Condition,
+    HubLoadSet,
+    hub_load_set,
+    not_kept,
+    surrogate_grid,
+)
 from fe_drivetrain.turbine_loads.hub_loads.turbines import different_turbines, vertical_forces
-
-_QUICK_SEEDS = 1
 
 
 @dataclass(frozen=True)
@@ -158,25 +163,63 @@ def _of_the_user(
     )
 
 
-def surrogate_loads(steps: Clock, quick: bool = False) -> StudyLoads:
+def surrogate_loads(steps: Clock, seeds: int | None = None) -> StudyLoads:
     """The surrogate's histories.
 
     Parameters
     ----------
     steps : Clock
         Times the step in which they are made.
-    quick : bool
-        Whether those of one seed are enough.
+    seeds : int, optional
+        How many histories of each wind there are; all six where not given.
     """
-    grid = [c for c in surrogate_grid() if not quick or c.seed <= _QUICK_SEEDS]
-    with steps.step("hub loads"):
-        found = hub_load_set(
-            grid, progress=lambda done, of: steps.report(f"hub loads ({done} of {of})")
-        )
+    found = surrogate_set(steps, surrogate_conditions(seeds))
     return StudyLoads(
         list(found),
-        f"Hub loads are a surrogate, not those of your turbine: {len(grid)} ten-minute histories "
-        "of a generic 2 MW, 80 m rotor in turbulent wind. Give your own with --loads.",
+        f"{surrogate_statement(len(found))} Give your own with --loads.",
         False,
         list(assumptions()),
+    )
+
+
+def surrogate_conditions(seeds: int | None = None) -> list[Condition]:
+    """Winds of the surrogate's histories.
+
+    Parameters
+    ----------
+    seeds : int, optional
+        How many histories of each wind there are; all six where not given.
+    """
+    return [c for c in surrogate_grid() if seeds is None or c.seed <= seeds]
+
+
+def surrogate_set(steps: Clock, conditions: Sequence[Condition]) -> HubLoadSet:
+    """The surrogate's histories in one array, with their winds.
+
+    Parameters
+    ----------
+    steps : Clock
+        Times the step in which they are made, or taken from the cache.
+    conditions : sequence of Condition
+        Winds, see `surrogate_conditions`.
+    """
+    with steps.step("hub loads") as step:
+        if user_cache().folder is not None and not not_kept(conditions):
+            step.name += ", from the cache"
+        return hub_load_set(
+            conditions, progress=lambda done, of: steps.report(f"hub loads ({done} of {of})")
+        )
+
+
+def surrogate_statement(count: int) -> str:
+    """What the surrogate's histories are, as a sentence.
+
+    Parameters
+    ----------
+    count : int
+        Number of histories.
+    """
+    return (
+        f"Hub loads are a surrogate, not those of your turbine: {count} ten-minute histories "
+        "of a generic 2 MW, 80 m rotor in turbulent wind."
     )

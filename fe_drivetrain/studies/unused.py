@@ -110,9 +110,12 @@ def catalogues_not_used(catalogues: Sequence[Path], named: Mapping[str, str]) ->
     if not catalogues:
         return
     # late, since it loads the compiled loops of bearings
-    from fe_drivetrain.bearing.catalogue import read_catalogue, read_entries
+    from fe_drivetrain.bearing.catalogue import read_bearing_catalogue, read_entries
 
-    known, of = read_catalogue(), dict.fromkeys(read_catalogue(), "the program's own catalogue")
+    known, of = (
+        read_bearing_catalogue(),
+        dict.fromkeys(read_bearing_catalogue(), "the program's own catalogue"),
+    )
     for path in catalogues:
         entries = read_entries(path)
         for name in sorted(set(named.values()) & set(entries)):

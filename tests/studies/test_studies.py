@@ -49,7 +49,7 @@ from fe_drivetrain.studies import (
 )
 from fe_drivetrain.studies.design_comparison import Varied
 from fe_drivetrain.turbine_loads.histories import Site
-from fe_drivetrain.turbine_loads.hub_loads import LoadHistory, write_csv
+from fe_drivetrain.turbine_loads.hub_loads import LoadHistory, write_hub_loads
 
 HOLLOW = Shaft(front=0.0, sections=(Section(length=0.6, outer_diameter=0.3, inner_diameter=0.1),))
 STIFFNESS = np.diag([1e9, 2e9, 3e9, 1e7, 4e7, 5e7])
@@ -101,7 +101,9 @@ def condensed(tmp_path_factory: pytest.TempPathFactory) -> PartResult:
     """A housing on springs of its own, as a superelement."""
     path = tmp_path_factory.mktemp("superelement") / "mine.csv"
     place = np.zeros((1, 3))
-    export.write(path, Superelement("mine", ("bore",), place, STIFFNESS, supported=True), "csv")
+    export.write_superelement(
+        path, Superelement("mine", ("bore",), place, STIFFNESS, supported=True), "csv"
+    )
     return part(path)
 
 
@@ -117,7 +119,7 @@ def loaded(tmp_path_factory: pytest.TempPathFactory) -> LoadsResult:
     time = np.arange(301) * 0.1
     samples = np.random.default_rng(3).standard_normal((301, 6))
     samples[:, 4] = 1e3 * np.sin(2.0 * np.pi * time / 10.0)
-    write_csv(LoadHistory("wave", time, samples), file)
+    write_hub_loads(LoadHistory("wave", time, samples), file)
     options = LoadOptions(slopes=(3.0, 5.0), rotor_speed=1.5, ultimate={"My": 1e6})
     return loads([file], options, scene=coarse_scene("bonded"))
 
@@ -423,7 +425,7 @@ def test_loads_without_files_winds_or_slopes_are_refused(tmp_path: Path) -> None
     with pytest.raises(InputError, match="there are no files"):
         loads([])
     still = tmp_path / "still.csv"
-    write_csv(LoadHistory("still", np.arange(20) * 0.1, np.ones((20, 6))), still)
+    write_hub_loads(LoadHistory("still", np.arange(20) * 0.1, np.ones((20, 6))), still)
     with pytest.raises(InputError, match="no wind speed, by which --site weights"):
         loads([still], site=Site(8.5))
     with pytest.raises(InputError, match="give a site, too"):

@@ -18,6 +18,7 @@ from fe_drivetrain.bearing.geometry import BallRow, Bearing, RollerRow, pitch_ra
 from fe_drivetrain.bearing.rating import LAMBDA
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError, require_known
+from fe_drivetrain.common.short_repr import short_repr
 
 LINE = 4.5
 """Exponent of load to damage in line contact; 1 / LINE of a mean over a ring that stands."""
@@ -61,6 +62,8 @@ class RowLoads:
     inner_capacity: float
     outer_capacity: float
     edge: float
+
+    __repr__ = short_repr
 
     @property
     def damage(self) -> Floats:

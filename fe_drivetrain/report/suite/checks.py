@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
+
+from numpy.typing import ArrayLike
 
 from fe_drivetrain.report.results import Basis, Measure, Verdict, judge
 from fe_drivetrain.report.suite.records import MeshSeries
@@ -79,6 +82,59 @@ class Checks:
             basis=basis,
             band=band,
         )
+
+    def exponent(
+        self,
+        quantity: str,
+        x: ArrayLike,
+        y: ArrayLike,
+        expected: float,
+        *,
+        within: float,
+        why: str,
+        source: str,
+        between: tuple[float, float] = (0.0, math.inf),
+        relative: bool = True,
+    ) -> float:
+        """The exponent of a power of x that fits y best is the expected one, with its own band.
+
+        Parameters
+        ----------
+        quantity : str
+            What grows with what.
+        x, y : (n,) array
+            The points; see `fe_drivetrain.comparison.fitted_exponent`.
+        expected : float
+            The exponent by theory.
+        within : float
+            Allowed difference, as for `equals`.
+        why, source : str
+            As for `equals`.
+        between : tuple of float
+            Only points with y between these are fitted.
+        relative : bool
+            False where `within` is that of the exponent itself.
+
+        Returns
+        -------
+        exponent : float
+            That of the points.
+        """
+        from fe_drivetrain.comparison.sweeps import fitted_exponent
+
+        exponent, band = fitted_exponent(x, y, between)
+        self.equals(
+            quantity,
+            exponent,
+            expected,
+            within=within,
+            relative=relative,
+            why=why,
+            source=source,
+            measure="order",
+            band=band,
+        )
+        return exponent
 
     def vanishes(
         self,

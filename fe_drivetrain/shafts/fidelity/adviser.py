@@ -19,6 +19,7 @@ from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import silent
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.elasticity.mesh.measures import mean_size
 from fe_drivetrain.geometry import MeshSizes
@@ -82,6 +83,8 @@ class LevelResult:
     error: float = float("nan")
     band: AssemblyBand | None = None
 
+    __repr__ = short_repr
+
 
 @dataclass(frozen=True)
 class Advice:
@@ -110,6 +113,8 @@ class Advice:
     springs: Mapping[str, Floats] = field(default_factory=dict)
     share: float = 1.0
     sizes: MeshSizes | None = None
+
+    __repr__ = short_repr
 
     @property
     def top(self) -> LevelResult:

@@ -19,6 +19,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import point_motions, wrench_transport
 from fe_drivetrain.drivetrain_file.entrance import AT_HUB, Entrance
 from fe_drivetrain.drivetrain_file.joint_springs import joint_stiffness
@@ -102,6 +103,8 @@ class LevelModel:
     points: tuple[str, ...] = ()
     compliance: Floats = field(default_factory=lambda: np.zeros((0, 0)))
     entrance: Entrance = AT_HUB
+
+    __repr__ = short_repr
 
     def reactions(self, load: Factors | ArrayLike) -> dict[str, Floats]:
         """Reactions (..., 6) [N, N m] to loads (..., n), factors of `model.scene_loads`.

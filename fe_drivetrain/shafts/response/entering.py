@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.entrance import Entrance
 from fe_drivetrain.turbine_loads.hub_loads.files import require_points
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
@@ -41,6 +42,8 @@ class Factors:
     """
 
     values: Floats
+
+    __repr__ = short_repr
 
     def __len__(self) -> int:
         return len(self.values)

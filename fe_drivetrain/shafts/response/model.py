@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.bearing_unit import BearingUnit, Springs
 from fe_drivetrain.drivetrain_file.joint_springs import as_numbers
 from fe_drivetrain.drivetrain_file.scene import Scene
@@ -109,6 +110,8 @@ class Model:
     held: Mapping[str, Sequence[int]]
     n_dofs: int
     warnings: tuple[str, ...] = ()
+
+    __repr__ = short_repr
 
     def standing(self, name: str) -> list[str]:
         """Reference points that a bearing's housing stands on: a bedplate, bolts, or a foot."""

@@ -67,6 +67,15 @@ class Response:
     kept: bool = False
     entrance: Entrance = AT_HUB
 
+    def __repr__(self) -> str:
+        """One line: the loads, the reactions on the surroundings, and the errors."""
+        names = ", ".join(name for name in self.reactions if "." not in name)
+        return (
+            f"<Response to {self.displacements.shape[-1]} unit loads: reactions of {names}; errors "
+            f"of equilibrium {self.equilibrium_error:.1g}, of superposition "
+            f"{self.superposition_error:.1g}>"
+        )
+
     def reaction_matrix(self) -> tuple[list[str], Floats]:
         """All reactions as one matrix.
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.reading import change_scene
 from fe_drivetrain.drivetrain_file.scene import Scene, Spread, nominal_values, with_materials
 from fe_drivetrain.shafts.uncertainty.kept_rows import evaluated_rows
@@ -70,6 +71,8 @@ class Samples:
     inputs: Floats
     values: Floats
     nominal: float
+
+    __repr__ = short_repr
 
     @property
     def varies(self) -> bool:
@@ -154,6 +157,8 @@ class Shares:
     total: Floats
     first_error: Floats
     total_error: Floats
+
+    __repr__ = short_repr
 
 
 def nominal_value(scene: Scene, key: str) -> float:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.short_repr import short_repr
 
 LEAST = 64
 """Classes over the range of a history, at least."""
@@ -41,6 +42,8 @@ class Classes:
     powers: tuple[int, ...]
     first: tuple[int, ...]
     amount: Floats
+
+    __repr__ = short_repr
 
     def edges(self, axis: int = 0) -> Floats:
         """Limits of the classes of one quantity."""

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.histories.three_points import close_cycles, half_cycles
 
 Residue = Literal["half", "closed", "repeated"]
@@ -60,6 +61,8 @@ class Cycles:
     residue: Residue = "half"
     gate: float = 0.0
     left_out: float = 0.0
+
+    __repr__ = short_repr
 
     @property
     def rule(self) -> str:

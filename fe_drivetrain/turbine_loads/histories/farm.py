@@ -22,6 +22,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.exact_sums import ExactSum, exact_sum
 from fe_drivetrain.common.jobs import AT_ONCE, mapped
 from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.histories.classes import Classes, added, in_classes
 from fe_drivetrain.turbine_loads.histories.cycles import (
     BLOCK,
@@ -102,6 +103,8 @@ class Piece:
     counting: Counting
     open: Floats
     count: Count
+
+    __repr__ = short_repr
 
     def __add__(self, behind: Piece) -> Piece:
         """This piece with the one that follows it."""

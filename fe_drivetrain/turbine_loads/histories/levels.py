@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +30,8 @@ class Levels:
 
     edges: Floats
     amount: Floats
+
+    __repr__ = short_repr
 
     @property
     def middles(self) -> Floats:

@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.histories.cycles import rainflow_cycles
 from fe_drivetrain.turbine_loads.histories.damage import SLOPES, damage_equivalent_load
 
@@ -34,6 +35,8 @@ class Measured:
     values: Floats
     weights: Floats
     equivalent: Mapping[float, float]
+
+    __repr__ = short_repr
 
     @property
     def mean(self) -> float:

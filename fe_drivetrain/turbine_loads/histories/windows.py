@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 
 TEN_MINUTES = 600.0
 
@@ -35,6 +36,8 @@ class Windows:
     start: Floats
     seconds: Floats
     values: Floats
+
+    __repr__ = short_repr
 
     def chosen(self, which: ArrayLike) -> Windows:
         """Those for which a mask (w,) holds."""
@@ -132,6 +135,8 @@ class CaptureMatrix:
     turbulence: Floats
     counts: Ints
     outside: int
+
+    __repr__ = short_repr
 
     def missing(self, target: int) -> Ints:
         """(r, c) windows that each still needs, where each should have `target`."""

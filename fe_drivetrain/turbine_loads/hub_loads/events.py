@@ -20,6 +20,7 @@ from scipy.signal import StateSpace, lsim
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.hub_loads.turbine import Turbine
 
 State = Literal["normal operation", "start-up", "normal stop", "emergency stop"]
@@ -153,6 +154,8 @@ class Event:
     time: Floats
     torque: Floats
     thrust: Floats
+
+    __repr__ = short_repr
 
 
 def made_event(state: State, shaft: Shaft, seed: int) -> Event:

@@ -27,6 +27,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 
 LONGEST = 2.0
 """Longest loop [s]: the thesis shows loops of 1 to 2 s."""
@@ -72,6 +73,8 @@ class Loops:
     lowest: Floats
     highest: Floats
     swept: Floats
+
+    __repr__ = short_repr
 
     def __len__(self) -> int:
         return len(self.start)

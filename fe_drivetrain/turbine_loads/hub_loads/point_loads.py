@@ -10,6 +10,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +33,8 @@ class PointLoads:
 
     values: Floats
     x: float
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         values = np.asarray(self.values, dtype=np.float64)

@@ -14,6 +14,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.csv_cells import cell_as_given
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import (
     LOAD_NAMES,
     ChannelMap,
@@ -82,6 +83,8 @@ class Recorded:
     rotor_speed: Floats | None = None
     wind_speed: Floats | None = None
     others: Mapping[str, Floats] = field(default_factory=dict)
+
+    __repr__ = short_repr
 
 
 def recorded_files(files: Files) -> list[Path]:

@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.hub_loads.aero_rotor import (
     Rotor,
     aerodynamic_hub_loads,
@@ -63,6 +64,8 @@ class WindBox:
     y: Floats
     z: Floats
     speed: NDArray[np.float32]
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         if self.speed.shape[1:] != (len(self.y), len(self.z)) or min(self.speed.shape) < 2:
