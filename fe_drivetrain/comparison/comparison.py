@@ -182,10 +182,7 @@ def compare_streamed(
     slope = ratio(mean_product, size_m**2)
     kept, shares, residual = _second_sums(chunks, exclude_below * size_r, slope, n)
 
-    spread = np.maximum(total.largest - total.mean[:2], total.mean[:2] - total.least)
-    largest = np.maximum(np.abs(total.largest), np.abs(total.least))
-    deviation = np.sqrt(np.einsum("iik->ik", total.products) / n)
-    deviation[:2][spread <= CONSTANT * largest] = 0.0
+    deviation = _deviations(total)
     pearson = np.clip(ratio(total.products[0, 1] / n, deviation[0] * deviation[1]), -1.0, 1.0)
     slope_size = np.abs(mean_product) / np.where(size_m > 0.0, size_m, 1.0)
     correlated = np.where(slope_size > CONSTANT * size_r, slope_size, 0.0)
@@ -234,6 +231,15 @@ def _total(chunks: Callable[[], Iterable[Chunk]], count: int) -> Moments:
         n = 0 if total is None else total.count
         raise InputError(f"histories of {n} samples must have at least 2: give longer ones.")
     return total
+
+
+def _deviations(total: Moments) -> Floats:
+    """Standard deviations of reference, model and difference; 0 of what is constant."""
+    spread = np.maximum(total.largest - total.mean[:2], total.mean[:2] - total.least)
+    largest = np.maximum(np.abs(total.largest), np.abs(total.least))
+    deviation = np.asarray(np.sqrt(np.einsum("iik->ik", total.products) / total.count))
+    deviation[:2][spread <= CONSTANT * largest] = 0.0
+    return deviation
 
 
 def _second_sums(

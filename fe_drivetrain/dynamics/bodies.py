@@ -1,6 +1,6 @@
 """Rigid bodies with six degrees of freedom each, held, tied to each other or free."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, field, replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
@@ -192,14 +192,7 @@ def study(
     evaluate = _evaluation(found, bounds)
     report("sensitivities")
     slopes = sensitivities(scene, evaluate, list(scene.uncertainty))
-    content = {
-        "numbers of": whole_content(scene),
-        "level": level,
-        "seed of surfaces": seed,
-        "asked": list(asked),
-        "load": None if load is None else factor_values(scene, load).tolist(),
-        "made by": {"code": program_hash(), **solved_by()},
-    }
+    content = _content(scene, level, seed, asked, load)
     samples = sample(scene, evaluate, count, seed, report, content)
     varying = [n.name for n in found if samples[n.name].varies]
     shares = sobol_shares(scene, evaluate, varying, sobol, seed, report, content) if sobol else {}
@@ -219,6 +212,20 @@ def study(
         surfaces,
         shares,
     )
+
+
+def _content(
+    scene: Scene, level: int, seed: int, asked: Sequence[str], load: Factors | Floats | None
+) -> dict[str, Any]:
+    """What the samples depend on, for the key under which they are kept."""
+    return {
+        "numbers of": whole_content(scene),
+        "level": level,
+        "seed of surfaces": seed,
+        "asked": list(asked),
+        "load": None if load is None else factor_values(scene, load).tolist(),
+        "made by": {"code": program_hash(), **solved_by()},
+    }
 
 
 def _bounded(

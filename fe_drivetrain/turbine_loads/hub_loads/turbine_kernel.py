@@ -68,6 +68,10 @@ class Control(NamedTuple):
     held: bool
 
 
+#: Cosines and sines of the tilt and of the azimuth, or of a blade's azimuth and of its pitch.
+Turns = tuple[float, float, float, float]
+
+
 @njit(cache=True)
 def moving(
     parts: Parts,
@@ -95,11 +99,12 @@ def moving(
         rates[j] = 0.0
     rates[PSI] = state[SPEED]
     right, inertia, hub = np.zeros(3), np.zeros((3, 3)), np.zeros(3)
-    in_shaft = _hub(parts, state, sums, torque, right, inertia, rates)
+    turns = (math.cos(parts.tilt), math.sin(parts.tilt), math.cos(state[PSI]), math.sin(state[PSI]))
+    in_shaft = _hub(parts, state, sums, torque, turns, right, inertia, rates)
     blades = _Blades(
         np.zeros((3, 2)), np.zeros((3, 2, 3)), np.zeros((3, 2, 2)), np.zeros((3, 2, 2))
     )
-    _blades_answer(parts, state, sums, pitch, right, inertia, blades)
+    _blades_answer(parts, state, sums, pitch, turns, right, inertia, blades)
     if parts.tower_moves:
         solved(inertia, right, hub)
         rates[FORE], rates[FORE_RATE] = state[FORE_RATE], hub[0]
@@ -110,7 +115,7 @@ def moving(
     if not parts.torsion:
         rates[GENERATOR] = hub[2]
         in_shaft = torque + parts.generator_inertia * hub[2]
-    _shaft_loads(parts, state, sums, hub, blades, in_shaft, rates, loads)
+    _shaft_loads(parts, state, sums, hub, blades, in_shaft, turns, rates, loads)
 
 
 # What `moving` and the loop are made of is written into them: handing the turbine on takes longer
@@ -142,13 +147,14 @@ def _hub(
     state: Floats,
     sums: Floats,
     torque: float,
+    turns: Turns,
     right: Floats,
     inertia: Floats,
     rates: Floats,
 ) -> float:
     """Right sides and inertia of the hub's motion without the blades'; the torque of the shaft."""
-    cos_tilt, g, speed = math.cos(parts.tilt), parts.gravity, state[SPEED]
-    sin1, cos1 = math.sin(state[PSI]), math.cos(state[PSI])
+    g, speed = parts.gravity, state[SPEED]
+    cos_tilt, _, cos1, sin1 = turns
     right[0] = sums[0, 0] + sums[1, 0] + sums[2, 0]
     right[1] = -parts.imbalance * speed**2 * sin1
     right[2] = sums[0, 3] + sums[1, 3] + sums[2, 3] + parts.imbalance * g * cos_tilt * sin1
@@ -178,6 +184,7 @@ def _blades_answer(
     state: Floats,
     sums: Floats,
     pitch: float,
+    turns: Turns,
     right: Floats,
     inertia: Floats,
     blades: _Blades,
@@ -186,11 +193,14 @@ def _blades_answer(
     coupled = np.zeros((2, 3))
     for i in range(3):
         angle = state[PSI] + 2.0 * math.pi * i / 3.0
-        right[1] -= sums[i, 2] * math.cos(angle)
+        cos = math.cos(angle)
+        right[1] -= sums[i, 2] * cos
         if not parts.blades_move:
             continue
-        _turned(parts, pitch, i, blades)
-        _modes(parts, state, sums, pitch, i, right, blades, coupled)
+        turn = pitch + parts.pitch_errors[i]
+        own = (cos, math.sin(angle), math.cos(turn), math.sin(turn))
+        _turned(parts, own, i, blades)
+        _modes(parts, state, sums, turns, own, i, right, blades, coupled)
         _answers(parts, i, coupled, blades)
         for k in range(3):
             for a in range(2):
@@ -200,10 +210,9 @@ def _blades_answer(
 
 
 @njit(cache=True, inline="always")
-def _turned(parts: Parts, pitch: float, i: int, blades: _Blades) -> None:
+def _turned(parts: Parts, own: Turns, i: int, blades: _Blades) -> None:
     """Integrals of a blade's modes, turned by its pitch."""
-    turn = pitch + parts.pitch_errors[i]
-    c, s = math.cos(turn), math.sin(turn)
+    _, _, c, s = own
     force, moment = blades.force, blades.moment
     for a in range(2):
         force[i, a, 0] = parts.force[a, 0] * c - parts.force[a, 1] * s
@@ -217,18 +226,17 @@ def _modes(
     parts: Parts,
     state: Floats,
     sums: Floats,
-    pitch: float,
+    turns: Turns,
+    angles: Turns,
     i: int,
     right: Floats,
     blades: _Blades,
     coupled: Floats,
 ) -> None:
     """Force on each mode of a blade, what couples it with the hub, and what it adds there."""
-    cos_tilt, sin_tilt = math.cos(parts.tilt), math.sin(parts.tilt)
     g, speed = parts.gravity, state[SPEED]
-    angle, turn = state[PSI] + 2.0 * math.pi * i / 3.0, pitch + parts.pitch_errors[i]
-    cos, sin = math.cos(angle), math.sin(angle)
-    c, s = math.cos(turn), math.sin(turn)
+    cos_tilt, sin_tilt, _, _ = turns
+    cos, sin, c, s = angles
     force, moment = blades.force, blades.moment
     for a in range(2):
         coupled[a, 0] = force[i, a, 0]
@@ -273,13 +281,13 @@ def _shaft_loads(
     hub: Floats,
     blades: _Blades,
     in_shaft: float,
+    turns: Turns,
     rates: Floats,
     loads: Floats,
 ) -> None:
     """Loads of the rotor on the shaft, and the rates of the blades' modes."""
-    cos_tilt, sin_tilt = math.cos(parts.tilt), math.sin(parts.tilt)
     g, speed = parts.gravity, state[SPEED]
-    sin1, cos1 = math.sin(state[PSI]), math.cos(state[PSI])
+    cos_tilt, sin_tilt, cos1, sin1 = turns
     alone, answer, force, moment = blades
     weight = parts.rotor_mass * g
     thrust = sums[0, 0] + sums[1, 0] + sums[2, 0]
