@@ -230,7 +230,8 @@ class _Chosen:
         if found is None:
             raise InputError(
                 f"hub loads '{self._source}': no pair of bending-moment channels; add LSSTipMys "
-                "and LSSTipMzs to OutList and run again, or map yours, both My and Mz (`ChannelMap`)"
+                "and LSSTipMzs to OutList and run again, or map yours, both My and Mz "
+                "(`ChannelMap`)"
             )
         if gage_distance is None:
             y, z = found.channels
