@@ -39,7 +39,8 @@ def _names(record: object) -> Iterable[str]:
     if is_dataclass(record):
         return [one.name for one in fields(record) if one.repr]
     kind: Any = type(record)
-    return kind._fields if hasattr(kind, "_fields") else kind.model_fields
+    names: Iterable[str] = kind._fields if hasattr(kind, "_fields") else kind.model_fields
+    return names
 
 
 def _within(parts: Iterator[str]) -> Iterator[str]:

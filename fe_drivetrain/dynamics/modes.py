@@ -53,7 +53,7 @@ class SystemModes:
         stiff = self.frequencies[self.frequencies > 0]
         free = self.frequencies.size - stiff.size
         span = f"{stiff[0]:.4g} to {stiff[-1]:.4g} Hz" if stiff.size else "none"
-        return f"<{stiff.size} modes of {len(self.bodies)} bodies: {span}; {free} free motions>"
+        return f"<{stiff.size} modes of {len(self.bodies)} bodies: {span}; free motions: {free}>"
 
     @property
     def energy_shares(self) -> dict[str, Floats]:

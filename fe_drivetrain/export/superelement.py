@@ -72,7 +72,7 @@ class Origin:
     scene_hash : str
         SHA-256 of the scene's values.
     level : str
-        Of the ladder, with its name.
+        Level of the ladder, with its name.
     mesh : str
         In words.
     program : str

@@ -33,15 +33,9 @@ def of_mesh(
 ) -> InTime:
     """One mass on a mesh that is suddenly loaded; on a plain spring without harmonics."""
     law = (
-        spring_laws(
-            [[1.0]],
-            40.0,
-            damping,
-            wave=0,
-            waves=contact_wave(ratio, harmonics)[None],
-            frequency=frequency,
-            phase=phase,
-        )
+        spring_laws([[1.0]], 40.0, damping)
+        .in_phase(phase=phase, frequency=frequency)
+        .with_waves(contact_wave(ratio, harmonics)[None])
         if harmonics
         else spring_laws([[1.0]], 40.0, damping)
     )

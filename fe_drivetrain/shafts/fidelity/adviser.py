@@ -61,7 +61,7 @@ class LevelResult:
     model : LevelModel
         The model that was solved.
     values : Floats
-        Of the quantity.
+        Values of the quantity.
     seconds : float
         Wall time of all that its value needs; what its estimate takes comes on top.
     waited : float
@@ -340,7 +340,7 @@ def banded_assembly(
     float
         Wall time of that alone [s]; of reading it, where it was kept.
     list[AssemblyBand]
-        Of each quantity.
+        Band of each quantity.
     """
     level, seconds, series = assembly_series(scene, quantities, report, cache)
     return level, seconds, [of.band for of in series]
@@ -421,7 +421,7 @@ def recovered_errors(
     model, response : Model, Response
         The solved assembly.
     length : float
-        Of the shaft [m], as of `Quantity.of`.
+        Length of the shaft [m], see `Quantity.of`.
 
     Returns
     -------

@@ -200,7 +200,7 @@ def reaction_error(
     model, response : Model, Response
         A solved scene.
     name : str
-        Of a bearing, or "gearbox".
+        Name of a bearing, or "gearbox".
     components : Sequence[int]
         Which of the six.
     columns : Floats
@@ -251,7 +251,7 @@ def cached_reaction_errors(
     Returns
     -------
     dict[str, Floats]
-        As of `all_reaction_errors`, the same to the last bit whether kept or not.
+        Errors as from `all_reaction_errors`, the same to the last bit whether kept or not.
     bool
         Whether they were kept.
     """

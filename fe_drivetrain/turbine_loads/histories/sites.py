@@ -33,11 +33,11 @@ class Site:
     Attributes
     ----------
     mean_wind : float
-        Of the year [m/s].
+        Mean wind speed of the year [m/s].
     shape : float
         Weibull's exponent k; 2 is Rayleigh's distribution.
     years : float
-        Of design life.
+        Design life [years].
 
     Raises
     ------
@@ -91,7 +91,7 @@ def site_of_class(name: str, years: float = 20.0) -> Site:
     name : str
         The class, with or without a category of turbulence, as in "IIB".
     years : float
-        Of design life.
+        Design life [years].
 
     Raises
     ------
@@ -205,13 +205,13 @@ def lifetime_damage(
     Parameters
     ----------
     damage : array_like, (n,)
-        Of the history of each wind speed.
+        Damage of the history of each wind speed.
     factors : array_like, (n,)
         See `time_factors`.
     of_transients : sequence of (Transient, float)
         Each event, and the damage of one.
     years : float
-        Of life.
+        Life [years].
     """
     normal = float(np.asarray(damage, dtype=float) @ np.asarray(factors, dtype=float))
     return normal + sum(event.a_year * years * one for event, one in of_transients)
@@ -225,7 +225,7 @@ def site_life(lives: ArrayLike, shares: ArrayLike) -> float:
     lives : array_like, (n,)
         At each wind [any unit of time]; infinite where there is no damage.
     shares : array_like, (n,)
-        Of time at each.
+        Shares of time at each.
 
     Returns
     -------

@@ -82,7 +82,7 @@ def window_statistics(time: ArrayLike, samples: ArrayLike, seconds: float = TEN_
     Parameters
     ----------
     time : array_like, (n,)
-        Of uniform step [s].
+        Times of uniform step [s].
     samples : array_like, (n, k)
         Channels.
     seconds : float
