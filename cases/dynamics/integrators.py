@@ -228,8 +228,10 @@ def check_angle(page: Page) -> float:
     """A mesh stiffness by the angle of its gear, with and without the force on the angle."""
     lost = {}
     wave = fourier_wave([0.3], [0.1])
-    springs = spring_laws(
-        [[1, -1], [0, 1]], [1e3, 50.0], turns=[[2, 0], [0, 0]], wave=[0, -1], waves=[wave]
+    springs = (
+        spring_laws([[1, -1], [0, 1]], [1e3, 50.0])
+        .in_phase(turns=[[2, 0], [0, 0]])
+        .with_waves([wave], [0, -1])
     )
     equations = equations_of_motion([1.0, 2.0], springs)
     start = State(np.array([0.2, 0.0]), np.array([5.0, 0.0]), np.zeros(2))

@@ -32,7 +32,7 @@ def growth_in_time(depth: float, step: float, _: int) -> InTime:
     period = 2.0 * np.pi / 2.0
     wave = fourier_wave([depth], [0.0])
     one = equations_of_motion(
-        [1.0], spring_laws([[1.0]], 1.0, wave=0, frequency=1.0 / period, waves=[wave])
+        [1.0], spring_laws([[1.0]], 1.0).in_phase(frequency=1.0 / period).with_waves([wave])
     )
     start = State(np.ones(1), np.zeros(1), np.zeros(1))
     motion = integrate(one, steady([0.0]), 10.0 * period, step, start=start)

@@ -128,7 +128,7 @@ def check_one_mass(page: Page) -> None:
     w = 2 * np.pi * f
     exact = (k + 1j * w * c) / (k - 2.0 * w**2 + 1j * w * c) * size
     error = harmonic_error([size], [0.0]).table[None]
-    springs = spring_laws([[1.0]], k, c, frequency=f, error=0, errors=error)
+    springs = spring_laws([[1.0]], k, c).in_phase(frequency=f).with_errors(error)
     begin = State(np.array([exact.real]), np.array([-w * exact.imag]), np.zeros(1))
     motion = integrate(
         equations_of_motion([2.0], springs), steady([0.0]), 1 / f, 1 / f / 400, start=begin
@@ -177,15 +177,11 @@ def steady_mesh(found: TransmissionError, ratio: float, steps: int) -> Motion:
     k = found.stiffness.mean
     own = np.sqrt(k / MASS) / (2 * np.pi)
     f = ratio * own
-    springs = spring_laws(
-        [[1.0]],
-        k,
-        2 * ZETA * np.sqrt(k * MASS),
-        wave=0,
-        waves=wave_of(found.stiffness)[None],
-        frequency=f,
-        error=0,
-        errors=error_of_slices(found, loaded=False).table[None],
+    springs = (
+        spring_laws([[1.0]], k, 2 * ZETA * np.sqrt(k * MASS))
+        .in_phase(frequency=f)
+        .with_waves(wave_of(found.stiffness)[None])
+        .with_errors(error_of_slices(found, loaded=False).table[None])
     )
     still = State(np.array([found.force / k]), np.zeros(1), np.zeros(1))
     periods = max(3, int(np.ceil(ratio * 12.0 / (2 * np.pi * ZETA))))

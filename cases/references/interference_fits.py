@@ -103,18 +103,18 @@ def press(radii: Sequence[float], misfit: float, materials: Sequence[Material], 
     Parameters
     ----------
     radii : sequence of float
-        Of the shaft's bore, the seat, and the ring's outside [m].
+        Radii of the shaft's bore, the seat, and the ring's outside [m].
     misfit : float
         On the radius [m].
     materials : sequence of Material
-        Of shaft and ring.
+        Materials of shaft and ring.
     n : int
         Elements through the ring; the shaft has four times as many.
 
     Returns
     -------
     found : Pressed
-        Of hexahedra of 27 nodes, one along the axis.
+        Result with hexahedra of 27 nodes, one along the axis.
     """
     _, seat, outside = radii
     width = (outside - seat) / n
@@ -185,7 +185,7 @@ def quarters(radii: Sequence[float], width: float, n: int) -> list[Block]:
     Parameters
     ----------
     radii : sequence of float
-        Of the shaft's bore, the seat, and the ring's outside [m].
+        Radii of the shaft's bore, the seat, and the ring's outside [m].
     width : float
         Along the axis [m].
     n : int
@@ -214,7 +214,7 @@ def pressed_pairs(
     Parameters
     ----------
     name : str
-        Of the constraint.
+        Name of the constraint.
     first, second : Ints
         (n,) nodes of either body; where the misfit is positive, the second is ahead of the first.
     normals : Floats
@@ -222,7 +222,7 @@ def pressed_pairs(
     misfit : int
         The degree of freedom: prescribed it is a misfit [m], loaded a force that presses [N].
     n_dofs : int
-        Of all.
+        Number of all degrees of freedom.
     """
     shared = np.full((len(first), 1), misfit)
     columns = np.hstack([3 * nodes[:, None] + np.arange(3) for nodes in (second, first)] + [shared])

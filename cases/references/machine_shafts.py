@@ -20,9 +20,9 @@ def shaft_scene(machine: Machine, name: str, size: float = 0.2) -> Scene:
     machine : Machine
         Its table.
     name : str
-        Of a shaft that is given by its size.
+        Name of a shaft that is given by its size.
     size : float
-        Of elements, over the diameter.
+        Size of elements over the diameter.
 
     Returns
     -------

@@ -162,7 +162,7 @@ def rounding_band(
     Parameters
     ----------
     name : str
-        Of the table whose digits count.
+        Name of the table whose digits count.
     model : callable
         From a table to its masses.
     base : Drivetrain, optional
@@ -199,7 +199,7 @@ def observable(modes: Modes, least: float = 1e-9) -> Ints:
     Parameters
     ----------
     modes : Modes
-        Of a model with a mass for each gear.
+        Modes of a model with a mass for each gear.
     least : float
         Share of the kinetic energy outside the planets, below which a mode is theirs alone.
 

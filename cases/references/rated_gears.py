@@ -62,15 +62,15 @@ class RatedMesh:
     Attributes
     ----------
     name : str
-        Of the mesh.
+        Name of the mesh.
     pair : Pair
         Its gears.
     materials : tuple of GearMaterial
-        Of both.
+        Materials of both.
     running : Running
         Torque, speed, oil, roughness.
     cycles : tuple of float
-        Of load on one flank of a tooth of each gear, over the life.
+        Cycles of load on one flank of a tooth of each gear, over the life.
     stiffness : tuple of float
         c' and c_gamma_alpha, as printed [N/m^2].
     factors : LoadFactors
@@ -82,7 +82,7 @@ class RatedMesh:
     computed_dynamics : tuple of bool
         Whether K_v, and whether K_Halpha and K_Falpha, are computed.
     cutter : Cutter or None
-        Of an internal gear.
+        Cutter of an internal gear.
     mean_stress : tuple of float
         Y_M of both gears.
     tooth_height : float

@@ -34,7 +34,7 @@ class Tube:
     length : float
         [m].
     material : Material
-        Of the shaft.
+        Material of the shaft.
     """
 
     outer: float
@@ -318,9 +318,9 @@ def between_spheres(radii: tuple[float, float], half_angle: float, shear_modulus
     Parameters
     ----------
     radii : tuple of float
-        Of the flat ends through whose centres the spheres go [m].
+        Radii of the flat ends through whose centres the spheres go [m].
     half_angle : float
-        Of the cone [rad].
+        Half angle of the cone [rad].
     shear_modulus : float
         G [Pa].
     """
@@ -352,7 +352,7 @@ def chain_frequencies(inertias: ArrayLike, springs: ArrayLike, ground: float = 0
     springs : ArrayLike
         (n - 1,) between neighbours [N m/rad].
     ground : float
-        Of the last inertia to the ground [N m/rad].
+        Stiffness of the last inertia to the ground [N m/rad].
     """
     J, k = np.asarray(inertias, dtype=float), np.asarray(springs, dtype=float)
     K = np.diag(np.concatenate([k, [ground]]) + np.concatenate([[0.0], k]))

@@ -124,7 +124,7 @@ class SupportedShaft:
         Parameters
         ----------
         refinement : int
-            Of the family of meshes, see `solid_shafts.solid`.
+            Refinement of the family of meshes, see `solid_shafts.solid`.
         size : float, optional
             Longest element of the first of them [m].
         """
@@ -146,8 +146,8 @@ def sag_over_beam(tube: Tube) -> tuple[float, float]:
     Returns
     -------
     solid, evenly : float, float
-        Of a mesh of hexahedra, and of the beam with the coefficient of an evenly held root. With
-        the mesh's own mass and I, so that what is left is not the section's error.
+        Values of a mesh of hexahedra, and of the beam with the coefficient of an evenly held root.
+        With the mesh's own mass and I, so that what is left is not the section's error.
     """
     shaft = solid_shafts.straight((0.0, tube.length), tube.outer, tube.inner)
     mesh = solid_shafts.solid(shaft, 2, size=tube.outer)

@@ -145,15 +145,10 @@ def show(page: Page, found: Sweeps, safe: float) -> None:
 
 def mesh(frequency: float, half: float) -> Equations:
     """One mesh of unit mass and mean stiffness, its frequency over its natural one."""
-    springs = spring_laws(
-        [[1.0]],
-        1.0,
-        0.0,
-        lower=-half,
-        upper=half,
-        wave=0,
-        frequency=frequency / (2.0 * np.pi),
-        waves=[fourier_wave([VARIATION], [0.0])],
+    springs = (
+        spring_laws([[1.0]], 1.0, 0.0, lower=-half, upper=half)
+        .in_phase(frequency=frequency / (2.0 * np.pi))
+        .with_waves([fourier_wave([VARIATION], [0.0])])
     )
     return equations_of_motion([1.0], springs, [[2.0 * RATIO]])
 

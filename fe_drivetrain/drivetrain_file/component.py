@@ -28,7 +28,7 @@ class Attachment(NamedTuple):
     Attributes
     ----------
     name : str
-        Of the point.
+        Name of the point.
     face : str
         The face that it moves with, by its name in the mesh.
     position : Floats

@@ -231,7 +231,7 @@ def nominal_values(scene: Scene, keys: Sequence[str]) -> list[float]:
     scene : Scene
         The scene.
     keys : Sequence[str]
-        As for `fe_drivetrain.drivetrain_file.change_scene`.
+        Keys as `fe_drivetrain.drivetrain_file.change_scene` takes them.
 
     Raises
     ------
@@ -284,7 +284,7 @@ def coarser_scene(scene: Scene, factor: float, elements_per_turn: int) -> Scene:
     scene : Scene
         The scene.
     factor : float
-        Of its mesh sizes; what a thin wall does not allow stays smaller.
+        Factor of its mesh sizes; what a thin wall does not allow stays smaller.
     elements_per_turn : int
         Round any cylinder.
     """

@@ -37,7 +37,7 @@ class Printed:
     quantity : str
         "displacements", "forces" or "total internal energy".
     set_name : str
-        Of the nodes or elements.
+        Name of the set of nodes or elements.
     time : float
         Total time, which counts the steps.
     nodes : Ints

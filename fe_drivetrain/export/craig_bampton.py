@@ -135,7 +135,7 @@ def craig_bampton_shaft(
     at : Sequence[str] or None
         Points that are kept, and stand still; all where not given.
     size, order, rings : float or None, int or None, bool
-        As for `fe_drivetrain.shafts.fidelity.shafts.meridian_shaft`.
+        The same as for `fe_drivetrain.shafts.fidelity.shafts.meridian_shaft`.
 
     Raises
     ------
@@ -204,7 +204,7 @@ def free_frequencies(
     Parameters
     ----------
     scene, size, order, rings : Scene, float or None, int or None, bool
-        As for `craig_bampton_shaft`.
+        The same as for `craig_bampton_shaft`.
     count : int
         How many of each harmonic, 0 and 1, rigid motions not counted.
 

@@ -102,7 +102,7 @@ class Channels:
         Parameters
         ----------
         name : str
-            Of the mapping, or of the file.
+            Name in the mapping, or in the file.
 
         Raises
         ------

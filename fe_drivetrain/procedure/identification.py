@@ -245,7 +245,7 @@ class Fit:
     values : ndarray, (3,)
         [kg m^2], [N m s/rad], [N m/rad].
     covariance : ndarray, (3, 3)
-        Of these, from the residual.
+        Covariance of these, from the residual.
     """
 
     values: Floats

@@ -48,11 +48,11 @@ class Interface:
         Body, or `GROUND`, that gives the loads, and body that takes them; it takes them reversed
         the other way.
     position : ndarray, (3,)
-        Of the loads [m].
+        Place of the loads [m].
     loads : ndarray, (n, 6)
         Forces [N] and moments [N m] on `on`.
     displacements, accelerations : ndarray, (n, 6), optional
-        Of the interface [m, rad], [m/s^2, rad/s^2].
+        Motion of the interface [m, rad], [m/s^2, rad/s^2].
     source : str
         "measured", "simulated", "estimated".
     """
@@ -78,7 +78,7 @@ class Body:
     name : str
         Unique in a table.
     centre : ndarray, (3,)
-        Of mass [m].
+        Centre of mass [m].
     own : ndarray, (6,) or (n, 6)
         Weight and inertia, mass times gravity less acceleration, about the centre [N, N m].
     """
@@ -97,7 +97,7 @@ class LoadTable:
     Attributes
     ----------
     time : ndarray, (n,)
-        Of uniform step [s].
+        Times of uniform step [s].
     interfaces : tuple of Interface
     bodies : tuple of Body
 
@@ -139,7 +139,7 @@ class LoadTable:
         Parameters
         ----------
         name : str
-            Of an interface.
+            Name of an interface.
 
         Raises
         ------
@@ -221,7 +221,7 @@ def analysed(table: LoadTable, slopes: Sequence[float] = (4.0, 10.0)) -> list[di
     Parameters
     ----------
     table : LoadTable
-        Of uniform step.
+        Table of uniform step.
     slopes : sequence of float
         Exponents of damage-equivalent loads at 1 Hz.
 
@@ -313,7 +313,7 @@ def write_load_json(table: LoadTable, path: str | Path) -> None:
     Parameters
     ----------
     table : LoadTable
-        Of uniform step.
+        Table of uniform step.
     path : str or Path
         File, which appears whole.
     """

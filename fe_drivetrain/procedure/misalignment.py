@@ -35,7 +35,7 @@ class Misalignment:
     Attributes
     ----------
     names : tuple of str
-        Of the supports' rows.
+        Names of the supports' rows.
     influence : ndarray, (m, m)
         Force of each row on the structure, by offset of each [N/m, N/rad, N m/rad]; symmetric.
     """
@@ -91,13 +91,13 @@ def influence_of_offsets(
     Parameters
     ----------
     stiffness : ndarray, (n, n)
-        Of the free structure, in any degrees of freedom.
+        Stiffness of the free structure, in any degrees of freedom.
     rows : ndarray, (m, n)
         H: the motion that each support holds.
     supports : ndarray, (m,)
         Stiffness of each; infinite of a rigid one.
     names : tuple of str
-        Of the rows.
+        Names of the rows.
 
     Raises
     ------

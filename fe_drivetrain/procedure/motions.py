@@ -61,7 +61,7 @@ def periodic_motions(system: Torsional, torques: Floats, step: float) -> Motions
     Returns
     -------
     Motions
-        Of a system that turns freely, without its free turning.
+        Motions of a system that turns freely, without its free turning.
 
     Raises
     ------
@@ -157,12 +157,12 @@ def motions_energy_error(system: Torsional, torques: Floats, motions: Motions) -
     torques : ndarray, (n, samples)
         On each inertia, straight between samples [N m].
     motions : Motions
-        As of `driven_motions`.
+        Motions from `driven_motions`.
 
     Returns
     -------
     float
-        As of `fe_drivetrain.dynamics.energy_error`.
+        Energy error, as `fe_drivetrain.dynamics.energy_error` defines it.
     """
     loads = varying(np.eye(len(torques)), motions.time, torques.T)
     equations = torsional_equations(system)
@@ -177,7 +177,7 @@ def element_torques(system: Torsional, motions: Motions) -> Floats:
     system : Torsional
         Whose motions they are.
     motions : Motions
-        Of all its inertias.
+        Motions of all its inertias.
 
     Returns
     -------
@@ -207,7 +207,7 @@ def band_torque(
     deviation : float
         Standard deviation [N m].
     seed : int
-        Of the random phases and amplitudes.
+        Seed of the random phases and amplitudes.
 
     Returns
     -------

@@ -29,7 +29,7 @@ class RingShape:
     Attributes
     ----------
     radius : float
-        Of the neutral line [m].
+        Radius of the neutral line [m].
     orders : ndarray, (n,)
         Waves round the ring, from 2 on.
     cosine, sine : ndarray, (n,)
@@ -106,7 +106,7 @@ class RingShape:
         Parameters
         ----------
         angle : array_like
-            Of one of its ends [rad].
+            Angle of one of its ends [rad].
         """
         return self.radial(angle) + self.radial(np.asarray(angle) + np.pi)
 
@@ -119,7 +119,7 @@ def ring_under_forces(
     Parameters
     ----------
     radius : float
-        Of the neutral line [m].
+        Radius of the neutral line [m].
     bending : float
         Bending stiffness E I in the plane of the ring [N m^2].
     angles, forces : array_like, (m,)
@@ -155,7 +155,7 @@ class FittedShape:
     Attributes
     ----------
     shape : RingShape
-        Of least squares.
+        Shape of least squares.
     offset : float
         Constant strain, as of gauges that are not calibrated, or of stretching.
     residual : float
@@ -179,9 +179,9 @@ def fitted_shape(
     Parameters
     ----------
     radius, outside : float
-        As of `RingShape.strain` [m].
+        Radii as for `RingShape.strain` [m].
     angles, strains : array_like, (m,)
-        Of the gauges [rad], [-].
+        Angles and strains of the gauges [rad], [-].
     orders : array_like of int, (n,)
         Which waves there are; 2 n + 1 unknowns.
 

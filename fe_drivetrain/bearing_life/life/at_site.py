@@ -25,9 +25,9 @@ class SiteLife:
     speeds, shares : Floats
         (n,) mean winds [m/s], and their shares of time, whose sum is below 1.
     at_winds : tuple of Damage
-        Of each wind, as its histories have it.
+        Damage at each wind, as its histories have it.
     a_year : Damage
-        Of a year at the site, all winds together.
+        Damage of a year at the site, all winds together.
     """
 
     site: Site

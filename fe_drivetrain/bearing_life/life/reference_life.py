@@ -79,7 +79,7 @@ def stress_riser(laminae: int) -> Floats:
     Parameters
     ----------
     laminae : int
-        Of a roller.
+        Number of laminae of a roller.
 
     Returns
     -------
@@ -221,7 +221,7 @@ def rows_of(
     Parameters
     ----------
     bearing : Bearing
-        Of equal rows of rollers with laminae.
+        Bearing of equal rows of rollers with laminae.
     displacements : array_like
         (n, 5) [m, rad], from `fe_drivetrain.bearing.equilibrium`.
     capacity : float

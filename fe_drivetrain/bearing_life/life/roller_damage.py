@@ -272,7 +272,7 @@ def damage_of_steps(steps: Steps, rated: RatedBearing, rules: LifeRules) -> Dama
     Returns
     -------
     damage : Damage
-        Of these steps; damages of several chunks add up. Steps without equilibrium do no damage and
+        Damage of these steps; several chunks' add up. Steps without equilibrium do no damage and
         are counted in `Limits.lost`.
 
     Raises

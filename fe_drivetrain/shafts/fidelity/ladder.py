@@ -62,7 +62,7 @@ class Cost:
     seconds : float
         Wall time, meshes and solutions included.
     unknowns : int
-        Of its largest system.
+        Number of unknowns of its largest system.
     """
 
     seconds: float
@@ -80,7 +80,7 @@ class LevelModel:
     level : int
         0 to 4.
     title : str
-        Of the level, with what its housings are.
+        Title of the level, with what its housings are.
     neglects : tuple[str, ...]
         What it leaves out.
     cost : Cost
@@ -298,7 +298,7 @@ def housing_springs(
     scene, coupling : Scene, Coupling
         See `bearing_units.unit_stiffness`.
     level : int
-        Of the shaft that they are for: a solid one (3) has all rings itself.
+        Level of the shaft that they are for: a solid one (3) has all rings itself.
     cache : Cache or None
         Where they may come from; the user's if not given.
     solids : dict or None

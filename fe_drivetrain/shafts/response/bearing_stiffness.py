@@ -29,8 +29,8 @@ class Plane:
     force, moment : int
         Components (0-5) of the force and of the moment that bend the shaft in this plane.
     sign : int
-        Of the moment: a positive force at the hub and a positive sign * moment load the bearing
-        in the same direction.
+        Sign of the moment: a positive force at the hub and a positive sign * moment load the
+        bearing in the same direction.
     nodes : tuple[str, str]
         The two named points of the housing whose displacement along x gives its rotation.
     """
@@ -100,7 +100,7 @@ def tilt_stiffness(
     Parameters
     ----------
     model, response : Model, Response
-        Of a scene without gearbox springs, so that the bearing carries the whole moment.
+        Scene without gearbox springs, so that the bearing carries the whole moment; its response.
     bearing : str
         Name of the bearing.
     plane : Plane
@@ -157,6 +157,31 @@ def tilt_stiffness(
     return found
 
 
+def tilt_by_plane(model: Model, response: Response, bearing: str) -> dict[str, dict[str, float]]:
+    """K_R of a bearing unit by plane and estimator, without a word where four nodes mislead.
+
+    Parameters
+    ----------
+    model, response : Model, Response
+        Of a scene without gearbox springs.
+    bearing : str
+        Name of the bearing.
+
+    Returns
+    -------
+    dict of str to dict of str to float
+        [N m/rad] by plane ("vertical", "horizontal") and estimator, see `tilt_stiffness`.
+
+    Raises
+    ------
+    InputError
+        As `tilt_stiffness`.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the averaged seat stands beside the four nodes
+        return {plane.name: tilt_stiffness(model, response, bearing, plane) for plane in PLANES}
+
+
 def bearing_unit_stiffness(response: Response, bearing: str) -> Floats:
     """Condensed 6x6 stiffness of a bearing and its housing, as the shaft feels it.
 
@@ -169,8 +194,8 @@ def bearing_unit_stiffness(response: Response, bearing: str) -> Floats:
     Parameters
     ----------
     response : Response
-        Of a scene without gearbox springs; of a spherical joint, which carries no moment, the
-        response with its gearbox.
+        Response of a scene without gearbox springs; of a spherical joint, which carries no moment,
+        the response with its gearbox.
     bearing : str
         Name of the bearing.
 

@@ -64,9 +64,9 @@ def entering(where: Entered, loads: Loads) -> PointLoads:
     where : Scene, or what was solved of one
         With m load points.
     loads : LoadHistory, PointLoads or array_like
-        Of a history, those at load points that it does not have are zero, and the weights of load
-        points are added. `PointLoads` name the point that they are about. An array, (..., 6) or
-        (..., 6 + 6 m) [N, N m], is about the front face.
+        Loads; of a history, those at load points that it does not have are zero, and the weights of
+        load points are added. `PointLoads` name the point that they are about. An array, (..., 6)
+        or (..., 6 + 6 m) [N, N m], is about the front face.
 
     Returns
     -------
@@ -104,7 +104,7 @@ def at_front(where: Entered, history: LoadHistory) -> LoadHistory:
     where : Scene, or what was solved of one
         States which point a history is about that names none.
     history : LoadHistory
-        Of a file, or made.
+        History from a file, or made.
 
     Raises
     ------

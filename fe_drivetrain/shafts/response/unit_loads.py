@@ -49,7 +49,7 @@ class Response:
         Difference between the reactions to a random load, solved directly, and the superposed
         ones, relative to the largest reaction.
     diagnostics : Diagnostics
-        Of the solve.
+        Diagnostics of the solve.
     kept : bool
         Whether it was taken from the cache instead of solved.
     entrance : Entrance
@@ -135,7 +135,7 @@ class Response:
         hub_loads : PointLoads or array_like
             (6,) and more, as of `history`.
         gearbox_weight, gravity : float
-            As of `history`.
+            The same as for `history`.
 
         Returns
         -------
@@ -165,7 +165,7 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
     method : str
         Solver, see `solvers.solve`.
     seed : int
-        Of the random load vector of the superposition check.
+        Seed of the random load vector of the superposition check.
 
     Raises
     ------

@@ -60,7 +60,7 @@ class Samples:
     Attributes
     ----------
     keys : tuple[str, ...]
-        Of the d uncertain values.
+        Keys of the d uncertain values.
     inputs, values : Floats
         (n, d), and (n,) the result of each sample.
     nominal : float
@@ -145,7 +145,7 @@ class Shares:
     Attributes
     ----------
     keys : tuple[str, ...]
-        Of the d uncertain values.
+        Keys of the d uncertain values.
     first, total : Floats
         (d,) what each value does alone, and with all in which it has a part.
     first_error, total_error : Floats
@@ -257,7 +257,7 @@ def sample(
     count : int
         Samples.
     seed : int
-        Of the hypercube.
+        Seed of the hypercube.
     report : callable
         Called with what is being done.
     content : mapping or None
@@ -303,15 +303,15 @@ def sobol_shares(
     scene, evaluate : Scene, Evaluate
         What is varied, and its results.
     names : Sequence[str]
-        Of results that vary.
+        Names of results that vary.
     count : int
         Base samples, a power of two; (d + 2) times as many evaluations of d values.
     seed : int
-        Of the samples.
+        Seed of the samples.
     report : callable
         Called with what is being done.
     content : mapping or None
-        As of `sample`.
+        Content of the key, see `sample`.
     """
     check_spreads(scene)
     keys = tuple(scene.uncertainty)
@@ -346,19 +346,19 @@ def variance_shares(
     Parameters
     ----------
     results : callable
-        Of rows (n, d) of values the s results, (s, n). It is called with the base samples, twice
+        The s results (s, n) of rows (n, d) of values. It is called with the base samples, twice
         `count` rows of independent inputs, and then with each input exchanged.
     distributions : mapping
         scipy's distribution of each of d values, by name.
     count : int
         Base samples, a power of two; (d + 2) times as many evaluations.
     seed : int
-        Of the samples.
+        Seed of the samples.
 
     Returns
     -------
     shares : list of Shares
-        Of each of the s results (Sobol 2001; Saltelli et al. 2010).
+        Shares of each of the s results (Sobol 2001; Saltelli et al. 2010).
     """
     keys = tuple(distributions)
     d = len(keys)

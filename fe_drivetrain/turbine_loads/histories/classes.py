@@ -32,7 +32,7 @@ class Classes:
     Attributes
     ----------
     powers : tuple of int
-        Of two: the widths of the classes of each quantity.
+        Powers of two: the widths of the classes of each quantity.
     first : tuple of int
         Lower limit of the first class of each, in widths.
     amount : ndarray
@@ -75,7 +75,7 @@ def in_classes(
     least : int
         Classes over the range of each quantity, at least.
     power : int, optional
-        Of two: the width of the classes, where it is not to follow from the range.
+        Power of two: the width of the classes, where it is not to follow from the range.
     """
     powers, first, places, shape = [], [], [], []
     for column in columns:

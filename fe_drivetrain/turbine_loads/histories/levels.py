@@ -89,11 +89,11 @@ def revolutions_at_level(
     signal : array_like, (n,)
         The load.
     speed : array_like, (n,) or float
-        Of the shaft [rad/s]; turns count in either direction.
+        Speed of the shaft [rad/s]; turns count in either direction.
     step : float
         Between two samples [s].
     edges : array_like, (k + 1,)
-        As of `time_at_level`.
+        Edges, see `time_at_level`.
 
     Raises
     ------

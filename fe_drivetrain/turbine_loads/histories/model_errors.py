@@ -66,7 +66,7 @@ def measured(
     steps : sequence of float
         Between two samples of each [s].
     slopes : sequence of float
-        Of S-N curves.
+        Slopes of S-N curves.
     """
     seconds = np.repeat(np.asarray(steps, dtype=float), [len(h) for h in histories])
     total = float(seconds.sum())
@@ -81,7 +81,7 @@ def model_errors(model: Measured, reference: Measured) -> dict[str, float]:
     Parameters
     ----------
     model, reference : Measured
-        Of one load over the same histories.
+        Measures of one load over the same histories.
 
     Returns
     -------
@@ -110,9 +110,9 @@ def damage_ratio(error: float, slope: float) -> float:
     Parameters
     ----------
     error : float
-        Of the load, as a share.
+        Error of the load, as a share.
     slope : float
-        Of the S-N curve.
+        Slope of the S-N curve.
     """
     return float((1.0 + error) ** slope)
 

@@ -143,7 +143,7 @@ def multiples(
     Parameters
     ----------
     found : Spectrum
-        Of a channel.
+        Spectrum of a channel.
     rotor_speed : float
         Mean [rad/s].
     numbers : sequence of int

@@ -81,7 +81,7 @@ def stated(state: State, shaft: Shaft) -> Statistics:
     Parameters
     ----------
     state : State
-        Of operation.
+        State of operation.
     shaft : Shaft
         "slow" (rotor) or "fast" (generator).
     """
@@ -167,11 +167,11 @@ def made_event(state: State, shaft: Shaft, seed: int) -> Event:
     Parameters
     ----------
     state : State
-        Of operation.
+        State of operation.
     shaft : Shaft
         "slow" or "fast".
     seed : int
-        Of the random numbers; the largest cycle and the statistics are the same for all.
+        Seed of the random numbers; the largest cycle and the statistics are the same for all.
     """
     asked = stated(state, shaft)
     random = np.random.default_rng(np.random.SeedSequence([seed, sum(map(ord, state + shaft))]))

@@ -178,7 +178,7 @@ def energy_account(
     Parameters
     ----------
     turbine, controller, inflow, physics : Turbine, Controller, Inflow, Physics or None
-        As for `simulate`.
+        The same as for `simulate`.
     azimuth, held, start, longest_step : float, bool, tuple of float or None, float
         As there.
 
@@ -243,7 +243,7 @@ def accounted_history(
     condition, turbine : Condition, Turbine
         The wind, the turbine.
     controller, physics, duration, rate : Controller or None, Physics or None, float, float
-        As for `turbine_history`.
+        The same as for `turbine_history`.
     longest_step : float
         Longest step of the integration [s], as for `simulate`.
     harmonics : int or None
@@ -291,7 +291,7 @@ def turbine_histories(
     conditions : iterable of Condition
         The winds; those of one mean speed side by side share what is expensive.
     turbine, controller, physics : Turbine, Controller or None, Physics or None
-        As for `turbine_history`.
+        The same as for `turbine_history`.
     duration, rate : float
         As there.
     cache : bool or Cache

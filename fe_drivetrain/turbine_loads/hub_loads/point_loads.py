@@ -23,7 +23,7 @@ class PointLoads:
         (..., 6) Fx, Fy, Fz [N], Mx, My, Mz [N m] in the shaft frame that does not turn; with
         (..., 6 + 6 m) those at m load points, about these, with their weights.
     x : float
-        Of the point on the shaft's axis that the moments of the first six are about [m].
+        Place of the point on the shaft's axis that the moments of the first six are about [m].
 
     Raises
     ------

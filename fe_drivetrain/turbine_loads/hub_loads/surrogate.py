@@ -84,7 +84,7 @@ class Condition:
     shear : float
         Power-law exponent, 0 to 1.
     seed : int
-        Of the random numbers, not negative.
+        Seed of the random numbers, not negative.
 
     Raises
     ------
@@ -234,7 +234,7 @@ def hub_load_set(
     conditions : Sequence[Condition] or None
         ``surrogate_grid()`` if not given.
     duration, rate, rotor : float, float, Rotor or None
-        As for ``hub_loads``.
+        The same as for ``hub_loads``.
     cache : bool or str or path-like
         Whether to keep histories in the user's cache, or another folder for them.
     progress : callable or None

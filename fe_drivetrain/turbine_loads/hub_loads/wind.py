@@ -98,7 +98,7 @@ class DiscTurbulence:
     Attributes
     ----------
     radius : array_like, (r,)
-        Of the rings [m].
+        Radii of the rings [m].
         Rings of the disc.
     samples, rate : int, float
         Length n of a history and its samples a second [Hz].
@@ -157,7 +157,7 @@ def disc_turbulence(
     Parameters
     ----------
     radius : array_like, (r,)
-        Of the rings [m].
+        Radii of the rings [m].
     harmonics : int
         Highest azimuth harmonic M.
     wind_speed : float
