@@ -13,11 +13,9 @@ from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.elasticity.mesh import quality
 from fe_drivetrain.report import (
     Image,
-    NoPictureError,
     Solid,
     Text,
-    deformed_shape,
-    picture_of_model,
+    model_pictures,
 )
 from fe_drivetrain.report.suite import Page, Run
 from fe_drivetrain.shafts.response import (
@@ -192,13 +190,7 @@ def pictures_of(
         For the page; a sentence that says why where nothing can be drawn.
     """
     with run.step("pictures"):
-        try:
-            picture_of_model(solved.model, run.folder / "model.png")
-            shape = deformed_shape(solved.model, solved.response, loads, run.folder, what)
-        except NoPictureError as reason:
-            return [Text(text=f"No picture: {reason}")]
-    caption = f"{solved.scene.title}: parts, loads and supports"
-    return [Image(caption=caption, file="model.png"), shape]
+        return model_pictures(solved.model, solved.response, loads, run.folder, what)
 
 
 def assume(page: Page, scene: Scene) -> None:
