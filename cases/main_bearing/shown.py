@@ -22,6 +22,7 @@ from fe_drivetrain.shafts.response import (
     ESTIMATORS,
     LOADS,
 )
+from fe_drivetrain.studies import model_checks
 from fe_drivetrain.studies.seat_stiffness import SeatStiffness
 from fe_drivetrain.studies.solved_assembly import Assembly
 
@@ -35,21 +36,7 @@ _OTHER_HOUSING = "The thesis's values belong to its own housing, whose dimension
 def check_solution(page: Page, solved: Assembly, label: str) -> None:
     """The two independent checks that every solution carries."""
     with page.of(solved.scene):
-        page.vanishes(
-            f"{label}: total equilibrium, applied less reacted",
-            solved.response.equilibrium_error,
-            within=1e-8,
-            why="reactions come from the residual on constrained degrees of freedom: solver "
-            "accuracy",
-            source="exact",
-        )
-        page.vanishes(
-            f"{label}: linearity, a random load solved directly against superposed",
-            solved.response.superposition_error,
-            within=1e-8,
-            why="the scene is linear: solver accuracy",
-            source="exact",
-        )
+        model_checks.check_solution(page, solved.response, label)
 
 
 def check_series(page: Page, series: Series, label: str) -> None:
