@@ -232,7 +232,12 @@ def spring_laws(
     zero, no_table = np.zeros(m), np.zeros((0, 1, 4))
     springs = SpringLaws(
         H,
-        *(_each(v, m) for v in (stiffness, damping, lower, upper, exponent, offset)),
+        stiffness=_each(stiffness, m),
+        damping=_each(damping, m),
+        lower=_each(lower, m),
+        upper=_each(upper, m),
+        exponent=_each(exponent, m),
+        offset=_each(offset, m),
         wave=np.full(m, CONSTANT),
         phase=zero,
         frequency=zero,
