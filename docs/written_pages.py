@@ -92,7 +92,7 @@ def gallery(scenes: Mapping[str, Scene | Component], cards: Sequence[str]) -> st
         "and supports; components as a torque deforms them. Where each comes from is in "
         "[the library](../library.md); each drivetrain has a case of its name, which runs all "
         "levels. `fe-drivetrain advise`, `export` and `check` take a scene by its name, Python by "
-        "`library_scene`.",
+        "`read_drivetrain`.",
         "",
         "::::{grid} 1 2 2 3",
         ":gutter: 3",

@@ -66,7 +66,7 @@ def stiffness_files(page: Page, folder: Path, scene: Scene, quantity: Quantity) 
         why="round-off of small matrices",
         source="a free body",
     )
-    (level_two,) = [level for level in page.figures["levels"] if level["level"] == LEVEL]
+    (level_two,) = [level for level in page.tables["levels"] if level["level"] == LEVEL]
     found = _rebuilt(scene, quantity, shaft, seats)
     page.vanishes(
         f"{quantity.name} of a model made of the files, less that of level {LEVEL}, relative",

@@ -161,7 +161,13 @@ def surrogates(
         controller = designed_controller(turbine, Tuning(constant_power=False))
         moves = replace(physics, tower=physics.tower and row["rotor"] not in given["stands"])
         recorded = [h.recorded for h in turbine_histories(conditions, turbine, controller, moves)]
-    return [features(digest(one, OPTIONS), OPTIONS.slopes) for one in recorded]
+    return [quantities(one) for one in recorded]
+
+
+def quantities(found: Recorded) -> dict[str, float]:
+    """Quantities of a history, by the names that the table has."""
+    every = features(digest(found, OPTIONS), OPTIONS.slopes)
+    return {str(feature): value for feature, value in every.items()}
 
 
 def beside(
@@ -190,7 +196,7 @@ def beside(
         "My, standard",
         "My, DEL of m = 4",
         "My, 3P",
-        "My, largest",
+        "My, max",
         "Mx, standard",
         "Mx, DEL of m = 4",
         "Fx, mean",
@@ -236,7 +242,7 @@ def read_again(run: Run, page: Page, given: Mapping[str, Any]) -> dict[str, dict
     with run.step("files"):
         for file in recorded_files([str(run.settings["loads"])]):
             if file.stem in known:
-                found[file.stem] = features(digest(read_recorded(file), OPTIONS), OPTIONS.slopes)
+                found[file.stem] = quantities(read_recorded(file))
     for name, values in found.items():
         page.vanishes(
             f"{name}: the file's quantities less those of the table, the worst, as a share",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -22,10 +21,9 @@ from fe_drivetrain.drivetrain_file import Scene, change_scene
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft, unit_solids
 from fe_drivetrain.shafts.response import (
     ESTIMATORS,
-    PLANES,
     build_model,
     mesh_scene,
-    tilt_stiffness,
+    tilt_by_plane,
     unit_load_response,
     without_gearbox,
 )
@@ -178,10 +176,7 @@ def solved(scene: Scene, mesh: MeshSizes) -> Unit:
     model = build_model(scene, mesh_scene(scene))
     response = unit_load_response(model)
     name = scene.bearing_units[0].bearing.name
-    with warnings.catch_warnings():
-        # four nodes against the averaged seat: here all estimators stand side by side
-        warnings.simplefilter("ignore")
-        by_plane = [tilt_stiffness(model, response, name, plane) for plane in PLANES]
+    by_plane = tilt_by_plane(model, response, name).values()
     K_R = np.array([[values[e] for e in ESTIMATORS] for values in by_plane])
     return Unit(K_R, len(model.mesh.points))
 

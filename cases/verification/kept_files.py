@@ -87,7 +87,7 @@ class Maker:
 
     def counted_loads(self) -> Any:
         """The digest of a file by `loads`."""
-        options = LoadOptions(slopes=(3.0, 10.0), rotor_speed=1.5)
+        options = LoadOptions(slopes=(3.0, 10.0), rotor_speed_rpm=15.0)
         found = loads_digest(silent, self.loads, options, resume=True)
         return {name: array.tobytes() for name, array in as_arrays(found).items()}
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import least_eigenvalue, symmetry_error
@@ -44,7 +45,7 @@ def refuse_one_point(part: str, at: Sequence[str], points: Sequence[str], held: 
     at, points : Sequence[str]
         Points that are kept, and all there are.
     held : str
-        What has its supports: the name for ``--what``.
+        What has its supports: the name that asks for it.
 
     Raises
     ------
@@ -55,7 +56,8 @@ def refuse_one_point(part: str, at: Sequence[str], points: Sequence[str], held: 
     others = [name for name in points if name != at[0]]
     raise InputError(
         f"a free {part} has no stiffness at one point, {at[0]}, for nothing holds it: add a point "
-        f"to --at ({', '.join(others)}), or export it on its supports with --what {held}"
+        f"to {argument('at')} ({', '.join(others)}), or export it on its supports with "
+        f"{argument('what', held)}"
     )
 
 

@@ -11,7 +11,7 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -169,14 +169,48 @@ def write_solid_view(
         False, and nothing written, where the surface has more than `MOST_TRIANGLES`.
     """
     bodies = mesh if isinstance(mesh, Parts) else _parts_of(mesh)
-    points = bodies.points
+    surface = _surface(bodies)
+    if surface is None:
+        return False
+    nodes = np.concatenate(surface.nodes)
+    low, high = bodies.points[nodes].min(axis=0), bodies.points[nodes].max(axis=0)
+    middle, reach = 0.5 * (low + high), 0.5 * float((high - low).max())
+    # in letters of 6 bits: positions and triangles; then displacements and stresses of each load
+    count, vertices = len(surface.triangles), len(nodes)
+    shape, field = (8 / 6 * size for size in (6 * vertices + 12 * count, 8 * vertices))
+    most = max(1, int((MOST_BYTES - shape) / max(field, 1.0)))
+    content = {
+        "middle": middle.tolist(),
+        "reach": reach,
+        "positions": _units(bodies.points[nodes] - middle, reach),
+        "parts": surface.parts,
+        "triangles": _packed(surface.triangles, "<u4"),
+        "loads": [
+            {"name": name, **_field(bodies, u, surface.nodes, lame, reach)}
+            for name, u in list(fields.items())[:most]
+        ],
+    }
+    path.write_text(json.dumps(content), encoding="utf-8")
+    return True
+
+
+class _Surface(NamedTuple):
+    """The outside of parts: name, first triangle and how many; nodes; triangles (n, 3)."""
+
+    parts: list[dict[str, Any]]
+    nodes: list[Ints]
+    triangles: Ints
+
+
+def _surface(bodies: Parts) -> _Surface | None:
+    """The outside in flat triangles, as fine as a browser takes; None where it is too fine."""
     facets = {part: outside(cells) for part, cells in bodies.cells.items()}
     fine, least = (
         sum(len(of) * len(pieces[of.shape[1]]) for of in facets.values())
         for pieces in (_FINE, _COARSE)
     )
     if least > MOST_TRIANGLES:
-        return False
+        return None
     pieces = _FINE if fine <= MOST_TRIANGLES else _COARSE
     parts, shown, triangles = [], [], []
     first = vertices = 0
@@ -187,25 +221,7 @@ def write_solid_view(
         triangles.append(numbers.reshape(-1, 3) + vertices)
         parts.append({"name": part, "first": first, "count": len(corners)})
         first, vertices = first + len(corners), vertices + len(nodes)
-    nodes = np.concatenate(shown)
-    low, high = points[nodes].min(axis=0), points[nodes].max(axis=0)
-    middle, reach = 0.5 * (low + high), 0.5 * float((high - low).max())
-    # in letters of 6 bits: positions and triangles; then displacements and stresses of each load
-    surface, field = (8 / 6 * size for size in (6 * vertices + 12 * first, 8 * vertices))
-    count = max(1, int((MOST_BYTES - surface) / max(field, 1.0)))
-    content = {
-        "middle": middle.tolist(),
-        "reach": reach,
-        "positions": _units(points[nodes] - middle, reach),
-        "parts": parts,
-        "triangles": _packed(np.concatenate(triangles), "<u4"),
-        "loads": [
-            {"name": name, **_field(bodies, u, shown, lame, reach)}
-            for name, u in list(fields.items())[:count]
-        ],
-    }
-    path.write_text(json.dumps(content), encoding="utf-8")
-    return True
+    return _Surface(parts, shown, np.concatenate(triangles))
 
 
 def _parts_of(mesh: Mesh) -> Parts:

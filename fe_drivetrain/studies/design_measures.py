@@ -218,13 +218,13 @@ def sentence(found: Mapping[str, str | None], failures: Mapping[str, str], withi
     share = f"{100 * within:g} %"
     if not any(found.values()):
         return (
-            "Of the component across the shaft that varies most in each reaction, no level below "
+            "For the component across the shaft that varies most in each reaction, no level below "
             f"the assembly has the mean, extreme, or damage-equivalent load within {share}: none "
             f"is good enough for means, extremes or fatigue ({failures['fatigue']})."
         )
     words = [f"for {use} {model or f'none ({failures[use]})'}" for use, model in found.items()]
     return (
-        f"Of the component across the shaft that varies most in each reaction, the cheapest level "
+        f"For the component across the shaft that varies most in each reaction, the cheapest level "
         f"within {share} of the assembly is {'; '.join(words)} (fatigue: damage-equivalent loads "
         "of every slope)."
     )

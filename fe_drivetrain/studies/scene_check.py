@@ -114,7 +114,7 @@ def _held(scene: Scene, mass: float, n_dofs: int) -> str:
     return (
         f"{scene.title}: a shaft of {scene.shaft.length:g} m on {count} "
         f"bearing{'s' if count > 1 else ''}{on_nose}, {mass:,.0f} kg in all, "
-        f"{n_dofs:,} degrees of freedom; it is held, and can be solved."
+        f"{n_dofs:,} degrees of freedom. Its supports hold it: it can be solved."
     )
 
 

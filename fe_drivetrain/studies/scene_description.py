@@ -53,6 +53,12 @@ def description(model: Model) -> dict[str, list[Record]]:
             "Bearings between the shaft and its nose: springs between the mean motions of both "
             "faces"
         ] = [_nose_bearing_row(scene, bearing) for bearing in scene.nose_bearings]
+    tables["Where loads enter the shaft"] = _point_rows(scene)
+    return tables
+
+
+def _point_rows(scene: Scene) -> list[Record]:
+    """Points at which loads enter the shaft."""
     points: list[Record] = [
         {
             "point": "hub (front face), where the hub loads act",
@@ -90,8 +96,7 @@ def description(model: Model) -> dict[str, list[Record]]:
                 "held by": "nothing",
             },
         )
-    tables["Where loads enter the shaft"] = points
-    return tables
+    return points
 
 
 def _size(scene: Scene, part: str) -> str:

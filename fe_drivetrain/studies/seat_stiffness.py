@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -14,10 +13,9 @@ from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.elasticity.mesh.mesh import Mesh
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.shafts.response.bearing_stiffness import (
-    PLANES,
     bearing_unit_stiffness,
     check_one_tilting_bearing,
-    tilt_stiffness,
+    tilt_by_plane,
     without_gearbox,
 )
 from fe_drivetrain.studies.solved_assembly import Assembly, solved_assembly
@@ -101,11 +99,8 @@ def seat_stiffness(
     """
     check_one_tilting_bearing(scene)  # before what takes long
     free = solved_assembly(steps, without_gearbox(scene), label, mesh, method)
-    with warnings.catch_warnings():
-        # four nodes against the averaged seat: both stand side by side
-        warnings.simplefilter("ignore")
-        by_plane = {
-            plane.name: tilt_stiffness(free.model, free.response, free.bearing, plane)
-            for plane in PLANES
-        }
-    return SeatStiffness(by_plane, bearing_unit_stiffness(free.response, free.bearing), free)
+    return SeatStiffness(
+        tilt_by_plane(free.model, free.response, free.bearing),
+        bearing_unit_stiffness(free.response, free.bearing),
+        free,
+    )

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from typing import Any
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.components import GRAVITY
@@ -46,6 +48,10 @@ class StudyLoads:
         Name, value, unit and source of what a surrogate assumes.
     gravity : float
         Along -z, that gives all parts their weight [m/s^2]; 0 where weights are left out.
+    skip : float
+        Time that was left out at the beginning of each [s].
+    seeds : tuple of int
+        Seeds of made wind, which the program fixes; none of histories of the user.
     """
 
     histories: Sequence[LoadHistory]
@@ -53,6 +59,17 @@ class StudyLoads:
     own: bool
     assumptions: Sequence[tuple[str, float, str, str]] = field(default_factory=tuple)
     gravity: float = GRAVITY
+    skip: float = 0.0
+    seeds: tuple[int, ...] = ()
+
+    def asked(self) -> dict[str, Any]:
+        """What they are, as plain data."""
+        return {
+            "loads": self.statement,
+            "histories": [history.name for history in self.histories],
+            "skip": self.skip,
+            "seeds of the loads": list(self.seeds),
+        }
 
     @property
     def seconds(self) -> float:
@@ -91,7 +108,7 @@ class EnteredLoads:
 
 
 def own_loads(
-    patterns: str | Sequence[str], skip: float, scene: Scene, mapping: ChannelMap | None = None
+    patterns: str | Sequence[str], skip: float, scene: Scene, channels: ChannelMap | None = None
 ) -> StudyLoads:
     """Read the user's files.
 
@@ -103,7 +120,7 @@ def own_loads(
         What is left out at the beginning of each file [s].
     scene : Scene
         Says which point of the shaft they are about.
-    mapping : ChannelMap, optional
+    channels : ChannelMap, optional
         How files of other programs call their channels, and their frame and origin.
 
     Raises
@@ -111,9 +128,9 @@ def own_loads(
     InputError
         A file cannot be read, or all loads are zero.
     """
-    read = read_hub_loads if mapping is None else partial(read_mapped, mapping)
+    read = read_hub_loads if channels is None else partial(read_mapped, channels)
     histories = read_hub_load_files(patterns, skip, read)
-    return _of_the_user(histories, scene, f"--loads {patterns!r}", ("file", "files"), skip)
+    return _of_the_user(histories, scene, argument("loads", patterns), ("file", "files"), skip)
 
 
 def given_loads(histories: Sequence[LoadHistory], scene: Scene) -> StudyLoads:
@@ -133,7 +150,7 @@ def given_loads(histories: Sequence[LoadHistory], scene: Scene) -> StudyLoads:
     """
     if not histories:
         raise InputError("there is no load history to study: give one or more, or None")
-    return _of_the_user(histories, scene, "loads", ("history", "histories"))
+    return _of_the_user(histories, scene, argument("loads"), ("history", "histories"))
 
 
 def _of_the_user(
@@ -160,6 +177,7 @@ def _of_the_user(
         + about
         + (f" {unlike}" if unlike else ""),
         True,
+        skip=skip,
     )
 
 
@@ -173,12 +191,14 @@ def surrogate_loads(steps: Clock, seeds: int | None = None) -> StudyLoads:
     seeds : int, optional
         How many histories of each wind there are; all six where not given.
     """
-    found = surrogate_set(steps, surrogate_conditions(seeds))
+    conditions = surrogate_conditions(seeds)
+    found = surrogate_set(steps, conditions)
     return StudyLoads(
         list(found),
-        f"{surrogate_statement(len(found))} Give your own with --loads.",
+        f"{surrogate_statement(len(found))} Give your own with {argument('loads')}.",
         False,
         list(assumptions()),
+        seeds=tuple(sorted({condition.seed for condition in conditions})),
     )
 
 

@@ -130,10 +130,10 @@ def secant_rows(found: Sequence[TiltSecant]) -> list[Record]:
         {
             "bearing": one.bearing,
             "axis": one.axis,
-            "secant [MN\u00a0m/rad]": one.stiffness / 1e6,
+            "secant [MN m/rad]": one.stiffness / 1e6,
             "scatter [%]": 100.0 * one.scatter,
-            "unit alone, soft [MN\u00a0m/rad]": one.bounds[0] / 1e6,
-            "unit alone, stiff [MN\u00a0m/rad]": one.bounds[1] / 1e6,
+            "unit alone, soft [MN m/rad]": one.bounds[0] / 1e6,
+            "unit alone, stiff [MN m/rad]": one.bounds[1] / 1e6,
         }
         for one in found
     ]

@@ -245,13 +245,13 @@ def test_what_a_source_restores_is_not_of_the_table(tmp_path: Path) -> None:
     (record,) = page.drivetrains
     own = drivetrain_hash(two_masses.TABLE)
     assert record.hash == own
-    of = {verdict.quantity: verdict.of for verdict in page.verdicts}
+    of = {verdict.quantity: verdict.of for verdict in page.checks}
     assert set(of.values()) == {own, OF_NONE}
     assert {name for name, of_ in of.items() if of_ == OF_NONE} == {
         name for name in of if "that it needs" in name or "Table 6.2 needs" in name
     }
     results = Results.model_construct(
-        answers=[], verdicts=page.verdicts, drivetrains=page.drivetrains
+        answers=[], verdicts=page.checks, drivetrains=page.drivetrains
     )
     counted = [one.quantity for one in quantities_of(results, own)]
     assert counted == [name for name, of_ in of.items() if of_ == own]
@@ -261,7 +261,7 @@ def test_what_a_source_prints_is_not_of_the_machine(tmp_path: Path) -> None:
     page = ran(park_bending.run, tmp_path)
     own = drivetrain_hash(library_machine("park_2021"))
     assert [record.hash for record in page.drivetrains] == [own]
-    for verdict in page.verdicts:
+    for verdict in page.checks:
         printed = verdict.quantity.startswith(("as printed", "every reading"))
         assert verdict.of == (OF_NONE if printed else own), verdict.quantity
 
@@ -293,7 +293,7 @@ def test_of_ends_where_its_block_ends() -> None:
     page.found("outside", 1.0)
     with page.of(None):
         page.found("none", 1.0)
-    assert [figure.of for figure in page.answers] == [
+    assert [figure.of for figure in page.figures] == [
         drivetrain_hash(machine),
         drivetrain_hash(two_masses.TABLE),
         OF_NONE,

@@ -55,7 +55,7 @@ def test_no_coarser_mesh_gives_no_band():
 def checks_of(series):
     page = Page()
     check_series(page, series, "bonded")
-    return page.verdicts
+    return page.checks
 
 
 def test_coarser_solutions_out_of_balance_are_reported():

@@ -359,8 +359,8 @@ def test_a_page_stamps_what_is_of_its_drivetrain() -> None:
     page.holds("after", True, why="w", source="s")
     page.found("margin [-]", 0.2, loads=(RESONANCE,))
     page.skip("share", "NGSolve is not there")
-    assert [v.of for v in page.verdicts] == ["", OWN.hash]
-    assert page.answers[0].of == OWN.hash
+    assert [v.of for v in page.checks] == ["", OWN.hash]
+    assert page.figures[0].of == OWN.hash
     assert page.drivetrains == [OWN]
     assert page.skipped == ["share: NGSolve is not there"]
 

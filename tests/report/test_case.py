@@ -17,7 +17,7 @@ from fe_drivetrain.command_line.settings import parse_settings
 from fe_drivetrain.common import folders
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.manifest import MANIFEST
-from fe_drivetrain.pages.advice import tornado
+from fe_drivetrain.pages.advise import tornado
 from fe_drivetrain.report.answer import headline
 from fe_drivetrain.report.charts import trace
 from fe_drivetrain.report.history import FILE

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.components import FORCES, MOTIONS
@@ -135,13 +136,15 @@ class Advice:
         plotly.graph_objects.Figure
             See `fe_drivetrain.plots.error_against_time`; of the last level its estimated own error.
         """
-        return error_against_time(
+        return error_against_time(*self.ladder, self.tolerance, self.chosen, self.quantity.name)
+
+    @property
+    def ladder(self) -> tuple[list[str], list[float], list[float]]:
+        """Name, time [s] and relative error of each level; of the last one its own error."""
+        return (
             [f"level {result.model.level}, {result.model.title}" for result in self.results],
             [result.seconds for result in self.results],
             [*(result.error for result in self.results[:-1]), self.top.estimate],
-            self.tolerance,
-            self.chosen,
-            self.quantity.name,
         )
 
     def sentence(self) -> str:
@@ -223,7 +226,7 @@ def advise(
     if not 0 < tolerance < 1:
         raise InputError(
             f"tolerance is {100 * tolerance:g} % but must be between 0 and 100 %: "
-            "give it as in --tolerance 1%"
+            f"give it as in {argument('tolerance', 0.01)}"
         )
     length = scene.shaft.length
     results: list[LevelResult] = []

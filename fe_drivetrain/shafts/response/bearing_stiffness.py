@@ -157,6 +157,31 @@ def tilt_stiffness(
     return found
 
 
+def tilt_by_plane(model: Model, response: Response, bearing: str) -> dict[str, dict[str, float]]:
+    """K_R of a bearing unit by plane and estimator, without a word where four nodes mislead.
+
+    Parameters
+    ----------
+    model, response : Model, Response
+        Of a scene without gearbox springs.
+    bearing : str
+        Name of the bearing.
+
+    Returns
+    -------
+    dict of str to dict of str to float
+        [N m/rad] by plane ("vertical", "horizontal") and estimator, see `tilt_stiffness`.
+
+    Raises
+    ------
+    InputError
+        As `tilt_stiffness`.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the averaged seat stands beside the four nodes
+        return {plane.name: tilt_stiffness(model, response, bearing, plane) for plane in PLANES}
+
+
 def bearing_unit_stiffness(response: Response, bearing: str) -> Floats:
     """Condensed 6x6 stiffness of a bearing and its housing, as the shaft feels it.
 

@@ -13,6 +13,7 @@ from concurrent.futures import Future
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import Pool, pool
@@ -162,7 +163,9 @@ def study(
     """
     check_spreads(scene)
     if level is not None and level not in LEVELS:
-        raise InputError(f"--level {level} cannot be sampled: use 1 (beam) or 2 (meridian)")
+        raise InputError(
+            f"{argument('level', level)} cannot be sampled: use 1 (beam) or 2 (meridian)"
+        )
     stiffnesses = numbers(scene, [n for n in stiffness_names(scene) if n not in asked])
     wanted = numbers(scene, asked, load)
     solver = Resolver(LEVELS[0] if level is None else level)

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 
@@ -149,17 +150,19 @@ def require_winds(files: Sequence[Path], winds: Sequence[float]) -> None:
     InputError
         A file has no wind speed, or all stand for one wind.
     """
+    site = argument("site")
     for file, wind in zip(files, winds, strict=True):
         if np.isnan(wind):
             raise InputError(
-                f"hub loads '{file}': there is no wind speed, by which --site weights files: name "
-                "its channel, as in --channel 'wind speed=Vhub', or leave --site out"
+                f"hub loads '{file}': there is no wind speed, by which {site} weights files: name "
+                "its channel, as in `ChannelMap(channels={'wind speed': 'Vhub'})`, or leave "
+                f"{site} out"
             )
     if len({rounded_wind(wind) for wind in winds}) < 2:
         count = f"all {len(files)} files have" if len(files) > 1 else "the one file has"
         raise InputError(
-            f"--site weights winds, and {count} a mean wind of {rounded_wind(winds[0]):g} m/s: "
-            "give files of two winds or more, or leave --site out"
+            f"{site} weights winds, and {count} a mean wind of {rounded_wind(winds[0]):g} m/s: "
+            f"give files of two winds or more, or leave {site} out"
         )
 
 

@@ -18,7 +18,8 @@ from fe_drivetrain.common.short_repr import short_repr
 
 TEN_MINUTES = 600.0
 
-COLUMNS = ("least", "mean", "largest", "standard deviation")
+COLUMNS = ("min", "mean", "max", "standard deviation")
+"""Statistics of a channel, in the order in which arrays have them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +31,7 @@ class Windows:
     start, seconds : ndarray, (w,)
         When each begins, and how long it lasts [s].
     values : ndarray, (w, k, 4)
-        Least, mean, largest, standard deviation.
+        Min, mean, max, standard deviation.
     """
 
     start: Floats
@@ -45,7 +46,7 @@ class Windows:
         return Windows(self.start[mask], self.seconds[mask], self.values[mask])
 
     def together(self) -> Floats:
-        """(k, 4) least, mean, largest, standard deviation of all samples of all windows."""
+        """(k, 4) min, mean, max, standard deviation of all samples of all windows."""
         share = self.seconds / self.seconds.sum()
         means = self.values[:, :, 1]
         mean = np.einsum("w,wc->c", share, means)

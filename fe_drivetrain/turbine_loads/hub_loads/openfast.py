@@ -198,7 +198,7 @@ class _Chosen:
         if found is None:
             raise InputError(
                 f"hub loads '{self._source}': no channel for the {what}; add one of "
-                f"{', '.join(names)} to OutList and run again, or map yours (--mapping)"
+                f"{', '.join(names)} to OutList and run again, or map yours (`ChannelMap`)"
             )
         return found
 
@@ -217,7 +217,7 @@ class _Chosen:
         if found is None:
             raise InputError(
                 f"hub loads '{self._source}': no pair of shear-force channels; add LSShftFys and "
-                "LSShftFzs to OutList and run again, or map yours, both Fy and Fz (--mapping)"
+                "LSShftFzs to OutList and run again, or map yours, both Fy and Fz (`ChannelMap`)"
             )
         return found
 
@@ -230,7 +230,8 @@ class _Chosen:
         if found is None:
             raise InputError(
                 f"hub loads '{self._source}': no pair of bending-moment channels; add LSSTipMys "
-                "and LSSTipMzs to OutList and run again, or map yours, both My and Mz (--mapping)"
+                "and LSSTipMzs to OutList and run again, or map yours, both My and Mz "
+                "(`ChannelMap`)"
             )
         if gage_distance is None:
             y, z = found.channels
