@@ -13,17 +13,16 @@ from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.elasticity.mesh import quality
 from fe_drivetrain.report import (
     Image,
-    NoPictureError,
     Solid,
     Text,
-    deformed_shape,
-    picture_of_model,
+    model_pictures,
 )
 from fe_drivetrain.report.suite import Page, Run
 from fe_drivetrain.shafts.response import (
     ESTIMATORS,
     LOADS,
 )
+from fe_drivetrain.studies import model_checks
 from fe_drivetrain.studies.seat_stiffness import SeatStiffness
 from fe_drivetrain.studies.solved_assembly import Assembly
 
@@ -37,21 +36,7 @@ _OTHER_HOUSING = "The thesis's values belong to its own housing, whose dimension
 def check_solution(page: Page, solved: Assembly, label: str) -> None:
     """The two independent checks that every solution carries."""
     with page.of(solved.scene):
-        page.vanishes(
-            f"{label}: total equilibrium, applied less reacted",
-            solved.response.equilibrium_error,
-            within=1e-8,
-            why="reactions come from the residual on constrained degrees of freedom: solver "
-            "accuracy",
-            source="exact",
-        )
-        page.vanishes(
-            f"{label}: linearity, a random load solved directly against superposed",
-            solved.response.superposition_error,
-            within=1e-8,
-            why="the scene is linear: solver accuracy",
-            source="exact",
-        )
+        model_checks.check_solution(page, solved.response, label)
 
 
 def check_series(page: Page, series: Series, label: str) -> None:
@@ -192,13 +177,7 @@ def pictures_of(
         For the page; a sentence that says why where nothing can be drawn.
     """
     with run.step("pictures"):
-        try:
-            picture_of_model(solved.model, run.folder / "model.png")
-            shape = deformed_shape(solved.model, solved.response, loads, run.folder, what)
-        except NoPictureError as reason:
-            return [Text(text=f"No picture: {reason}")]
-    caption = f"{solved.scene.title}: parts, loads and supports"
-    return [Image(caption=caption, file="model.png"), shape]
+        return model_pictures(solved.model, solved.response, loads, run.folder, what)
 
 
 def assume(page: Page, scene: Scene) -> None:

@@ -127,7 +127,9 @@ class Survey(NamedTuple):
     bores: tuple[Bore, ...]
     planes: tuple[Plane, ...]
 
-    __repr__ = short_repr
+    def __repr__(self) -> str:
+        """One line, without the points of its surface."""
+        return short_repr(self)
 
 
 def surveyed(path: str | Path) -> Survey:

@@ -7,8 +7,7 @@ from fe_drivetrain.pages.study_reactions import reaction_sections
 from fe_drivetrain.pages.uncertainty import bands, inputs
 from fe_drivetrain.pages.uncertainty import slopes as slopes_section
 from fe_drivetrain.report.charts import trace
-from fe_drivetrain.report.pictures import NoPictureError, picture_of_model
-from fe_drivetrain.report.solid_view import deformed_shape
+from fe_drivetrain.report.solid_view import model_pictures
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.run import Run
 from fe_drivetrain.shafts.fidelity.judgement import Judgement
@@ -53,16 +52,8 @@ def _pictures(run: Run, page: Page, result: StudyResult) -> None:
     model, mean = result.model, result.loads.mean
     weights = " and all weights" if mean[8] else ""
     with run.step("pictures"):
-        try:
-            picture_of_model(model, run.folder / "model.png")
-            shape = deformed_shape(
-                model, result.response, mean, run.folder, f"the mean load{weights}"
-            )
-        except NoPictureError as reason:
-            page.text(f"No picture: {reason}")
-            return
-    page.image(f"{model.scene.title}: parts, loads and supports", "model.png")
-    page.add(shape)
+        what = f"the mean load{weights}"
+        page.add(*model_pictures(model, result.response, mean, run.folder, what))
 
 
 def _stiffness(page: Page, result: StudyResult) -> None:

@@ -22,7 +22,9 @@ from fe_drivetrain.elasticity.mesh.facets import outside
 from fe_drivetrain.elasticity.mesh.mesh import Mesh
 from fe_drivetrain.elasticity.operator.stress import nodal_stresses, von_mises
 from fe_drivetrain.report.pictures.deformation import exaggeration, picture_of_deformation
-from fe_drivetrain.report.results import Image, Solid
+from fe_drivetrain.report.pictures.model import picture_of_model
+from fe_drivetrain.report.pictures.off_screen import NoPictureError
+from fe_drivetrain.report.results import Image, Solid, Text
 
 if TYPE_CHECKING:
     from fe_drivetrain.shafts.response.model import Model
@@ -109,6 +111,36 @@ def deformed_shape(
         fields[f"{name} at the hub"] = _MEGA * response.displacements[..., column]
     caption = f"Deformed shape, displacements times {factor:,.0f}, under {what}"
     return solid_or_picture(caption, mesh, fields, lame, folder, picture)
+
+
+def model_pictures(
+    model: Model, response: Response, load_factors: Floats, folder: Path, what: str
+) -> Sequence[Image | Solid | Text]:
+    """Draw a model and its deformed shape; where nothing can be drawn, say why.
+
+    Parameters
+    ----------
+    model, response : Model, Response
+        A model and its response to the unit loads.
+    load_factors : Floats
+        (10,) multiples of the unit loads.
+    folder : Path
+        Takes model.png, deformed.png and deformed.3d.json.
+    what : str
+        The loads in words.
+
+    Returns
+    -------
+    items : sequence of Image, Solid or Text
+        For the page.
+    """
+    try:
+        picture_of_model(model, folder / "model.png")
+        shape = deformed_shape(model, response, load_factors, folder, what)
+    except NoPictureError as reason:
+        return [Text(text=f"No picture: {reason}")]
+    caption = f"{model.scene.title}: parts, loads and supports"
+    return [Image(caption=caption, file="model.png"), shape]
 
 
 def solid_or_picture(

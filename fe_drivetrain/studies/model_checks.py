@@ -11,6 +11,34 @@ from fe_drivetrain.shafts.fidelity.over_loads import Levels, imbalance
 from fe_drivetrain.shafts.response.unit_loads import Response
 
 
+def check_solution(found: Findings, response: Response, label: str) -> None:
+    """Check equilibrium and linearity of a solution.
+
+    Parameters
+    ----------
+    found : Findings
+        Takes the checks.
+    response : Response
+        Unit loads on an assembly.
+    label : str
+        What the checks call it.
+    """
+    found.vanishes(
+        f"{label}: total equilibrium, applied less reacted",
+        response.equilibrium_error,
+        within=1e-8,
+        why="reactions come from the residual on constrained degrees of freedom: solver accuracy",
+        source="exact",
+    )
+    found.vanishes(
+        f"{label}: linearity, a random load solved directly against superposed",
+        response.superposition_error,
+        within=1e-8,
+        why="the scene is linear: solver accuracy",
+        source="exact",
+    )
+
+
 def check_models(found: Findings, scene: Scene, response: Response, levels: Levels) -> None:
     """Check equilibrium and linearity of the assembly, and the balance of every level.
 
@@ -25,20 +53,7 @@ def check_models(found: Findings, scene: Scene, response: Response, levels: Leve
     levels : Levels
         Every model.
     """
-    found.vanishes(
-        "assembly: total equilibrium, applied less reacted",
-        response.equilibrium_error,
-        within=1e-8,
-        why="reactions come from the residual on constrained degrees of freedom: solver accuracy",
-        source="exact",
-    )
-    found.vanishes(
-        "assembly: linearity, a random load solved directly against superposed",
-        response.superposition_error,
-        within=1e-8,
-        why="the scene is linear: solver accuracy",
-        source="exact",
-    )
+    check_solution(found, response, "assembly")
     found.vanishes(
         "every level: reactions to unit hub loads balance the load, the worst",
         max(imbalance(scene, model) for model in levels.models.values()),

@@ -5,7 +5,6 @@ import importlib
 import re
 import sys
 import tomllib
-from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -195,21 +194,6 @@ def test_references_serve_two_cases_and_other_bodies_stand_beside_theirs() -> No
 #: Lines of a function of a case, with its description.
 LONGEST = 60
 
-#: Groups of cases with longer functions, and how many there may still be: none once all are cut.
-STILL_LONG = {
-    "bearing": 12,
-    "drivetrain": 3,
-    "export": 3,
-    "fidelity": 6,
-    "foreign": 6,
-    "gear": 5,
-    "histories": 6,
-    "life": 4,
-    "main_bearing": 12,
-    "procedure": 17,
-    "verification": 18,
-}
-
 
 def long_functions(source: str) -> list[str]:
     """Functions, nested ones too, with more lines than a case may have in one."""
@@ -227,13 +211,12 @@ def test_long_functions_are_found() -> None:
 
 
 def test_no_function_of_a_case_is_long() -> None:
-    found = Counter(
-        name.split(".")[1]
+    found = {
+        name: long
         for name, path in house.modules().items()
-        if name.startswith("cases.")
-        for _ in long_functions(path.read_text(encoding="utf-8"))
-    )
-    assert {group: n for group, n in found.items() if n > STILL_LONG.get(group, 0)} == {}
+        if name.startswith("cases.") and (long := long_functions(path.read_text(encoding="utf-8")))
+    }
+    assert found == {}
 
 
 def test_names_are_found_through_faces() -> None:
