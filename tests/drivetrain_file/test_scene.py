@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.reading import parse_mapping
 from fe_drivetrain.drivetrain_file.left_out import left_out
 from fe_drivetrain.drivetrain_file.reading import (
     change_scene,
@@ -258,3 +259,9 @@ def test_a_file_that_a_scene_names_and_is_not_there_is_refused_as_it_is_read(tmp
         read_scene(file)
     (tmp_path / "no.step").write_text("")
     assert read_scene(file).bearing_units[0].foreign is not None
+
+
+def test_what_is_changed_in_one_reading_of_a_text_is_not_in_the_next() -> None:
+    first = parse_mapping("a: {b: [1, 2]}", "text")
+    first["a"]["b"].append(3)
+    assert parse_mapping("a: {b: [1, 2]}", "text") == {"a": {"b": [1, 2]}}
