@@ -81,7 +81,7 @@ def stiffness_files(page: Page, folder: Path, scene: Scene, quantity: Quantity) 
         "points, with the rings that stand on it, and every bearing with its housing on the "
         "ground (the nose, where there is one, stays in the scene). Put together, with the "
         "gearbox's springs, they are level 2 of the ladder: "
-        f"{100 * level_two['error']:.2g} % from its top for {quantity.name}. fe-drivetrain export "
+        f"{100 * level_two['error against the last level [-]']:.2g} % from its top for {quantity.name}. fe-drivetrain export "
         "writes them in further formats, and with fixed-interface modes."
     )
     page.table(
