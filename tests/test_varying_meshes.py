@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.equations import equations_of, steady
-from fe_drivetrain.dynamics.integration import State, integrate
+from fe_drivetrain.dynamics.integration import integrate
 from fe_drivetrain.dynamics.levels import Level, machine_system
 from fe_drivetrain.dynamics.meshing import (
     Meshing,
@@ -21,6 +21,7 @@ from fe_drivetrain.dynamics.meshing import (
     varying_equations,
     wave_of,
 )
+from fe_drivetrain.dynamics.motion import State
 from fe_drivetrain.dynamics.steady_state import wind_up
 from fe_drivetrain.dynamics.system import System
 from fe_drivetrain.dynamics.tables import library_machine

@@ -140,7 +140,7 @@ def steps(page: Page, quick: bool) -> float:
         beyond="the instant of contact falls between steps: energy appears or is lost, which each "
         "run shows",
         program="integrates with the steps it is given and states the energy that appears",
-        remedy="steps by a tolerance (`integrate_adaptively`), or shorter ones",
+        remedy="steps by a tolerance (`StepControl`), or shorter ones",
     )
     page.section("Time step")
     page.sweep(

@@ -1,0 +1,119 @@
+"""What the loop in time takes and keeps, in the form of compiled code.
+
+Few arrays with many rows: each that is handed on takes time to compile.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.dynamics.law_loops import Laws
+from fe_drivetrain.dynamics.turning_rows import Matrices
+
+
+class Drive(NamedTuple):
+    """Loads: patterns (n, p), times (s,) and histories (s, p)."""
+
+    patterns: Floats
+    times: Floats
+    histories: Floats
+
+
+class Stop(NamedTuple):
+    """The steps end where one ``sign * (row . q')`` is no longer positive; rows (b, n)."""
+
+    rows: Floats
+    signs: Floats
+
+
+class Span(NamedTuple):
+    """Number of steps, after how many a record is made, time of the beginning [s], tolerance.
+
+    The tolerance is that of Newton's method: change of an elongation over its maximum so far, and
+    of a phase in periods.
+    """
+
+    steps: int
+    every: int
+    begin: float
+    tolerance: float
+
+
+PHASE_ROW, MOVED_ROW, TILTED_ROW = range(3)
+"""Kinds of rows: phases, displacements and tilts of bearings."""
+
+
+class Model(NamedTuple):
+    """Matrices, laws, and flags ``kinds`` (3, r) of the rows: 1 where they are of a kind."""
+
+    matrices: Matrices
+    laws: Laws
+    kinds: Floats
+
+
+class Kept(NamedTuple):
+    """Records (k, ...); ``watch`` (w, n) are rows whose values and rates are recorded.
+
+    ``places`` and ``rates`` (k, w); ``forces`` (k, q) of laws, ``along`` (k, m) of linear springs
+    where rows turn, ``bearings`` (2, k, 5 b) motions and loads, ``gripped`` (k, h) accelerations
+    along held motions by all forces, ``energies`` (k, 5) as `KINETIC` ...
+    """
+
+    watch: Floats
+    times: Floats
+    places: Floats
+    rates: Floats
+    forces: Floats
+    along: Floats
+    bearings: Floats
+    gripped: Floats
+    energies: Floats
+
+
+MV, CV, KU, DU, OUTSIDE, OUTSIDE0, INSIDE, STEP, RHS, TERM, TERM2 = range(11)
+"""Vectors of n: M v, C v, K u, the drift of dampers, loads at the end and the beginning of a step,
+forces inside, the step, and what is summed."""
+
+D, D1, FREE, RESIDUAL, NEW, CHANGE, RATE, Z, BASE, ZR, ZA, SCALE = range(12)
+"""Vectors of r: forces beyond the matrices at the beginning and the end of a step, values that the
+matrix gives, residual, values, their change and rate; at the beginning values by its own rows and
+by those of the end, their rates and accelerations; maximum so far."""
+
+SPRING, DAMPER, DAMPER1, DAMPS = range(4)
+"""Vectors of q: forces, parts of dampers at the beginning and the end of a step, and contact."""
+
+
+class Work(NamedTuple):
+    """Memory of the loop: ``bearings`` (2, b, 5, 5) tangents and dampers, ``resisted`` (2, 5 b) by
+    dampers at the beginning and the end of a step, ``sums`` (2, 9) now and at its beginning."""
+
+    load: Floats
+    vectors: Floats
+    rows: Floats
+    laws: Floats
+    squares: Floats
+    bearings: Floats
+    resisted: Floats
+    along: Floats
+    sums: Floats
+    scratch: Floats
+
+
+def memory(model: Model, bearings: int, springs: int, loads: int) -> Work:
+    """Memory for a model with so many bearings, springs whose rows turn, and loads."""
+    n, r, q = len(model.matrices.constant), model.kinds.shape[1], model.laws.numbers.shape[1]
+    return Work(
+        np.zeros(loads),
+        np.zeros((11, n)),
+        np.zeros((12, r)),
+        np.zeros((4, q)),
+        np.zeros((2, r, r)),
+        np.zeros((2, bearings, 5, 5)),
+        np.zeros((2, 5 * bearings)),
+        np.zeros(springs),
+        np.zeros((2, 9)),
+        np.zeros(14),
+    )
