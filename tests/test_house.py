@@ -86,8 +86,6 @@ def test_a_face_says_what_its_room_is_for_and_shows_only_what_is_there(room: str
 FOR_USERS = {
     "bearing.subsurface": "procedure.md",
     "bearing.tables": "bearing.md",
-    "dynamics.roller_steps": "transients.md",
-    "dynamics.travelling": "transients.md",
     "export.formats.windio": "how-to/shafts-of-a-gearbox.md",
     "export.programs.ross_rotor": "how-to/housing-to-ross-and-exudyn.md",
     "gear.coupled_slices": "gear_rating.md",

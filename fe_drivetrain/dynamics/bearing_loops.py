@@ -16,6 +16,7 @@ from fe_drivetrain.bearing import kernels
 from fe_drivetrain.bearing.contact_forces import packed
 from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.dynamics.law_loops import ZR, D, Z
 
 
 class Rolling(NamedTuple):
@@ -104,10 +105,9 @@ def _one(pack: kernels.Packed, first: int, last: int) -> kernels.Packed:  # prag
 @njit(cache=True, error_model="numpy")
 def bearing_forces(
     rolling: Rolling,
-    z: Floats,
-    rate: Floats,
     by_rate: float,
-    extra: Floats,
+    at: int,
+    y: Floats,
     tangent: Floats,
     bearings: Floats,
     resisted: Floats,
@@ -119,30 +119,29 @@ def bearing_forces(
     ----------
     rolling : Rolling
         Bearings.
-    z, rate, by_rate : Floats, float
-        As `law_forces` takes them.
-    extra, tangent : Floats
-        Vector d (r,) and its derivative (r, r), at the bearings' rows overwritten.
+    by_rate, at, y, tangent : float, int, Floats
+        As `law_forces` takes them; d and its derivative are overwritten at the bearings' rows.
     bearings : Floats
         Tangents, overwritten, and dampers (2, b, 5, 5).
     resisted : Floats
-        Loads of the dampers (5 b,), overwritten.
+        Loads of the dampers (2, 5 b) at the beginning and the end of a step, overwritten.
     scratch : Floats
         Memory (14,) of the kernels.
     """
+    z, rate, extra = y[Z + at], y[ZR + at], y[D + at]
     for b in range(len(rolling.seconds)):
-        at = rolling.row + 5 * b
+        p = rolling.row + 5 * b
         drift = rolling.drift + 5 * b if rolling.drift >= 0 else -1
         one = _one(rolling.pack, rolling.of[b], rolling.of[b + 1])
-        K, D = bearings[0, b], bearings[1, b]
-        kernels.evaluate(z[at : at + 5], one, extra[at : at + 5], K, scratch[:5], scratch[5:])
+        K, C = bearings[0, b], bearings[1, b]
+        kernels.evaluate(z[p : p + 5], one, extra[p : p + 5], K, scratch[:5], scratch[5:])
         for i in range(5):
             force = 0.0
             for j in range(5):
-                moves = rate[at + j] + (z[drift + j] if drift >= 0 else 0.0)
-                force += D[i, j] * moves
-                tangent[at + i, at + j] = K[i, j] + by_rate * D[i, j]
+                moves = rate[p + j] + (z[drift + j] if drift >= 0 else 0.0)
+                force += C[i, j] * moves
+                tangent[p + i, p + j] = K[i, j] + by_rate * C[i, j]
                 if drift >= 0:
-                    tangent[at + i, drift + j] = D[i, j]
-            resisted[5 * b + i] = force
-            extra[at + i] += force
+                    tangent[p + i, drift + j] = C[i, j]
+            resisted[at, 5 * b + i] = force
+            extra[p + i] += force

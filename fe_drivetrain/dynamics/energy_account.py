@@ -10,7 +10,7 @@ from __future__ import annotations
 from numba import njit
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.dynamics.law_loops import DAMPING, DRIFT, ROW, Laws
+from fe_drivetrain.dynamics.law_loops import DAMPER, DAMPING, DRIFT, ROW, SPRING, ZR, Laws, Z
 from fe_drivetrain.dynamics.turning_rows import Turning
 
 KINETIC, STRAIN, WORK, DISSIPATED, CLOCK = range(5)
@@ -63,7 +63,7 @@ def powers_of_springs(
 
 @njit(cache=True, error_model="numpy")
 def powers_of_laws(
-    laws: Laws, z: Floats, rate: Floats, forces: Floats, damper: Floats
+    laws: Laws, y: Floats, of: Floats
 ) -> tuple[float, float]:  # pragma: no cover - compiled
     """The same of springs with laws, beside the power along their errors and of their clock.
 
@@ -71,15 +71,15 @@ def powers_of_laws(
     ----------
     laws : Laws
         Laws of q springs, whose rows have drifts.
-    z, rate, forces, damper : Floats
-        As `law_forces` takes and gives them.
+    y, of : Floats
+        Vectors of the rows and of the laws, as `law_forces` has them at the beginning of a step.
     """
     lost = clock = 0.0
-    for i in range(len(forces)):
-        drift = z[laws.numbers[DRIFT, i]]
-        speed = rate[laws.numbers[ROW, i]] + drift
-        lost += (damper[i] + laws.values[DAMPING, i] * speed) * speed
-        clock += forces[i] * drift
+    for i in range(of.shape[1]):
+        drift = y[Z, laws.numbers[DRIFT, i]]
+        speed = y[ZR, laws.numbers[ROW, i]] + drift
+        lost += (of[DAMPER, i] + laws.values[DAMPING, i] * speed) * speed
+        clock += of[SPRING, i] * drift
     return lost, clock
 
 

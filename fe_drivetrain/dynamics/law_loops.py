@@ -24,6 +24,15 @@ and error."""
 """Values of a law, as `SpringLaws` has them."""
 
 
+Z, NEW, ZR, RATE, D, D1, ZA, BASE, FREE, RESIDUAL, CHANGE, SCALE = range(12)
+"""Vectors of r, at the beginning and the end of a step: values of the rows, their rates, forces
+beyond the matrices; accelerations and values at the beginning by the rows of the end; values that
+the matrix gives, residual, change, and maximum so far."""
+
+DAMPER, DAMPER1, SPRING, DAMPS = range(4)
+"""Vectors of q: parts of d of dampers at the beginning and the end of a step, forces, contact."""
+
+
 class Laws(NamedTuple):
     """SpringLaws that are more than a constant stiffness: ``numbers`` (5, q), ``values`` (12, q).
 
@@ -77,9 +86,9 @@ def _error(
 
 
 @njit(cache=True, error_model="numpy")
-def _phase(laws: Laws, i: int, t: float, z: Floats) -> float:  # pragma: no cover - compiled
+def _phase(laws: Laws, i: int, t: float, y: Floats, z: int) -> float:  # pragma: no cover - compiled
     at = laws.values[PHASE, i] + laws.values[FREQUENCY, i] * t
-    return float(at + z[laws.numbers[ANGLE, i]] if laws.numbers[ANGLE, i] >= 0 else at)
+    return float(at + y[z, laws.numbers[ANGLE, i]] if laws.numbers[ANGLE, i] >= 0 else at)
 
 
 @njit(cache=True, error_model="numpy")
@@ -101,18 +110,13 @@ def _potential(laws: Laws, i: int, x: float) -> tuple[float, float, float]:  # p
 
 
 @njit(cache=True, error_model="numpy")
-def _touches(laws: Laws, i: int, t: float, z: Floats) -> bool:  # pragma: no cover
-    lower, upper = laws.values[LOWER, i], laws.values[UPPER, i]
-    e = _error(laws, i, _phase(laws, i, t, z))[0]
-    x = z[laws.numbers[ROW, i]] - laws.values[OFFSET, i] - e
-    return bool(lower == upper or x > upper or x < lower)
-
-
-@njit(cache=True, error_model="numpy")
-def touching(laws: Laws, t: float, z: Floats, damps: Floats) -> None:  # pragma: no cover
-    """Into damps (q,): 1 of each law in contact at values z (r,) of the rows, else 0."""
-    for i in range(laws.numbers.shape[1]):
-        damps[i] = 1.0 if _touches(laws, i, t, z) else 0.0
+def touching(laws: Laws, t: float, y: Floats, of: Floats) -> None:  # pragma: no cover
+    """Into ``of[DAMPS]``: 1 of each law in contact at values ``y[Z]`` of the rows, else 0."""
+    for i in range(of.shape[1]):
+        lower, upper = laws.values[LOWER, i], laws.values[UPPER, i]
+        e = _error(laws, i, _phase(laws, i, t, y, Z))[0]
+        x = y[Z, laws.numbers[ROW, i]] - laws.values[OFFSET, i] - e
+        of[DAMPS, i] = 1.0 if lower == upper or x > upper or x < lower else 0.0
 
 
 @njit(cache=True, error_model="numpy")
@@ -132,16 +136,7 @@ def _damper(
 
 @njit(cache=True, error_model="numpy")
 def law_forces(
-    laws: Laws,
-    t: float,
-    z: Floats,
-    rate: Floats,
-    damps: Floats,
-    by_rate: float,
-    extra: Floats,
-    tangent: Floats,
-    forces: Floats,
-    damper: Floats,
+    laws: Laws, t: float, by_rate: float, at: int, y: Floats, of: Floats, tangent: Floats
 ) -> tuple[float, float, float]:  # pragma: no cover
     """Forces of all laws beyond the constant matrices.
 
@@ -151,13 +146,15 @@ def law_forces(
         Laws of q springs on r rows.
     t, by_rate : float
         Time [s], and change of a rate by the change of its value in a step.
-    z, rate, damps : Floats
-        Values of the rows (r,), their rates, and flags (q,): 1 where a damper works, else 0.
-    extra, tangent : Floats
-        Vector d (r,), and its derivative by z (r, r) at that `by_rate`, overwritten.
-    forces, damper : Floats
-        Forces of each spring along its row (q,), and the part of d that damper and machine have,
-        overwritten.
+    at : int
+        0 at the beginning of a step and 1 at its end: behind each of `Z`, `ZR`, `D`, `DAMPER`.
+    y : Floats
+        Vectors of r: values of the rows and their rates; forces d, overwritten.
+    of : Floats
+        Vectors of q: `DAMPS`; forces of each spring along its row, and the part of d that damper
+        and machine have, overwritten.
+    tangent : Floats
+        Derivative of d by the values (r, r) at that `by_rate`, overwritten.
 
     Returns
     -------
@@ -166,38 +163,41 @@ def law_forces(
         errors that vary with time puts in; and power of the dampers along the errors, which they do
         not take out.
     """
-    extra[:] = 0.0
-    tangent[:] = 0.0
+    for i in range(y.shape[1]):
+        y[D + at, i] = 0.0
+        for j in range(y.shape[1]):
+            tangent[i, j] = 0.0
     energy = power = followed = 0.0
-    for i in range(laws.numbers.shape[1]):
+    for i in range(of.shape[1]):
         h, g, drift = laws.numbers[ROW, i], laws.numbers[ANGLE, i], laws.numbers[DRIFT, i]
-        phase = _phase(laws, i, t, z)
+        phase = _phase(laws, i, t, y, Z + at)
         factor, slope, _ = _factor(laws, i, phase)
         e, e1, _ = _error(laws, i, phase)
-        turning = laws.values[FREQUENCY, i] + (rate[g] if g >= 0 else 0.0)
-        along = rate[h] + (z[drift] if drift >= 0 else 0.0)
+        turning = laws.values[FREQUENCY, i] + (y[ZR + at, g] if g >= 0 else 0.0)
+        z, along = y[Z + at, h], y[ZR + at, h] + (y[Z + at, drift] if drift >= 0 else 0.0)
         k, c = laws.values[STIFFNESS, i], laws.values[DAMPING, i]
-        phi, first, second = _potential(laws, i, z[h] - laws.values[OFFSET, i] - e)
+        phi, first, second = _potential(laws, i, z - laws.values[OFFSET, i] - e)
         force = k * factor * first
-        damper[i], resists = _damper(laws, i, along, damps[i], e1 * turning)
-        forces[i] = force + damper[i] + c * along
-        extra[h] += force + damper[i] - k * z[h]
+        damper, resists = _damper(laws, i, along, of[DAMPS, i], e1 * turning)
+        whole = force + damper + c * along
+        of[DAMPER + at, i], of[SPRING, i] = damper, whole
+        y[D + at, h] += force + damper - k * z
         tangent[h, h] += k * factor * second - k + by_rate * resists
         if drift >= 0:
             tangent[h, drift] += resists
         if g >= 0:
-            state = (phase, turning, phi, first, second, damps[i], resists, forces[i], by_rate)
-            _on_phase(laws, i, state, extra, tangent)
-        energy += k * factor * phi - 0.5 * k * z[h] * z[h]
-        power += (k * slope * phi - forces[i] * e1) * laws.values[FREQUENCY, i]
-        followed += (forces[i] - force) * e1 * turning
+            state = (phase, turning, phi, first, second, of[DAMPS, i], resists, whole, by_rate)
+            y[D + at, g] += _on_phase(laws, i, state, tangent)
+        energy += k * factor * phi - 0.5 * k * z * z
+        power += (k * slope * phi - whole * e1) * laws.values[FREQUENCY, i]
+        followed += (whole - force) * e1 * turning
     return energy, power, followed
 
 
 @njit(cache=True, error_model="numpy")
 def _on_phase(
-    laws: Laws, i: int, state: tuple[float, ...], extra: Floats, tangent: Floats
-) -> None:  # pragma: no cover - compiled
+    laws: Laws, i: int, state: tuple[float, ...], tangent: Floats
+) -> float:  # pragma: no cover - compiled
     """What a law whose phase goes with an angle adds: derivatives by it, and what drives it."""
     phase, turning, phi, first, second, damps, resists, whole, by_rate = state
     h, g, drift = laws.numbers[ROW, i], laws.numbers[ANGLE, i], laws.numbers[DRIFT, i]
@@ -208,15 +208,12 @@ def _on_phase(
     # of the damper, by the phase and by its rate
     by_phase = -damps * c * (e2 * turning + by_rate * e1)
     tangent[h, g] += k * slope * first - stiff * e1 + by_phase
-    if laws.driven:
-        extra[g] += k * slope * phi - whole * e1
-        tangent[g, h] += k * slope * first - (stiff + by_rate * (resists + c)) * e1
-        if drift >= 0:
-            tangent[g, drift] -= (resists + c) * e1
-        tangent[g, g] += (
-            k * bend * phi
-            - 2.0 * k * slope * first * e1
-            + stiff * e1 * e1
-            - by_phase * e1
-            - whole * e2
-        )
+    if not laws.driven:
+        return 0.0
+    tangent[g, h] += k * slope * first - (stiff + by_rate * (resists + c)) * e1
+    if drift >= 0:
+        tangent[g, drift] -= (resists + c) * e1
+    tangent[g, g] += (
+        k * bend * phi - 2.0 * k * slope * first * e1 + stiff * e1 * e1 - by_phase * e1 - whole * e2
+    )
+    return float(k * slope * phi - whole * e1)

@@ -15,7 +15,7 @@ from fe_drivetrain.dynamics.turning_rows import Matrices
 
 
 class Drive(NamedTuple):
-    """Loads: patterns (n, p), times (s,) and histories (s, p)."""
+    """Loads: patterns (1, n, p), times (s,) and histories (s, p)."""
 
     patterns: Floats
     times: Floats
@@ -55,7 +55,7 @@ class Model(NamedTuple):
 
 
 class Kept(NamedTuple):
-    """Records (k, ...); ``watch`` (w, n) are rows whose values and rates are recorded.
+    """Records (k, ...); ``watch`` (1, w, n) are rows whose values and rates are recorded.
 
     ``places`` and ``rates`` (k, w); ``forces`` (k, q) of laws, ``along`` (k, m) of linear springs
     where rows turn, ``bearings`` (2, k, 5 b) motions and loads, ``gripped`` (k, h) accelerations
@@ -73,22 +73,23 @@ class Kept(NamedTuple):
     energies: Floats
 
 
-MV, CV, KU, DU, OUTSIDE, OUTSIDE0, INSIDE, STEP, RHS, TERM, TERM2 = range(11)
-"""Vectors of n: M v, C v, K u, the drift of dampers, loads at the end and the beginning of a step,
-forces inside, the step, and what is summed."""
-
-D, D1, FREE, RESIDUAL, NEW, CHANGE, RATE, Z, BASE, ZR, ZA, SCALE = range(12)
-"""Vectors of r: forces beyond the matrices at the beginning and the end of a step, values that the
-matrix gives, residual, values, their change and rate; at the beginning values by its own rows and
-by those of the end, their rates and accelerations; maximum so far."""
-
-SPRING, DAMPER, DAMPER1, DAMPS = range(4)
-"""Vectors of q: forces, parts of dampers at the beginning and the end of a step, and contact."""
+(
+    U, V, A, U0, V0, A0,
+    MV, CV, KU, DU, OUTSIDE, OUTSIDE0, INSIDE, STEP, RHS, TERM, TERM2,
+) = range(17)  # fmt: skip
+"""Vectors of n: displacements, velocities, accelerations now and before the last step; M v, C v,
+K u, the drift of dampers; loads at the end and the beginning of a step, forces inside, the step,
+and what is summed."""
 
 
 class Work(NamedTuple):
-    """Memory of the loop: ``bearings`` (2, b, 5, 5) tangents and dampers, ``resisted`` (2, 5 b) by
-    dampers at the beginning and the end of a step, ``sums`` (2, 9) now and at its beginning."""
+    """Memory of the loop.
+
+    ``vectors`` (17, n), ``rows`` (12, r) and ``laws`` (4, q) as `U` ..., `Z` ... and `DAMPER` ...;
+    ``squares`` (2, r, r) tangent and Jacobian; ``bearings`` (2, b, 5, 5) tangents and dampers,
+    ``resisted`` (2, 5 b) by dampers at the beginning and the end of a step; ``sums`` (2, 9) now
+    and at its beginning, as `STORED` ...
+    """
 
     load: Floats
     vectors: Floats
@@ -106,14 +107,14 @@ def memory(model: Model, bearings: int, springs: int, loads: int) -> Work:
     """Memory for a model with so many bearings, springs whose rows turn, and loads."""
     n, r, q = len(model.matrices.constant), model.kinds.shape[1], model.laws.numbers.shape[1]
     return Work(
-        np.zeros(loads),
-        np.zeros((11, n)),
+        np.zeros((1, loads)),
+        np.zeros((17, n)),
         np.zeros((12, r)),
         np.zeros((4, q)),
         np.zeros((2, r, r)),
         np.zeros((2, bearings, 5, 5)),
         np.zeros((2, 5 * bearings)),
-        np.zeros(springs),
+        np.zeros((1, springs)),
         np.zeros((2, 9)),
         np.zeros(14),
     )

@@ -64,6 +64,8 @@ class Estimate:
         self.mechanism = mechanism
         self.factor = abs(scheme.beta - 1.0 / 6.0)
         bearings = mechanism.bearings
+        stands = mechanism.carriers is None and not bearings.seats
+        self._constant = mechanism.equations.K if stands else None
         self.tangents = np.zeros((len(bearings.seats), 5, 5))
         self.most = np.zeros(len(bearings.seats))
         self._stiffen(begin)
@@ -81,9 +83,9 @@ class Estimate:
 
     def _stiffness(self, at: State) -> Floats:
         """(n, n) of springs, and of bearings where they were loaded most."""
+        if self._constant is not None:
+            return self._constant
         e = self.mechanism.equations
-        if self.mechanism.carriers is None and not self.mechanism.bearings.seats:
-            return e.K
         rows = self.mechanism.rows_at(at.time)
         K = rows.springs.T @ (e.springs.stiffness[:, None] * rows.springs) + rows.extra
         B = rows.bearings

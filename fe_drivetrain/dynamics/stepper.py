@@ -14,14 +14,19 @@ from fe_drivetrain.dynamics.energy_account import STRAIN
 from fe_drivetrain.dynamics.equations import Loads
 from fe_drivetrain.dynamics.law_loops import Laws
 from fe_drivetrain.dynamics.loop_forms import (
+    A0,
     MOVED_ROW,
     PHASE_ROW,
     TILTED_ROW,
+    U0,
+    A,
     Drive,
     Kept,
     Model,
     Span,
     Stop,
+    U,
+    V,
     memory,
 )
 from fe_drivetrain.dynamics.mechanism import Mechanism
@@ -292,34 +297,26 @@ def run_steps(
     seen = np.eye(n) if watch is None else np.atleast_2d(np.asarray(watch, dtype=np.float64))
     kept = _records(stepper, seen, steps // every + 1)
     counts: Ints = np.zeros(3, dtype=np.int64)
-    state = np.zeros((6, n))
-    state[0], state[1], state[2] = begin.q, begin.velocity, begin.acceleration
-    state[3:] = state[:3]
     drive = Drive(
-        np.ascontiguousarray(loads.patterns),
+        np.ascontiguousarray(loads.patterns)[None],
         np.ascontiguousarray(loads.times),
         np.ascontiguousarray(loads.histories),
     )
     span = Span(int(steps), int(every), float(begin.time), float(tolerance))
     turns = len(springs.rows) if stepper.turning is not None else 0
     work = memory(stepper.model, b, turns, drive.histories.shape[1])
-    done = march(
-        span,
-        stepper.model,
-        stepper.rolling,
-        stepper.turning,
-        drive,
-        stop,
-        state,
-        work,
-        kept,
-        counts,
+    state = work.vectors
+    state[U], state[V], state[A] = begin.q, begin.velocity, begin.acceleration
+    state[U0 : A0 + 1] = state[U : A + 1]
+    model, rolling, turning = stepper.model, stepper.rolling, stepper.turning
+    done = march(span, model, rolling, turning, drive, stop, work, kept, counts)
+    dt = model.matrices.dt
+    end, before = (
+        State(*state[first : first + 3].copy(), begin.time + steps * dt)
+        for first, steps in ((U, done), (U0, done - 1))
     )
-    dt = stepper.model.matrices.dt
-    end = State(state[0], state[1], state[2], begin.time + done * dt)
-    before = State(state[3], state[4], state[5], begin.time + (done - 1) * dt)
     motion = _motion(stepper, kept, done // every + 1, len(seen), counts, end)
-    passed = stop.signs * (stop.rows @ state[1])
+    passed = stop.signs * (stop.rows @ end.velocity)
     stopped = bool(np.any((stop.signs != 0.0) & (passed <= 0.0)))
     return Piece(motion, before, stopped, kept.gripped[: len(motion.times)])
 
@@ -329,7 +326,7 @@ def _records(stepper: Stepper, seen: Floats, k: int) -> Kept:
     springs, turns = stepper.mechanism.equations.springs.rows, stepper.turning is not None
     rows = seen if turns else np.vstack([seen, springs])
     return Kept(
-        np.ascontiguousarray(rows),
+        np.ascontiguousarray(rows)[None],
         np.empty(k),
         np.empty((k, len(rows))),
         np.empty((k, len(rows))),
