@@ -44,7 +44,7 @@ def case(
 
     Notes
     -----
-    The function takes a `fe_drivetrain.suite.Run` and fills a `fe_drivetrain.suite.Page`. As a
+    The function takes a `fe_drivetrain.report.suite.Run` and fills a `fe_drivetrain.report.suite.Page`. As a
     script the file runs its case, with the options of ``fe-drivetrain run``.
     """
 
@@ -72,7 +72,7 @@ def cases(
 
     Notes
     -----
-    The function takes a `fe_drivetrain.suite.Run`, a `fe_drivetrain.suite.Page`, and its row. As a
+    The function takes a `fe_drivetrain.report.suite.Run`, a `fe_drivetrain.report.suite.Page`, and its row. As a
     script the file runs the cases that are named after it.
     """
 
@@ -85,6 +85,6 @@ def cases(
 
 
 def _run(arguments: list[str]) -> None:
-    from fe_drivetrain.commands import main
+    from fe_drivetrain.command_line import main
 
     main(["run", *arguments])

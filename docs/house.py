@@ -1,6 +1,6 @@
 """The rooms of the package and what each imports, read from the code; the picture of CONTRIBUTING.
 
-``python docs/house.py`` draws the picture again. tests/test_house.py pins what it shows: every
+``python docs/house.py`` draws the picture again. tests/house/test_house.py pins what it shows: every
 import goes to a lower floor, and none in a circle; and by `users` that the library has no module
 for one case alone.
 """

@@ -13,7 +13,7 @@ import tempfile
 from pathlib import Path
 
 from fe_drivetrain.common import InputError
-from fe_drivetrain.scene import Component, Scene, library_component, library_scene
+from fe_drivetrain.drivetrain_file import Component, Scene, library_component, library_scene
 
 FOLDER = Path(__file__).parent / "gallery"
 HASHES = FOLDER / "scenes.json"
@@ -54,7 +54,7 @@ def draw(name: str, scene: Scene | Component, file: Path) -> None:
 def draw_scene(scene: Scene, file: Path) -> None:
     """As on a page, on the coarsest of some meshes that its walls allow."""
     from fe_drivetrain.report.pictures import picture_of_model
-    from fe_drivetrain.response import build_model, mesh_scene
+    from fe_drivetrain.shafts.response import build_model, mesh_scene
 
     for factor in (2.0, 1.5, 1.0):
         try:
@@ -68,9 +68,9 @@ def draw_scene(scene: Scene, file: Path) -> None:
 
 def draw_component(component: Component, file: Path) -> None:
     """Deformed, under a torque about x at the first of its points that is free."""
-    from fe_drivetrain.fidelity import solid_component
+    from fe_drivetrain.elasticity.solve import supported
     from fe_drivetrain.report.pictures import picture_of_displacements
-    from fe_drivetrain.solve import supported
+    from fe_drivetrain.shafts.fidelity import solid_component
 
     coarse = component.model_copy(update={"mesh": component.mesh.scaled(1.5)})
     solid = solid_component(coarse)

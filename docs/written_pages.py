@@ -23,8 +23,8 @@ from sphinx.pycode import ModuleAnalyzer
 from stills import library
 
 import fe_drivetrain
-from fe_drivetrain.scene import Component, Scene
-from fe_drivetrain.suite import Case, all_cases, settings_in_words
+from fe_drivetrain.drivetrain_file import Component, Scene
+from fe_drivetrain.report.suite import Case, all_cases, settings_in_words
 
 #: Folders of modules without a list of names of their own, whose modules users import.
 MODULES_OF = {"export": "export.programs"}
@@ -180,7 +180,7 @@ def api_index(rooms: Iterable[str]) -> str:
     """The rooms with what they are for, and what a first script needs."""
     lines = [
         *heading("API", "="),
-        "Users import from a room: ``from fe_drivetrain.mesh import Mesh``.",
+        "Users import from a room: ``from fe_drivetrain.elasticity.mesh import Mesh``.",
         "",
     ]
     lines += ["A first script needs no more than what ``fe_drivetrain`` itself has:", ""]

@@ -9,12 +9,12 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress
-from fe_drivetrain.fidelity import beam_shaft
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.report.suite.page import Page
+from fe_drivetrain.report.suite.run import Run
+from fe_drivetrain.shafts.fidelity import beam_shaft
 from fe_drivetrain.studies.load_digest import LoadOptions
 from fe_drivetrain.studies.load_reactions import FileDigest, kept_digest
-from fe_drivetrain.suite.page import Page
-from fe_drivetrain.suite.run import Run
 
 WAIT = 60.0  # seconds; a hang is a failure
 

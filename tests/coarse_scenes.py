@@ -1,7 +1,7 @@
 """Coarse scenes of tests, as other processes import them, too."""
 
-from fe_drivetrain.scene.reading import change_scene, library_scene
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.drivetrain_file.reading import change_scene, library_scene
+from fe_drivetrain.drivetrain_file.scene import Scene
 
 #: A short, coarse main bearing: thesis proportions, a tenth of the unknowns.
 COARSE = {

@@ -24,21 +24,26 @@ from tiny_case import SCRIPT, Result, count
 from xdist.remote import Producer
 from xdist.scheduler import LoadScopeScheduling
 
-from fe_drivetrain.commands.app import main
+from fe_drivetrain.command_line.app import main
 from fe_drivetrain.common import cache, threads
 from fe_drivetrain.common.errors import MissingToolError
 from fe_drivetrain.common.progress import silent
-from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.drivetrain_file.reading import change_scene
+from fe_drivetrain.elasticity.mesh.mesh import Mesh
 from fe_drivetrain.report.pictures import off_screen
 from fe_drivetrain.report.results import Results, read_results
-from fe_drivetrain.response.model import Model, build_model, mesh_scene
-from fe_drivetrain.response.unit_loads import Response, unit_load_response
-from fe_drivetrain.scene.reading import change_scene
-from fe_drivetrain.suite import case as case_module
-from fe_drivetrain.suite.case import Case
-from fe_drivetrain.suite.result_folders import new_folder, put_in_place, result_folder, run_into
-from fe_drivetrain.suite.resuming import finished_cases
-from fe_drivetrain.suite.suite import run_cases
+from fe_drivetrain.report.suite import case as case_module
+from fe_drivetrain.report.suite.case import Case
+from fe_drivetrain.report.suite.result_folders import (
+    new_folder,
+    put_in_place,
+    result_folder,
+    run_into,
+)
+from fe_drivetrain.report.suite.resuming import finished_cases
+from fe_drivetrain.report.suite.suite import run_cases
+from fe_drivetrain.shafts.response.model import Model, build_model, mesh_scene
+from fe_drivetrain.shafts.response.unit_loads import Response, unit_load_response
 
 # The same few examples each time, or many new ones: HYPOTHESIS_PROFILE=thorough. How long an
 # example takes depends on who else works on the machine, so there is no deadline.

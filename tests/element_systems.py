@@ -3,12 +3,12 @@
 import numpy as np
 from coarse_scenes import coarse_scene
 
-from fe_drivetrain.interfaces.constraints import eliminate, fixed, held_nodes
-from fe_drivetrain.interfaces.mortar import mortar_tie
-from fe_drivetrain.mesh.blocks import brick
-from fe_drivetrain.response.model import build_model, mesh_scene
-from fe_drivetrain.scene.materials import MATERIALS
-from fe_drivetrain.solve.element_system import ElementSystem
+from fe_drivetrain.drivetrain_file.materials import MATERIALS
+from fe_drivetrain.elasticity.interfaces.constraints import eliminate, fixed, held_nodes
+from fe_drivetrain.elasticity.interfaces.mortar import mortar_tie
+from fe_drivetrain.elasticity.mesh.blocks import brick
+from fe_drivetrain.elasticity.solve.element_system import ElementSystem
+from fe_drivetrain.shafts.response.model import build_model, mesh_scene
 
 RUBBER = (4.95e9, 5e7)  # nu = 0.495
 

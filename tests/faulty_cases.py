@@ -5,8 +5,8 @@ import signal
 
 from tiny_case import check_one
 
-from fe_drivetrain.suite.page import Page
-from fe_drivetrain.suite.run import Run
+from fe_drivetrain.report.suite.page import Page
+from fe_drivetrain.report.suite.run import Run
 
 NEW = "new"
 
@@ -23,7 +23,7 @@ def fill(run: Run, page: Page, mark: str = NEW) -> None:
 def mesh_a_scene(run: Run, page: Page) -> None:
     from coarse_scenes import coarse_scene
 
-    from fe_drivetrain.response.model import mesh_scene
+    from fe_drivetrain.shafts.response.model import mesh_scene
 
     assert len(mesh_scene(coarse_scene("bonded")).cells) > 100
     fill(run, page)
@@ -33,7 +33,7 @@ def gmsh_fails(run: Run, page: Page) -> None:
     import gmsh
     from coarse_scenes import coarse_scene
 
-    from fe_drivetrain.response.model import mesh_scene
+    from fe_drivetrain.shafts.response.model import mesh_scene
 
     generate, gmsh.model.mesh.generate = gmsh.model.mesh.generate, _no_mesh
     try:

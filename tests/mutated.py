@@ -19,7 +19,7 @@ def _wrap(owner: Any, name: str, changed: Callable[..., Any]) -> None:
 
 def modulus() -> None:
     """Solids are 5 % too stiff."""
-    from fe_drivetrain.scene.materials import Material
+    from fe_drivetrain.drivetrain_file.materials import Material
 
     right = Material.lame
     wrong = property(lambda material: tuple(1.05 * value for value in right.fget(material)))
@@ -28,7 +28,7 @@ def modulus() -> None:
 
 def poisson_ratio() -> None:
     """Solids have 0.02 too much of it, at the same modulus."""
-    from fe_drivetrain.scene.materials import Material
+    from fe_drivetrain.drivetrain_file.materials import Material
 
     right = Material.lame
 
@@ -41,7 +41,7 @@ def poisson_ratio() -> None:
 
 def weight_upward() -> None:
     """Body loads act the other way."""
-    from fe_drivetrain.operator import loads
+    from fe_drivetrain.elasticity.operator import loads
 
     _wrap(loads, "body_loads", lambda right, *given: -right(*given))
 
@@ -64,7 +64,7 @@ FAULTS: Mapping[str, Callable[[], None]] = {
 if __name__ == "__main__":
     _, fault, program, *arguments = sys.argv
     FAULTS[fault]()
-    from fe_drivetrain.commands.app import main
+    from fe_drivetrain.command_line.app import main
 
     sys.argv = [program, *arguments]
     sys.exit(main())

@@ -9,9 +9,9 @@ from tiny_case import check_one
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.common.threads import cores
-from fe_drivetrain.suite.case import Case
-from fe_drivetrain.suite.page import Page
-from fe_drivetrain.suite.run import Run
+from fe_drivetrain.report.suite.case import Case
+from fe_drivetrain.report.suite.page import Page
+from fe_drivetrain.report.suite.run import Run
 
 
 def count(run: Run, page: Page) -> None:

@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite.page import Page
-from fe_drivetrain.suite.run import Run
+from fe_drivetrain.report.suite.page import Page
+from fe_drivetrain.report.suite.run import Run
 
 Result = tuple[int, str, str]
 """Exit status, standard output and standard error of a command."""
@@ -11,8 +11,8 @@ Result = tuple[int, str, str]
 # a user's own script of a case, that counts to one or does what --set work says
 SCRIPT = """
 import time
-from fe_drivetrain.commands import main_of_case
-from fe_drivetrain.suite import Case
+from fe_drivetrain.command_line import main_of_case
+from fe_drivetrain.report.suite import Case
 
 def work(run, page):
     with run.step("work"):

@@ -13,7 +13,7 @@ from fe_drivetrain.bearing import (
 )
 from fe_drivetrain.cases import case
 from fe_drivetrain.report import rolling_elements
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Radial clearance [m], axial and radial force [N], and MASTA's displacements [µm] and tilt [mrad].
 BALL = (

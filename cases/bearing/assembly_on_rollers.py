@@ -3,14 +3,18 @@
 import numpy as np
 
 from fe_drivetrain.bearing import SOFTEST_LEFT_OUT, catalogue_bearing
+from fe_drivetrain.bearing_life.coupled import coupled_equilibrium, factors_of, scene_body
+from fe_drivetrain.bearing_life.rings import (
+    AssemblyEquilibrium,
+    assembly_equilibrium,
+    roller_assembly,
+)
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.housed_bearing import ASSUMED_HOUSING, NAME, housed_scene
 from fe_drivetrain.common import Floats
-from fe_drivetrain.coupled import coupled_equilibrium, factors_of, scene_body
-from fe_drivetrain.fidelity import unit_stiffness
 from fe_drivetrain.report import rolling_elements
-from fe_drivetrain.rings import AssemblyEquilibrium, assembly_equilibrium, roller_assembly
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.fidelity import unit_stiffness
 
 #: Loads at the hub [N, N m], with the gearbox's weight.
 LOADS = {

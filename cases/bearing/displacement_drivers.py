@@ -3,6 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.bearing import equilibrium
+from fe_drivetrain.bearing_life.coupled import coupled_equilibrium
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.thesis_beam import (
     ASSUMED,
@@ -14,9 +15,8 @@ from fe_drivetrain.cases.references.thesis_beam import (
     radial,
 )
 from fe_drivetrain.common import Bools, Floats
-from fe_drivetrain.coupled import coupled_equilibrium
 from fe_drivetrain.report import rolling_elements, trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Of a bearing S with the moment of the rotor's weight alone [N m].
 MOMENT = 8e5

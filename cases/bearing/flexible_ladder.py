@@ -12,6 +12,7 @@ from fe_drivetrain.bearing import (
     catalogue_bearing,
     equilibrium_on_races,
 )
+from fe_drivetrain.bearing_life.rings import housing_races, housing_solid
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.bearing.gap_springs import PART, calculix_rollers
 from fe_drivetrain.cases.bearing.peak_rollers import (
@@ -31,8 +32,7 @@ from fe_drivetrain.cases.references.housed_bearing import (
 from fe_drivetrain.common import Floats, MissingToolError
 from fe_drivetrain.export import find_calculix
 from fe_drivetrain.report import rolling_elements
-from fe_drivetrain.rings import housing_races, housing_solid
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 SIZE, QUICK_SIZE = (1.6, None), (3.6, 8)
 ALL = 144

@@ -17,6 +17,7 @@ from fe_drivetrain.bearing import (
     linear,
     rigid_races,
 )
+from fe_drivetrain.bearing_life.rings import housing_races
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.housed_bearing import (
     ASSUMED_HOUSING,
@@ -29,11 +30,10 @@ from fe_drivetrain.cases.references.housed_bearing import (
     housed_scene,
 )
 from fe_drivetrain.common import Floats
-from fe_drivetrain.fidelity import unit_stiffness
+from fe_drivetrain.drivetrain_file import change_scene, joint_stiffness, library_scene
 from fe_drivetrain.report import Chart, chart, rolling_elements, trace
-from fe_drivetrain.rings import housing_races
-from fe_drivetrain.scene import change_scene, joint_stiffness, library_scene
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.fidelity import unit_stiffness
 
 #: Loads [N, N m].
 LOADS = {

@@ -3,6 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.bearing import Races, RacesEquilibrium, equilibrium_on_races, roller_motions
+from fe_drivetrain.bearing_life.rings import contact_compliance, housing_solid
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.bearing.gap_springs import PART, POINTS, calculix_rollers
 from fe_drivetrain.cases.references.housed_bearing import (
@@ -15,8 +16,7 @@ from fe_drivetrain.cases.references.housed_bearing import (
 from fe_drivetrain.common import Floats
 from fe_drivetrain.export import find_calculix, four_point_stiffness
 from fe_drivetrain.report import rolling_elements
-from fe_drivetrain.rings import contact_compliance, housing_solid
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 #: Loads [N, N m].
 LOADS = {"radial, up": (0.0, 0.0, 4e5, 0.0, 0.0), "combined": (2e5, 0.0, -4e5, 8e5, 0.0)}

@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 
 from fe_drivetrain.bearing import Bearing, roller_motions
+from fe_drivetrain.bearing_life.rings import HousingSolid
 from fe_drivetrain.cases.references.housed_bearing import NAME
 from fe_drivetrain.common import Floats
+from fe_drivetrain.drivetrain_file import Material
 from fe_drivetrain.export import read_dat, run_calculix
-from fe_drivetrain.rings import HousingSolid
-from fe_drivetrain.scene import Material
 
 PART = f"{NAME}.housing"
 

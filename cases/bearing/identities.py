@@ -5,9 +5,9 @@ import numpy as np
 from fe_drivetrain.bearing import catalogue_bearing, equilibrium, forces, three_degrees, turn
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import round_off
+from fe_drivetrain.comparison import round_off
 from fe_drivetrain.report import rolling_elements
-from fe_drivetrain.suite import Page, Record, Run, Target
+from fe_drivetrain.report.suite import Page, Record, Run, Target
 
 BEARING = catalogue_bearing("bearing_s")
 Z = BEARING.counts[0]

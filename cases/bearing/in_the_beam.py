@@ -8,6 +8,13 @@ from typing import Literal
 import numpy as np
 
 from fe_drivetrain.bearing import Bearing, equilibrium, roller_loads
+from fe_drivetrain.bearing_life.coupled import (
+    LinearBody,
+    coupled_equilibrium,
+    on_springs,
+    stiffness_loop,
+    tilt_springs,
+)
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.thesis_beam import (
     ASSUMED,
@@ -23,23 +30,16 @@ from fe_drivetrain.cases.references.thesis_beam import (
     radial,
 )
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import round_off
-from fe_drivetrain.coupled import (
-    LinearBody,
-    coupled_equilibrium,
-    on_springs,
-    stiffness_loop,
-    tilt_springs,
-)
-from fe_drivetrain.histories import (
+from fe_drivetrain.comparison import round_off
+from fe_drivetrain.report import rolling_elements, trace
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.turbine_loads.histories import (
     Measured,
     damage_ratio,
     good_enough_for,
     measured,
     model_errors,
 )
-from fe_drivetrain.report import rolling_elements, trace
-from fe_drivetrain.suite import Page, Record, Run
 
 CONSTANT = "constant 1272 MN m/rad"
 LOOP = "the thesis's loop"

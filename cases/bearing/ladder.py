@@ -17,7 +17,7 @@ from fe_drivetrain.cases.bearing.peak_rollers import (
 )
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report import rolling_elements
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 REFERENCE_LAMINAE = 400
 

@@ -14,7 +14,7 @@ from fe_drivetrain.bearing import (
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report import rolling_elements
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Combined load of bearing S [N, N m].
 LOAD = np.array([[2e5, 0.0, -4e5, 8e5, 0.0]])

@@ -6,7 +6,7 @@ import numpy as np
 
 from fe_drivetrain.bearing import Bearing, equilibrium, superposed_peak
 from fe_drivetrain.common import Floats
-from fe_drivetrain.suite import Page, Record
+from fe_drivetrain.report.suite import Page, Record
 
 #: Loads [N, N m]: where closed forms hold, and where they do not.
 LOADS = {

@@ -1,9 +1,9 @@
 """Every bearing of the catalogue: what is assumed, and whether its insides fit its load ratings."""
 
 from fe_drivetrain.bearing import read_catalogue
+from fe_drivetrain.bearing_life.life import rated_bearing
 from fe_drivetrain.cases import case
-from fe_drivetrain.life import rated_bearing
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Assumed rollers were sized to fit the printed ratings to this.
 FITS = 0.03

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.beam import torsional_spring_model
 from fe_drivetrain.bearing import (
     Bearing,
     RollerRow,
@@ -16,6 +15,7 @@ from fe_drivetrain.bearing import (
     pitch_ratio,
     turn,
 )
+from fe_drivetrain.bearing_life.coupled import coupled_equilibrium
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.thesis_beam import (
     ASSUMED,
@@ -28,8 +28,10 @@ from fe_drivetrain.cases.references.thesis_beam import (
     radial,
 )
 from fe_drivetrain.common import Floats
-from fe_drivetrain.coupled import coupled_equilibrium
-from fe_drivetrain.hub_loads import (
+from fe_drivetrain.report import density_chart, rolling_elements, trace
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.beam import torsional_spring_model
+from fe_drivetrain.turbine_loads.hub_loads import (
     Condition,
     Loops,
     Rotor,
@@ -37,8 +39,6 @@ from fe_drivetrain.hub_loads import (
     hub_load_set,
     loop_statistics,
 )
-from fe_drivetrain.report import density_chart, rolling_elements, trace
-from fe_drivetrain.suite import Page, Record, Run
 
 #: Length of an example [s], as in the thesis's figures 4.15 and 4.16.
 WINDOW = 2.0

@@ -14,7 +14,7 @@ from fe_drivetrain.bearing import (
 )
 from fe_drivetrain.cases import case
 from fe_drivetrain.report import rolling_elements, trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: 1 / J_r at half a circle of load, as printed in tables of the integral.
 FACTORS = {"Houpert 1.1": (1.1, 4.0766), "ISO 10/9": (10 / 9, 4.0850), "Hertz 3/2": (1.5, 4.3701)}

@@ -3,6 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.bearing import Arrangement, Bearing, double_row_tapered, equilibrium, sjovall
+from fe_drivetrain.bearing_life.coupled import on_springs, tilt_springs
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.bearing.tilt_scenarios import (
     SCENARIOS,
@@ -22,9 +23,8 @@ from fe_drivetrain.cases.references.thesis_beam import (
     radial,
 )
 from fe_drivetrain.common import Floats
-from fe_drivetrain.coupled import on_springs, tilt_springs
 from fe_drivetrain.report import rolling_elements, trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Distance of the middles of the inner races: half the width of Table 4.1 [m].
 RACES = 0.1524

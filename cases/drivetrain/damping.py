@@ -10,9 +10,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.cases.references.implied_shafts import DAMPING_RATIO, SHEAR_MODULUS, implied
 from fe_drivetrain.common import Floats
-from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.torsion import (
+from fe_drivetrain.dynamics.torsion import (
     GENERATOR,
     ROTOR,
     GeneratorState,
@@ -28,6 +26,8 @@ from fe_drivetrain.torsion import (
     stage_masses,
     two_masses,
 )
+from fe_drivetrain.report import trace
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Section 4.1: average damping ratio of gear meshes.
 MESH_RATIO = 0.1

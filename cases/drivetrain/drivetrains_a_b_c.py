@@ -10,9 +10,7 @@ from fe_drivetrain.cases.drivetrain.printed import check_count, check_printed, s
 from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.cases.references.independent_torsion import certified
 from fe_drivetrain.common import Floats, Ints
-from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.torsion import (
+from fe_drivetrain.dynamics.torsion import (
     Drivetrain,
     Modes,
     Torsional,
@@ -22,6 +20,8 @@ from fe_drivetrain.torsion import (
     natural_modes,
     stage_masses,
 )
+from fe_drivetrain.report import trace
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: What each table of inputs needs in place of one entry, and the number in Table 6.4 (from 1) that
 #: it is solved for.

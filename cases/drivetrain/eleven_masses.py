@@ -18,10 +18,8 @@ from fe_drivetrain.cases.drivetrain.printed import (
 from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.cases.references.independent_torsion import certified
 from fe_drivetrain.common import Floats, Ints
-from fe_drivetrain.compare import digit, round_off
-from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.torsion import (
+from fe_drivetrain.comparison import digit, round_off
+from fe_drivetrain.dynamics.torsion import (
     GENERATOR,
     ROTOR,
     Drivetrain,
@@ -34,6 +32,8 @@ from fe_drivetrain.torsion import (
     stage_masses,
     static_stiffness,
 )
+from fe_drivetrain.report import trace
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Modes of Table 6.1 that do not follow from the inputs of Table 4.2; shown, and restored below.
 ASTRAY = frozenset({3, 4, 5, 6, 8})
@@ -462,5 +462,5 @@ def show_restored(page: Page, f: Floats, other: Restored) -> None:
         f"planets that go round on it at r_c = {reach():.3f} r_p bring {hoop:.1f} as hoops and "
         f"{disc:.1f} as solid discs of the J_P of Table 4.2: bored planets bring what is missing. "
         "Table 4.2's carrier is the bare part; the model behind Table 6.1 has its planets on it. "
-        "A carrier given for `fe_drivetrain.torsion` must count them as points."
+        "A carrier given for `fe_drivetrain.dynamics.torsion` must count them as points."
     )

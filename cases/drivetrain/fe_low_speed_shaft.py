@@ -11,11 +11,8 @@ from fe_drivetrain.cases.drivetrain import low_speed_shaft as lss
 from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.cases.references.implied_shafts import SHEAR_MODULUS, implied
 from fe_drivetrain.cases.references.torsion_meridian import torsion_bounds
-from fe_drivetrain.compare import GridConvergence, digit, grid_convergence
-from fe_drivetrain.geometry import Shaft
-from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.torsion import (
+from fe_drivetrain.comparison import GridConvergence, digit, grid_convergence
+from fe_drivetrain.dynamics.torsion import (
     Drivetrain,
     GeneratorState,
     Torsional,
@@ -25,6 +22,9 @@ from fe_drivetrain.torsion import (
     stage_masses,
     two_masses,
 )
+from fe_drivetrain.geometry import Shaft
+from fe_drivetrain.report import trace
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Elements round a turn of the meshes.
 TURNS, QUICK_TURNS = (8, 11, 14), (8, 9, 10)

@@ -21,10 +21,8 @@ from fe_drivetrain.cases.references.independent_torsion import (
     inverse_squares,
 )
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import round_off
-from fe_drivetrain.report import Cell
-from fe_drivetrain.suite import Page, Run
-from fe_drivetrain.torsion import (
+from fe_drivetrain.comparison import round_off
+from fe_drivetrain.dynamics.torsion import (
     GENERATOR,
     ROTOR,
     Drivetrain,
@@ -37,6 +35,8 @@ from fe_drivetrain.torsion import (
     stage_masses,
     two_masses,
 )
+from fe_drivetrain.report import Cell
+from fe_drivetrain.report.suite import Page, Run
 
 #: Modes of Table 6.1 that do not follow from the inputs of Table 4.2; shown, and restored below.
 ASTRAY = frozenset({3, 4})

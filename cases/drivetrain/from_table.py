@@ -6,9 +6,8 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.drivetrain.printed import check_count, show_energy, show_shapes
 from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.cases.references.independent_torsion import certified
-from fe_drivetrain.compare import round_off
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.torsion import (
+from fe_drivetrain.comparison import round_off
+from fe_drivetrain.dynamics.torsion import (
     GENERATOR,
     ROTOR,
     Drivetrain,
@@ -26,6 +25,7 @@ from fe_drivetrain.torsion import (
     static_stiffness,
     two_masses,
 )
+from fe_drivetrain.report.suite import Page, Record, Run
 
 GEARS = "a mass for each gear"
 MAKERS = {"two masses": two_masses, "a mass for each stage": stage_masses, GEARS: gear_masses}

@@ -12,11 +12,17 @@ import numpy as np
 
 from fe_drivetrain.cases.references.implied_shafts import SHEAR_MODULUS, Uniform
 from fe_drivetrain.cases.references.twisted_tubes import material_of
+from fe_drivetrain.elasticity.interfaces import (
+    Constraint,
+    averaged_point,
+    fixed,
+    rigid_face,
+    rigid_point,
+)
+from fe_drivetrain.elasticity.mesh import Mesh, face_weights, generate
+from fe_drivetrain.elasticity.revolution import end_stiffness
+from fe_drivetrain.elasticity.solve import solve_solid
 from fe_drivetrain.geometry import Flange, MeshSizes, Section, Shaft
-from fe_drivetrain.interfaces import Constraint, averaged_point, fixed, rigid_face, rigid_point
-from fe_drivetrain.mesh import Mesh, face_weights, generate
-from fe_drivetrain.revolution import end_stiffness
-from fe_drivetrain.solve import solve_solid
 
 MATERIAL = material_of(SHEAR_MODULUS)
 

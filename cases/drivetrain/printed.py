@@ -5,10 +5,10 @@ from collections.abc import Collection, Mapping, Sequence
 import numpy as np
 
 from fe_drivetrain.common import Floats, Ints
-from fe_drivetrain.compare import digit
+from fe_drivetrain.comparison import digit
+from fe_drivetrain.dynamics.torsion import Modes
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Target
-from fe_drivetrain.torsion import Modes
+from fe_drivetrain.report.suite import Page, Record, Target
 
 ROUNDING = (
     "every input at its worst within half of its last printed digit, summed, and one unit of the "

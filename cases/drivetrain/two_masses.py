@@ -11,10 +11,8 @@ from fe_drivetrain.cases.drivetrain.printed import check_printed, frequency_rows
 from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.cases.references.independent_torsion import two_mass_frequencies
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import round_off
-from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.torsion import (
+from fe_drivetrain.comparison import round_off
+from fe_drivetrain.dynamics.torsion import (
     GENERATOR,
     ROTOR,
     GeneratorState,
@@ -23,6 +21,8 @@ from fe_drivetrain.torsion import (
     natural_modes,
     two_masses,
 )
+from fe_drivetrain.report import trace
+from fe_drivetrain.report.suite import Page, Record, Run
 
 NAME = "nrel_750kw"
 TABLE = published.table(NAME)

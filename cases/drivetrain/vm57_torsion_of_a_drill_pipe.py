@@ -4,9 +4,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.compare import as_printed
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, order_of
-from fe_drivetrain.torsion import Inertia, chain, natural_modes
+from fe_drivetrain.comparison import as_printed
+from fe_drivetrain.dynamics.torsion import Inertia, chain, natural_modes
+from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target, order_of
 
 # foot, pound-force and slug, as the manual has them; no other unit remains in a frequency
 OUTER, WALL, LENGTH = 4.5 / 12.0, 0.335 / 12.0, 5000.0  # ft

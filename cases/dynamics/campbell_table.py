@@ -14,16 +14,16 @@ from fe_drivetrain.dynamics import (
     equal_angles,
     excited_motion,
 )
-from fe_drivetrain.gear import equally_spaced, sequence, sun_phases
-from fe_drivetrain.report import crosses, trace
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.torsion import (
+from fe_drivetrain.dynamics.torsion import (
     Toothed,
     absolute_sun_orders,
     gear_masses,
     mesh_orders,
     natural_modes,
 )
+from fe_drivetrain.gear import equally_spaced, sequence, sun_phases
+from fe_drivetrain.report import crosses, trace
+from fe_drivetrain.report.suite import Page, Record, Run
 
 TABLE_4_8 = {"A": ("146", "730"), "B": ("154", "707.259", "2419.575"), "C": ("174", "648", "2664")}
 RPM = np.pi / 30.0

@@ -4,7 +4,8 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import ConvergenceInTime, InTime
+from fe_drivetrain.comparison import ConvergenceInTime, InTime
+from fe_drivetrain.drivetrain_file import Material
 from fe_drivetrain.dynamics import (
     Flexible,
     Level,
@@ -28,8 +29,7 @@ from fe_drivetrain.dynamics import (
 )
 from fe_drivetrain.dynamics.static import Turn
 from fe_drivetrain.report import trace
-from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import Page, Run, check_in_time
+from fe_drivetrain.report.suite import Page, Run, check_in_time
 
 NAME, TORQUE, MOMENT, SPEED = "nrel_750kw", 3.25e5, -3e5, 2.31  # N m, N m, rad/s
 RING = 99

@@ -4,6 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
+from fe_drivetrain.drivetrain_file import CarrierComponent, library_component
 from fe_drivetrain.dynamics import (
     Flexible,
     Level,
@@ -17,10 +18,9 @@ from fe_drivetrain.dynamics import (
     steady_load,
 )
 from fe_drivetrain.dynamics.static import Turn
-from fe_drivetrain.fidelity.component_frames import carrier_frame
 from fe_drivetrain.report import trace
-from fe_drivetrain.scene import CarrierComponent, library_component
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.fidelity.component_frames import carrier_frame
 
 NAME = "nrel_750kw"
 TORQUE = 3.25e5  # N m, at 750 kW

@@ -15,7 +15,7 @@ from fe_drivetrain.dynamics import (
     steady_load,
 )
 from fe_drivetrain.gear import reduced_modulus, tooth_contact
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 TORQUES = {"synthetic_2mw": 1.055e6, "nrel_5mw": 3.946e6}  # N m, rated, of the rotor
 STEEL = reduced_modulus()

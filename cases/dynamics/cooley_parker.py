@@ -6,7 +6,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import published_planetary as published
 from fe_drivetrain.dynamics import distinct, divergence_speeds, system_modes, turning_modes
 from fe_drivetrain.report import crosses
-from fe_drivetrain.suite import Page, Run, Target
+from fe_drivetrain.report.suite import Page, Run, Target
 
 CENTRAL = ("carrier", "ring", "sun")
 STAGE = published.COOLEY_PARKER_STAGE

@@ -26,9 +26,9 @@ from fe_drivetrain.dynamics import (
     torsional,
     turning_modes,
 )
+from fe_drivetrain.dynamics.torsion import Drivetrain, gear_masses, natural_modes, static_stiffness
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.torsion import Drivetrain, gear_masses, natural_modes, static_stiffness
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Machines with torque of the rotor and tilting moment of the hub [N m], and where it is from.
 OPERATIONS = {

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_drivetrain.cases.references import published_drivetrains as published
-from fe_drivetrain.torsion import Drivetrain
+from fe_drivetrain.dynamics.torsion import Drivetrain
 
 #: Damping ratios of shafts and of meshes (Al-Hamadani 2018, section 4.1).
 RATIOS = (0.006, 0.1)

@@ -10,7 +10,8 @@ from fe_drivetrain.cases.references.published_planetary import (
     plane_system,
 )
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import round_off
+from fe_drivetrain.comparison import round_off
+from fe_drivetrain.drivetrain_file import Material
 from fe_drivetrain.dynamics import (
     Rim,
     assemble,
@@ -19,8 +20,7 @@ from fe_drivetrain.dynamics import (
     system_modes,
     with_rim,
 )
-from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 STEEL = Material(youngs_modulus=210e9, poisson_ratio=0.3, density=7850.0)
 WIDTH = 0.03  # m

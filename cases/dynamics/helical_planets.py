@@ -3,7 +3,7 @@
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.published_planetary import helical_system
 from fe_drivetrain.dynamics import distinct, planetary_kinds, system_modes
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 CENTRAL = ("carrier", "ring", "sun")
 

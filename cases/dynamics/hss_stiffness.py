@@ -6,16 +6,16 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.dynamics.drivetrains import Rated, drivetrains
 from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import InTime, converge_in_time, decades, peak_between
+from fe_drivetrain.comparison import InTime, converge_in_time, decades, peak_between
 from fe_drivetrain.dynamics import StopSequence, shutdown
-from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, check_in_time
-from fe_drivetrain.torsion import (
+from fe_drivetrain.dynamics.torsion import (
     Torsional,
     changed,
     gear_masses,
     natural_modes,
 )
+from fe_drivetrain.report import trace
+from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
 
 FACTOR = "stiffness of the high-speed shaft over the tabled one"
 #: A generator's spring over its inertia, of drivetrain D: that of A is not printed.

@@ -4,7 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import (
+from fe_drivetrain.comparison import (
     decades,
     fitted_exponent,
     round_off,
@@ -28,7 +28,7 @@ from fe_drivetrain.dynamics import (
     varying,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 SCHEMES = (AVERAGE, LINEAR, generalised_alpha(0.8), generalised_alpha(0.0))
 

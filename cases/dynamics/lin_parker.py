@@ -12,7 +12,7 @@ from fe_drivetrain.cases.references.published_planetary import (
 )
 from fe_drivetrain.common import Floats
 from fe_drivetrain.dynamics import distinct, planetary_kinds, system_modes
-from fe_drivetrain.suite import Page, Record, Run, Target
+from fe_drivetrain.report.suite import Page, Record, Run, Target
 
 CENTRAL = ("carrier", "ring", "sun")
 #: Lines of four planets that are rounded further than their last digit says.

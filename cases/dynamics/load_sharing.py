@@ -5,7 +5,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.dynamics.planet_loads import SharingStage, shared_load
 from fe_drivetrain.dynamics import load_sharing
-from fe_drivetrain.suite import Page, Record, Run, Target
+from fe_drivetrain.report.suite import Page, Record, Run, Target
 
 NOMINAL = 20e3  # N, mean force of a mesh
 SHARE = 0.25  # K e over it, as of 1e8 N/m and 50 um along the line of action

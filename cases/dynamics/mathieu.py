@@ -6,7 +6,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.mathieu import exact_growth, stepped_growth
-from fe_drivetrain.compare import InTime, converge_in_time
+from fe_drivetrain.comparison import InTime, converge_in_time
 from fe_drivetrain.dynamics import (
     State,
     equations_of_motion,
@@ -16,7 +16,7 @@ from fe_drivetrain.dynamics import (
     steady,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Run, check_in_time
+from fe_drivetrain.report.suite import Page, Run, check_in_time
 
 DEPTHS = (0.02, 0.05, 0.1, 0.2)
 STEPS = 128

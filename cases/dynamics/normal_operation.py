@@ -5,7 +5,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.dynamics.drivetrains import Rated, drivetrains
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import InTime, converge_in_time
+from fe_drivetrain.comparison import InTime, converge_in_time
 from fe_drivetrain.dynamics import (
     Equations,
     Loads,
@@ -21,8 +21,14 @@ from fe_drivetrain.dynamics import (
     varying,
     wind_up,
 )
-from fe_drivetrain.suite import Page, Record, Run, check_in_time
-from fe_drivetrain.torsion import Torsional, changed, gear_masses, gear_speeds, natural_modes
+from fe_drivetrain.dynamics.torsion import (
+    Torsional,
+    changed,
+    gear_masses,
+    gear_speeds,
+    natural_modes,
+)
+from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
 
 PRINTED, LIMIT = 1.26, 1.35
 """Largest torque over rated in normal operation, drivetrain B; limit of the design loads."""

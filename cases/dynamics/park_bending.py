@@ -6,7 +6,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.dynamics.park_models import SPEED, turning_inertia
 from fe_drivetrain.cases.references import park_2021 as park
 from fe_drivetrain.common import Floats, InputError
-from fe_drivetrain.compare import as_printed, round_off
+from fe_drivetrain.comparison import as_printed, round_off
 from fe_drivetrain.dynamics import (
     Level,
     Machine,
@@ -17,7 +17,7 @@ from fe_drivetrain.dynamics import (
     system_modes,
 )
 from fe_drivetrain.dynamics.static import static
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 COSINE = float(np.cos(np.radians(20.0)) ** 2)
 #: The reading of the meshes, their factor, whether the planetary ones are there along both axes.

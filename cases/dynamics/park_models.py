@@ -6,7 +6,7 @@ import numpy as np
 
 from fe_drivetrain.cases.references import park_2021 as park
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import InTime
+from fe_drivetrain.comparison import InTime
 from fe_drivetrain.dynamics import (
     Equations,
     Loads,

@@ -17,7 +17,7 @@ from fe_drivetrain.cases.dynamics.park_models import (
 )
 from fe_drivetrain.cases.references import park_2021 as park
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import InTime, converge_in_time, peak_between
+from fe_drivetrain.comparison import InTime, converge_in_time, peak_between
 from fe_drivetrain.dynamics import (
     Level,
     Loads,
@@ -33,7 +33,7 @@ from fe_drivetrain.dynamics import (
     wind_up,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, check_in_time
+from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
 
 MESH, LINE = MESHES[3], park.MESH_LINES[2]
 TURNING = abs(eccentric_bodies()["gear 3"].speed) / 10.0

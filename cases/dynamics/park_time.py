@@ -27,7 +27,7 @@ from fe_drivetrain.cases.dynamics.park_models import (
 )
 from fe_drivetrain.cases.references import park_2021 as park
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import ConvergenceInTime, InTime, converge_in_time, peak_between
+from fe_drivetrain.comparison import ConvergenceInTime, InTime, converge_in_time, peak_between
 from fe_drivetrain.dynamics import (
     Level,
     Loads,
@@ -42,7 +42,7 @@ from fe_drivetrain.dynamics import (
     wind_up,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, check_in_time
+from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
 
 READINGS = {
     "balanced: -15 kN m over the ratio": 1.0 / park.ratio(),

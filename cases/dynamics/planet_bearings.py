@@ -7,6 +7,7 @@ import numpy as np
 from fe_drivetrain.bearing import Bearing, cylindrical, equilibrium, forces, load_zones, pressures
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
+from fe_drivetrain.drivetrain_file import CarrierComponent, library_component
 from fe_drivetrain.dynamics import (
     Flexible,
     Machine,
@@ -20,11 +21,10 @@ from fe_drivetrain.dynamics import (
     static_on_rollers,
     steady_load,
 )
-from fe_drivetrain.fidelity.component_frames import carrier_frame
 from fe_drivetrain.geometry.planet_carrier import PlanetCarrier
 from fe_drivetrain.report import trace
-from fe_drivetrain.scene import CarrierComponent, library_component
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.fidelity.component_frames import carrier_frame
 
 TORQUE, RADIUS, SPREAD = 3.25e5, 0.308, 0.12  # N m; m of the planets' centres; m between bearings
 MOMENTS = {"torque and gravity": 0.0, "with -300 kN m of tilt": -3e5}

@@ -17,11 +17,11 @@ from fe_drivetrain.cases.dynamics.shutdown_runs import (
     stopped_by,
 )
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import ConvergenceInTime, InTime, converge_in_time, peak_between
+from fe_drivetrain.comparison import ConvergenceInTime, InTime, converge_in_time, peak_between
 from fe_drivetrain.dynamics import StopSequence
+from fe_drivetrain.dynamics.torsion import changed, natural_modes, two_masses
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.torsion import changed, natural_modes, two_masses
+from fe_drivetrain.report.suite import Page, Record, Run
 
 NORMAL = 0.237
 """Range of torque in normal operation over rated: 250 kN m of 1.055 MN m, measured (chapter 3)."""

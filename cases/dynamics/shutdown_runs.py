@@ -6,9 +6,9 @@ from typing import NamedTuple
 from scipy.optimize import newton
 
 from fe_drivetrain.cases.dynamics.drivetrains import Rated, drivetrains
-from fe_drivetrain.compare import ConvergenceInTime, InTime, converge_in_time, peak_between
+from fe_drivetrain.comparison import ConvergenceInTime, InTime, converge_in_time, peak_between
 from fe_drivetrain.dynamics import Shutdown, StopSequence, shutdown
-from fe_drivetrain.suite import Page, Record, check_in_time
+from fe_drivetrain.report.suite import Page, Record, check_in_time
 
 #: Highest torque of a shaft in a shutdown over its rated one, printed: LSS of drivetrain B.
 PEAK = 1.38

@@ -4,7 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import ConvergenceInTime, InTime, converge_in_time, peak_between
+from fe_drivetrain.comparison import ConvergenceInTime, InTime, converge_in_time, peak_between
 from fe_drivetrain.dynamics import (
     Motion,
     State,
@@ -27,7 +27,7 @@ from fe_drivetrain.gear import (
     transmission_error,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Run, check_in_time
+from fe_drivetrain.report.suite import Page, Run, check_in_time
 
 MASS, ZETA, TORQUE = 3.0, 0.08, 2000.0  # kg on the line of action, of critical, N m
 RELIEFS = (0.0, 30e-6)  # at the tips, over all of the double contact

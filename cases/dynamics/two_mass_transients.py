@@ -5,7 +5,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.dynamics.drivetrains import drivetrains
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import InTime, converge_in_time, peak_between
+from fe_drivetrain.comparison import InTime, converge_in_time, peak_between
 from fe_drivetrain.dynamics import (
     AVERAGE,
     Brake,
@@ -21,9 +21,9 @@ from fe_drivetrain.dynamics import (
     transient,
     wind_up,
 )
+from fe_drivetrain.dynamics.torsion import two_masses
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, check_in_time
-from fe_drivetrain.torsion import two_masses
+from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
 
 PER_PERIOD = (20, 40, 80, 160)
 QUICK = (20, 40)

@@ -11,7 +11,7 @@ from fe_drivetrain.cases.export.calculix_runs import (
 from fe_drivetrain.cases.export.samples import frequencies, samples, show
 from fe_drivetrain.common import scaled_to_unit_diagonal, scratch_folder
 from fe_drivetrain.export import ROUNDING, find_calculix
-from fe_drivetrain.suite import Page, Run, Target, column
+from fe_drivetrain.report.suite import Page, Run, Target, column
 
 #: Natural frequencies that are compared.
 COUNT = 3

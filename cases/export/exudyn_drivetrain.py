@@ -10,6 +10,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.export.rotor_scenes import ORDER, QUICK_SCENES, SCENES, scene_and_units
 from fe_drivetrain.cases.export.samples import show
 from fe_drivetrain.common import Floats
+from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.export import (
     CraigBampton,
     Superelement,
@@ -19,9 +20,8 @@ from fe_drivetrain.export import (
     natural_frequencies,
 )
 from fe_drivetrain.export.programs import exudyn_system
-from fe_drivetrain.fidelity import scene_supports, shaft_level
-from fe_drivetrain.scene import Scene
-from fe_drivetrain.suite import Page, Record, Run, column
+from fe_drivetrain.report.suite import Page, Record, Run, column
+from fe_drivetrain.shafts.fidelity import scene_supports, shaft_level
 
 #: Fixed-interface modes of the flexible body, and of the convergence study.
 MODES = 12

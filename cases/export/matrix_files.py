@@ -7,7 +7,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.export.matrix_readers import READERS
 from fe_drivetrain.cases.export.samples import matrices, samples, show
 from fe_drivetrain.common import MissingToolError, largest_difference, scratch_folder
-from fe_drivetrain.suite import Page, Record, Run, column
+from fe_drivetrain.report.suite import Page, Record, Run, column
 
 WRITTEN = "the matrix before it was written"
 DIFFERENCE = "difference of a unit diagonal"

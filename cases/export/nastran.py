@@ -7,7 +7,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.export.samples import frequencies, matrices, samples, show
 from fe_drivetrain.common import largest_difference, scratch_folder
 from fe_drivetrain.export import pynastran
-from fe_drivetrain.suite import Page, Run, Target, column, grouped
+from fe_drivetrain.report.suite import Page, Run, Target, column, grouped
 
 WRITTEN = "the matrices before they were written"
 #: By format: largest difference that the digits of its numbers leave, and why.

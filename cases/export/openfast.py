@@ -8,6 +8,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.export.sample_elastodyn import TEXT
 from fe_drivetrain.cases.export.samples import FACTOR, frequencies, show
 from fe_drivetrain.common import largest_difference, scratch_folder
+from fe_drivetrain.drivetrain_file import Scene, library_scene
 from fe_drivetrain.export import (
     Superelement,
     shaft_superelement,
@@ -16,8 +17,7 @@ from fe_drivetrain.export import (
     unit_superelement,
 )
 from fe_drivetrain.export.formats import elastodyn, extptfm, subdyn
-from fe_drivetrain.scene import Scene, library_scene
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 PUBLISHED = "OpenFAST r-test, SD_Spring_Case1"
 

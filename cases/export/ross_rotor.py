@@ -5,7 +5,15 @@ from itertools import pairwise
 
 import numpy as np
 
-from fe_drivetrain.beam import (
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.export.rotor_scenes import ORDER, QUICK_SCENES, SCENES, scene_and_units
+from fe_drivetrain.cases.export.samples import show
+from fe_drivetrain.common import Floats, largest_difference
+from fe_drivetrain.drivetrain_file import library_scene
+from fe_drivetrain.export import craig_bampton_shaft, free_frequencies, natural_frequencies
+from fe_drivetrain.export.programs import ross_rotor
+from fe_drivetrain.report.suite import Page, Record, Run, column
+from fe_drivetrain.shafts.beam import (
     Beam,
     Support,
     UnitLoadResponse,
@@ -13,15 +21,7 @@ from fe_drivetrain.beam import (
     shaft_stiffness,
     unit_load_response,
 )
-from fe_drivetrain.cases import case
-from fe_drivetrain.cases.export.rotor_scenes import ORDER, QUICK_SCENES, SCENES, scene_and_units
-from fe_drivetrain.cases.export.samples import show
-from fe_drivetrain.common import Floats, largest_difference
-from fe_drivetrain.export import craig_bampton_shaft, free_frequencies, natural_frequencies
-from fe_drivetrain.export.programs import ross_rotor
-from fe_drivetrain.fidelity import scene_supports
-from fe_drivetrain.scene import library_scene
-from fe_drivetrain.suite import Page, Record, Run, column
+from fe_drivetrain.shafts.fidelity import scene_supports
 
 #: Elements along the shaft, and natural frequencies that are compared.
 PARTS, COUNT = 32, 6

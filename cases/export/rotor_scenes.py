@@ -1,8 +1,8 @@
 """Scenes of the rotor and multibody cases, with their bearing units on coarse meshes."""
 
 from fe_drivetrain.common import Floats
-from fe_drivetrain.fidelity import housing_springs
-from fe_drivetrain.scene import Scene, library_scene
+from fe_drivetrain.drivetrain_file import Scene, library_scene
+from fe_drivetrain.shafts.fidelity import housing_springs
 
 #: Library scenes: full, and quick.
 SCENES, QUICK_SCENES = ("main_bearing_bonded", "two_bearings"), ("two_bearings",)

@@ -4,10 +4,10 @@ import numpy as np
 from scipy.linalg import eigh
 
 from fe_drivetrain.common import Floats
+from fe_drivetrain.drivetrain_file import Scene, library_scene
 from fe_drivetrain.export import Superelement, superelement_of
 from fe_drivetrain.report import shaft_with_rings
-from fe_drivetrain.scene import Scene, library_scene
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 SCENE = "two_bearings"
 

@@ -9,10 +9,10 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.export.samples import show
 from fe_drivetrain.common import MissingToolError, scratch_folder
+from fe_drivetrain.drivetrain_file import change_scene, library_scene
 from fe_drivetrain.export import Torsion, shaft_superelement, torsional_damping, torsional_stiffness
 from fe_drivetrain.export.formats import windio
-from fe_drivetrain.scene import change_scene, library_scene
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 RATIO = 0.05
 #: Main shaft: outer and inner diameter [m].

@@ -17,17 +17,17 @@ from fe_drivetrain.cases.fidelity.joint_ladder import (
     with_joint,
 )
 from fe_drivetrain.common import Floats
-from fe_drivetrain.fidelity import meridian_shaft
-from fe_drivetrain.interfaces import roller_loads
-from fe_drivetrain.report import trace
-from fe_drivetrain.scene import (
+from fe_drivetrain.drivetrain_file import (
     Scene,
     change_scene,
     joint_stiffness,
     library_scene,
     roller_lines,
 )
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.elasticity.interfaces import roller_loads
+from fe_drivetrain.report import trace
+from fe_drivetrain.report.suite import Page, Run
+from fe_drivetrain.shafts.fidelity import meridian_shaft
 
 SCENE = "main_bearing_spherical"
 

@@ -13,21 +13,12 @@ from fe_drivetrain.common import (
     Floats,
     largest_difference,
 )
-from fe_drivetrain.compare import GridConvergence, grid_convergence
+from fe_drivetrain.comparison import GridConvergence, grid_convergence
+from fe_drivetrain.drivetrain_file import Component, SomeComponent, material_of
+from fe_drivetrain.elasticity.mesh import mean_size
 from fe_drivetrain.export import (
     Superelement,
 )
-from fe_drivetrain.fidelity import (
-    COARSER,
-    LEAST_ORDER,
-    LevelModel,
-    SolidComponent,
-    coarser,
-    frame_levels,
-    solid_component,
-    solid_level,
-)
-from fe_drivetrain.mesh import mean_size
 from fe_drivetrain.pages import QUICK_BAND
 from fe_drivetrain.report import (
     Cell,
@@ -39,8 +30,17 @@ from fe_drivetrain.report import (
     trace,
     write_solid_view,
 )
-from fe_drivetrain.scene import Component, SomeComponent, material_of
-from fe_drivetrain.suite import Page, Run, column
+from fe_drivetrain.report.suite import Page, Run, column
+from fe_drivetrain.shafts.fidelity import (
+    COARSER,
+    LEAST_ORDER,
+    LevelModel,
+    SolidComponent,
+    coarser,
+    frame_levels,
+    solid_component,
+    solid_level,
+)
 
 #: Coarsening of the mesh under --quick.
 QUICK = 2.2

@@ -19,8 +19,8 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.response.model import LOADS, Model
-from fe_drivetrain.response.unit_loads import Response
+from fe_drivetrain.shafts.response.model import LOADS, Model
+from fe_drivetrain.shafts.response.unit_loads import Response
 
 
 def compliance(response: Response) -> Floats:

@@ -4,7 +4,6 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fe_drivetrain.beam import rectangle
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.fidelity.component_page import (
     QUICK,
@@ -24,8 +23,23 @@ from fe_drivetrain.common import (
     Floats,
     wrench_transport,
 )
+from fe_drivetrain.drivetrain_file import (
+    HousingComponent,
+    change_component,
+    change_scene,
+    library_component,
+    library_scene,
+    material_of,
+)
+from fe_drivetrain.elasticity.solve import (
+    Condensed,
+    supported,
+)
 from fe_drivetrain.export import component_superelement
-from fe_drivetrain.fidelity import (
+from fe_drivetrain.report import Cell, trace
+from fe_drivetrain.report.suite import Page, Run, column
+from fe_drivetrain.shafts.beam import rectangle
+from fe_drivetrain.shafts.fidelity import (
     GearboxSprings,
     LevelModel,
     coarser,
@@ -36,21 +50,7 @@ from fe_drivetrain.fidelity import (
     rigid_level,
     shaft_level,
 )
-from fe_drivetrain.fidelity import Quantity as SceneQuantity
-from fe_drivetrain.report import Cell, trace
-from fe_drivetrain.scene import (
-    HousingComponent,
-    change_component,
-    change_scene,
-    library_component,
-    library_scene,
-    material_of,
-)
-from fe_drivetrain.solve import (
-    Condensed,
-    supported,
-)
-from fe_drivetrain.suite import Page, Run, column
+from fe_drivetrain.shafts.fidelity import Quantity as SceneQuantity
 
 #: Bushing stiffness is varied by these factors, decades about the one given.
 DECADES = (-2.0, 3.0)

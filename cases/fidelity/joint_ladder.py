@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.common import Floats
-from fe_drivetrain.fidelity import shaft_level, unit_stiffness
-from fe_drivetrain.interfaces import in_series
-from fe_drivetrain.response import Model, Response, build_model, cached_response, mesh_scene
-from fe_drivetrain.scene import Scene, change_scene, joint_stiffness
-from fe_drivetrain.solve import Condensed
+from fe_drivetrain.drivetrain_file import Scene, change_scene, joint_stiffness
+from fe_drivetrain.elasticity.interfaces import in_series
+from fe_drivetrain.elasticity.solve import Condensed
+from fe_drivetrain.shafts.fidelity import shaft_level, unit_stiffness
+from fe_drivetrain.shafts.response import Model, Response, build_model, cached_response, mesh_scene
 
 BEARING = "main_bearing"
 HELD: tuple[Any, ...] = ("rigid", "rigid", "rigid")

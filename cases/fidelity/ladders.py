@@ -6,11 +6,11 @@ from typing import Any
 from fe_drivetrain.cases import cases
 from fe_drivetrain.cases.fidelity.published_torsion import Published, beside_published
 from fe_drivetrain.cases.fidelity.stiffness_files import stiffness_files
-from fe_drivetrain.fidelity import Quantity
+from fe_drivetrain.drivetrain_file import change_scene, coarser_scene, library_scene
 from fe_drivetrain.pages import QUICK_BAND, show_advise
-from fe_drivetrain.scene import change_scene, coarser_scene, library_scene
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.fidelity import Quantity
 from fe_drivetrain.studies import advise
-from fe_drivetrain.suite import Page, Record, Run
 
 #: The mesh of a quick run: sizes times this, where the table says no other, and elements a turn.
 COARSER, TURN = 2.2, 6

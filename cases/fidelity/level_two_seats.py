@@ -10,13 +10,13 @@ from fe_drivetrain.common import (
     Floats,
     rigid_motions,
 )
-from fe_drivetrain.compare import grid_convergence, richardson
+from fe_drivetrain.comparison import grid_convergence, richardson
+from fe_drivetrain.elasticity.mesh import shaft_hexahedra
+from fe_drivetrain.elasticity.revolution import seat_stiffness
+from fe_drivetrain.elasticity.solve import solve_solid
 from fe_drivetrain.geometry import Shaft
-from fe_drivetrain.mesh import shaft_hexahedra
 from fe_drivetrain.report import Cell, trace
-from fe_drivetrain.revolution import seat_stiffness
-from fe_drivetrain.solve import solve_solid
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 #: A seat on each of the shafts [m].
 SEATS = {"bored": (0.6, 0.85), "stepped": (1.0, 1.2)}

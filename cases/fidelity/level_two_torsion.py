@@ -4,11 +4,11 @@ from itertools import pairwise
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.torsion_meridian import torsion_bounds
+from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.elasticity.revolution import meridian, stiffness_between_ends
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.report import trace
-from fe_drivetrain.revolution import meridian, stiffness_between_ends
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import Page, Record, Run, column, grouped
+from fe_drivetrain.report.suite import Page, Record, Run, column, grouped
 
 LARGE, SMALL, LENGTH = 0.6, 0.4, 0.6
 BORES = {"bored": 0.2, "solid": 0.0}

@@ -13,9 +13,9 @@ from dataclasses import replace
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.mesh.mesh import Mesh
-from fe_drivetrain.scene.scene import Scene
-from fe_drivetrain.uncertainty.sampling import with_values
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.elasticity.mesh.mesh import Mesh
+from fe_drivetrain.shafts.uncertainty.sampling import with_values
 
 OUTER, BORE = "shaft.sections.0.outer_diameter", "shaft.sections.0.inner_diameter"
 FRONT = "shaft.front"

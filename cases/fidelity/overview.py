@@ -4,8 +4,8 @@ from dataclasses import asdict
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.fidelity.side_by_side import FORCE, QUANTITIES, compared, show
-from fe_drivetrain.scene import library_scene
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.drivetrain_file import library_scene
+from fe_drivetrain.report.suite import Page, Run
 
 SCENES = (
     "main_bearing_spherical",

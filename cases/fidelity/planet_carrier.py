@@ -4,7 +4,6 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from fe_drivetrain.beam import round_section
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.fidelity.component_page import (
     QUICK,
@@ -21,9 +20,20 @@ from fe_drivetrain.cases.fidelity.component_page import (
     show_picture,
 )
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import GridConvergence
+from fe_drivetrain.comparison import GridConvergence
+from fe_drivetrain.drivetrain_file import (
+    CarrierComponent,
+    change_component,
+    library_component,
+    material_of,
+)
+from fe_drivetrain.elasticity.interfaces import averaged_point
+from fe_drivetrain.elasticity.mesh import MEANS, face_weights, mean_size, turns
 from fe_drivetrain.export import component_superelement
-from fe_drivetrain.fidelity import (
+from fe_drivetrain.report import Cell
+from fe_drivetrain.report.suite import Page, Run
+from fe_drivetrain.shafts.beam import round_section
+from fe_drivetrain.shafts.fidelity import (
     COARSER,
     LevelModel,
     PinMotions,
@@ -34,11 +44,6 @@ from fe_drivetrain.fidelity import (
     solid_level,
     torque_share,
 )
-from fe_drivetrain.interfaces import averaged_point
-from fe_drivetrain.mesh import MEANS, face_weights, mean_size, turns
-from fe_drivetrain.report import Cell
-from fe_drivetrain.scene import CarrierComponent, change_component, library_component, material_of
-from fe_drivetrain.suite import Page, Run
 
 #: N m. Rated torque of the NREL 5 MW turbine: generator torque 43 093.55 N m at a ratio of 97
 #: (Jonkman 2009, NREL/TP-500-38060, Table 1-1 and section 7).

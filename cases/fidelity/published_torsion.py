@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fe_drivetrain.beam import Beam, BeamSection, shaft_stiffness
+from fe_drivetrain.drivetrain_file import Material, Scene
+from fe_drivetrain.elasticity.revolution import end_stiffness
 from fe_drivetrain.geometry import (
     LENGTH_TOLERANCE,
     Shaft,
 )
 from fe_drivetrain.report import Cell
-from fe_drivetrain.revolution import end_stiffness
-from fe_drivetrain.scene import Material, Scene
-from fe_drivetrain.suite import Page
+from fe_drivetrain.report.suite import Page
+from fe_drivetrain.shafts.beam import Beam, BeamSection, shaft_stiffness
 
 
 @dataclass(frozen=True)

@@ -13,11 +13,11 @@ from fe_drivetrain.cases.fidelity.rollers_on_rings import (
 )
 from fe_drivetrain.cases.references.plane_rings import Lame, harmonics, plane_strain
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import band_of
+from fe_drivetrain.comparison import band_of
+from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.elasticity.revolution import InfluenceFunctions, Strip, dofs, influence_functions
 from fe_drivetrain.report import Cell, trace
-from fe_drivetrain.revolution import InfluenceFunctions, Strip, dofs, influence_functions
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 STEEL = MATERIALS["steel"]
 

@@ -9,9 +9,9 @@ from scipy.optimize import brentq
 
 from fe_drivetrain.cases.references.ring_solids import on_plane, ring_sector, sector_symmetry
 from fe_drivetrain.common import Floats
-from fe_drivetrain.geometry import Section, Shaft
-from fe_drivetrain.operator import traction_loads
-from fe_drivetrain.revolution import (
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.operator import traction_loads
+from fe_drivetrain.elasticity.revolution import (
     InfluenceFunctions,
     Meridian,
     Strip,
@@ -21,8 +21,8 @@ from fe_drivetrain.revolution import (
     meridian,
     roller_forces,
 )
-from fe_drivetrain.scene import Material
-from fe_drivetrain.solve import solve_solid
+from fe_drivetrain.elasticity.solve import solve_solid
+from fe_drivetrain.geometry import Section, Shaft
 
 SIZE, THICK_SIZE = 0.02, 0.03
 """Of the meridian's elements [m]; of rings of more than half a metre's radius."""

@@ -8,7 +8,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from fe_drivetrain.fidelity import (
+from fe_drivetrain.drivetrain_file import Scene
+from fe_drivetrain.elasticity.solve import Condensed, keep_points
+from fe_drivetrain.report import Chart, bars
+from fe_drivetrain.report.suite import Page
+from fe_drivetrain.shafts.fidelity import (
     Quantity,
     beam_shaft,
     housing_springs,
@@ -16,10 +20,6 @@ from fe_drivetrain.fidelity import (
     shaft_level,
     simplified,
 )
-from fe_drivetrain.report import Chart, bars
-from fe_drivetrain.scene import Scene
-from fe_drivetrain.solve import Condensed, keep_points
-from fe_drivetrain.suite import Page
 
 #: What is compared, in words; FORCE is that of the first bearing.
 FORCE = "Fz"

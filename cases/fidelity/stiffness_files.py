@@ -12,17 +12,17 @@ from fe_drivetrain.common import (
     largest_difference,
     symmetry_error,
 )
+from fe_drivetrain.drivetrain_file import Scene
+from fe_drivetrain.elasticity.solve import Condensed
 from fe_drivetrain.export import (
     SEATS,
     SHAFT,
     Superelement,
     superelement_of,
 )
-from fe_drivetrain.fidelity import Quantity, shaft_level
 from fe_drivetrain.report import Cell
-from fe_drivetrain.scene import Scene
-from fe_drivetrain.solve import Condensed
-from fe_drivetrain.suite import Page
+from fe_drivetrain.report.suite import Page
+from fe_drivetrain.shafts.fidelity import Quantity, shaft_level
 
 #: Level of the shaft that is written: exact elasticity of a body of revolution.
 LEVEL = 2

@@ -19,12 +19,14 @@ from fe_drivetrain.cases.fidelity.energy_sensitivities import (
 )
 from fe_drivetrain.cases.fidelity.moved_meshes import BORE, FRONT, OUTER, PEDESTAL, WALL, moved
 from fe_drivetrain.common import FORCES, MOTIONS
-from fe_drivetrain.fidelity import LEAST_ORDER, unit_numbers
+from fe_drivetrain.drivetrain_file import Scene, change_scene, library_scene
+from fe_drivetrain.elasticity.mesh import Mesh, volume_weights
 from fe_drivetrain.geometry import MeshSizes, unit_solids
-from fe_drivetrain.mesh import Mesh, volume_weights
 from fe_drivetrain.pages import bands
 from fe_drivetrain.report import trace
-from fe_drivetrain.response import (
+from fe_drivetrain.report.suite import Page, Record, Run, column
+from fe_drivetrain.shafts.fidelity import LEAST_ORDER, unit_numbers
+from fe_drivetrain.shafts.response import (
     LOADS,
     bearing_unit_stiffness,
     build_model,
@@ -32,9 +34,7 @@ from fe_drivetrain.response import (
     unit_load_response,
     without_gearbox,
 )
-from fe_drivetrain.scene import Scene, change_scene, library_scene
-from fe_drivetrain.suite import Page, Record, Run, column
-from fe_drivetrain.uncertainty import (
+from fe_drivetrain.shafts.uncertainty import (
     Study,
     first_order,
     nominal_value,

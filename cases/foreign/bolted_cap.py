@@ -8,12 +8,12 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.foreign.bolted_housing import in_scene
 from fe_drivetrain.common import Floats
-from fe_drivetrain.fidelity import unit_stiffness
+from fe_drivetrain.drivetrain_file import Scene, change_scene
 from fe_drivetrain.foreign import mesh_parts
 from fe_drivetrain.geometry import write_sample
 from fe_drivetrain.report import chart, trace
-from fe_drivetrain.scene import Scene, change_scene
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.fidelity import unit_stiffness
 
 HOLE = 18  # mm, radius of the holes of the sample's four bolts M33
 PRESSED, QUICK_PRESSED = (60, 75, 90, 110), (60, 90)  # mm

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from fe_drivetrain.scene import Scene, parse_scene
+from fe_drivetrain.drivetrain_file import Scene, parse_scene
 
 _SCENE = """
 title: {title}

@@ -5,13 +5,13 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats, stiffness_transport
-from fe_drivetrain.fidelity import unit_stiffness
+from fe_drivetrain.drivetrain_file import MATERIALS, Scene, change_scene, library_scene
 from fe_drivetrain.foreign import bolt_stiffness
 from fe_drivetrain.geometry import bedplate, gmsh_session, write_sample, write_step
 from fe_drivetrain.report import NoPictureError, picture_of_deformation
-from fe_drivetrain.response import build_model, mesh_scene, unit_load_response
-from fe_drivetrain.scene import MATERIALS, Scene, change_scene, library_scene
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.fidelity import unit_stiffness
+from fe_drivetrain.shafts.response import build_model, mesh_scene, unit_load_response
 
 NAME, UNIT = "main_bearing", "bearing_units.main_bearing"
 SIZES, QUICK_SIZES = (0.2, 0.1), (0.3, 0.25)  # m, the finer last

@@ -8,13 +8,13 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.foreign.bolted_housing import in_scene
 from fe_drivetrain.common import Floats, stiffness_transport
-from fe_drivetrain.fidelity import unit_stiffness
+from fe_drivetrain.drivetrain_file import Scene, change_scene
 from fe_drivetrain.foreign import bolt_springs, mesh_parts
 from fe_drivetrain.geometry import write_sample
 from fe_drivetrain.report import NoPictureError, bars, picture_of_model
-from fe_drivetrain.response import build_model, mesh_scene
-from fe_drivetrain.scene import Scene, change_scene
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.fidelity import unit_stiffness
+from fe_drivetrain.shafts.response import build_model, mesh_scene
 
 HOUSINGS = {"ribbed_pillow_block": "ribbed block", "split_housing": "split housing"}
 BOLTS = "hole_radius: 26, washer_diameter: 92"  # mm

@@ -10,13 +10,13 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.foreign.bolted_housing import in_scene
 from fe_drivetrain.common import Cache, stiffness_transport
-from fe_drivetrain.fidelity import unit_stiffness
+from fe_drivetrain.drivetrain_file import Scene, change_scene
 from fe_drivetrain.foreign import ClampedFoot
 from fe_drivetrain.geometry import Bearing, Housing, gmsh_session, write_step
 from fe_drivetrain.report import chart, trace
-from fe_drivetrain.response import clamped_foot, mesh_scene
-from fe_drivetrain.scene import Scene, change_scene
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.fidelity import unit_stiffness
+from fe_drivetrain.shafts.response import clamped_foot, mesh_scene
 
 NAME = "main_bearing"
 SIZE, QUICK_SIZE = 0.1, 0.25  # of elements [m]

@@ -5,12 +5,12 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats, largest_difference
-from fe_drivetrain.fidelity import unit_bounds, unit_stiffness
+from fe_drivetrain.drivetrain_file import Scene, change_scene, library_scene
+from fe_drivetrain.elasticity.mesh import write
 from fe_drivetrain.foreign import mesh_parts, placed_housing
 from fe_drivetrain.geometry import gmsh_session, unit_solids, write_step
-from fe_drivetrain.mesh import write
-from fe_drivetrain.scene import Scene, change_scene, library_scene
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.fidelity import unit_bounds, unit_stiffness
 
 NAME = "main_bearing"
 COARSER, QUICK_COARSER = 1.0, 2.5

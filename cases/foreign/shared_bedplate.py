@@ -7,18 +7,18 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
-from fe_drivetrain.fidelity import LevelModel, housing_springs, shaft_level, unit_stiffness
+from fe_drivetrain.drivetrain_file import Scene, change_scene, parse_scene
 from fe_drivetrain.geometry import gmsh_session, write_step
 from fe_drivetrain.report import NoPictureError, picture_of_deformation
-from fe_drivetrain.response import (
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.fidelity import LevelModel, housing_springs, shaft_level, unit_stiffness
+from fe_drivetrain.shafts.response import (
     Model,
     Response,
     build_model,
     mesh_scene,
     unit_load_response,
 )
-from fe_drivetrain.scene import Scene, change_scene, parse_scene
-from fe_drivetrain.suite import Page, Record, Run
 
 SCENE = """
 title: two housings on one bedplate

@@ -9,7 +9,7 @@ from scipy.stats import norm
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.rated_gears import RatedMesh, rated_meshes, with_dynamics
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import round_off
+from fe_drivetrain.comparison import round_off
 from fe_drivetrain.gear import (
     ParallelStage,
     PlanetaryStage,
@@ -24,9 +24,9 @@ from fe_drivetrain.gear import (
     root_stress,
     torque_exponent,
 )
-from fe_drivetrain.histories import Site, equivalent_level
 from fe_drivetrain.report import bars
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.turbine_loads.histories import Site, equivalent_level
 
 STAGES = (PlanetaryStage(19, 17, 56), PlanetaryStage(18, 36, 93), ParallelStage(95, 24))
 RPM = np.pi / 30.0

@@ -4,7 +4,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.published_gears import ISO_EXAMPLE_1, iso_example_1
 from fe_drivetrain.gear import iso_stiffness
 from fe_drivetrain.report import gear_pair
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 SOURCE = "ISO/TR 6336-30:2017, example 1"
 TORQUE = 9000.0  # N m

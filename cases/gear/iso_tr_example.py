@@ -4,7 +4,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.gear.printed_ratings import check_mesh
 from fe_drivetrain.cases.references.rated_gears import rated, rated_meshes
 from fe_drivetrain.report import gear_pair
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 SOURCE = "ISO/TR 6336-30:2017, example 1, as the public repository gfsReboucas/Drivetrain quotes it"
 PRINTED = {"sigma_H [MPa]": (1301.35343, 1301.35343), "S_H": (1.02853, 1.08696)}

@@ -8,7 +8,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
 from fe_drivetrain.gear import square_wave, square_wave_series
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, Target
+from fe_drivetrain.report.suite import Page, Record, Run, Target
 
 RATIOS = (1.2, 1.5, 1.7)
 ORDERS = 400

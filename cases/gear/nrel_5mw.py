@@ -14,7 +14,7 @@ from fe_drivetrain.gear import (
     sun_phases,
 )
 from fe_drivetrain.report import gear_pair, trace
-from fe_drivetrain.suite import Page, Record, Run, Target
+from fe_drivetrain.report.suite import Page, Record, Run, Target
 
 REPORTS = "KISSsoft 03/2017 reports of the gearbox, ISO 6336:2006 method B"
 DIGITS = "half a unit of the last printed digit"

@@ -6,7 +6,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.gear.printed_ratings import check_mesh
 from fe_drivetrain.cases.references.rated_gears import rated, rated_meshes
 from fe_drivetrain.report import gear_pair
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 SOURCE = (
     "KISSsoft 03/2017, reports of 26 February 2020 on the gearbox of Nejad, Guo, Gao and Moan 2016 "

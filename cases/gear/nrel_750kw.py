@@ -6,7 +6,7 @@ from fe_drivetrain.cases.references import published_gears as published
 from fe_drivetrain.dynamics import library_machine
 from fe_drivetrain.gear import iso_stiffness, parabolic_mean, rack_factor
 from fe_drivetrain.report import gear_pair
-from fe_drivetrain.suite import Page, Record, Run, Target
+from fe_drivetrain.report.suite import Page, Record, Run, Target
 
 #: Diameters of root circles as published, whole millimetres; by teeth.
 ROOTS = {21: 186, 39: 372, -99: 1047, 23: 174, 82: 678, 22: 100, 88: 440}

@@ -4,7 +4,7 @@ from math import isinf
 from typing import Literal
 
 from fe_drivetrain.cases.references.rated_gears import RatedMesh, rated, tolerance
-from fe_drivetrain.suite import Page, Record
+from fe_drivetrain.report.suite import Page, Record
 
 JUDGED = (
     "n_E1 [1/min]",

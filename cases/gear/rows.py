@@ -3,7 +3,7 @@
 from math import degrees
 
 from fe_drivetrain.gear import IsoStiffness, Pair
-from fe_drivetrain.suite import Record
+from fe_drivetrain.report.suite import Record
 
 
 def mesh_row(name: str, pair: Pair) -> Record:

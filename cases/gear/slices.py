@@ -23,7 +23,7 @@ from fe_drivetrain.gear import (
     yang_sun_contact,
 )
 from fe_drivetrain.report import gear_pair
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 MESH = rated_meshes()["NREL 5 MW, stage 3"]
 PAIR, TORQUE = MESH.pair, MESH.running.torque

@@ -15,7 +15,7 @@ from fe_drivetrain.gear import (
     von_mises,
 )
 from fe_drivetrain.report import gear_pair, trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 STEEL = reduced_modulus()
 TORQUE = 325e3  # N m of the low-speed shaft

@@ -5,8 +5,8 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.gear import published_hours as printed
 from fe_drivetrain.gear import ParallelStage, PlanetaryStage, loads_per_turn
-from fe_drivetrain.histories import Site, time_factors
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
+from fe_drivetrain.turbine_loads.histories import Site, time_factors
 
 STAGES = (PlanetaryStage(29, 58, 145), ParallelStage(108, 27), ParallelStage(111, 29))
 LASTING = 20.0

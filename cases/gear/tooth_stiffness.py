@@ -34,7 +34,7 @@ from fe_drivetrain.gear import (
     parabolic_law,
 )
 from fe_drivetrain.report import gear_pair, trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 STEEL = Steel()
 STRAIN = plane_strain(STEEL.youngs_modulus, STEEL.poisson_ratio)

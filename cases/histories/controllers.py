@@ -5,11 +5,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fe_drivetrain.beam import MainBearingBeam, torsional_spring_model
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import ConvergenceInTime, InTime, converge_in_time
-from fe_drivetrain.hub_loads import (
+from fe_drivetrain.comparison import ConvergenceInTime, InTime, converge_in_time
+from fe_drivetrain.report import density_chart
+from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
+from fe_drivetrain.shafts.beam import MainBearingBeam, torsional_spring_model
+from fe_drivetrain.turbine_loads.hub_loads import (
     LONGEST_STEP,
     RIGID,
     Condition,
@@ -29,8 +31,6 @@ from fe_drivetrain.hub_loads import (
     steady_operation,
     turbine_histories,
 )
-from fe_drivetrain.report import density_chart
-from fe_drivetrain.suite import Page, Record, Run, check_in_time
 
 WINDS = (12.0, 14.0, 18.0, 24.0)
 TUNINGS = {

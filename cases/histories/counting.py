@@ -4,7 +4,8 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
-from fe_drivetrain.histories import (
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.turbine_loads.histories import (
     RESIDUES,
     SNCurve,
     damage_equivalent_load,
@@ -13,7 +14,6 @@ from fe_drivetrain.histories import (
     rainflow_cycles,
     streamed_cycles,
 )
-from fe_drivetrain.suite import Page, Record, Run
 
 ASTM = (-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0)
 COUNTS = {3.0: 0.5, 4.0: 1.5, 6.0: 0.5, 8.0: 1.0, 9.0: 0.5}

@@ -5,10 +5,12 @@ from dataclasses import replace
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.compare import InTime, converge_in_time, peak_between
+from fe_drivetrain.comparison import InTime, converge_in_time, peak_between
 from fe_drivetrain.dynamics import energy_error, equations_of_motion, spring_laws, varying
-from fe_drivetrain.histories import rainflow_cycles
-from fe_drivetrain.hub_loads import (
+from fe_drivetrain.report import trace
+from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
+from fe_drivetrain.turbine_loads.histories import rainflow_cycles
+from fe_drivetrain.turbine_loads.hub_loads import (
     Event,
     Rotor,
     grid_loss,
@@ -16,8 +18,6 @@ from fe_drivetrain.hub_loads import (
     made_event,
     similar_turbine,
 )
-from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, check_in_time
 
 SOURCE = "Al-Hamadani 2018, chapter 3"
 SHOWN = 0.84e6  # N m, torque before the grid loss that is shown

@@ -4,7 +4,8 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats, InputError, scratch_folder
-from fe_drivetrain.histories import (
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.turbine_loads.histories import (
     RESIDUES,
     alias,
     damage_equivalent_load,
@@ -13,8 +14,7 @@ from fe_drivetrain.histories import (
     rainflow_cycles,
     spectrum,
 )
-from fe_drivetrain.hub_loads import LoadHistory, read_recorded, write_csv
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.turbine_loads.hub_loads import LoadHistory, read_recorded, write_csv
 
 HERTZ = 0.2  # of the rotor
 SIX = 6.0 * HERTZ

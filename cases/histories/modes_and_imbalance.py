@@ -7,8 +7,10 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
-from fe_drivetrain.histories import MULTIPLES, Spectrum, multiples, spectrum
-from fe_drivetrain.hub_loads import (
+from fe_drivetrain.report import trace
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.turbine_loads.histories import MULTIPLES, Spectrum, multiples, spectrum
+from fe_drivetrain.turbine_loads.hub_loads import (
     RIGID,
     Condition,
     Controller,
@@ -22,8 +24,6 @@ from fe_drivetrain.hub_loads import (
     simulate,
     turbine_histories,
 )
-from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
 
 WIND = 16.0
 #: Eccentricity times speed of a quality grade G16 at 1.75 rad/s, times the rotor's mass [kg m].

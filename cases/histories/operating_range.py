@@ -4,10 +4,11 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from fe_drivetrain.beam import MainBearingBeam, torsional_spring_model
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Bools, Floats
-from fe_drivetrain.hub_loads import (
+from fe_drivetrain.report.suite import Page, Record, Run, grouped
+from fe_drivetrain.shafts.beam import MainBearingBeam, torsional_spring_model
+from fe_drivetrain.turbine_loads.hub_loads import (
     Condition,
     Rotor,
     TurbineHistory,
@@ -16,7 +17,6 @@ from fe_drivetrain.hub_loads import (
     similar_turbine,
     turbine_histories,
 )
-from fe_drivetrain.suite import Page, Record, Run, grouped
 
 #: As the loads on the bearing are named, with the component or plane of it.
 LOADS: dict[str, Callable[[Floats], Floats]] = {

@@ -15,7 +15,10 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats, timed_runs
 from fe_drivetrain.common.cache import switched_off
-from fe_drivetrain.histories import (
+from fe_drivetrain.report.suite import Page, Record, Run, goal
+from fe_drivetrain.studies import LoadOptions, loads
+from fe_drivetrain.studies.load_digest import digest
+from fe_drivetrain.turbine_loads.histories import (
     even_levels,
     rainflow_cycles,
     spectrum,
@@ -23,10 +26,7 @@ from fe_drivetrain.histories import (
     time_at_level,
     window_statistics,
 )
-from fe_drivetrain.hub_loads import LoadHistory, Recorded, find_loops, write_csv
-from fe_drivetrain.studies import LoadOptions, loads
-from fe_drivetrain.studies.load_digest import digest
-from fe_drivetrain.suite import Page, Record, Run, goal
+from fe_drivetrain.turbine_loads.hub_loads import LoadHistory, Recorded, find_loops, write_csv
 
 STEP = 0.05
 SIZES = (12_000, 120_000, 1_200_000)

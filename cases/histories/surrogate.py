@@ -9,8 +9,12 @@ import numpy as np
 import yaml
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.histories import Difference, differences
-from fe_drivetrain.hub_loads import (
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.studies import LoadOptions
+from fe_drivetrain.studies.load_comparison import features
+from fe_drivetrain.studies.load_digest import digest
+from fe_drivetrain.turbine_loads.histories import Difference, differences
+from fe_drivetrain.turbine_loads.hub_loads import (
     RIGID,
     Condition,
     Physics,
@@ -24,10 +28,6 @@ from fe_drivetrain.hub_loads import (
     similar_turbine,
     turbine_histories,
 )
-from fe_drivetrain.studies import LoadOptions
-from fe_drivetrain.studies.load_comparison import features
-from fe_drivetrain.studies.load_digest import digest
-from fe_drivetrain.suite import Page, Record, Run
 
 OPTIONS = LoadOptions()
 TABLE = Path(__file__).with_name("openfast.yaml")

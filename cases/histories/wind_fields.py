@@ -6,8 +6,9 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats, scratch_folder
-from fe_drivetrain.histories import damage_equivalent_load, rainflow_cycles
-from fe_drivetrain.hub_loads import (
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.turbine_loads.histories import damage_equivalent_load, rainflow_cycles
+from fe_drivetrain.turbine_loads.hub_loads import (
     LoadHistory,
     Rotor,
     WindBox,
@@ -17,7 +18,6 @@ from fe_drivetrain.hub_loads import (
     write_bts,
     write_hawc2,
 )
-from fe_drivetrain.suite import Page, Record, Run
 
 SPEED, SIGMA, LENGTH = 12.0, 1.5, 340.2  # m/s, m/s, m
 ROTOR = Rotor()

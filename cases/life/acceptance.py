@@ -14,10 +14,7 @@ from fe_drivetrain.bearing import (
     lamina_loads,
     ratings,
 )
-from fe_drivetrain.cases import case
-from fe_drivetrain.compare import as_printed
-from fe_drivetrain.histories import Site
-from fe_drivetrain.life import (
+from fe_drivetrain.bearing_life.life import (
     LifeRules,
     RowLoads,
     basic_life,
@@ -37,7 +34,10 @@ from fe_drivetrain.life import (
     stress_riser,
     viscosity,
 )
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.cases import case
+from fe_drivetrain.comparison import as_printed
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.turbine_loads.histories import Site
 
 MASTA = "MASTA, in the tests of a public implementation of ISO/TS 16281 (minzhun/ISO16281)"
 STUDY = "MASTA, in a public study of a 26 MW drivetrain"

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from fe_drivetrain.bearing_life.life import equivalent_life, stress_riser, years
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.life.operating import state_assumptions, state_meaning
 from fe_drivetrain.cases.references.studied_lives import (
@@ -23,10 +24,9 @@ from fe_drivetrain.cases.references.studied_lives import (
 )
 from fe_drivetrain.cases.references.thesis_beam import BEARINGS, beam_body, housed_body
 from fe_drivetrain.common import Floats
-from fe_drivetrain.histories import Site
-from fe_drivetrain.life import equivalent_life, stress_riser, years
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.turbine_loads.histories import Site
 
 #: Site of the thesis's figure 5.9 [m/s], and its lives without and with the stress riser [years].
 MEAN_WIND = 10.0

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_drivetrain.beam import pinned_model
 from fe_drivetrain.bearing import (
     Races,
     equilibrium,
@@ -13,6 +12,14 @@ from fe_drivetrain.bearing import (
     rigid_races,
     roller_motions,
     three_degrees,
+)
+from fe_drivetrain.bearing_life.coupled import body_on_races, on_springs, scene_body
+from fe_drivetrain.bearing_life.life import miner_load
+from fe_drivetrain.bearing_life.rings import (
+    RollerAssembly,
+    assembly_equilibrium,
+    housing_races,
+    roller_assembly,
 )
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.life import models
@@ -31,12 +38,10 @@ from fe_drivetrain.cases.references.studied_lives import (
 )
 from fe_drivetrain.cases.references.thesis_beam import BEAM, beam_body
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import round_off
-from fe_drivetrain.coupled import body_on_races, on_springs, scene_body
-from fe_drivetrain.life import miner_load
+from fe_drivetrain.comparison import round_off
 from fe_drivetrain.report import Chart, trace
-from fe_drivetrain.rings import RollerAssembly, assembly_equilibrium, housing_races, roller_assembly
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.beam import pinned_model
 
 MEAN_WIND = 8.0
 

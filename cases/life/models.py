@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_drivetrain.beam import pinned_model, torsional_spring_model
 from fe_drivetrain.bearing import (
     Bearing,
     Races,
@@ -14,6 +13,14 @@ from fe_drivetrain.bearing import (
     roller_motions,
     three_degrees,
 )
+from fe_drivetrain.bearing_life.coupled import (
+    LinearBody,
+    body_on_races,
+    coupled_equilibrium,
+    factors_of,
+    in_housings,
+)
+from fe_drivetrain.bearing_life.rings import RollerAssembly, assembly_equilibrium
 from fe_drivetrain.cases.references.studied_lives import (
     HOUSING,
     Setup,
@@ -23,14 +30,7 @@ from fe_drivetrain.cases.references.studied_lives import (
 )
 from fe_drivetrain.cases.references.thesis_beam import BEAM, HOUSING_RADIAL
 from fe_drivetrain.common import Floats
-from fe_drivetrain.coupled import (
-    LinearBody,
-    body_on_races,
-    coupled_equilibrium,
-    factors_of,
-    in_housings,
-)
-from fe_drivetrain.rings import RollerAssembly, assembly_equilibrium
+from fe_drivetrain.shafts.beam import pinned_model, torsional_spring_model
 
 #: A bearing's five of the six motions of a point.
 FIVE = np.array([0, 1, 2, 4, 5])

@@ -1,6 +1,6 @@
 """What the studies of a main bearing's life state on their pages."""
 
-from fe_drivetrain.suite import Page
+from fe_drivetrain.report.suite import Page
 
 
 def state_assumptions(page: Page) -> None:

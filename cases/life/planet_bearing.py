@@ -3,10 +3,16 @@
 import numpy as np
 
 from fe_drivetrain.bearing import catalogue_bearing, equilibrium, pressures
+from fe_drivetrain.bearing_life.life import (
+    LifeRules,
+    damage_of_steps,
+    rated_bearing,
+    rigid_rings,
+    steps_of,
+)
 from fe_drivetrain.cases import case
-from fe_drivetrain.compare import as_printed
-from fe_drivetrain.life import LifeRules, damage_of_steps, rated_bearing, rigid_rings, steps_of
-from fe_drivetrain.suite import Page, Record, Run, column
+from fe_drivetrain.comparison import as_printed
+from fe_drivetrain.report.suite import Page, Record, Run, column
 
 #: Diametral clearance [um], largest roller [kN] and pressure [MPa] of a planet bearing at 178 kN.
 PLANET = (

@@ -5,7 +5,17 @@ from itertools import pairwise
 
 import numpy as np
 
-from fe_drivetrain.beam import pinned_model
+from fe_drivetrain.bearing_life.life import (
+    GRADES,
+    Lubricant,
+    RowLoads,
+    basic_life,
+    contamination_factor,
+    equivalent_loads,
+    lamina_life,
+    life_factor,
+    modified_lamina_life,
+)
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.life.operating import state_assumptions, state_meaning
 from fe_drivetrain.cases.references.studied_lives import (
@@ -24,19 +34,9 @@ from fe_drivetrain.cases.references.studied_lives import (
 )
 from fe_drivetrain.cases.references.thesis_beam import BEAM, radial
 from fe_drivetrain.common import Floats
-from fe_drivetrain.life import (
-    GRADES,
-    Lubricant,
-    RowLoads,
-    basic_life,
-    contamination_factor,
-    equivalent_loads,
-    lamina_life,
-    life_factor,
-    modified_lamina_life,
-)
 from fe_drivetrain.report import bars
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.beam import pinned_model
 
 SOURCE = "Stirling 2023, section 5.3.7, figure 5.10"
 

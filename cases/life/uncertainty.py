@@ -8,6 +8,9 @@ import numpy as np
 from scipy import stats
 
 from fe_drivetrain.bearing import Bearing, lamina_loads
+from fe_drivetrain.bearing_life.coupled import LinearBody, in_housings, scene_body
+from fe_drivetrain.bearing_life.life import GRADES, LifeRules, Lubricant, Steps, damage_of_steps
+from fe_drivetrain.bearing_life.rings import housing_races
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.life import models
 from fe_drivetrain.cases.life.operating import state_assumptions, state_meaning
@@ -24,12 +27,9 @@ from fe_drivetrain.cases.references.studied_lives import (
 )
 from fe_drivetrain.cases.references.thesis_beam import HOUSING_RADIAL, HOUSING_TILT, HOUSING_YAW
 from fe_drivetrain.common import Floats
-from fe_drivetrain.coupled import LinearBody, in_housings, scene_body
-from fe_drivetrain.life import GRADES, LifeRules, Lubricant, Steps, damage_of_steps
 from fe_drivetrain.report import bars, trace
-from fe_drivetrain.rings import housing_races
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.uncertainty import Samples, Shares, variance_shares
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.uncertainty import Samples, Shares, variance_shares
 
 MEAN_WIND = 8.0
 SEEDS = 6

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.bearing import angles, turn
+from fe_drivetrain.bearing_life.life import lamina_life, stress_riser
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.life.operating import state_assumptions, state_meaning
 from fe_drivetrain.cases.references.studied_lives import (
@@ -21,11 +22,10 @@ from fe_drivetrain.cases.references.studied_lives import (
     thesis_setup,
 )
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import round_off
-from fe_drivetrain.histories import Site
-from fe_drivetrain.life import lamina_life, stress_riser
+from fe_drivetrain.comparison import round_off
 from fe_drivetrain.report import Chart, heat_map, trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.turbine_loads.histories import Site
 
 MEAN_WIND = 8.0
 ROWS = ("upwind", "downwind")

@@ -13,12 +13,12 @@ from fe_drivetrain.cases.main_bearing.study import (
     Tilt,
 )
 from fe_drivetrain.common import Floats, InputError
-from fe_drivetrain.compare import GridConvergence, grid_convergence
-from fe_drivetrain.mesh import mean_size
-from fe_drivetrain.response import PLANES, Response, bearing_unit_stiffness
-from fe_drivetrain.scene import Scene
-from fe_drivetrain.solve import SAFETY, recovery_estimate
-from fe_drivetrain.suite import Jobs, Run, RunJob
+from fe_drivetrain.comparison import GridConvergence, grid_convergence
+from fe_drivetrain.drivetrain_file import Scene
+from fe_drivetrain.elasticity.mesh import mean_size
+from fe_drivetrain.elasticity.solve import SAFETY, recovery_estimate
+from fe_drivetrain.report.suite import Jobs, Run, RunJob
+from fe_drivetrain.shafts.response import PLANES, Response, bearing_unit_stiffness
 
 #: Factors on the sizes of a case's own mesh, coarse first; a third apart, as Celik et al. ask.
 FACTORS = (1.8, 1.35)

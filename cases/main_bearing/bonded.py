@@ -7,16 +7,16 @@ is named.
 
 import numpy as np
 
-from fe_drivetrain.beam import beam_of_scene, closed_forms, main_bearing_beam, shaft
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import bands, shown, study
 from fe_drivetrain.common import (
     FORCES,
     Floats,
 )
+from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
-from fe_drivetrain.scene import Scene
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.beam import beam_of_scene, closed_forms, main_bearing_beam, shaft
 
 #: Thrust [N] and torque [N m] of a typical size, by their place among the hub loads.
 TYPICAL = {0: 200e3, 3: 1.1e6}

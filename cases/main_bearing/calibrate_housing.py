@@ -29,10 +29,10 @@ from fe_drivetrain.cases.main_bearing.housing_families import (
     with_wide_ring,
 )
 from fe_drivetrain.common import Floats
+from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.report import trace
-from fe_drivetrain.response import ESTIMATORS
-from fe_drivetrain.scene import Scene
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.response import ESTIMATORS
 
 #: Housings sampled by form.
 SAMPLES, BOLTED_SAMPLES, QUICK_SAMPLES = 60, 36, 8

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import statistics
-from fe_drivetrain.hub_loads import Condition, HubLoadSet
+from fe_drivetrain.comparison import statistics
 from fe_drivetrain.report import rounded, trace
-from fe_drivetrain.suite import Page
+from fe_drivetrain.report.suite import Page
+from fe_drivetrain.turbine_loads.hub_loads import Condition, HubLoadSet
 
 Pairs = Mapping[str, tuple[str, Floats]]
 _PLANES = (("horizontal", "Fy", 1), ("vertical", "Fz", 2))

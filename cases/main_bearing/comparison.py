@@ -7,24 +7,24 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.beam import (
+from fe_drivetrain.cases.main_bearing.study import (
+    Solved,
+    Tilt,
+)
+from fe_drivetrain.common import GRAVITY, Floats
+from fe_drivetrain.comparison import compare, statistics
+from fe_drivetrain.drivetrain_file import Scene
+from fe_drivetrain.report.suite import Record, Run
+from fe_drivetrain.shafts.beam import (
     MainBearingBeam,
     beam_of_scene,
     closed_forms,
     main_bearing_beam,
     shaft,
 )
-from fe_drivetrain.cases.main_bearing.study import (
-    Solved,
-    Tilt,
-)
-from fe_drivetrain.common import GRAVITY, Floats
-from fe_drivetrain.compare import compare, statistics
-from fe_drivetrain.hub_loads import HubLoadSet
-from fe_drivetrain.response import ESTIMATORS
-from fe_drivetrain.scene import Scene
+from fe_drivetrain.shafts.response import ESTIMATORS
 from fe_drivetrain.studies import LinearModel
-from fe_drivetrain.suite import Record, Run
+from fe_drivetrain.turbine_loads.hub_loads import HubLoadSet
 
 #: Mean error [%] and correlation of the resultant force over all histories (Stirling 2023, lines
 #: on Figures 3.6, 3.8 and 3.15), for other hub loads and another housing than here.

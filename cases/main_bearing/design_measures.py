@@ -4,15 +4,15 @@ import numpy as np
 
 from fe_drivetrain.cases.main_bearing.comparison import Comparison
 from fe_drivetrain.common import Floats
-from fe_drivetrain.histories import (
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.turbine_loads.histories import (
     Measured,
     damage_ratio,
     good_enough_for,
     measured,
     model_errors,
 )
-from fe_drivetrain.hub_loads import HubLoadSet
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.turbine_loads.hub_loads import HubLoadSet
 
 WITHIN = 0.05
 SLOPES = (3.0, 4.0, 10.0)

@@ -17,8 +17,9 @@ from fe_drivetrain.cases.main_bearing.calibration import (
     nearest,
 )
 from fe_drivetrain.common import Floats, InputError, Progress, silent
+from fe_drivetrain.drivetrain_file import Scene, change_scene
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft, unit_solids
-from fe_drivetrain.response import (
+from fe_drivetrain.shafts.response import (
     ESTIMATORS,
     PLANES,
     build_model,
@@ -27,7 +28,6 @@ from fe_drivetrain.response import (
     unit_load_response,
     without_gearbox,
 )
-from fe_drivetrain.scene import Scene, change_scene
 
 #: K_R of the vertical and of the horizontal plane (Stirling 2023, section 3.3.1) [N m/rad].
 PUBLISHED = np.array([145e6, 392e6])
@@ -296,7 +296,7 @@ def member(
     scene, form, surface, start, free, wanted, tolerance, most, ratio : see `calibrated`
         What `calibrated` takes.
     estimator : int
-        Place in `fe_drivetrain.response.ESTIMATORS`.
+        Place in `fe_drivetrain.shafts.response.ESTIMATORS`.
     mesh : MeshSizes or None
         Sizes; those of the samples where not given.
     """

@@ -21,8 +21,8 @@ from fe_drivetrain.cases.main_bearing.housing_dimensions import (
     Sampled,
 )
 from fe_drivetrain.common import Floats, InputError
-from fe_drivetrain.scene import Scene
-from fe_drivetrain.suite import Run
+from fe_drivetrain.drivetrain_file import Scene
+from fe_drivetrain.report.suite import Run
 
 #: Order of the surface through the sampled housings.
 ORDER, QUICK_ORDER = 2, 1

@@ -8,12 +8,12 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import shown, study
 from fe_drivetrain.cases.main_bearing.comparison import PUBLISHED, THESIS
 from fe_drivetrain.cases.main_bearing.study import Tilt
-from fe_drivetrain.compare import statistics
-from fe_drivetrain.hub_loads import Condition, LoadHistory, hub_load_set
-from fe_drivetrain.scene import Scene
+from fe_drivetrain.comparison import statistics
+from fe_drivetrain.drivetrain_file import Scene
+from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.studies import StudyResult
 from fe_drivetrain.studies import study as study_of
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.turbine_loads.hub_loads import Condition, LoadHistory, hub_load_set
 
 KINDS = ("spherical", "bonded")
 #: Wind speeds [m/s] of the histories, at medium turbulence and a shear exponent of 0.2.

@@ -5,10 +5,12 @@ from itertools import product
 
 import numpy as np
 
-from fe_drivetrain.beam import MainBearingBeam, pinned_model, torsional_spring_model
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
-from fe_drivetrain.hub_loads import (
+from fe_drivetrain.report import density_chart
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.beam import MainBearingBeam, pinned_model, torsional_spring_model
+from fe_drivetrain.turbine_loads.hub_loads import (
     Condition,
     HubLoadSet,
     Loops,
@@ -18,8 +20,6 @@ from fe_drivetrain.hub_loads import (
     loop_statistics,
     surrogate_grid,
 )
-from fe_drivetrain.report import density_chart
-from fe_drivetrain.suite import Page, Record, Run
 
 FORCE, MOMENT = slice(1, 3), slice(4, 6)
 

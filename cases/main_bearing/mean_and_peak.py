@@ -5,13 +5,13 @@ from itertools import product
 
 import numpy as np
 
-from fe_drivetrain.beam import MainBearingBeam, pinned_model, torsional_spring_model
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing.charts import group_chart
 from fe_drivetrain.common import Floats
-from fe_drivetrain.hub_loads import Condition, Rotor, hub_load_set, surrogate_grid
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.beam import MainBearingBeam, pinned_model, torsional_spring_model
+from fe_drivetrain.turbine_loads.hub_loads import Condition, Rotor, hub_load_set, surrogate_grid
 
 BEAM = MainBearingBeam()
 WEIGHT = Rotor().weight()[2]

@@ -8,10 +8,10 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import bands, shown, study
 from fe_drivetrain.cases.main_bearing.study import Solved, Tilt
 from fe_drivetrain.common import InputError
-from fe_drivetrain.compare import grid_convergence, richardson
-from fe_drivetrain.mesh import mean_size
+from fe_drivetrain.comparison import grid_convergence, richardson
+from fe_drivetrain.elasticity.mesh import mean_size
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 #: Factors on the scene's mesh sizes, from coarse to fine.
 FACTORS = (2.0, 1.4, 1.0, 0.75)

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.beam import beam_of_scene, main_bearing_beam, shaft
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import (
     bands,
@@ -29,14 +28,15 @@ from fe_drivetrain.cases.main_bearing.comparison import (
 )
 from fe_drivetrain.cases.main_bearing.study import Solved, Tilt
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import weighted_statistics
+from fe_drivetrain.comparison import weighted_statistics
+from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
-from fe_drivetrain.hub_loads import HubLoadSet, assumptions
 from fe_drivetrain.report import Image, Solid, Text
-from fe_drivetrain.response import bearing_unit_stiffness
-from fe_drivetrain.scene import Scene
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.beam import beam_of_scene, main_bearing_beam, shaft
+from fe_drivetrain.shafts.response import bearing_unit_stiffness
 from fe_drivetrain.studies import hub_load_rows
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.turbine_loads.hub_loads import HubLoadSet, assumptions
 
 OF_THESIS = (
     ". The thesis's stand beside them for orientation: its hub loads and its housing are not public"

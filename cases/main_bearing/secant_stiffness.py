@@ -12,12 +12,12 @@ from fe_drivetrain.common import (
     FORCES,
     Floats,
 )
-from fe_drivetrain.compare import round_off
+from fe_drivetrain.comparison import round_off
 from fe_drivetrain.report import trace
-from fe_drivetrain.response import (
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.response import (
     secant_stiffness,
 )
-from fe_drivetrain.suite import Page, Record, Run
 
 #: Factors on the mesh sizes, coarse first: of the library's housing, and of the tall one.
 FACTORS = {"library": (1.35, 1.0), "tall": (1.8, 1.35)}

@@ -7,14 +7,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.beam import beam_of_scene, shaft
+from fe_drivetrain.bearing_life.coupled import factors_of
 from fe_drivetrain.cases.main_bearing import (
     bands,
     study,
 )
 from fe_drivetrain.common import FORCES, Floats, InputError, stiffness_transport
-from fe_drivetrain.coupled import factors_of
-from fe_drivetrain.hub_loads import (
+from fe_drivetrain.drivetrain_file import Scene, change_scene
+from fe_drivetrain.report.suite import Run
+from fe_drivetrain.shafts.beam import beam_of_scene, shaft
+from fe_drivetrain.shafts.response import (
+    bearing_unit_stiffness,
+    entering,
+    secant_stiffness,
+    without_gearbox,
+)
+from fe_drivetrain.turbine_loads.hub_loads import (
     SHEARS,
     WIND_SPEEDS,
     Condition,
@@ -22,14 +30,6 @@ from fe_drivetrain.hub_loads import (
     PointLoads,
     hub_load_set,
 )
-from fe_drivetrain.response import (
-    bearing_unit_stiffness,
-    entering,
-    secant_stiffness,
-    without_gearbox,
-)
-from fe_drivetrain.scene import Scene, change_scene
-from fe_drivetrain.suite import Run
 
 QUANTITIES = ("Fx", "Fy", "Fz", "My", "Mz")
 

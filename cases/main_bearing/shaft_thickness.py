@@ -4,16 +4,16 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fe_drivetrain.beam import closed_forms, main_bearing_beam
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import bands, shown, study
 from fe_drivetrain.cases.main_bearing.study import Tilt
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import resultant
-from fe_drivetrain.hub_loads import Condition, hub_loads
+from fe_drivetrain.comparison import resultant
+from fe_drivetrain.drivetrain_file import Scene, change_scene
 from fe_drivetrain.report import trace
-from fe_drivetrain.scene import Scene, change_scene
-from fe_drivetrain.suite import Page, Record, Run, grouped
+from fe_drivetrain.report.suite import Page, Record, Run, grouped
+from fe_drivetrain.shafts.beam import closed_forms, main_bearing_beam
+from fe_drivetrain.turbine_loads.hub_loads import Condition, hub_loads
 
 KINDS = {"DSRB": "spherical", "DTRB": "bonded"}
 WALLS = (100, 75, 50)

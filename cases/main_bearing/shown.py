@@ -10,6 +10,7 @@ from fe_drivetrain.common import (
     FORCES,
     Floats,
 )
+from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.report import (
     Image,
     NoPictureError,
@@ -18,12 +19,11 @@ from fe_drivetrain.report import (
     deformed_shape,
     picture_of_model,
 )
-from fe_drivetrain.response import (
+from fe_drivetrain.report.suite import Page, Run
+from fe_drivetrain.shafts.response import (
     ESTIMATORS,
     LOADS,
 )
-from fe_drivetrain.scene import Scene
-from fe_drivetrain.suite import Page, Run
 
 #: K_R by plane (Stirling 2023, section 3.3.1) [MN m/rad].
 PUBLISHED = {"vertical": 145.0, "horizontal": 392.0}

@@ -6,7 +6,6 @@ the FE model. Deflection, slope and stiffness do; three forms of the joint show 
 
 import numpy as np
 
-from fe_drivetrain.beam import beam_of_scene, closed_forms, main_bearing_beam, shaft
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import bands, shown, study
 from fe_drivetrain.cases.main_bearing.study import Solved
@@ -15,13 +14,14 @@ from fe_drivetrain.common import (
     Floats,
 )
 from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
-from fe_drivetrain.hub_loads import PointLoads
 from fe_drivetrain.report import trace
-from fe_drivetrain.response import (
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.beam import beam_of_scene, closed_forms, main_bearing_beam, shaft
+from fe_drivetrain.shafts.response import (
     LOADS,
     bearing_unit_stiffness,
 )
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.turbine_loads.hub_loads import PointLoads
 
 FORMS = ("sliding", "averaged", "rigid")
 

@@ -8,9 +8,17 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.common import Floats, InputError
-from fe_drivetrain.fidelity import cached_reaction_errors
-from fe_drivetrain.mesh import Mesh, MeshQuality, quality, write
-from fe_drivetrain.response import (
+from fe_drivetrain.drivetrain_file import (
+    Scene,
+    change_scene,
+    coarser_scene,
+    library_scene,
+)
+from fe_drivetrain.elasticity.mesh import Mesh, MeshQuality, quality, write
+from fe_drivetrain.elasticity.solve import METHODS
+from fe_drivetrain.report.suite import Page, Run
+from fe_drivetrain.shafts.fidelity import cached_reaction_errors
+from fe_drivetrain.shafts.response import (
     LOADS,
     PLANES,
     Model,
@@ -22,14 +30,6 @@ from fe_drivetrain.response import (
     tilt_stiffness,
     without_gearbox,
 )
-from fe_drivetrain.scene import (
-    Scene,
-    change_scene,
-    coarser_scene,
-    library_scene,
-)
-from fe_drivetrain.solve import METHODS
-from fe_drivetrain.suite import Page, Run
 
 #: Interfaces of a spherical bearing.
 SPHERICAL = ("sliding", "averaged", "rigid")

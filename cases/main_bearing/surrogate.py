@@ -3,14 +3,14 @@
 from collections.abc import Sequence
 
 from fe_drivetrain.common import user_cache
-from fe_drivetrain.hub_loads import (
+from fe_drivetrain.report.suite import Jobs, Run, RunJob
+from fe_drivetrain.turbine_loads.hub_loads import (
     Condition,
     HubLoadSet,
     hub_load_set,
     not_kept,
     surrogate_grid,
 )
-from fe_drivetrain.suite import Jobs, Run, RunJob
 
 #: Seeds of each group under --quick: the least that has a standard deviation.
 QUICK_SEEDS = 2

@@ -6,8 +6,8 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import bands, shown, study
 from fe_drivetrain.cases.main_bearing.study import Solved
 from fe_drivetrain.report import bars
-from fe_drivetrain.response import PLANES
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.response import PLANES
 
 
 def check_energies(page: Page, free: Solved, series: bands.Series) -> None:

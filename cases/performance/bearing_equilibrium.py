@@ -18,7 +18,7 @@ from fe_drivetrain.bearing import (
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.housed_bearing import housed_races
 from fe_drivetrain.common import Floats, cores, timed_runs
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Steps of 144 ten-minute histories at 20 Hz, and the goal for them on two cores [s].
 STEPS, GOAL = 1_728_000, 60.0

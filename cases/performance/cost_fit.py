@@ -7,8 +7,8 @@ import numpy as np
 from scipy.optimize import nnls
 
 from fe_drivetrain.common import Floats
-from fe_drivetrain.solve import System, cost_model
-from fe_drivetrain.suite import Record
+from fe_drivetrain.elasticity.solve import System, cost_model
+from fe_drivetrain.report.suite import Record
 
 
 class Timing(Protocol):

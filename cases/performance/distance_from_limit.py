@@ -14,11 +14,11 @@ from numba import get_num_threads
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.performance.peer_settings import problems_of, sizes_of
 from fe_drivetrain.cases.performance.peers import BENCHMARKS, Problem, assembled, problems
-from fe_drivetrain.interfaces import eliminate, fixed
-from fe_drivetrain.operator import Pattern, kernels, sparsity
+from fe_drivetrain.elasticity.interfaces import eliminate, fixed
+from fe_drivetrain.elasticity.operator import Pattern, kernels, sparsity
+from fe_drivetrain.elasticity.solve import System, multigrid, reduce
 from fe_drivetrain.report import trace
-from fe_drivetrain.solve import System, multigrid, reduce
-from fe_drivetrain.suite import Page, Record, Run, grouped
+from fe_drivetrain.report.suite import Page, Record, Run, grouped
 
 PROBLEMS, QUICK_PROBLEMS = ["shaft", "assembly"], ["shaft"]
 SIZES, QUICK_SIZES = [50_000, 110_000, 300_000, 1_000_000], [10_000]

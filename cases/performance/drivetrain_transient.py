@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.performance.exudyn_motion import exudyn_motion
 from fe_drivetrain.common import Floats, MissingToolError, Times, timed_runs
-from fe_drivetrain.compare import InTime, converge_in_time
+from fe_drivetrain.comparison import InTime, converge_in_time
 from fe_drivetrain.dynamics import (
     AVERAGE,
     LINEAR,
@@ -35,7 +35,7 @@ from fe_drivetrain.dynamics.equations import equations_of_motion, joined_laws
 from fe_drivetrain.dynamics.machines import slip_line
 from fe_drivetrain.dynamics.steady_state import restoring
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, check_in_time, goal, grouped
+from fe_drivetrain.report.suite import Page, Record, Run, check_in_time, goal, grouped
 
 SPEED = 12.1 * np.pi / 30.0  # rad/s, rated
 TORQUE = 3945990.3  # N m, rated, on the first carrier

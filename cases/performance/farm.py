@@ -18,9 +18,14 @@ from fe_drivetrain.common import (
     pool,
     timed_runs,
 )
-from fe_drivetrain.histories import Counting, counted_histories, piece, streamed_cycles
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.turbine_loads.histories import (
+    Counting,
+    counted_histories,
+    piece,
+    streamed_cycles,
+)
 
 TURBINES = 4
 #: Samples of all turbines, of a full and a quick run; of 20 turbines at 20 Hz in 8 years.

@@ -12,10 +12,8 @@ from threadpoolctl import threadpool_limits
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.torsion_meridian import torsion_bounds
 from fe_drivetrain.common import RUNS, Floats, Times, largest_difference
-from fe_drivetrain.fidelity import beam_shaft, meridian_shaft
-from fe_drivetrain.geometry import Section, Shaft
-from fe_drivetrain.report import trace
-from fe_drivetrain.revolution import (
+from fe_drivetrain.drivetrain_file import MATERIALS, library_scene
+from fe_drivetrain.elasticity.revolution import (
     Meridian,
     dofs,
     element_matrices,
@@ -23,8 +21,10 @@ from fe_drivetrain.revolution import (
     harmonic_solver,
     meridian,
 )
-from fe_drivetrain.scene import MATERIALS, library_scene
-from fe_drivetrain.suite import Page, Record, Run, column, grouped
+from fe_drivetrain.geometry import Section, Shaft
+from fe_drivetrain.report import trace
+from fe_drivetrain.report.suite import Page, Record, Run, column, grouped
+from fe_drivetrain.shafts.fidelity import beam_shaft, meridian_shaft
 
 STEEL = MATERIALS["steel"]
 

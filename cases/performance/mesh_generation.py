@@ -16,12 +16,18 @@ from fe_drivetrain.cases.performance.studies import TETRAHEDRA, meridian_stiffne
 from fe_drivetrain.cases.references import stiffness_choices as choices
 from fe_drivetrain.cases.references.growing_shafts import MATERIAL, STEPPED
 from fe_drivetrain.common import Floats, Times, held_to_one_thread, timed_runs
+from fe_drivetrain.drivetrain_file import Scene, coarser_scene, library_scene
+from fe_drivetrain.elasticity.mesh import (
+    Mesh,
+    inverted_cells,
+    read_gmsh,
+    relax_flat_cells,
+    scaled_jacobians,
+)
 from fe_drivetrain.geometry import Housing, build, gmsh_session
-from fe_drivetrain.mesh import Mesh, inverted_cells, read_gmsh, relax_flat_cells, scaled_jacobians
 from fe_drivetrain.report import trace
-from fe_drivetrain.response import Response, build_model, mesh_scene, unit_load_response
-from fe_drivetrain.scene import Scene, coarser_scene, library_scene
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.response import Response, build_model, mesh_scene, unit_load_response
 
 STAGES = ("surfaces", "volumes", "curved", "read")
 SCENE = "main_bearing_spherical"

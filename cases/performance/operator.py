@@ -20,13 +20,13 @@ from skfem.models.elasticity import linear_elasticity
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats, Ints, Times, run_python, scratch_folder, timed_runs
+from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.elasticity.interfaces import eliminate, fixed
+from fe_drivetrain.elasticity.mesh import element_kind, generate
+from fe_drivetrain.elasticity.operator import assemble, is_straight, kernels, sparsity
+from fe_drivetrain.elasticity.solve import factorise, reduce
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
-from fe_drivetrain.interfaces import eliminate, fixed
-from fe_drivetrain.mesh import element_kind, generate
-from fe_drivetrain.operator import assemble, is_straight, kernels, sparsity
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.solve import factorise, reduce
-from fe_drivetrain.suite import Page, Record, Run, column, goal
+from fe_drivetrain.report.suite import Page, Record, Run, column, goal
 
 #: Mesh size of the hollow shaft of about 110 000 unknowns [m], and a small one.
 SIZE, QUICK = 0.0515, MeshSizes(shaft=0.3, elements_per_turn=8)
@@ -42,9 +42,9 @@ COMPILE = """
 import time
 import numpy as np
 start = time.perf_counter()
-from fe_drivetrain.interfaces import eliminate, fixed
-from fe_drivetrain.operator import assemble
-from fe_drivetrain.solve import multigrid, reduce
+from fe_drivetrain.elasticity.interfaces import eliminate, fixed
+from fe_drivetrain.elasticity.operator import assemble
+from fe_drivetrain.elasticity.solve import multigrid, reduce
 imported = time.perf_counter()
 points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [.5, 0, 0], [.5, .5, 0],
                    [0, .5, 0], [0, 0, .5], [.5, 0, .5], [0, .5, .51]], dtype=float)

@@ -30,9 +30,9 @@ from fe_drivetrain.cases.performance.peers import (
     write_problem,
 )
 from fe_drivetrain.common import Progress, interpreters, scratch_folder
-from fe_drivetrain.compare import growth_exponent
+from fe_drivetrain.comparison import growth_exponent
 from fe_drivetrain.report import Cell, formatted, trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Unknowns of the first solve: enough that ``auto`` takes the solver that large problems take.
 WARM_UP = 10_000

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 
 from fe_drivetrain.cases.performance.peer_settings import OURS
 from fe_drivetrain.cases.performance.peers import Benchmark, Row, rounds
-from fe_drivetrain.suite import Page, Record
+from fe_drivetrain.report.suite import Page, Record
 
 COMPARED_FROM = 9_000
 """Unknowns from which on being faster than every other is the goal: meshes of some 10,000, too."""

@@ -11,7 +11,7 @@ from fe_drivetrain.cases.performance.peers import (
     parse,
 )
 from fe_drivetrain.common import InputError
-from fe_drivetrain.suite import Run
+from fe_drivetrain.report.suite import Run
 
 OURS = "this_project"
 

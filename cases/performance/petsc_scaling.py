@@ -11,12 +11,12 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats, MissingToolError, cores
-from fe_drivetrain.compare import PowerLaw, power_law
-from fe_drivetrain.interfaces import eliminate, fixed
-from fe_drivetrain.mesh import brick
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.solve import ElementSystem, cut, petsc, solve
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.comparison import PowerLaw, power_law
+from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.elasticity.interfaces import eliminate, fixed
+from fe_drivetrain.elasticity.mesh import brick
+from fe_drivetrain.elasticity.solve import ElementSystem, cut, petsc, solve
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Unknowns of the strong series, of a full and a quick run.
 UNKNOWNS, QUICK = 200_000, 3_000

@@ -10,14 +10,11 @@ from scipy import sparse
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.performance import cost_fit
 from fe_drivetrain.common import Floats, Times, timed_runs
-from fe_drivetrain.geometry import MeshSizes, Section, Shaft
-from fe_drivetrain.interfaces import eliminate, fixed, rigid_face, rigid_point
-from fe_drivetrain.mesh import generate
-from fe_drivetrain.operator import assemble
-from fe_drivetrain.report import Chart, chart, trace
-from fe_drivetrain.response import build_model, mesh_scene
-from fe_drivetrain.scene import MATERIALS, library_scene
-from fe_drivetrain.solve import (
+from fe_drivetrain.drivetrain_file import MATERIALS, library_scene
+from fe_drivetrain.elasticity.interfaces import eliminate, fixed, rigid_face, rigid_point
+from fe_drivetrain.elasticity.mesh import generate
+from fe_drivetrain.elasticity.operator import assemble
+from fe_drivetrain.elasticity.solve import (
     METHODS,
     Options,
     System,
@@ -27,7 +24,10 @@ from fe_drivetrain.solve import (
     multigrid,
     reduce,
 )
-from fe_drivetrain.suite import Page, Record, Run, column, goal, grouped
+from fe_drivetrain.geometry import MeshSizes, Section, Shaft
+from fe_drivetrain.report import Chart, chart, trace
+from fe_drivetrain.report.suite import Page, Record, Run, column, goal, grouped
+from fe_drivetrain.shafts.response import build_model, mesh_scene
 
 MANY = 12  # right-hand sides
 

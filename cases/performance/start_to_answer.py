@@ -16,9 +16,9 @@ from fe_drivetrain.common import (
     run_python,
     scratch_folder,
 )
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
-_PROGRAM = "import sys; from fe_drivetrain.commands import main; sys.exit(main())"
+_PROGRAM = "import sys; from fe_drivetrain.command_line import main; sys.exit(main())"
 REPEATS, QUICK_REPEATS = 5, 2
 
 FIRST, SECOND, ALONE = "compiled now, nothing kept", "all kept", "compiled before, nothing kept"

@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fe_drivetrain.beam import Beam, BeamSection, Support, unit_load_response
 from fe_drivetrain.cases.references import tilt_choices as tilt
 from fe_drivetrain.cases.references.growing_shafts import MATERIAL, STEPPED, Grown, grown
 from fe_drivetrain.cases.references.stiffness_choices import (
@@ -31,14 +30,15 @@ from fe_drivetrain.cases.references.stiffness_choices import (
     warm_up,
 )
 from fe_drivetrain.common import Floats, Times, timed_runs
-from fe_drivetrain.compare import GridConvergence, cheapest_within, grid_convergence, richardson
+from fe_drivetrain.comparison import GridConvergence, cheapest_within, grid_convergence, richardson
+from fe_drivetrain.drivetrain_file import Material, Scene, library_scene
+from fe_drivetrain.elasticity.mesh import Grading
+from fe_drivetrain.elasticity.revolution import end_stiffness
+from fe_drivetrain.elasticity.solve import solvers
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
-from fe_drivetrain.mesh import Grading
-from fe_drivetrain.response import without_gearbox
-from fe_drivetrain.revolution import end_stiffness
-from fe_drivetrain.scene import Material, Scene, library_scene
-from fe_drivetrain.solve import solvers
-from fe_drivetrain.suite import Run
+from fe_drivetrain.report.suite import Run
+from fe_drivetrain.shafts.beam import Beam, BeamSection, Support, unit_load_response
+from fe_drivetrain.shafts.response import without_gearbox
 
 SHAFT_QUANTITIES = ("torsional", "bending", "axial")
 TILT_QUANTITIES = tuple(f"K_R {plane}, {estimator}" for plane, estimator in tilt.QUANTITIES)

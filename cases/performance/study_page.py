@@ -15,9 +15,9 @@ from fe_drivetrain.cases.references.stiffness_choices import (
     Outcome,
 )
 from fe_drivetrain.common import SafeWriter
-from fe_drivetrain.compare import pareto_front
+from fe_drivetrain.comparison import pareto_front
 from fe_drivetrain.report import Chart, bars, rounded, trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Errors that an engineer asks for.
 BOUNDS = (1e-2, 1e-3, 1e-4)

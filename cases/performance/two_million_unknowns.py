@@ -20,9 +20,9 @@ from fe_drivetrain.cases.performance.peers import (
     write_problem,
 )
 from fe_drivetrain.common import cores, scratch_folder
-from fe_drivetrain.compare import PowerLaw, power_law
+from fe_drivetrain.comparison import PowerLaw, power_law
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 BODIES, QUICK_BODIES = ["shaft", "assembly", "tube", "slender"], ["shaft"]
 #: Unknowns, about: thin and slender bodies have no coarser meshes.

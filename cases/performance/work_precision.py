@@ -13,9 +13,9 @@ from fe_drivetrain.cases.references.growing_shafts import STEPPED, Grown
 from fe_drivetrain.cases.references.stiffness_choices import CURVED, STEPS, STRAIGHT, Outcome
 from fe_drivetrain.cases.references.tilt_choices import BALANCED, sizes_in_words
 from fe_drivetrain.common import InputError, Times
-from fe_drivetrain.compare import growth_exponent
+from fe_drivetrain.comparison import growth_exponent
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, column, goal
+from fe_drivetrain.report.suite import Page, Record, Run, column, goal
 
 PARTS = ("shaft", "housing", "growth")
 

@@ -5,7 +5,13 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
 from fe_drivetrain.dynamics import Machine, library_machine, torsional
-from fe_drivetrain.histories import damage_equivalent_load, rainflow_cycles
+from fe_drivetrain.dynamics.torsion import (
+    Element,
+    Inertia,
+    Torsional,
+    damped,
+    static_stiffness,
+)
 from fe_drivetrain.procedure import (
     ROTOR_TORQUE,
     TORQUE_AND_BENDING,
@@ -20,14 +26,8 @@ from fe_drivetrain.procedure import (
     write_channels,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Run
-from fe_drivetrain.torsion import (
-    Element,
-    Inertia,
-    Torsional,
-    damped,
-    static_stiffness,
-)
+from fe_drivetrain.report.suite import Page, Run
+from fe_drivetrain.turbine_loads.histories import damage_equivalent_load, rainflow_cycles
 
 MACHINE, SHAFT = "nrel_750kw", "LSS"
 SPEED, RATED, DEVIATION = 22.1 * np.pi / 30.0, 3.25e5, 2e4  # rad/s, N m

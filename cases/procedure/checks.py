@@ -10,6 +10,20 @@ from fe_drivetrain.cases.procedure.assumed import PLACES
 from fe_drivetrain.cases.procedure.checks_of_parts import Found
 from fe_drivetrain.cases.references import published_drivetrains
 from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.dynamics.torsion import (
+    Inertia,
+    chain,
+    changed,
+    damped_modes,
+    gear_masses,
+    gear_speeds,
+    modal_damping,
+    natural_modes,
+    referred,
+    response,
+    stage_masses,
+    static_stiffness,
+)
 from fe_drivetrain.procedure import (
     Excitation,
     Procedure,
@@ -30,21 +44,7 @@ from fe_drivetrain.procedure import (
     stiffness_by_ranges,
     three_point_loads,
 )
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.torsion import (
-    Inertia,
-    chain,
-    changed,
-    damped_modes,
-    gear_masses,
-    gear_speeds,
-    modal_damping,
-    natural_modes,
-    referred,
-    response,
-    stage_masses,
-    static_stiffness,
-)
+from fe_drivetrain.report.suite import Page, Record, Run
 
 TABLE = published_drivetrains.table("drivetrain_c")
 FRONT, REAR, STIFFNESS, DAMPING = 150.34, 24.0, 5296.0, 19.86

@@ -4,10 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fe_drivetrain.beam import Beam, BeamSection, condensed_beam
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import round_off
-from fe_drivetrain.histories import time_at_level
+from fe_drivetrain.comparison import round_off
 from fe_drivetrain.procedure import (
     RingShape,
     SlewingDrive,
@@ -22,6 +20,8 @@ from fe_drivetrain.procedure import (
     tooth_counts,
     with_transients,
 )
+from fe_drivetrain.shafts.beam import Beam, BeamSection, condensed_beam
+from fe_drivetrain.turbine_loads.histories import time_at_level
 
 PITCH = SlewingDrive(part=12e3, drive=0.02, ratio=1500.0)
 TIME = np.arange(0.0, 4.0005, 1e-3)

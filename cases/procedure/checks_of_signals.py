@@ -4,8 +4,9 @@ import numpy as np
 
 from fe_drivetrain.cases.procedure.checks_of_parts import Found
 from fe_drivetrain.cases.references import published_campaigns
-from fe_drivetrain.compare import round_off
-from fe_drivetrain.histories import (
+from fe_drivetrain.comparison import round_off
+from fe_drivetrain.procedure import sampling_rates
+from fe_drivetrain.turbine_loads.histories import (
     alias,
     capture_matrix,
     damage_equivalent_load,
@@ -14,7 +15,6 @@ from fe_drivetrain.histories import (
     rainflow_cycles,
     time_at_level,
 )
-from fe_drivetrain.procedure import sampling_rates
 
 
 def captured() -> list[Found]:

@@ -30,8 +30,9 @@ from fe_drivetrain.cases.procedure.slewing_drives import (
 )
 from fe_drivetrain.cases.references import published_campaigns, published_drivetrains
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import round_off
-from fe_drivetrain.histories import capture_matrix
+from fe_drivetrain.comparison import round_off
+from fe_drivetrain.dynamics.torsion import GENERATOR as GENERATOR_NAME
+from fe_drivetrain.dynamics.torsion import ROTOR, gear_masses, static_stiffness
 from fe_drivetrain.procedure import (
     Solutions,
     drive_torque,
@@ -45,9 +46,8 @@ from fe_drivetrain.procedure import (
     ratio_by_ranges,
     shear_between,
 )
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.torsion import GENERATOR as GENERATOR_NAME
-from fe_drivetrain.torsion import ROTOR, gear_masses, static_stiffness
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.turbine_loads.histories import capture_matrix
 
 INCONSISTENT, GARBLED, OURS = "inconsistent", "garbled in the text at hand", "open or unclear"
 

@@ -2,12 +2,11 @@
 
 import numpy as np
 
-from fe_drivetrain.beam import Beam, BeamSection, condensed_beam
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.procedure.assumed import PLACES
 from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import (
+from fe_drivetrain.comparison import (
     ConvergenceInTime,
     InTime,
     converge_in_time,
@@ -15,7 +14,16 @@ from fe_drivetrain.compare import (
     round_off,
 )
 from fe_drivetrain.dynamics import damped_by_ratio
-from fe_drivetrain.hub_loads import Condition, hub_loads
+from fe_drivetrain.dynamics.torsion import (
+    GENERATOR,
+    Torsional,
+    damped,
+    gear_masses,
+    gear_speeds,
+    natural_modes,
+    shaft_damping,
+    two_masses,
+)
 from fe_drivetrain.procedure import (
     Dip,
     Excitation,
@@ -34,17 +42,9 @@ from fe_drivetrain.procedure import (
     write_load_json,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, check_in_time
-from fe_drivetrain.torsion import (
-    GENERATOR,
-    Torsional,
-    damped,
-    gear_masses,
-    gear_speeds,
-    natural_modes,
-    shaft_damping,
-    two_masses,
-)
+from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
+from fe_drivetrain.shafts.beam import Beam, BeamSection, condensed_beam
+from fe_drivetrain.turbine_loads.hub_loads import Condition, hub_loads
 
 TABLE = published.table("drivetrain_c")
 SPEEDS = (9.0, 18.0)  # rpm

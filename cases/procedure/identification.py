@@ -27,8 +27,8 @@ from fe_drivetrain.cases.procedure.known_drivetrain import (
     simulated,
 )
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import InTime, converge_in_time, peak_between
-from fe_drivetrain.histories import spectrum
+from fe_drivetrain.comparison import InTime, converge_in_time, peak_between
+from fe_drivetrain.dynamics.torsion import damped_modes
 from fe_drivetrain.procedure import (
     Solutions,
     Twist,
@@ -51,8 +51,8 @@ from fe_drivetrain.procedure import (
     timed_angle,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, check_in_time
-from fe_drivetrain.torsion import damped_modes
+from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
+from fe_drivetrain.turbine_loads.histories import spectrum
 
 OF = ("inertia / truth", "damping / truth", "stiffness / truth")
 REPEATS = 20

@@ -6,9 +6,8 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import FORCES, Floats
-from fe_drivetrain.compare import InTime, converge_in_time, peak_between
-from fe_drivetrain.fidelity import shaft_level
-from fe_drivetrain.hub_loads import Condition, hub_loads
+from fe_drivetrain.comparison import InTime, converge_in_time, peak_between
+from fe_drivetrain.drivetrain_file import Scene, library_scene
 from fe_drivetrain.procedure import (
     LoadTable,
     Mounts,
@@ -25,8 +24,9 @@ from fe_drivetrain.procedure import (
     write_load_json,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.scene import Scene, library_scene
-from fe_drivetrain.suite import Page, Record, Run, check_in_time
+from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
+from fe_drivetrain.shafts.fidelity import shaft_level
+from fe_drivetrain.turbine_loads.hub_loads import Condition, hub_loads
 
 SCENE, ARMS = "three_point_suspension", 2.0  # m between the arms, as the scene's source has them
 MASSES = {"shaft": 8e3, "gearbox": 15e3, "generator": 7e3}  # kg

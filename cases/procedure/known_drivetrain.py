@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from fe_drivetrain.dynamics.torsion import Inertia, chain
 from fe_drivetrain.procedure import (
     Sensor,
     Twist,
@@ -10,7 +11,6 @@ from fe_drivetrain.procedure import (
     periodic_motions,
     reduced_torque,
 )
-from fe_drivetrain.torsion import Inertia, chain
 
 FRONT, REAR, STIFFNESS, RATIO = 150.34, 24.0, 5296.0, 0.03  # kg m^2, N m/rad, of critical damping
 GEAR, SPEED, MEAN = 81.49, 188.5, 4000.0  # -, rad/s and N m of the high-speed shaft

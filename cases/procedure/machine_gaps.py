@@ -4,7 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats, InputError
-from fe_drivetrain.compare import (
+from fe_drivetrain.comparison import (
     ConvergenceInTime,
     InTime,
     converge_in_time,
@@ -22,6 +22,7 @@ from fe_drivetrain.dynamics import (
     system_modes,
     torsional,
 )
+from fe_drivetrain.dynamics.torsion import GENERATOR, ROTOR, Torsional, natural_modes
 from fe_drivetrain.procedure import (
     DIPS,
     MISALIGNMENT,
@@ -36,8 +37,7 @@ from fe_drivetrain.procedure import (
     resonances,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, check_in_time
-from fe_drivetrain.torsion import GENERATOR, ROTOR, Torsional, natural_modes
+from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
 
 DEFAULT = "nrel_750kw"
 RATIO = 0.01  # of critical damping

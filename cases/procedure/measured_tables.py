@@ -7,14 +7,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.procedure.slewing_drives import AXIAL, DIAMETER, MOMENT, PITCH, RADIAL, YAW
 from fe_drivetrain.common import Floats, wrench_transport
-from fe_drivetrain.compare import round_off
-from fe_drivetrain.hub_loads import (
-    Condition,
-    Rotor,
-    designed_controller,
-    similar_turbine,
-    turbine_histories,
-)
+from fe_drivetrain.comparison import round_off
 from fe_drivetrain.procedure import (
     drive_torque,
     filled_table,
@@ -22,7 +15,14 @@ from fe_drivetrain.procedure import (
     listed_quantities,
     ring_torque,
 )
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.turbine_loads.hub_loads import (
+    Condition,
+    Rotor,
+    designed_controller,
+    similar_turbine,
+    turbine_histories,
+)
 
 OVERHANG, HEIGHT = 3.5, 2.0  # m, hub before the tower's axis and above its top
 NACELLE = 80e3 * 9.81, 0.8  # N without the rotor, m behind the tower's axis

@@ -7,8 +7,9 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.procedure.known_drivetrain import FRONT, GAUGE, MEAN, REAR, SYSTEM
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import InTime, converge_in_time, peak_between
+from fe_drivetrain.comparison import InTime, converge_in_time, peak_between
 from fe_drivetrain.dynamics import energy_error, torsional_equations, varying
+from fe_drivetrain.dynamics.torsion import damped_modes
 from fe_drivetrain.procedure import (
     MeasurementCase,
     Sensor,
@@ -19,8 +20,7 @@ from fe_drivetrain.procedure import (
     sampling_rates,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, check_in_time
-from fe_drivetrain.torsion import damped_modes
+from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
 
 STEP = 0.005  # s
 FREE = {"STB": (11.05, 13.95), "STD": (12.2, 13.95)}  # s, from the loss of torque to the braking

@@ -18,15 +18,7 @@ from fe_drivetrain.cases.procedure.slewing_drives import (
     stop_motion,
 )
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import round_off
-from fe_drivetrain.histories import even_levels, time_at_level
-from fe_drivetrain.hub_loads import (
-    Condition,
-    Rotor,
-    designed_controller,
-    similar_turbine,
-    turbine_histories,
-)
+from fe_drivetrain.comparison import round_off
 from fe_drivetrain.procedure import (
     drive_torque,
     friction_torque,
@@ -41,7 +33,15 @@ from fe_drivetrain.procedure import (
     with_transients,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.turbine_loads.histories import even_levels, time_at_level
+from fe_drivetrain.turbine_loads.hub_loads import (
+    Condition,
+    Rotor,
+    designed_controller,
+    similar_turbine,
+    turbine_histories,
+)
 
 PAUSE, DURATION, TURNED = 120.0, 12.0, np.radians(5.0)  # s, s, rad
 BRAKES, MOTOR = (100.0, 200.0, 400.0), 150.0  # N m, at the motors of the yaw drives, all together

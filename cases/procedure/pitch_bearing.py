@@ -16,14 +16,11 @@ from fe_drivetrain.bearing import (
     shear_at_depth,
     stresses_below_ellipse,
 )
+from fe_drivetrain.bearing_life.rings import races_of_revolution
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats, Ints
-from fe_drivetrain.geometry import Section, Shaft
-from fe_drivetrain.histories import rainflow_cycles
-from fe_drivetrain.hub_loads import Condition, hub_loads
-from fe_drivetrain.procedure import GAUGES, RingShape, fitted_shape
-from fe_drivetrain.report import trace
-from fe_drivetrain.revolution import (
+from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.elasticity.revolution import (
     Meridian,
     Strip,
     dofs,
@@ -31,9 +28,12 @@ from fe_drivetrain.revolution import (
     meridian,
     strip_averages,
 )
-from fe_drivetrain.rings import races_of_revolution
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.geometry import Section, Shaft
+from fe_drivetrain.procedure import GAUGES, RingShape, fitted_shape
+from fe_drivetrain.report import trace
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.turbine_loads.histories import rainflow_cycles
+from fe_drivetrain.turbine_loads.hub_loads import Condition, hub_loads
 
 ROLLERS, PLACE, ANGLE, LENGTH = 80, 0.03, np.pi / 4.0, 0.036
 ROWS = tuple(

@@ -31,7 +31,7 @@ from fe_drivetrain.procedure import (
     torque_signal,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 MACHINE, TORQUE, SHAFT = "nrel_5mw", 3.946e6, "LSS"
 DEPTH, LENGTH, STEP = 1.0, 0.15, 4e-3  # of the torque, s, s

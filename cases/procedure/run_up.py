@@ -4,7 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import InTime, converge_in_time, peak_between, round_off
+from fe_drivetrain.comparison import InTime, converge_in_time, peak_between, round_off
 from fe_drivetrain.dynamics import (
     Loads,
     System,
@@ -19,7 +19,7 @@ from fe_drivetrain.dynamics import (
     system_modes,
     with_proportional_damping,
 )
-from fe_drivetrain.histories import campbell
+from fe_drivetrain.dynamics.torsion import mesh_orders
 from fe_drivetrain.procedure import (
     Meeting,
     Sweep,
@@ -29,8 +29,8 @@ from fe_drivetrain.procedure import (
     swept_response,
 )
 from fe_drivetrain.report import heat_map, trace
-from fe_drivetrain.suite import Page, Record, Run, check_in_time
-from fe_drivetrain.torsion import mesh_orders
+from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
+from fe_drivetrain.turbine_loads.histories import campbell
 
 MACHINE = library_machine("synthetic_2mw")
 SPEEDS = (8.0, 18.0)  # rpm, in operation

@@ -14,12 +14,12 @@ from numpy.typing import ArrayLike
 from fe_drivetrain.cases.references.loaded_blocks import Traction
 from fe_drivetrain.cases.references.ring_solids import facets_where
 from fe_drivetrain.common import Floats, Ints
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.interfaces import averaged_point, fixed
+from fe_drivetrain.elasticity.mesh import element_kind, shaft_hexahedra
+from fe_drivetrain.elasticity.operator import stresses, traction_loads
+from fe_drivetrain.elasticity.solve import solve_solid
 from fe_drivetrain.geometry import Section, Shaft
-from fe_drivetrain.interfaces import averaged_point, fixed
-from fe_drivetrain.mesh import element_kind, shaft_hexahedra
-from fe_drivetrain.operator import stresses, traction_loads
-from fe_drivetrain.scene import Material
-from fe_drivetrain.solve import solve_solid
 
 BEHIND = 2.0
 """Diameters between root and clamp: self-equilibrated stress of a round bar decays at least as

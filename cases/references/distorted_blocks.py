@@ -10,10 +10,10 @@ from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.cases.references.manufactured import LAME
 from fe_drivetrain.common import Floats, InputError, Ints
-from fe_drivetrain.interfaces import dofs
-from fe_drivetrain.mesh import FACES, Block, brick, element_kind, jacobian, straightened
-from fe_drivetrain.operator import Traction, strains, stresses, tensor, traction_loads
-from fe_drivetrain.solve import solve_solid
+from fe_drivetrain.elasticity.interfaces import dofs
+from fe_drivetrain.elasticity.mesh import FACES, Block, brick, element_kind, jacobian, straightened
+from fe_drivetrain.elasticity.operator import Traction, strains, stresses, tensor, traction_loads
+from fe_drivetrain.elasticity.solve import solve_solid
 
 DIVISIONS = 3  # two layers of corners are inside
 SIZE = 1.0 / DIVISIONS  # of an element [m]

@@ -6,11 +6,11 @@ or moment there, so that entry 0 is along x, 2 along z, 3 about x and 4 about y.
 
 import numpy as np
 
-from fe_drivetrain.beam import BeamSection, element_integrals
 from fe_drivetrain.common import Floats, wrench_transport
+from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.elasticity.revolution import end_stiffness
 from fe_drivetrain.geometry import Section, Shaft
-from fe_drivetrain.revolution import end_stiffness
-from fe_drivetrain.scene import MATERIALS
+from fe_drivetrain.shafts.beam import BeamSection, element_integrals
 
 STEEL = MATERIALS["steel"]
 """Of every shaft here."""

@@ -9,11 +9,11 @@ import numpy as np
 
 from fe_drivetrain.cases.references.solid_shafts import Solid, pinned_like, prescribed_on, resultant
 from fe_drivetrain.common import Floats, Ints, rigid_motions
-from fe_drivetrain.interfaces import averaged_point
-from fe_drivetrain.mesh import face_weights
-from fe_drivetrain.operator import nodal_stresses, traction_loads
-from fe_drivetrain.scene import Material
-from fe_drivetrain.solve import Static, solve_solid
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.interfaces import averaged_point
+from fe_drivetrain.elasticity.mesh import face_weights
+from fe_drivetrain.elasticity.operator import nodal_stresses, traction_loads
+from fe_drivetrain.elasticity.solve import Static, solve_solid
 
 
 @dataclass(frozen=True)

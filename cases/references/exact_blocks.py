@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.common import Floats, Ints
-from fe_drivetrain.interfaces import held_nodes
-from fe_drivetrain.mesh import Block, brick
-from fe_drivetrain.operator import traction_loads
-from fe_drivetrain.solve import solve_solid
+from fe_drivetrain.elasticity.interfaces import held_nodes
+from fe_drivetrain.elasticity.mesh import Block, brick
+from fe_drivetrain.elasticity.operator import traction_loads
+from fe_drivetrain.elasticity.solve import solve_solid
 
 E, NU = 210e9, 0.3
 LENGTH, SIDE = 2.0, 0.5

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.common import Floats
-from fe_drivetrain.geometry import Section, Shaft
-from fe_drivetrain.revolution import (
+from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.elasticity.revolution import (
     Meridian,
     Traction,
     Where,
@@ -24,7 +24,7 @@ from fe_drivetrain.revolution import (
     stresses,
     surface_loads,
 )
-from fe_drivetrain.scene import MATERIALS
+from fe_drivetrain.geometry import Section, Shaft
 
 STEEL = MATERIALS["steel"]
 

@@ -13,8 +13,8 @@ from dataclasses import asdict, dataclass
 
 from fe_drivetrain.cases.references import stiffness_choices as choices
 from fe_drivetrain.common import Times, peak_memory, run_python, until_stopped
+from fe_drivetrain.drivetrain_file import MATERIALS
 from fe_drivetrain.geometry import Section, Shaft
-from fe_drivetrain.scene import MATERIALS
 
 STEPPED = Shaft(
     front=-2.0,
@@ -75,7 +75,7 @@ def grown(
     turn : int
         Elements round any cylinder.
     method : str, optional
-        Of `fe_drivetrain.solve.solvers`.
+        Of `fe_drivetrain.elasticity.solve.solvers`.
     repeats : int, optional
         How often each step is done that takes less than `SHORT_SECONDS`.
 

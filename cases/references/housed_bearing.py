@@ -5,8 +5,8 @@ from __future__ import annotations
 from functools import lru_cache
 
 from fe_drivetrain.bearing import Bearing, Races, catalogue_bearing
-from fe_drivetrain.rings import housing_races
-from fe_drivetrain.scene import Scene, change_scene, library_scene
+from fe_drivetrain.bearing_life.rings import housing_races
+from fe_drivetrain.drivetrain_file import Scene, change_scene, library_scene
 
 NAME = "main_bearing"
 

@@ -1,4 +1,4 @@
-"""Frequencies of torsional systems by ways that share nothing with `fe_drivetrain.torsion`."""
+"""Frequencies of torsional systems by ways that share nothing with `fe_drivetrain.dynamics.torsion`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from fe_drivetrain.common import Floats
-from fe_drivetrain.torsion import Torsional
+from fe_drivetrain.dynamics.torsion import Torsional
 
 
 def holzer(

@@ -13,11 +13,11 @@ from scipy.spatial import cKDTree
 from fe_drivetrain.cases.references.plane_rings import Lame, Plane, interference_pressure
 from fe_drivetrain.cases.references.ring_solids import polar_stresses, ring_sector, sector_symmetry
 from fe_drivetrain.common import Floats, Ints
-from fe_drivetrain.interfaces import Constraint, held_nodes
-from fe_drivetrain.mesh import Block
-from fe_drivetrain.operator import nodal_stresses
-from fe_drivetrain.scene import Material
-from fe_drivetrain.solve import solve_solid
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.interfaces import Constraint, held_nodes
+from fe_drivetrain.elasticity.mesh import Block
+from fe_drivetrain.elasticity.operator import nodal_stresses
+from fe_drivetrain.elasticity.solve import solve_solid
 
 QUARTER = np.pi / 2
 

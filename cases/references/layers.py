@@ -10,10 +10,16 @@ from scipy import sparse
 
 from fe_drivetrain.cases.references.two_bodies import Bodies
 from fe_drivetrain.common import Floats, InputError, Ints
-from fe_drivetrain.interfaces import Constraint, eliminate, fixed, rigid_face, rigid_point
-from fe_drivetrain.mesh import Block, brick, joined
-from fe_drivetrain.operator import assemble
-from fe_drivetrain.solve import TOLERANCE, System, factorise, multigrid, reduce
+from fe_drivetrain.elasticity.interfaces import (
+    Constraint,
+    eliminate,
+    fixed,
+    rigid_face,
+    rigid_point,
+)
+from fe_drivetrain.elasticity.mesh import Block, brick, joined
+from fe_drivetrain.elasticity.operator import assemble
+from fe_drivetrain.elasticity.solve import TOLERANCE, System, factorise, multigrid, reduce
 
 OPTIONS = multigrid.Options(coarsest=50)
 """Few nodes are left to the dense factor, so that small meshes have the levels of large ones."""

@@ -9,11 +9,11 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.cases.references.ring_solids import Polar, node_at, polar_stresses
 from fe_drivetrain.common import Floats, Ints
-from fe_drivetrain.interfaces import Constraint, held_dofs
-from fe_drivetrain.mesh import FACES, Block
-from fe_drivetrain.operator import nodal_stresses, traction_loads
-from fe_drivetrain.scene import Material
-from fe_drivetrain.solve import Static, solve_solid
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.interfaces import Constraint, held_dofs
+from fe_drivetrain.elasticity.mesh import FACES, Block
+from fe_drivetrain.elasticity.operator import nodal_stresses, traction_loads
+from fe_drivetrain.elasticity.solve import Static, solve_solid
 
 Traction = Floats | Callable[[Floats, Floats], Floats]
 """(3,) [Pa], or a function of positions and outward normals; see `traction_loads`."""

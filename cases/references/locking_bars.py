@@ -10,9 +10,9 @@ from scipy import sparse
 from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common import Floats, Ints
-from fe_drivetrain.geometry import MeshSizes, Section, Shaft
-from fe_drivetrain.interfaces import held_nodes
-from fe_drivetrain.mesh import (
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.interfaces import held_nodes
+from fe_drivetrain.elasticity.mesh import (
     Block,
     brick,
     element_kind,
@@ -21,9 +21,9 @@ from fe_drivetrain.mesh import (
     jacobian,
     shaft_hexahedra,
 )
-from fe_drivetrain.operator import traction_loads
-from fe_drivetrain.scene import Material
-from fe_drivetrain.solve import solve_solid
+from fe_drivetrain.elasticity.operator import traction_loads
+from fe_drivetrain.elasticity.solve import solve_solid
+from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 
 Assembly = Callable[..., sparse.bsr_array]
 

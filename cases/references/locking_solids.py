@@ -18,13 +18,13 @@ from fe_drivetrain.cases.references.ring_solids import (
     sector_symmetry,
 )
 from fe_drivetrain.common import Floats, Ints
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.interfaces import Constraint, eliminate, held_dofs
+from fe_drivetrain.elasticity.mesh import Mesh, element_kind, first_order, generate, straightened
+from fe_drivetrain.elasticity.operator import incompressible, pressure, stresses, traction_loads
+from fe_drivetrain.elasticity.revolution import dofs, harmonic_response, meridian
+from fe_drivetrain.elasticity.solve import TOLERANCE, Diagnostics, multigrid, reduce, solve_solid
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
-from fe_drivetrain.interfaces import Constraint, eliminate, held_dofs
-from fe_drivetrain.mesh import Mesh, element_kind, first_order, generate, straightened
-from fe_drivetrain.operator import incompressible, pressure, stresses, traction_loads
-from fe_drivetrain.revolution import dofs, harmonic_response, meridian
-from fe_drivetrain.scene import Material
-from fe_drivetrain.solve import TOLERANCE, Diagnostics, multigrid, reduce, solve_solid
 
 Assembly = Callable[..., sparse.bsr_array]
 

@@ -3,12 +3,12 @@
 import numpy as np
 
 from fe_drivetrain.cases.references.machine_shafts import shaft_scene
+from fe_drivetrain.drivetrain_file import CarrierComponent, HousingComponent, library_component
 from fe_drivetrain.dynamics import Flexible, Housing, Level, Rung, library_machine
-from fe_drivetrain.fidelity import COARSER, coarser, meridian_shaft, solid_component
-from fe_drivetrain.fidelity.component_frames import carrier_frame, housing_frame
-from fe_drivetrain.fidelity.component_levels import stiffness_on_supports
-from fe_drivetrain.scene import CarrierComponent, HousingComponent, library_component
-from fe_drivetrain.suite import Run
+from fe_drivetrain.report.suite import Run
+from fe_drivetrain.shafts.fidelity import COARSER, coarser, meridian_shaft, solid_component
+from fe_drivetrain.shafts.fidelity.component_frames import carrier_frame, housing_frame
+from fe_drivetrain.shafts.fidelity.component_levels import stiffness_on_supports
 
 
 def more_rungs(run: Run, name: str) -> list[Rung]:

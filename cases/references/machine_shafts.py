@@ -2,9 +2,9 @@
 
 from fe_drivetrain.common import InputError
 from fe_drivetrain.common.reading import validated
+from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.dynamics import Machine
 from fe_drivetrain.dynamics.machine_parts import STEEL
-from fe_drivetrain.scene import Scene
 
 #: Of a seat, over the shaft's diameter.
 SEAT = 0.2

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common import Floats, Ints
-from fe_drivetrain.mesh import Block, brick, element_kind, jacobian
-from fe_drivetrain.operator import body_loads, traction_loads
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.solve import solve_solid
+from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.elasticity.mesh import Block, brick, element_kind, jacobian
+from fe_drivetrain.elasticity.operator import body_loads, traction_loads
+from fe_drivetrain.elasticity.solve import solve_solid
 
 LAME = MATERIALS["steel"].lame
 

@@ -15,7 +15,7 @@ from fe_drivetrain.common import Floats, Ints
 #: Where stresses of `CurvedBar` come from, for the source of a check.
 CURVED_BAR = (
     "theory: stresses in equilibrium and compatible, with free surfaces and the given resultant "
-    "(tests/test_plane_rings.py checks each); the form is Golovin's, 1881"
+    "(tests/cases/test_plane_rings.py checks each); the form is Golovin's, 1881"
 )
 
 
@@ -297,7 +297,7 @@ class CurvedBar:
         """Radial and hoop stress under end moments that straighten the bar [Pa].
 
         Golovin 1881. Written from memory, and checked by itself: it is in equilibrium, compatible,
-        free on its surfaces, and has this moment (``tests/test_plane_rings.py``).
+        free on its surfaces, and has this moment (``tests/cases/test_plane_rings.py``).
 
         Parameters
         ----------
@@ -318,7 +318,7 @@ class CurvedBar:
         """Rotation of the ends against each other, per angle of the bar.
 
         Sections stay plane, v = 4 B r t / E. Written from memory, and checked by itself: the work
-        of the moment is the strain energy (``tests/test_plane_rings.py``).
+        of the moment is the strain energy (``tests/cases/test_plane_rings.py``).
         """
         a, b = self.inner, self.outer
         N = (b**2 - a**2) ** 2 - 4.0 * a**2 * b**2 * np.log(b / a) ** 2
@@ -328,7 +328,7 @@ class CurvedBar:
         """Radial and hoop stress and shear under a radial force on the end at t = 0 [Pa].
 
         Written from memory, and checked by itself: it is in equilibrium, compatible, free on its
-        surfaces, and has this resultant (``tests/test_plane_rings.py``).
+        surfaces, and has this resultant (``tests/cases/test_plane_rings.py``).
 
         Parameters
         ----------

@@ -12,8 +12,8 @@ import numpy as np
 import yaml
 
 from fe_drivetrain.common import Floats, Ints
-from fe_drivetrain.compare.tolerances import digit
-from fe_drivetrain.torsion import (
+from fe_drivetrain.comparison.tolerances import digit
+from fe_drivetrain.dynamics.torsion import (
     Drivetrain,
     GeneratorState,
     Modes,

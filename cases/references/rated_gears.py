@@ -15,7 +15,7 @@ from typing import Any
 
 import yaml
 
-from fe_drivetrain.compare.tolerances import digit
+from fe_drivetrain.comparison.tolerances import digit
 from fe_drivetrain.gear.involute import Gear, Pair, Rack
 from fe_drivetrain.gear.load_factors import (
     Deviations,

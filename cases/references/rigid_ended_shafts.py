@@ -11,12 +11,12 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet
 
 from fe_drivetrain.cases.references.shaft_theory import polar_moment
+from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.elasticity.interfaces import fixed, rigid_face, rigid_point
+from fe_drivetrain.elasticity.mesh import Mesh, element_kind, generate, jacobian, shape_functions
+from fe_drivetrain.elasticity.revolution import end_stiffness
+from fe_drivetrain.elasticity.solve import ErrorEstimate, recovery_estimate, solve_solid
 from fe_drivetrain.geometry import LocalSizes, MeshSizes, Section, Shaft
-from fe_drivetrain.interfaces import fixed, rigid_face, rigid_point
-from fe_drivetrain.mesh import Mesh, element_kind, generate, jacobian, shape_functions
-from fe_drivetrain.revolution import end_stiffness
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.solve import ErrorEstimate, recovery_estimate, solve_solid
 
 MATERIAL = MATERIALS["steel"]
 
@@ -102,7 +102,7 @@ def solved(mesh: Mesh, shaft: Shaft, loads: tuple[str, ...] = tuple(LOADS)) -> S
 
 
 def exact(shaft: Shaft, size: float, layers: int) -> dict[str, float]:
-    """The same stiffnesses from the meridian, see `fe_drivetrain.revolution.harmonics`."""
+    """The same stiffnesses from the meridian, see `fe_drivetrain.elasticity.revolution.harmonics`."""
     K = end_stiffness(shaft, MATERIAL, size, layers=layers)
     compliance = np.linalg.inv(K[:6, :6])
     return {load: float(1.0 / compliance[row, row]) for load, row in LOADS.items()}

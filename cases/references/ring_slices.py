@@ -14,10 +14,10 @@ from fe_drivetrain.cases.references.ring_solids import (
     sector_symmetry,
 )
 from fe_drivetrain.common import Floats
-from fe_drivetrain.interfaces import Constraint, held_nodes
-from fe_drivetrain.mesh import Block
-from fe_drivetrain.operator import pressure
-from fe_drivetrain.scene import Material
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.interfaces import Constraint, held_nodes
+from fe_drivetrain.elasticity.mesh import Block
+from fe_drivetrain.elasticity.operator import pressure
 
 EIGHTH = 0.25 * np.pi  # rad, between planes of symmetry
 

@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 from scipy import sparse
 
 from fe_drivetrain.common import Floats, Ints
-from fe_drivetrain.interfaces import Constraint, held_nodes
-from fe_drivetrain.mesh import Block, brick, local_facets
+from fe_drivetrain.elasticity.interfaces import Constraint, held_nodes
+from fe_drivetrain.elasticity.mesh import Block, brick, local_facets
 
 ROUND_OFF = 1e-8
 """Relative; solutions are refined or iterated to about 1e-9 in energy."""

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.common import Floats, Ints, rigid_motions
+from fe_drivetrain.drivetrain_file import MATERIALS, Material
+from fe_drivetrain.elasticity.mesh import generate, shaft_hexahedra
+from fe_drivetrain.elasticity.solve import solve_solid
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
-from fe_drivetrain.mesh import generate, shaft_hexahedra
-from fe_drivetrain.scene import MATERIALS, Material
-from fe_drivetrain.solve import solve_solid
 
 STEEL = MATERIALS["steel"]
 

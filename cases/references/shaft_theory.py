@@ -12,14 +12,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from fe_drivetrain.beam import cowper_shear_coefficient
 from fe_drivetrain.common import Floats
-from fe_drivetrain.scene import Material
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.shafts.beam import cowper_shear_coefficient
 
 #: Where `flexure_field` and `flexure_stress` come from, for the source of a check.
 FLEXURE = (
     "theory: Saint-Venant's flexure, its stresses those of its displacements, in equilibrium, "
-    "free on the surface and with the given resultant (tests/test_shaft_theory.py checks each)"
+    "free on the surface and with the given resultant (tests/cases/test_shaft_theory.py checks each)"
 )
 
 
@@ -229,7 +229,7 @@ def flexure_field(points: Floats, force: float, tube: Tube) -> Floats:
     Love 1927, A Treatise on the Mathematical Theory of Elasticity, articles 229-231, with the
     flexure function of a circle or of two concentric circles. Written from memory, and checked by
     itself: equilibrium, free surfaces, resultant, and stresses that are those of its displacements
-    (``tests/test_shaft_theory.py``).
+    (``tests/cases/test_shaft_theory.py``).
     """
     x, y, z = np.asarray(points).T
     nu, L = tube.material.poisson_ratio, tube.length

@@ -13,12 +13,12 @@ from scipy.sparse.linalg import LinearOperator, splu
 from fe_drivetrain.cases.references.exact_blocks import LENGTH, SIDE, E
 from fe_drivetrain.cases.references.one_norm import one_norm_estimate
 from fe_drivetrain.common import Floats, InputError, Ints
+from fe_drivetrain.elasticity.interfaces import Constraint, eliminate, held_nodes
+from fe_drivetrain.elasticity.mesh import Mesh, boundary
+from fe_drivetrain.elasticity.mesh.shapes import TETRAHEDRON_EDGES
+from fe_drivetrain.elasticity.operator import assemble, traction_loads
+from fe_drivetrain.elasticity.solve import System, reduce, solve
 from fe_drivetrain.geometry.session import gmsh_session, numbered_nodes
-from fe_drivetrain.interfaces import Constraint, eliminate, held_nodes
-from fe_drivetrain.mesh import Mesh, boundary
-from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES
-from fe_drivetrain.operator import assemble, traction_loads
-from fe_drivetrain.solve import System, reduce, solve
 
 LAME = (0.0, E / 2.0)
 FORCE = 1e6  # [N]

@@ -9,7 +9,8 @@ from functools import cached_property
 import numpy as np
 
 from fe_drivetrain.common import Floats, InputError
-from fe_drivetrain.interfaces import (
+from fe_drivetrain.drivetrain_file import Scene, change_scene, library_scene
+from fe_drivetrain.elasticity.interfaces import (
     Elimination,
     WeakMotion,
     eliminate,
@@ -17,10 +18,9 @@ from fe_drivetrain.interfaces import (
     warn_of_weak_restraints,
     weak_restraints,
 )
-from fe_drivetrain.mesh import Mesh
-from fe_drivetrain.response import LOADS, Model, build_model
-from fe_drivetrain.scene import Scene, change_scene, library_scene
-from fe_drivetrain.solve import reduce, solve
+from fe_drivetrain.elasticity.mesh import Mesh
+from fe_drivetrain.elasticity.solve import reduce, solve
+from fe_drivetrain.shafts.response import LOADS, Model, build_model
 
 #: A short shaft in a coarse mesh: statics are the same on any mesh.
 CHANGES = {
@@ -141,7 +141,7 @@ class Sprung:
         stiffness : sequence of 6 floats
             Of the gearbox springs [N/m, N m/rad].
         loads : sequence of str
-            Names of `fe_drivetrain.response.LOADS`.
+            Names of `fe_drivetrain.shafts.response.LOADS`.
         method : str
             Solver.
 

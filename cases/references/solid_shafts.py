@@ -18,10 +18,10 @@ from scipy import sparse
 
 from fe_drivetrain.cases.references.shaft_theory import Tube
 from fe_drivetrain.common import Floats, InputError, Ints
-from fe_drivetrain.compare import band_of
-from fe_drivetrain.geometry import LENGTH_TOLERANCE, Section, Shaft
-from fe_drivetrain.interfaces import averaged_point
-from fe_drivetrain.mesh import (
+from fe_drivetrain.comparison import band_of
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.interfaces import averaged_point
+from fe_drivetrain.elasticity.mesh import (
     UNGRADED,
     Grading,
     element_kind,
@@ -30,9 +30,9 @@ from fe_drivetrain.mesh import (
     local_facets,
     shaft_hexahedra,
 )
-from fe_drivetrain.operator import body_loads
-from fe_drivetrain.scene import Material
-from fe_drivetrain.solve import Static, solve_solid
+from fe_drivetrain.elasticity.operator import body_loads
+from fe_drivetrain.elasticity.solve import Static, solve_solid
+from fe_drivetrain.geometry import LENGTH_TOLERANCE, Section, Shaft
 
 SLICE = 3.0
 """Length along x of the elements of the coarsest mesh, per radius."""
@@ -157,7 +157,7 @@ def mesh_band(refinements: Sequence[int], values: ArrayLike, order: float = 4.0)
     Parameters
     ----------
     refinements, values : Sequence[int], ArrayLike
-        Of two meshes or more of the family, coarse first; see `fe_drivetrain.compare.band_of`.
+        Of two meshes or more of the family, coarse first; see `fe_drivetrain.comparison.band_of`.
     order : float
         Of the theory: fourth for energies of smooth solutions, and of parabolas for circles.
     """

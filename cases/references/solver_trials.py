@@ -11,7 +11,14 @@ from scipy.sparse.linalg import LinearOperator
 
 from fe_drivetrain.cases.references.one_norm import one_norm_estimate
 from fe_drivetrain.common import Floats, InputError
-from fe_drivetrain.solve import TOLERANCE, System, direct_solvers, multigrid, schwarz, solvers
+from fe_drivetrain.elasticity.solve import (
+    TOLERANCE,
+    System,
+    direct_solvers,
+    multigrid,
+    schwarz,
+    solvers,
+)
 
 #: Iterations go on to here where the program gives up before.
 ITERATIONS = 150

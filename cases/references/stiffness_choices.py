@@ -10,9 +10,9 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from fe_drivetrain.common import RUNS, Floats, Ints, Times, timed_runs
-from fe_drivetrain.geometry import MeshSizes, Shaft
-from fe_drivetrain.interfaces import ReferencePoint, constraints
-from fe_drivetrain.mesh import (
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.interfaces import ReferencePoint, constraints
+from fe_drivetrain.elasticity.mesh import (
     UNGRADED,
     Grading,
     Nodes,
@@ -22,9 +22,9 @@ from fe_drivetrain.mesh import (
     shaft_hexahedra,
     straightened,
 )
-from fe_drivetrain.operator import assemble
-from fe_drivetrain.scene import Material
-from fe_drivetrain.solve import TOLERANCE, System, direct_solvers, reduce, solvers
+from fe_drivetrain.elasticity.operator import assemble
+from fe_drivetrain.elasticity.solve import TOLERANCE, System, direct_solvers, reduce, solvers
+from fe_drivetrain.geometry import MeshSizes, Shaft
 
 STEPS = ("mesh", "assembly", "set-up", "solve")
 

@@ -12,12 +12,8 @@ from fe_drivetrain.bearing import (
     lamina_loads,
     read_catalogue,
 )
-from fe_drivetrain.cases.references.thesis_beam import BEAM, beam_body, housed_body
-from fe_drivetrain.common import Floats
-from fe_drivetrain.coupled import LinearBody, coupled_equilibrium, factors_of
-from fe_drivetrain.histories import Site, site_life
-from fe_drivetrain.hub_loads import Condition, Rotor, hub_load_set
-from fe_drivetrain.life import (
+from fe_drivetrain.bearing_life.coupled import LinearBody, coupled_equilibrium, factors_of
+from fe_drivetrain.bearing_life.life import (
     LifeRules,
     RatedBearing,
     RowLoads,
@@ -26,6 +22,10 @@ from fe_drivetrain.life import (
     step_lives,
     years,
 )
+from fe_drivetrain.cases.references.thesis_beam import BEAM, beam_body, housed_body
+from fe_drivetrain.common import Floats
+from fe_drivetrain.turbine_loads.histories import Site, site_life
+from fe_drivetrain.turbine_loads.hub_loads import Condition, Rotor, hub_load_set
 
 #: Mean wind speeds of Stirling 2023, section 5.1, and limits of their bins [m/s].
 SPEEDS = np.arange(4.0, 25.0, 2.0)

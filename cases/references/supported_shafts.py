@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_drivetrain.beam import Beam, BeamSection, Support, solve
 from fe_drivetrain.cases.references import solid_shafts
 from fe_drivetrain.cases.references.shaft_theory import (
     Spring,
@@ -21,6 +20,7 @@ from fe_drivetrain.cases.references.shaft_theory import (
     sag,
 )
 from fe_drivetrain.cases.references.solid_shafts import Compliance, Supported
+from fe_drivetrain.shafts.beam import Beam, BeamSection, Support, solve
 
 EVENLY = "Macaulay's brackets with shear of evenly loaded sections (Hutchinson 2001, as quoted by "
 EVENLY += "Stephen 2001; derived again)"

@@ -4,11 +4,11 @@ from functools import lru_cache
 
 import numpy as np
 
-from fe_drivetrain.beam import MainBearingBeam, condensed_beam, main_bearing_frame
 from fe_drivetrain.bearing import Bearing, catalogue_bearing
+from fe_drivetrain.bearing_life.coupled import LinearBody, factors_of, in_housings, linear_body
 from fe_drivetrain.common import Floats
-from fe_drivetrain.coupled import LinearBody, factors_of, in_housings, linear_body
-from fe_drivetrain.hub_loads import Condition, hub_load_set
+from fe_drivetrain.shafts.beam import MainBearingBeam, condensed_beam, main_bearing_frame
+from fe_drivetrain.turbine_loads.hub_loads import Condition, hub_load_set
 
 #: Mean wind speeds of the thesis's wind files 1 to 4 [m/s].
 WIND_SPEEDS = (12.0, 14.0, 18.0, 24.0)

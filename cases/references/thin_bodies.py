@@ -9,9 +9,9 @@ from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.cases.references.solver_trials import factored, fastest
 from fe_drivetrain.common import Bools, Floats, Ints
-from fe_drivetrain.geometry import Section, Shaft
-from fe_drivetrain.interfaces import eliminate, fixed, rigid_face, rigid_point
-from fe_drivetrain.mesh import (
+from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.elasticity.interfaces import eliminate, fixed, rigid_face, rigid_point
+from fe_drivetrain.elasticity.mesh import (
     Hexahedra,
     element_kind,
     facet_points,
@@ -19,10 +19,10 @@ from fe_drivetrain.mesh import (
     local_facets,
     shaft_hexahedra,
 )
-from fe_drivetrain.operator import assemble
-from fe_drivetrain.revolution import dofs, harmonic_response, meridian, surface_loads
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.solve import System, reduce
+from fe_drivetrain.elasticity.operator import assemble
+from fe_drivetrain.elasticity.revolution import dofs, harmonic_response, meridian, surface_loads
+from fe_drivetrain.elasticity.solve import System, reduce
+from fe_drivetrain.geometry import Section, Shaft
 
 STEEL = MATERIALS["steel"]
 

@@ -12,7 +12,7 @@ from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.cases.references import two_bodies
 from fe_drivetrain.common import Floats, InputError, rigid_motions
-from fe_drivetrain.interfaces import (
+from fe_drivetrain.elasticity.interfaces import (
     Constraint,
     dofs,
     held_dofs,
@@ -20,8 +20,8 @@ from fe_drivetrain.interfaces import (
     node_tie,
     settled,
 )
-from fe_drivetrain.mesh import Block, brick, element_kind, joined, shape_functions
-from fe_drivetrain.operator import stresses, tensor
+from fe_drivetrain.elasticity.mesh import Block, brick, element_kind, joined, shape_functions
+from fe_drivetrain.elasticity.operator import stresses, tensor
 
 BORE, TIED, OUTSIDE = 0.5, 1.0, 1.5  # m: radii
 WIDTH = 0.2  # m

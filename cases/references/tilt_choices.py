@@ -26,19 +26,19 @@ from fe_drivetrain.cases.references.stiffness_choices import (
     timed,
 )
 from fe_drivetrain.common import Floats, Ints, Times
+from fe_drivetrain.drivetrain_file import Scene
+from fe_drivetrain.elasticity.interfaces import constraints
+from fe_drivetrain.elasticity.mesh import MEANS, Mesh, face_weights, first_order, straightened
+from fe_drivetrain.elasticity.operator import assemble
+from fe_drivetrain.elasticity.solve import reduce
 from fe_drivetrain.geometry import MeshSizes
-from fe_drivetrain.interfaces import constraints
-from fe_drivetrain.mesh import MEANS, Mesh, face_weights, first_order, straightened
-from fe_drivetrain.operator import assemble
-from fe_drivetrain.response import (
+from fe_drivetrain.shafts.response import (
     PLANES,
     build_model,
     mesh_scene,
     tilt_stiffness,
     unit_load_response,
 )
-from fe_drivetrain.scene import Scene
-from fe_drivetrain.solve import reduce
 
 #: What is compared: K_R by plane and by estimator of `bearing_stiffness.tilt_stiffness`.
 QUANTITIES = tuple((plane.name, kind) for kind in ("energy", "averaged seat") for plane in PLANES)

@@ -22,8 +22,8 @@ from skfem import Basis, BilinearForm, ElementTriP4, MeshQuad, condense, solve
 
 from fe_drivetrain.cases.references.shaft_theory import polar_moment
 from fe_drivetrain.common import Floats
+from fe_drivetrain.elasticity.mesh import shaft_quadrilaterals
 from fe_drivetrain.geometry import LENGTH_TOLERANCE, Section, Shaft
-from fe_drivetrain.mesh import shaft_quadrilaterals
 
 
 @dataclass(frozen=True)

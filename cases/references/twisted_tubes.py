@@ -9,9 +9,9 @@ import numpy as np
 
 from fe_drivetrain.cases.references.shaft_theory import parabola_shortfall, within_arcs
 from fe_drivetrain.cases.references.solid_shafts import mesh_band, solid, stepped, straight, twist
-from fe_drivetrain.compare import GridConvergence, grid_convergence
-from fe_drivetrain.mesh import Grading
-from fe_drivetrain.scene import Material
+from fe_drivetrain.comparison import GridConvergence, grid_convergence
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.mesh import Grading
 
 POISSON = 0.3
 """Assumed: in torsion it has no part."""

@@ -9,9 +9,9 @@ from scipy.sparse.linalg import splu
 from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common import Floats, Ints
-from fe_drivetrain.interfaces import Constraint, Elimination, eliminate, held_dofs
-from fe_drivetrain.mesh import Block, element_kind
-from fe_drivetrain.operator import assemble, stresses, tensor, traction_loads
+from fe_drivetrain.elasticity.interfaces import Constraint, Elimination, eliminate, held_dofs
+from fe_drivetrain.elasticity.mesh import Block, element_kind
+from fe_drivetrain.elasticity.operator import assemble, stresses, tensor, traction_loads
 
 Lame = tuple[float, float]
 

@@ -10,14 +10,14 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import end_flexibilities as shafts
 from fe_drivetrain.cases.stability.clamped_plates import boss_rotation
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import least_safe
+from fe_drivetrain.comparison import least_safe
+from fe_drivetrain.elasticity.interfaces import fixed, rigid_face, rigid_point
+from fe_drivetrain.elasticity.mesh import generate
+from fe_drivetrain.elasticity.revolution import seat_stiffness
+from fe_drivetrain.elasticity.solve import recovery_estimate, solve_solid
 from fe_drivetrain.geometry import Flange, MeshSizes, Section, Shaft
-from fe_drivetrain.interfaces import fixed, rigid_face, rigid_point
-from fe_drivetrain.mesh import generate
 from fe_drivetrain.report import dashed, map_traces
-from fe_drivetrain.revolution import seat_stiffness
-from fe_drivetrain.solve import recovery_estimate, solve_solid
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 #: Flange over shaft diameter.
 RATIOS = (1.4, 1.7, 2.0, 2.5, 3.0)

@@ -9,11 +9,11 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import end_flexibilities as shafts
 from fe_drivetrain.cases.references.torsion_meridian import torsion_bounds
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import least_safe
+from fe_drivetrain.comparison import least_safe
+from fe_drivetrain.elasticity.revolution import dofs, harmonic_response, meridian, surface_loads
 from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
 from fe_drivetrain.report import dashed, map_traces
-from fe_drivetrain.revolution import dofs, harmonic_response, meridian, surface_loads
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 #: Large over small diameter.
 RATIOS = (1.05, 1.1, 1.2, 1.35, 1.5, 2.0, 2.5, 3.0)

@@ -12,17 +12,17 @@ from fe_drivetrain.cases.references import rigid_ended_shafts
 from fe_drivetrain.cases.references.shaft_theory import Tube, flexure_stress
 from fe_drivetrain.cases.references.solid_shafts import straight
 from fe_drivetrain.common import Bools, Floats
-from fe_drivetrain.compare import least_safe
-from fe_drivetrain.geometry import LENGTH_TOLERANCE
-from fe_drivetrain.report import dashed, map_traces
-from fe_drivetrain.revolution import (
+from fe_drivetrain.comparison import least_safe
+from fe_drivetrain.elasticity.revolution import (
     along_sides,
     dofs,
     harmonic_response,
     meridian,
     surface_loads,
 )
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.geometry import LENGTH_TOLERANCE
+from fe_drivetrain.report import dashed, map_traces
+from fe_drivetrain.report.suite import Page, Run
 
 #: Bore over outer diameter.
 BORES = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9)
@@ -143,7 +143,7 @@ def mapped(run: Run, lengths: Floats, bores: Floats) -> Map:
 @case(
     "Beam theory against elasticity: uniform shafts, by length and bore",
     source="Cowper 1966, J. Appl. Mech. 33, 335-340; theory: Saint-Venant's flexure "
-    "(tests/test_shaft_theory.py)",
+    "(tests/cases/test_shaft_theory.py)",
 )
 def run(run: Run, page: Page) -> None:
     """Map the errors, correct the beam by its ends, and check against solids."""

@@ -5,6 +5,16 @@ from dataclasses import replace
 import numpy as np
 
 from fe_drivetrain.bearing import equilibrium, lamina_loads, pressures, sjovall
+from fe_drivetrain.bearing_life.life import (
+    GRADES,
+    Damage,
+    LifeRules,
+    Limits,
+    Lubricant,
+    Steps,
+    damage_of_steps,
+    life_factor,
+)
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.studied_lives import (
     ENOUGH,
@@ -15,22 +25,12 @@ from fe_drivetrain.cases.references.studied_lives import (
     thesis_setup,
 )
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import (
+from fe_drivetrain.comparison import (
     decades,
     round_off,
     safe_range,
 )
-from fe_drivetrain.life import (
-    GRADES,
-    Damage,
-    LifeRules,
-    Limits,
-    Lubricant,
-    Steps,
-    damage_of_steps,
-    life_factor,
-)
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 KAPPA = "viscosity ratio kappa"
 OVER = "e_C C_u / P"

@@ -9,9 +9,9 @@ from fe_drivetrain.bearing import Bearing, RollerRow, catalogue_bearing, equilib
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability.random_loads import random_loads
 from fe_drivetrain.common import InputError
-from fe_drivetrain.compare import decades
+from fe_drivetrain.comparison import decades
 from fe_drivetrain.report import rolling_elements
-from fe_drivetrain.suite import Page, Record, Run, column
+from fe_drivetrain.report.suite import Page, Record, Run, column
 
 UM = 1e-6
 

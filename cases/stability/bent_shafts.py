@@ -7,9 +7,9 @@ import numpy as np
 
 from fe_drivetrain.cases.references import locking_bars as bars
 from fe_drivetrain.cases.stability.locking_curves import CRITERION
-from fe_drivetrain.operator import elasticity, incompatible
-from fe_drivetrain.solve import recovery_estimate
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.elasticity.operator import elasticity, incompatible
+from fe_drivetrain.elasticity.solve import recovery_estimate
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Lengths of elements over the diameter. From a quarter on, all of them have one section: shorter
 #: ones are divided more finely across.

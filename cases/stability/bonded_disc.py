@@ -17,11 +17,11 @@ from fe_drivetrain.cases.stability.locking_curves import (
     largest,
     plain,
 )
-from fe_drivetrain.compare import DOUBTFUL, last_within
-from fe_drivetrain.operator import incompressible
+from fe_drivetrain.comparison import DOUBTFUL, last_within
+from fe_drivetrain.elasticity.operator import incompressible
+from fe_drivetrain.elasticity.solve import MAX_ITERATIONS, TOLERANCE, direct_solvers
 from fe_drivetrain.report import crosses, trace
-from fe_drivetrain.solve import MAX_ITERATIONS, TOLERANCE, direct_solvers
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 NUS = (0.3, 0.4, 0.45, 0.49, 0.499, 0.4999)
 QUICK_NUS = (0.3, 0.49, 0.499, 0.4999)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from fe_drivetrain.scene import Material
+from fe_drivetrain.drivetrain_file import Material
 
 
 def boss_rotation(outer: float, inner: float, thickness: float, material: Material) -> float:

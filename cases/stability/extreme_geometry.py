@@ -10,7 +10,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability import extreme_parts
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 
 @dataclass(frozen=True)
@@ -166,7 +166,7 @@ def show(page: Page, sweep: Sweep, found: Outcomes, fine: Outcomes) -> str:
         sum(o.folded + o.faults for o in every if not o.sentence),
         within=0.0,
         why="a mesh that the program accepts is solved without further checks",
-        source="fe_drivetrain.mesh.checks",
+        source="fe_drivetrain.elasticity.mesh.checks",
     )
     page.vanishes(
         f"{parameter}: refusals without the allowed range or the fix, or in gmsh's words",

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.elasticity.mesh import Mesh, area, find_faults, generate, inverted_cells, volume
 from fe_drivetrain.geometry import Bearing, Housing, MeshSizes, Section, Shaft
-from fe_drivetrain.mesh import Mesh, area, find_faults, generate, inverted_cells, volume
 
 TURN = 8
 SIZES = MeshSizes(shaft=0.3, bearing=0.12, housing=0.15, bearing_edge=0.06, elements_per_turn=TURN)

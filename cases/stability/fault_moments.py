@@ -23,19 +23,19 @@ import meshio
 import numpy as np
 import rich.progress  # noqa: F401 - once here, not in each of the forked children
 
-from fe_drivetrain.commands import main_of_case
+from fe_drivetrain.command_line import main_of_case
 from fe_drivetrain.common import CACHE_VARIABLE, MANIFEST, Cache, rigid_motions, until_stopped
+from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.elasticity.interfaces import dofs
+from fe_drivetrain.elasticity.mesh import cached_mesh, mesh_content, write
+from fe_drivetrain.elasticity.operator.kernels import invert
+from fe_drivetrain.elasticity.solve import solve_solid
 from fe_drivetrain.geometry import NO_BANDS, MeshSizes, Shaft
 from fe_drivetrain.geometry import Section as ShaftSection
-from fe_drivetrain.interfaces import dofs
-from fe_drivetrain.mesh import cached_mesh, mesh_content, write
-from fe_drivetrain.operator.kernels import invert
 from fe_drivetrain.report import Results, read_results
 from fe_drivetrain.report.environment import environment
 from fe_drivetrain.report.page import render
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.solve import solve_solid
-from fe_drivetrain.suite import Case, Page, Run, run_case, run_cases, run_into
+from fe_drivetrain.report.suite import Case, Page, Run, run_case, run_cases, run_into
 
 OLD, NEW, BROKEN = "old", "new", "broken"
 FILES = ("report.html", "results.json", "shaft.vtu")

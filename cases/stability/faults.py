@@ -7,7 +7,7 @@ from typing import Any
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import CORES_VARIABLE, MissingToolError, run_python, scratch_folder
 from fe_drivetrain.report import chart, trace
-from fe_drivetrain.suite import Page, Record, Run, column
+from fe_drivetrain.report.suite import Page, Record, Run, column
 
 #: Kills over the duration of a run without faults.
 MOMENTS, QUICK_MOMENTS = 40, 10

@@ -11,9 +11,9 @@ import numpy as np
 from fe_drivetrain.cases.references import slivers
 from fe_drivetrain.cases.references.exact_blocks import LENGTH, SIDE
 from fe_drivetrain.common import Floats, Ints
+from fe_drivetrain.elasticity.mesh import FACETS, Block, Mesh, brick, generate, joined
+from fe_drivetrain.elasticity.mesh.shapes import TETRAHEDRON_EDGES
 from fe_drivetrain.geometry import Bearing, Housing, MeshSizes, Section, Shaft
-from fe_drivetrain.mesh import FACETS, Block, Mesh, brick, generate, joined
-from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES
 
 SIZES = MeshSizes(shaft=0.3, bearing=0.12, housing=0.2, bearing_edge=0.12, elements_per_turn=8)
 

@@ -15,13 +15,13 @@ import numpy as np
 
 from fe_drivetrain.cases.references.soft_springs import scene_of
 from fe_drivetrain.common import Floats, InputError, run_python, until_stopped
+from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.elasticity.interfaces import eliminate, fixed
+from fe_drivetrain.elasticity.mesh import shaft_hexahedra
+from fe_drivetrain.elasticity.operator import assemble
+from fe_drivetrain.elasticity.solve import direct_solvers, factorise, reduce
 from fe_drivetrain.geometry import Section, Shaft
-from fe_drivetrain.interfaces import eliminate, fixed
-from fe_drivetrain.mesh import shaft_hexahedra
-from fe_drivetrain.operator import assemble
-from fe_drivetrain.response import build_model, mesh_scene
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.solve import direct_solvers, factorise, reduce
+from fe_drivetrain.shafts.response import build_model, mesh_scene
 
 Arrays = Mapping[str, Floats]
 

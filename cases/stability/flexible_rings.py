@@ -12,15 +12,15 @@ from fe_drivetrain.bearing import (
     equilibrium,
     equilibrium_on_races,
 )
+from fe_drivetrain.bearing_life.rings import races_of_revolution
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability.random_loads import random_loads
 from fe_drivetrain.common import Floats
+from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.elasticity.revolution import dofs, meridian
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.report import rolling_elements
-from fe_drivetrain.revolution import dofs, meridian
-from fe_drivetrain.rings import races_of_revolution
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Bore and width of a ring of iron about bearing S, clamped at its rear end [m].
 BORE, WIDTH = 0.424, 0.3

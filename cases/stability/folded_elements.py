@@ -8,8 +8,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import fillet_factors, rigid_ended_shafts
 from fe_drivetrain.cases.stability import folded_meshes
-from fe_drivetrain.geometry import MeshSizes
-from fe_drivetrain.mesh import (
+from fe_drivetrain.elasticity.mesh import (
     Mesh,
     find_faults,
     generate,
@@ -17,8 +16,9 @@ from fe_drivetrain.mesh import (
     relax_flat_cells,
     volume,
 )
+from fe_drivetrain.geometry import MeshSizes
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, column, grouped
+from fe_drivetrain.report.suite import Page, Record, Run, column, grouped
 
 #: Elements to a full turn of the fillet's radius; a fillet is a quarter of a turn.
 PER_TURN = (6.0, 5.0, 4.0, 3.5, 3.0, 2.5, 2.0, 1.5, 1.0)

@@ -10,11 +10,11 @@ import numpy as np
 
 from fe_drivetrain.cases.references.rigid_ended_shafts import LOADS, MATERIAL
 from fe_drivetrain.common import Floats, InputError, Ints
+from fe_drivetrain.elasticity.interfaces import fixed, rigid_face, rigid_point
+from fe_drivetrain.elasticity.mesh import Mesh, jacobians, lattice, read_gmsh
+from fe_drivetrain.elasticity.operator import nodal_stresses, von_mises
+from fe_drivetrain.elasticity.solve.solid import solve_unchecked
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft, build, gmsh_session
-from fe_drivetrain.interfaces import fixed, rigid_face, rigid_point
-from fe_drivetrain.mesh import Mesh, jacobians, lattice, read_gmsh
-from fe_drivetrain.operator import nodal_stresses, von_mises
-from fe_drivetrain.solve.solid import solve_unchecked
 
 RADIUS = 0.08  # of the fillet [m]
 

@@ -5,7 +5,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.rated_gears import rated_meshes
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import decades, safe_range
+from fe_drivetrain.comparison import decades, safe_range
 from fe_drivetrain.gear import (
     SLICES,
     Loaded,
@@ -17,7 +17,7 @@ from fe_drivetrain.gear import (
     supported,
 )
 from fe_drivetrain.report import gear_pair
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 PAIR = rated_meshes()["NREL 5 MW, stage 1, sun and planet"].pair
 C = 14e9  # N/m^2

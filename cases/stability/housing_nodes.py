@@ -9,8 +9,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from fe_drivetrain.common import Floats
-from fe_drivetrain.mesh import element_kind, shape_functions
-from fe_drivetrain.response import (
+from fe_drivetrain.drivetrain_file import Scene, change_scene, library_scene
+from fe_drivetrain.elasticity.mesh import element_kind, shape_functions
+from fe_drivetrain.shafts.response import (
     PLANES,
     Model,
     Plane,
@@ -22,7 +23,6 @@ from fe_drivetrain.response import (
     tilt_stiffness,
     without_gearbox,
 )
-from fe_drivetrain.scene import Scene, change_scene, library_scene
 
 BEARING = "main_bearing"
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from fe_drivetrain.bearing import equilibrium, lamina_loads
+from fe_drivetrain.bearing_life.life import stress_riser
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.studied_lives import (
     ENOUGH,
@@ -18,12 +19,11 @@ from fe_drivetrain.cases.references.studied_lives import (
     roller_rows,
     thesis_setup,
 )
-from fe_drivetrain.compare import (
+from fe_drivetrain.comparison import (
     as_printed,
     fitted_exponent,
 )
-from fe_drivetrain.life import stress_riser
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 LAMINAE = "laminae of a roller"
 SEEDS = "histories of each wind speed"

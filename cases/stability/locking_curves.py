@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.cases.references.locking_solids import bulk_over_shear
-from fe_drivetrain.compare import last_within
-from fe_drivetrain.operator import elasticity, incompressible
+from fe_drivetrain.comparison import last_within
+from fe_drivetrain.elasticity.operator import elasticity, incompressible
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page
+from fe_drivetrain.report.suite import Page
 
 plain, averaged = elasticity.assemble, incompressible.assemble
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats, InputError
-from fe_drivetrain.compare import decades, fitted_exponent, last_within
+from fe_drivetrain.comparison import decades, fitted_exponent, last_within
 from fe_drivetrain.dynamics import (
     Equations,
     State,
@@ -15,7 +15,7 @@ from fe_drivetrain.dynamics import (
     wind_up,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 MASS, STIFFNESS, GRAVITY = 500.0, 2e9, 9.81  # kg, N/m of each bearing, m/s^2
 SPAN, ARM = 1.0, 0.3  # m: between the bearings, and from the first to the centre of mass

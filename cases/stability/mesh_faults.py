@@ -9,12 +9,12 @@ from fe_drivetrain.cases.references import rigid_ended_shafts, slivers
 from fe_drivetrain.cases.references.exact_blocks import LENGTH, SIDE
 from fe_drivetrain.cases.stability import faulty_meshes
 from fe_drivetrain.common import InputError
+from fe_drivetrain.drivetrain_file import Scene, library_scene
+from fe_drivetrain.elasticity.mesh import Mesh, find_faults, generate
 from fe_drivetrain.geometry import WIDEST, MeshSizes, Section, Shaft
-from fe_drivetrain.mesh import Mesh, find_faults, generate
 from fe_drivetrain.report import trace
-from fe_drivetrain.response import build_model, mesh_scene, needed_faces
-from fe_drivetrain.scene import Scene, library_scene
-from fe_drivetrain.suite import Page, Record, Run, column
+from fe_drivetrain.report.suite import Page, Record, Run, column
+from fe_drivetrain.shafts.response import build_model, mesh_scene, needed_faces
 
 #: Rows of cubes over the height of the cracked bar, and crack depths in rows.
 ROWS, DEPTHS = 8, (0, 1, 2, 4, 6, 8)

@@ -7,9 +7,9 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability.tied_strips import TIES, strip, tied_strip
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import fitted_exponent, last_within
+from fe_drivetrain.comparison import fitted_exponent, last_within
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, column
+from fe_drivetrain.report.suite import Page, Record, Run, column
 
 #: Elements across the coarser side, and how many times as many across the finer.
 COARSE = 2

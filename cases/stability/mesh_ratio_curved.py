@@ -9,9 +9,9 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import tied_rings
 from fe_drivetrain.cases.references.tied_rings import TIES, Tie, Twisted
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import fitted_exponent, last_within
+from fe_drivetrain.comparison import fitted_exponent, last_within
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, column, grouped
+from fe_drivetrain.report.suite import Page, Record, Run, column, grouped
 
 #: Elements round the coarser ring, and how many times as many round the finer.
 COARSE, QUICK_COARSE = 5, 4

@@ -9,9 +9,9 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import thin_bodies as bodies
 from fe_drivetrain.cases.references.solver_trials import compliance, factor_memory
 from fe_drivetrain.common import InputError, peak_memory, timed_runs
+from fe_drivetrain.elasticity.solve import TOLERANCE, multigrid, round_off, schwarz
 from fe_drivetrain.report import trace
-from fe_drivetrain.solve import TOLERANCE, multigrid, round_off, schwarz
-from fe_drivetrain.suite import Page, Record, Run, column, grouped
+from fe_drivetrain.report.suite import Page, Record, Run, column, grouped
 
 #: Unknowns, about.
 SIZES = [10_000, 100_000, 1_000_000]

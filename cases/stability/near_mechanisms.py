@@ -4,12 +4,12 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.soft_springs import Sprung, scene_of, sprung
-from fe_drivetrain.compare import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
-from fe_drivetrain.interfaces import WEAK
-from fe_drivetrain.mesh import Mesh
+from fe_drivetrain.comparison import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
+from fe_drivetrain.elasticity.interfaces import WEAK
+from fe_drivetrain.elasticity.mesh import Mesh
 from fe_drivetrain.report import crosses, trace
-from fe_drivetrain.response import mesh_scene
-from fe_drivetrain.suite import Page, Record, Run, column
+from fe_drivetrain.report.suite import Page, Record, Run, column
+from fe_drivetrain.shafts.response import mesh_scene
 
 #: Of the gearbox's axial spring, which hardly matters [N/m].
 AXIAL = 1e8

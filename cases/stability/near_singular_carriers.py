@@ -7,7 +7,8 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats, InputError
-from fe_drivetrain.compare import decades, fitted_exponent, safe_range
+from fe_drivetrain.comparison import decades, fitted_exponent, safe_range
+from fe_drivetrain.drivetrain_file import CarrierComponent, library_component
 from fe_drivetrain.dynamics import (
     Flexible,
     Level,
@@ -18,10 +19,9 @@ from fe_drivetrain.dynamics import (
     static,
     steady_load,
 )
-from fe_drivetrain.fidelity.component_frames import carrier_frame
 from fe_drivetrain.report import crosses, trace
-from fe_drivetrain.scene import CarrierComponent, library_component
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
+from fe_drivetrain.shafts.fidelity.component_frames import carrier_frame
 
 MACHINE, TORQUE = library_machine("nrel_5mw"), 3.946e6  # N m, rated
 #: Base radius of the first stage's sun of 19 teeth, module 45 mm; its ring has 56.

@@ -11,10 +11,10 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from fe_drivetrain.common import InputError, Ints
+from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.elasticity.mesh import element_kind, shaft_hexahedra
+from fe_drivetrain.elasticity.solve import System, factorise, in_blocks
 from fe_drivetrain.geometry import Section, Shaft
-from fe_drivetrain.mesh import element_kind, shaft_hexahedra
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.solve import System, factorise, in_blocks
 
 Real = NDArray[Any]
 

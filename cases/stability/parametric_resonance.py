@@ -5,7 +5,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.mathieu import stepped_growth
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 DEPTHS = (0.05, 0.1, 0.2, 0.4)
 DAMPING = "damping ratio over a quarter of the stiffness's variation"

@@ -8,7 +8,8 @@ import numpy as np
 from scipy import sparse
 
 from fe_drivetrain.common import Floats, InputError
-from fe_drivetrain.interfaces import (
+from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.elasticity.interfaces import (
     Constraint,
     averaged_point,
     eliminate,
@@ -18,10 +19,16 @@ from fe_drivetrain.interfaces import (
     rigid_face,
     rigid_point,
 )
-from fe_drivetrain.mesh import MEANS, Block, brick, face_weights
-from fe_drivetrain.operator import assemble, body_loads
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.solve import TOLERANCE, System, factorise, in_blocks, multigrid, reduce
+from fe_drivetrain.elasticity.mesh import MEANS, Block, brick, face_weights
+from fe_drivetrain.elasticity.operator import assemble, body_loads
+from fe_drivetrain.elasticity.solve import (
+    TOLERANCE,
+    System,
+    factorise,
+    in_blocks,
+    multigrid,
+    reduce,
+)
 
 LENGTH, SIDE = 1.0, 0.25
 MATERIAL = MATERIALS["steel"]

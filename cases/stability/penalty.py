@@ -14,11 +14,11 @@ from fe_drivetrain.cases.stability.penalised_couplings import (
     work,
 )
 from fe_drivetrain.common import InputError
-from fe_drivetrain.compare import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
+from fe_drivetrain.comparison import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
+from fe_drivetrain.drivetrain_file import change_scene, library_scene
+from fe_drivetrain.elasticity.solve import System, solve
 from fe_drivetrain.report import crosses, trace
-from fe_drivetrain.scene import change_scene, library_scene
-from fe_drivetrain.solve import System, solve
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 NAMES = {
     "tie": "tie of two halves that do not match",

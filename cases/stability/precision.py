@@ -7,9 +7,9 @@ from fe_drivetrain.cases.references.solid_shafts import straight
 from fe_drivetrain.cases.stability import other_precisions
 from fe_drivetrain.cases.stability.other_precisions import BORE, DIAMETER
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import FOUR_DIGITS, fitted_exponent, in_words, safe_range
+from fe_drivetrain.comparison import FOUR_DIGITS, fitted_exponent, in_words, safe_range
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, column
+from fe_drivetrain.report.suite import Page, Record, Run, column
 
 LOADS = ("bending", "torsion")
 

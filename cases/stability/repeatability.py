@@ -14,9 +14,9 @@ from fe_drivetrain.cases.stability.fingerprints import (
     tube_answers,
 )
 from fe_drivetrain.common import Floats, scratch_folder
-from fe_drivetrain.compare import FOUR_DIGITS, fitted_exponent, in_words, safe_range
+from fe_drivetrain.comparison import FOUR_DIGITS, fitted_exponent, in_words, safe_range
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Lengths over diameters of the tubes that other processes solve.
 LENGTHS = (5.0, 200.0)

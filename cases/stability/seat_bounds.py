@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability import seat_couplings as seat
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import GridConvergence, grid_convergence, last_within
+from fe_drivetrain.comparison import GridConvergence, grid_convergence, last_within
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 #: Widths of the loaded band [m]; the ring is as long as the last.
 WIDTHS = (0.015, 0.03, 0.06, 0.09, 0.12, 0.18, 0.24, 0.3)

@@ -17,12 +17,24 @@ import numpy as np
 from scipy import sparse
 
 from fe_drivetrain.common import Floats, Ints
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.interfaces import constraints
+from fe_drivetrain.elasticity.mesh import (
+    MEANS,
+    Hexahedra,
+    face_weights,
+    local_facets,
+    shaft_hexahedra,
+)
+from fe_drivetrain.elasticity.revolution import (
+    dofs,
+    harmonic_response,
+    meridian,
+    surface_loads,
+    turn,
+)
+from fe_drivetrain.elasticity.solve import solve_solid
 from fe_drivetrain.geometry import Section, Shaft
-from fe_drivetrain.interfaces import constraints
-from fe_drivetrain.mesh import MEANS, Hexahedra, face_weights, local_facets, shaft_hexahedra
-from fe_drivetrain.revolution import dofs, harmonic_response, meridian, surface_loads, turn
-from fe_drivetrain.scene import Material
-from fe_drivetrain.solve import solve_solid
 
 BORE, OUTSIDE, LENGTH = 0.3, 0.45, 0.3  # m: radii, and length along the axis
 IRON = Material(youngs_modulus=169e9, poisson_ratio=0.275, density=7100.0)

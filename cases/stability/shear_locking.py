@@ -23,11 +23,11 @@ from fe_drivetrain.cases.stability.bent_shafts import (
     shear_part,
 )
 from fe_drivetrain.cases.stability.locking_curves import CRITERION, WITHIN, error_chart, limit
-from fe_drivetrain.compare import last_within
-from fe_drivetrain.operator import elasticity, incompatible, incompressible
+from fe_drivetrain.comparison import last_within
+from fe_drivetrain.elasticity.operator import elasticity, incompatible, incompressible
+from fe_drivetrain.elasticity.solve import recovery_estimate
 from fe_drivetrain.report import trace
-from fe_drivetrain.solve import recovery_estimate
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 #: Lengths of elements over the depth of the square bar.
 LENGTHS = (1 / 16, 1 / 8, 1 / 4, 1 / 2, 1.0, 2.0, 4.0, 8.0, 16.0)

@@ -13,21 +13,21 @@ from fe_drivetrain.cases.references import layers, slivers
 from fe_drivetrain.cases.references import solver_trials as trials
 from fe_drivetrain.cases.references import thin_bodies as bodies
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import FOUR_DIGITS, safe_range
-from fe_drivetrain.geometry import MeshSizes
-from fe_drivetrain.interfaces import eliminate, fixed, rigid_face, rigid_point
-from fe_drivetrain.mesh import FLATTEST, generate
-from fe_drivetrain.operator import assemble
-from fe_drivetrain.report import trace
-from fe_drivetrain.response import build_model, mesh_scene
-from fe_drivetrain.scene import (
+from fe_drivetrain.comparison import FOUR_DIGITS, safe_range
+from fe_drivetrain.drivetrain_file import (
     HIGHEST_POISSON_RATIO,
     change_scene,
     coarser_scene,
     library_scene,
 )
-from fe_drivetrain.solve import TOLERANCE, System, multigrid, reduce
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.elasticity.interfaces import eliminate, fixed, rigid_face, rigid_point
+from fe_drivetrain.elasticity.mesh import FLATTEST, generate
+from fe_drivetrain.elasticity.operator import assemble
+from fe_drivetrain.elasticity.solve import TOLERANCE, System, multigrid, reduce
+from fe_drivetrain.geometry import MeshSizes
+from fe_drivetrain.report import trace
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.response import build_model, mesh_scene
 
 Solid = tuple[System, Floats]
 

@@ -6,8 +6,8 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import solver_trials as trials
 from fe_drivetrain.cases.references import thin_bodies as bodies
 from fe_drivetrain.cases.stability import solver_sweep as sweep
-from fe_drivetrain.compare import fitted_exponent
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.comparison import fitted_exponent
+from fe_drivetrain.report.suite import Page, Run
 
 DIAMETER, WALL = 0.7, 0.175  # m
 #: Elements along a shaft, at most, and round it.

@@ -5,11 +5,11 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import slivers
 from fe_drivetrain.common import Bools, Floats
-from fe_drivetrain.compare import fitted_exponent
-from fe_drivetrain.mesh import FLATTEST, find_faults, flatness
+from fe_drivetrain.comparison import fitted_exponent
+from fe_drivetrain.elasticity.mesh import FLATTEST, find_faults, flatness
+from fe_drivetrain.elasticity.solve import MAX_ITERATIONS
 from fe_drivetrain.report import trace
-from fe_drivetrain.solve import MAX_ITERATIONS
-from fe_drivetrain.suite import Page, Record, Run, column
+from fe_drivetrain.report.suite import Page, Record, Run, column
 
 #: Heights of the slivers, in cubes.
 HEIGHTS = (0.5, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-14)
@@ -155,14 +155,14 @@ def check_protection(page: Page, rows: list[Record], beyond: list[Record]) -> No
         int(np.count_nonzero(wrong & ~refused)) + column(beyond, "refused").count(False),
         within=0.0,
         why="a wrong stiffness looks like any other",
-        source="fe_drivetrain.mesh.checks",
+        source="fe_drivetrain.elasticity.mesh.checks",
     )
     page.vanishes(
         f"bars with slivers less flat than {FLATTEST:g} that the check refuses",
         int(np.count_nonzero(refused & (array(rows, "flatness") >= FLATTEST))),
         within=0.0,
         why="what is solved right must not be refused",
-        source="fe_drivetrain.mesh.checks",
+        source="fe_drivetrain.elasticity.mesh.checks",
     )
 
 

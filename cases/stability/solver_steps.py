@@ -9,13 +9,13 @@ import numpy as np
 
 from fe_drivetrain.cases.references import soft_springs
 from fe_drivetrain.common import Floats
+from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.elasticity.interfaces import eliminate, fixed, rigid_face, rigid_point
+from fe_drivetrain.elasticity.mesh import shaft_hexahedra
+from fe_drivetrain.elasticity.operator import assemble
+from fe_drivetrain.elasticity.solve import TOLERANCE, System, factorise, multigrid, reduce
 from fe_drivetrain.geometry import Section, Shaft
-from fe_drivetrain.interfaces import eliminate, fixed, rigid_face, rigid_point
-from fe_drivetrain.mesh import shaft_hexahedra
-from fe_drivetrain.operator import assemble
-from fe_drivetrain.response import LOADS, VERTICAL, mesh_scene, without_gearbox
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.solve import TOLERANCE, System, factorise, multigrid, reduce
+from fe_drivetrain.shafts.response import LOADS, VERTICAL, mesh_scene, without_gearbox
 
 OPTIONS = multigrid.Options(coarsest=50)
 """Few nodes are left to the dense factor, so that small meshes have the levels of large ones."""

@@ -9,10 +9,10 @@ import numpy as np
 from fe_drivetrain.cases.references import solver_trials as trials
 from fe_drivetrain.cases.references.thin_bodies import Problem
 from fe_drivetrain.common import Floats, InputError
-from fe_drivetrain.compare import FOUR_DIGITS
+from fe_drivetrain.comparison import FOUR_DIGITS
+from fe_drivetrain.elasticity.solve import TOLERANCE, solvers
 from fe_drivetrain.report import trace
-from fe_drivetrain.solve import TOLERANCE, solvers
-from fe_drivetrain.suite import Page, Record
+from fe_drivetrain.report.suite import Page, Record
 
 #: Residual that is commonly taken for an answer.
 RESIDUAL = 1e-8

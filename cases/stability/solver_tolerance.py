@@ -8,10 +8,10 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.solid_shafts import straight
 from fe_drivetrain.cases.stability import solver_steps
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
+from fe_drivetrain.comparison import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
+from fe_drivetrain.elasticity.solve import TOLERANCE
 from fe_drivetrain.report import trace
-from fe_drivetrain.solve import TOLERANCE
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 TOLERANCES = decades(-12, -1, 2)
 

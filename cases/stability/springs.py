@@ -4,15 +4,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_drivetrain.beam import Support, beam_of_scene, unit_load_response
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.soft_springs import Sprung, scene_of, sprung
 from fe_drivetrain.common import Bools, Floats, InputError
-from fe_drivetrain.compare import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
+from fe_drivetrain.comparison import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
+from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.report import crosses, trace
-from fe_drivetrain.response import mesh_scene
-from fe_drivetrain.scene import Scene
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
+from fe_drivetrain.shafts.beam import Support, beam_of_scene, unit_load_response
+from fe_drivetrain.shafts.response import mesh_scene
 
 #: Of the other gearbox springs [N/m].
 OTHER = 1e8

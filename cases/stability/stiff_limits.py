@@ -5,10 +5,10 @@ from scipy import linalg
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import decades, fitted_exponent, safe_range
+from fe_drivetrain.comparison import decades, fitted_exponent, safe_range
 from fe_drivetrain.dynamics import Level, System, library_machine, machine_system
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 FACTOR = "stiffness of bearings, shafts in bending and pins, over the tabled one"
 WITHIN = 1e-4

@@ -11,10 +11,10 @@ from pydantic import ValidationError
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import layers
 from fe_drivetrain.common import Bools, Floats
-from fe_drivetrain.compare import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
+from fe_drivetrain.comparison import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
+from fe_drivetrain.drivetrain_file import Material
 from fe_drivetrain.report import crosses, trace
-from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 #: Bodies of the chain; every other one is stiff.
 COUNT = 12

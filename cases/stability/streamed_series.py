@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.common import Floats, peak_memory, run_python, until_stopped
-from fe_drivetrain.compare import Comparison, compare, compare_streamed
-from fe_drivetrain.compare import statistics as by_definition
+from fe_drivetrain.comparison import Comparison, compare, compare_streamed
+from fe_drivetrain.comparison import statistics as by_definition
 
 #: Samples of a chunk.
 CHUNK = 1 << 18

@@ -7,9 +7,9 @@ from fe_drivetrain.cases.references import solver_trials as trials
 from fe_drivetrain.cases.references import thin_bodies as bodies
 from fe_drivetrain.cases.stability import solver_sweep as sweep
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import fitted_exponent
-from fe_drivetrain.solve import TOLERANCE, multigrid, schwarz
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.comparison import fitted_exponent
+from fe_drivetrain.elasticity.solve import TOLERANCE, multigrid, schwarz
+from fe_drivetrain.report.suite import Page, Record, Run
 
 DIAMETER, LENGTH = 3.0, 3.0  # m
 #: Radius over wall.

@@ -10,9 +10,9 @@ from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.cases.references import two_bodies
 from fe_drivetrain.common import Floats, rigid_motions
-from fe_drivetrain.interfaces import Constraint, mortar_tie, node_tie
-from fe_drivetrain.mesh import brick, element_kind, shape_functions
-from fe_drivetrain.operator import stresses, tensor, traction_loads
+from fe_drivetrain.elasticity.interfaces import Constraint, mortar_tie, node_tie
+from fe_drivetrain.elasticity.mesh import brick, element_kind, shape_functions
+from fe_drivetrain.elasticity.operator import stresses, tensor, traction_loads
 
 LENGTH, HEIGHT, DEPTH = 0.5, 1.0, 0.2  # m: of each half along x, across (y), and along z
 LAME = (1.2, 0.8)  # Poisson's ratio 0.3

@@ -11,8 +11,8 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability import housing_nodes as housing
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report import trace
-from fe_drivetrain.response import PLANES, VERTICAL
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.response import PLANES, VERTICAL
 
 #: Factors on the sizes of the mesh, coarse first.
 FACTORS = (1.4, 1.0, 0.75)

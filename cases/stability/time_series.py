@@ -8,10 +8,10 @@ from scipy.special import erf
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import FORCES, Floats, InputError, scratch_folder
-from fe_drivetrain.compare import fitted_exponent, statistics
-from fe_drivetrain.hub_loads import UNITS, read_hub_loads
+from fe_drivetrain.comparison import fitted_exponent, statistics
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.turbine_loads.hub_loads import UNITS, read_hub_loads
 
 #: Samples of a history: ten minutes at 20 Hz.
 SAMPLES = 12_000
@@ -278,13 +278,13 @@ def check_refusals(page: Page, wave: Floats, refused: list[Record]) -> None:
         "a constant signal and a zero reference: correlation and percentages are undefined",
         bool(np.isnan(undefined).all()),
         why="a number there would be a ratio of rounding errors",
-        source="fe_drivetrain.compare.statistics",
+        source="fe_drivetrain.comparison.statistics",
     )
     page.holds(
         "one sample, NaN, infinity, different shapes: refused in one sentence",
         all(row["message"] for row in refused),
         why="statistics of such histories would be NaN, or of other samples than intended",
-        source="fe_drivetrain.compare.statistics and fe_drivetrain.hub_loads.histories",
+        source="fe_drivetrain.comparison.statistics and fe_drivetrain.turbine_loads.hub_loads.histories",
     )
 
 

@@ -7,9 +7,9 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability import streamed_series as series
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import fitted_exponent, moments
+from fe_drivetrain.comparison import fitted_exponent, moments
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, column
+from fe_drivetrain.report.suite import Page, Record, Run, column
 
 #: Samples of the histories whose variance is taken, and how many of these.
 SAMPLES, HISTORIES = 20_000, 8
@@ -147,7 +147,7 @@ def check_chunks(page: Page, streamed: list[Record], differences: dict[str, floa
             value,
             within=1e-12,
             why="sums of a million rounded numbers: a thousand times eps and less",
-            source="fe_drivetrain.compare.statistics: each of the whole history by itself",
+            source="fe_drivetrain.comparison.statistics: each of the whole history by itself",
         )
     shortest, longest = streamed[0], streamed[-1]
     for name, value in series.expected().items():

@@ -4,7 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import decades, fitted_exponent, last_within
+from fe_drivetrain.comparison import decades, fitted_exponent, last_within
 from fe_drivetrain.dynamics import (
     AVERAGE,
     LINEAR,
@@ -24,7 +24,7 @@ from fe_drivetrain.dynamics import (
     wind_up,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 FREQUENCY = 128.5  # Hz, of the third stage's mesh at 6 rpm
 STEPS = "steps in a period of the mesh"

@@ -5,7 +5,7 @@ from scipy.integrate import solve_ivp
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import InTime, converge_in_time, peak_between
+from fe_drivetrain.comparison import InTime, converge_in_time, peak_between
 from fe_drivetrain.dynamics import (
     Equations,
     Motion,
@@ -18,7 +18,7 @@ from fe_drivetrain.dynamics import (
 )
 from fe_drivetrain.dynamics.steady_state import restoring
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Run, check_in_time
+from fe_drivetrain.report.suite import Page, Run, check_in_time
 
 #: Variation of the stiffness, damping ratio, half backlash over the static deflection.
 VARIATION, RATIO, HALF = 0.2, 0.03, 2.0

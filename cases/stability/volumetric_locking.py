@@ -22,11 +22,11 @@ from fe_drivetrain.cases.stability.locking_curves import (
     shaded,
 )
 from fe_drivetrain.common import InputError
-from fe_drivetrain.compare import band_of, last_within
-from fe_drivetrain.operator import incompatible
+from fe_drivetrain.comparison import band_of, last_within
+from fe_drivetrain.drivetrain_file import HIGHEST_POISSON_RATIO
+from fe_drivetrain.elasticity.operator import incompatible
 from fe_drivetrain.report import crosses, trace
-from fe_drivetrain.scene import HIGHEST_POISSON_RATIO
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 #: Poisson's ratios of the pressed cylinder.
 NUS = (0.3, 0.35, 0.4, 0.45, 0.48, 0.49, 0.495, 0.499, 0.4995, 0.4999)

@@ -9,7 +9,7 @@ from fe_drivetrain.cases.references import rigid_ended_shafts
 from fe_drivetrain.cases.verification.adaptivity import marked, refined_sizes
 from fe_drivetrain.cases.verification.rigid_balance import check_balance
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, column, grouped
+from fe_drivetrain.report.suite import Page, Record, Run, column, grouped
 
 SHAFT = "stepped, sharp"
 LOAD = "bending"

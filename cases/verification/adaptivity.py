@@ -9,8 +9,8 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.elasticity.mesh.mesh import Mesh
 from fe_drivetrain.geometry import LocalSizes
-from fe_drivetrain.mesh.mesh import Mesh
 
 #: Share of the estimated error in the marked cells (Doerfler 1996), and what their size becomes.
 SHARE, FACTOR = 0.5, 0.5

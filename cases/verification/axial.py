@@ -7,8 +7,8 @@ from fe_drivetrain.cases.references import shaft_theory as theory
 from fe_drivetrain.cases.references.end_loaded import section_area
 from fe_drivetrain.cases.references.exact_shafts import pulled
 from fe_drivetrain.cases.verification.shaft_inputs import begin_uniform
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column
+from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target, column
 
 STEEL = MATERIALS["steel"]
 OUTER, BORE, LENGTH = 0.4, 0.28, 0.8  # m

@@ -27,12 +27,17 @@ from fe_drivetrain.common import (
     diagonal_roots,
 )
 from fe_drivetrain.common.stiffness_bands import KINDS
-from fe_drivetrain.compare import SAFETY
-from fe_drivetrain.fidelity import banded_meridian, banded_solid, meridian_shaft, ringed_shaft
+from fe_drivetrain.comparison import SAFETY
+from fe_drivetrain.drivetrain_file import Scene
+from fe_drivetrain.elasticity.solve import Condensed
 from fe_drivetrain.report import shaft_with_rings
-from fe_drivetrain.scene import Scene
-from fe_drivetrain.solve import Condensed
-from fe_drivetrain.suite import Page, Record, Run, column, grouped
+from fe_drivetrain.report.suite import Page, Record, Run, column, grouped
+from fe_drivetrain.shafts.fidelity import (
+    banded_meridian,
+    banded_solid,
+    meridian_shaft,
+    ringed_shaft,
+)
 
 SHAFTS, SOLIDS, FILLETS = 200, 25, 19
 #: Of a quick run: shafts of few elements, one of them also as a solid.

@@ -19,7 +19,11 @@ from fe_drivetrain.cases.verification.bands_over_errors import (
 )
 from fe_drivetrain.cases.verification.random_scenes import random_scene
 from fe_drivetrain.common import MOTIONS, Cache, Floats, InputError
-from fe_drivetrain.fidelity import (
+from fe_drivetrain.drivetrain_file import Scene
+from fe_drivetrain.elasticity.mesh import mean_size
+from fe_drivetrain.report import shaft_with_rings
+from fe_drivetrain.report.suite import Page, Record, Run, column, grouped
+from fe_drivetrain.shafts.fidelity import (
     LevelModel,
     Quantity,
     banded_assembly,
@@ -27,11 +31,7 @@ from fe_drivetrain.fidelity import (
     solved_assembly,
     statics_level,
 )
-from fe_drivetrain.mesh import mean_size
-from fe_drivetrain.report import shaft_with_rings
-from fe_drivetrain.response import mesh_scene
-from fe_drivetrain.scene import Scene
-from fe_drivetrain.suite import Page, Record, Run, column, grouped
+from fe_drivetrain.shafts.response import mesh_scene
 
 SCENES, QUICK = 60, 1
 #: A finer mesh than this has a reference of a hundred thousand elements: those are left out.

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from fe_drivetrain.suite import Record, column
+from fe_drivetrain.report.suite import Record, column
 
 #: Required: share of the bands that hold, and median of the bands over their errors.
 COVERED, WIDE = 0.95, 5.0

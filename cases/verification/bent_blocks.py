@@ -11,10 +11,10 @@ from fe_drivetrain.cases.references.loaded_blocks import face_loads, solve_block
 from fe_drivetrain.cases.references.plane_rings import plane_strain
 from fe_drivetrain.cases.references.ring_solids import node_at
 from fe_drivetrain.common import Floats
-from fe_drivetrain.interfaces import held_nodes
-from fe_drivetrain.mesh import FACES, Block, brick
-from fe_drivetrain.scene import Material
-from fe_drivetrain.solve import solve_solid
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.interfaces import held_nodes
+from fe_drivetrain.elasticity.mesh import FACES, Block, brick
+from fe_drivetrain.elasticity.solve import solve_solid
 
 
 @dataclass(frozen=True)

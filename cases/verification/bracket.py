@@ -3,8 +3,8 @@
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification.bracket_plane import Bracket, plane_answer
 from fe_drivetrain.cases.verification.bracket_solid import meshed, solid_answer
-from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target
 
 FILLET, HEIGHT, ARM, LEG = 0.05, 0.1, 0.3, 0.2  # m
 BRACKET = Bracket(FILLET, HEIGHT, ARM, LEG)

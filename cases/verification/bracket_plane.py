@@ -21,7 +21,7 @@ from skfem import (
 from skfem.models.elasticity import linear_elasticity
 
 from fe_drivetrain.common import Floats
-from fe_drivetrain.scene import Material
+from fe_drivetrain.drivetrain_file import Material
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,9 @@ from fe_drivetrain.cases.references import loaded_blocks as blocks
 from fe_drivetrain.cases.references.ring_solids import node_at, plane_strain_hold
 from fe_drivetrain.cases.verification.bracket_plane import Bracket
 from fe_drivetrain.common import Floats
-from fe_drivetrain.mesh import Block, brick
-from fe_drivetrain.operator import principal
-from fe_drivetrain.scene import Material
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.mesh import Block, brick
+from fe_drivetrain.elasticity.operator import principal
 
 
 class SolidBracket(NamedTuple):

@@ -13,6 +13,9 @@ import numpy as np
 
 from fe_drivetrain.cases import cases
 from fe_drivetrain.common import Floats, scratch_folder
+from fe_drivetrain.drivetrain_file import Scene, change_scene, library_scene
+from fe_drivetrain.elasticity.interfaces import dofs
+from fe_drivetrain.elasticity.mesh import Mesh
 from fe_drivetrain.export import (
     ROUNDING,
     DeckResponse,
@@ -22,10 +25,9 @@ from fe_drivetrain.export import (
     run_calculix,
     write_inp,
 )
-from fe_drivetrain.interfaces import dofs
-from fe_drivetrain.mesh import Mesh
 from fe_drivetrain.report import trace
-from fe_drivetrain.response import (
+from fe_drivetrain.report.suite import Page, Run
+from fe_drivetrain.shafts.response import (
     LOADS,
     Model,
     Response,
@@ -33,8 +35,6 @@ from fe_drivetrain.response import (
     mesh_scene,
     unit_load_response,
 )
-from fe_drivetrain.scene import Scene, change_scene, library_scene
-from fe_drivetrain.suite import Page, Run
 
 TOLERANCE = 1e-6
 

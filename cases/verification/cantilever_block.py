@@ -2,9 +2,9 @@
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification.bent_blocks import BentBlock
-from fe_drivetrain.mesh import ELEMENT_NAMES as NAMES
-from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column, order_of
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.mesh import ELEMENT_NAMES as NAMES
+from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target, column, order_of
 
 IRON = Material(youngs_modulus=169e9, poisson_ratio=0.275, density=0.0)
 BLOCK = BentBlock(length=0.6, height=0.2, width=0.15, material=IRON)  # m

@@ -6,8 +6,8 @@ from fe_drivetrain.cases.references.exact_shafts import flexed, neutral_shear, t
 from fe_drivetrain.cases.references.solid_shafts import straight
 from fe_drivetrain.cases.verification import shaft_inputs as inputs
 from fe_drivetrain.cases.verification.shaft_inputs import ERROR, SHAFT, TURN
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
+from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target
 
 STEEL = MATERIALS["steel"]
 OUTER, LENGTH, FORCE = 0.4, 0.8, 1e6  # m, m, N
@@ -38,7 +38,7 @@ def solve(tube: theory.Tube, refinement: int) -> Record:
 @case(
     "Cantilever with shear: Saint-Venant's flexure and Cowper's coefficient",
     source="theory: Saint-Venant's flexure, in equilibrium, free on its surfaces and with the "
-    "given resultant (tests/test_shaft_theory.py); Cowper 1966, J. Appl. Mech. 33, 335-340",
+    "given resultant (tests/cases/test_shaft_theory.py); Cowper 1966, J. Appl. Mech. 33, 335-340",
 )
 def run(run: Run, page: Page) -> None:
     """Exact tractions on both ends."""

@@ -6,10 +6,10 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import end_loaded, solid_shafts
 from fe_drivetrain.cases.references import shaft_theory as theory
 from fe_drivetrain.cases.verification.shaft_inputs import HARMONICS, SIZE, begin, show_inputs
-from fe_drivetrain.mesh import Grading
-from fe_drivetrain.revolution import end_stiffness
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import Page, Record, Run, Target, order_of
+from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.elasticity.mesh import Grading
+from fe_drivetrain.elasticity.revolution import end_stiffness
+from fe_drivetrain.report.suite import Page, Record, Run, Target, order_of
 
 STEEL = MATERIALS["steel"]
 OUTER, REFINEMENTS = 0.4, (1, 2)  # m; of the solids

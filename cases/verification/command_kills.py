@@ -22,7 +22,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from fe_drivetrain.commands import main as command
+from fe_drivetrain.command_line import main as command
 from fe_drivetrain.common import CACHE_VARIABLE, FORCES, MANIFEST, read_manifest
 from fe_drivetrain.report import read_results
 
@@ -276,7 +276,7 @@ def main() -> None:
     os.environ[CACHE_VARIABLE] = str(folder / "cache")
     kinds = {name: words for name, words in (QUICK | OTHERS).items() if name in names}
     load(
-        f"fe_drivetrain.commands.{name}"
+        f"fe_drivetrain.command_line.{name}"
         for name in ("validate_page", "run", "studies", "export", "loads_page")
     )
     load(iter(("fe_drivetrain.pages.advice", "fe_drivetrain.pages.uncertainty")))

@@ -8,8 +8,8 @@ import numpy as np
 
 from fe_drivetrain.cases.references.manufactured import LAME
 from fe_drivetrain.common import Floats, Ints
-from fe_drivetrain.interfaces import rigid_face, rigid_point
-from fe_drivetrain.solve import solve_solid
+from fe_drivetrain.elasticity.interfaces import rigid_face, rigid_point
+from fe_drivetrain.elasticity.solve import solve_solid
 
 _NAMES = ("first end", "second end")
 

@@ -6,10 +6,10 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import manufactured
 from fe_drivetrain.cases.verification.condensed_bodies import Condensed, condense, zeros_by_gap
 from fe_drivetrain.common import Floats, rigid_motions
+from fe_drivetrain.elasticity.mesh import brick, shaft_hexahedra
 from fe_drivetrain.geometry import Section, Shaft
-from fe_drivetrain.mesh import brick, shaft_hexahedra
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, column
+from fe_drivetrain.report.suite import Page, Record, Run, column
 
 #: Bored shaft: outer and inner diameter, length [m].
 OUTER, BORE, LENGTH = 0.7, 0.3, 2.0

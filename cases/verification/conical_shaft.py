@@ -1,7 +1,7 @@
 """A conical shaft of steel whose torsion is known by Michell's field."""
 
 from fe_drivetrain.cases.references import solid_shafts
-from fe_drivetrain.scene import MATERIALS
+from fe_drivetrain.drivetrain_file import MATERIALS
 
 STEEL = MATERIALS["steel"]
 #: Radii at the ends [m] and half angle of the cone [degrees].

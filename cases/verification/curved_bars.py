@@ -20,8 +20,8 @@ from fe_drivetrain.cases.references.ring_solids import (
     ring_sector,
 )
 from fe_drivetrain.common import Floats
-from fe_drivetrain.mesh import Block
-from fe_drivetrain.scene import Material
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.mesh import Block
 
 
 @dataclass(frozen=True)

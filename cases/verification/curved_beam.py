@@ -9,8 +9,8 @@ from fe_drivetrain.cases.references.loaded_blocks import fourth_power, within_su
 from fe_drivetrain.cases.references.plane_rings import CURVED_BAR, CurvedBar, plane_strain
 from fe_drivetrain.cases.verification.curved_bars import bent_and_pulled, curvature_of, quarter_of
 from fe_drivetrain.common import Floats
-from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target
 
 INNER, OUTER = 0.1, 0.3  # m
 BAR = CurvedBar(INNER, OUTER)
@@ -66,7 +66,7 @@ def target(key: str, within: float, h: float) -> Target:
 @case(
     "Thick curved bar in bending and under an end force",
     source="theory: Golovin's bar of 1881, in equilibrium, compatible, free on its surfaces and "
-    "with the given resultant (tests/test_plane_rings.py)",
+    "with the given resultant (tests/cases/test_plane_rings.py)",
 )
 def run(run: Run, page: Page) -> None:
     """Solve a quarter circle of the bar under the exact tractions on its ends."""

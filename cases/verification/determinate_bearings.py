@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.beam import main_bearing_beam, pinned_model
 from fe_drivetrain.common import Floats
-from fe_drivetrain.response import LOADS, Model, cached_response
-from fe_drivetrain.scene import Scene, change_scene, library_scene
+from fe_drivetrain.drivetrain_file import Scene, change_scene, library_scene
+from fe_drivetrain.shafts.beam import main_bearing_beam, pinned_model
+from fe_drivetrain.shafts.response import LOADS, Model, cached_response
 
 HUB = [LOADS.index(load) for load in LOADS if load.startswith("hub")]
 JUDGED = [k for k, load in enumerate(LOADS) if load != "gravity.x"]

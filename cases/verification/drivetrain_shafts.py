@@ -14,7 +14,7 @@ from fe_drivetrain.cases.references.solid_shafts import straight
 from fe_drivetrain.cases.references.twisted_tubes import twisted_tube
 from fe_drivetrain.cases.verification.shaft_inputs import show_inputs
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, Target
+from fe_drivetrain.report.suite import Page, Record, Run, Target
 
 LENGTHS = 0.5, 1.0, 2.0
 STIFFNESS, DIAMETER = "k [N m/rad]", "diameter at 1 m"

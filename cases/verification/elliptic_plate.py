@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.common import Floats
-from fe_drivetrain.mesh import Block, brick
+from fe_drivetrain.elasticity.mesh import Block, brick
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification import scenes
 from fe_drivetrain.common import GRAVITY, Floats
 from fe_drivetrain.report import bars
-from fe_drivetrain.response import LOADS
-from fe_drivetrain.suite import Page, Run, Target
+from fe_drivetrain.report.suite import Page, Run, Target
+from fe_drivetrain.shafts.response import LOADS
 
 #: A typical mean load: hub forces [N] and moments [N m] (Fx 200 kN, Fz -370 kN, My 660 kN m), then
 #: accelerations, and the weight of the gearbox.

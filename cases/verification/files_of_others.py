@@ -13,7 +13,7 @@ from fe_drivetrain.common import (
     run_python,
     scratch_folder,
 )
-from fe_drivetrain.suite import Page, Run, column
+from fe_drivetrain.report.suite import Page, Run, column
 
 KILLS, QUICK_KILLS = 100, 3
 KINDS, QUICK_KINDS = [*command_kills.QUICK, *command_kills.OTHERS], [*command_kills.QUICK]

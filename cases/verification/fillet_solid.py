@@ -3,9 +3,9 @@
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import fillet_factors
 from fe_drivetrain.cases.verification import solid_fillet
-from fe_drivetrain.compare import DOUBTFUL, richardson
+from fe_drivetrain.comparison import DOUBTFUL, richardson
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, Target
+from fe_drivetrain.report.suite import Page, Record, Run, Target
 
 #: D/d, r/d.
 WIDE, RADIUS = 1.6, 0.25

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from fe_drivetrain.drivetrain_file import BearingUnit, Gearbox, Scene, library_scene
 from fe_drivetrain.geometry import Bearing, Housing, MeshSizes, Section, Shaft
-from fe_drivetrain.scene import BearingUnit, Gearbox, Scene, library_scene
 
 _DIAMETER = 0.4  # [m]; all else is relative to it
 _SPRINGS = (1e9, 1e9, 1e9, 0.0, 1e7, 1e7)  # no part of a free shaft

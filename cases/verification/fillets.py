@@ -21,7 +21,7 @@ from fe_drivetrain.cases.references.fillet_factors import (
 )
 from fe_drivetrain.plots import PALETTE
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: r/d of the sweep.
 RADII = (0.03, 0.05, 0.12, 0.2, 0.3)

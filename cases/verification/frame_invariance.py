@@ -7,8 +7,8 @@ from fe_drivetrain.cases.references.manufactured import quarter_ring, regular
 from fe_drivetrain.cases.verification import scenes
 from fe_drivetrain.cases.verification import turned_frames as turned
 from fe_drivetrain.report import trace
-from fe_drivetrain.response import build_model, unit_load_response
-from fe_drivetrain.suite import Page, Record, Run, Target, column, grouped
+from fe_drivetrain.report.suite import Page, Record, Run, Target, column, grouped
+from fe_drivetrain.shafts.response import build_model, unit_load_response
 
 #: Distances of the origin that are tried [m].
 DISTANCES = (1.0, 10.0, 100.0, 1e3, 1e4, 1e5)

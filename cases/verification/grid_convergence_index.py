@@ -3,13 +3,13 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.compare import (
+from fe_drivetrain.comparison import (
     GridConvergence,
     grid_convergence,
     round_off,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: The worked set: cells in two dimensions, and solutions, coarse first.
 CELLS, SOLUTIONS = (4500, 8000, 18000), (5.863, 5.972, 6.063)

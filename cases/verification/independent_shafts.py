@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.common import Floats, MissingToolError
+from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.geometry import Shaft
-from fe_drivetrain.scene import Scene
 
 #: Layers of elements at corners, the factor from one to the next, and orders: of the reference, and
 #: one less for what that is short of.
@@ -56,7 +56,7 @@ def independent_shaft(scene: Scene, shaft: Shaft) -> IndependentShaft:
     scene : Scene
         For the material.
     shaft : Shaft
-        Without fillets; with rings turned on it, see `fe_drivetrain.fidelity.ringed_shaft`.
+        Without fillets; with rings turned on it, see `fe_drivetrain.shafts.fidelity.ringed_shaft`.
 
     Returns
     -------

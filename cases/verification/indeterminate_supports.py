@@ -4,7 +4,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fe_drivetrain.beam import torsional_spring_reaction
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.shaft_theory import Tube, parabola_shortfall
 from fe_drivetrain.cases.references.solid_shafts import (
@@ -17,9 +16,10 @@ from fe_drivetrain.cases.references.solid_shafts import (
 from fe_drivetrain.cases.references.supported_shafts import Load, SupportedShaft
 from fe_drivetrain.cases.verification.shaft_inputs import begin, show_inputs
 from fe_drivetrain.common import Floats
+from fe_drivetrain.drivetrain_file import MATERIALS
 from fe_drivetrain.report import trace
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import Page, Record, Run, Target
+from fe_drivetrain.report.suite import Page, Record, Run, Target
+from fe_drivetrain.shafts.beam import torsional_spring_reaction
 
 STEEL = MATERIALS["steel"]
 OUTER = 0.4

@@ -10,9 +10,9 @@ from fe_drivetrain.cases.references.interference_fits import (
     press,
     quarters,
 )
+from fe_drivetrain.drivetrain_file import Material
 from fe_drivetrain.report import trace
-from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, targets_of
+from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target, targets_of
 
 RADII = BORE, SEAT, OUTER = 0.15, 0.3175, 0.348  # m
 MISFIT = 100e-6  # m, on the radius

@@ -14,24 +14,24 @@ from typing import Any, get_args
 
 import numpy as np
 
+from fe_drivetrain.bearing_life.life import LifeRules
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import CACHE_VARIABLE, Floats, silent
 from fe_drivetrain.common.array_records import as_arrays
 from fe_drivetrain.common.cache import Kind
 from fe_drivetrain.common.kept_files import UnfitError, read_kept
+from fe_drivetrain.drivetrain_file import library_scene
+from fe_drivetrain.elasticity.mesh import cached_mesh
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
-from fe_drivetrain.hub_loads import Condition, hub_load_set, write_csv
-from fe_drivetrain.hub_loads.recorded import OWN_NAMES
-from fe_drivetrain.life import LifeRules
-from fe_drivetrain.mesh import cached_mesh
-from fe_drivetrain.scene import library_scene
+from fe_drivetrain.report.suite import Page, Record, Run, column
+from fe_drivetrain.shafts.uncertainty.kept_rows import evaluated_rows
 from fe_drivetrain.studies.life_digest import Reading
 from fe_drivetrain.studies.life_digest import kept_digest as life_digest
 from fe_drivetrain.studies.load_digest import LoadOptions
 from fe_drivetrain.studies.load_reactions import kept_digest as loads_digest
 from fe_drivetrain.studies.rolling_bearings import Choices, bearings_of
-from fe_drivetrain.suite import Page, Record, Run, column
-from fe_drivetrain.uncertainty.kept_rows import evaluated_rows
+from fe_drivetrain.turbine_loads.hub_loads import Condition, hub_load_set, write_csv
+from fe_drivetrain.turbine_loads.hub_loads.recorded import OWN_NAMES
 
 #: Bits turned in the file of each kind.
 FLIPS, QUICK_FLIPS = 2048, 64

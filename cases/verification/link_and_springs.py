@@ -14,9 +14,9 @@ from fe_drivetrain.cases.references.shaft_theory import (
 )
 from fe_drivetrain.cases.verification.shaft_inputs import show_inputs
 from fe_drivetrain.common import Floats
+from fe_drivetrain.drivetrain_file import MATERIALS
 from fe_drivetrain.report import trace
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 #: Bending and torsion [N m/rad] of the three shafts of Park et al. 2021, Table 2.
 TABLE = {

@@ -16,13 +16,13 @@ from fe_drivetrain.dynamics.machine_rows import MachineTable, ParallelData, Plan
 from fe_drivetrain.dynamics.modes import system_modes
 from fe_drivetrain.dynamics.static import static
 from fe_drivetrain.dynamics.system import System
-from fe_drivetrain.torsion.gear_table import (
+from fe_drivetrain.dynamics.torsion.gear_table import (
     Drivetrain,
     PlanetaryStage,
     gear_masses,
     stage_masses,
 )
-from fe_drivetrain.torsion.system import Torsional, natural_modes
+from fe_drivetrain.dynamics.torsion.system import Torsional, natural_modes
 
 EPS = float(np.finfo(float).eps)
 #: Roundings of a motion, of a mode or of an equilibrium, each of n numbers.

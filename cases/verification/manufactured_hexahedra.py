@@ -3,7 +3,7 @@
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import manufactured as m
 from fe_drivetrain.cases.verification.orders import add_convergence, add_manufactured, check_orders
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 ARNOLD = "Arnold, Boffi and Falk 2002, Math. Comp. 71, 909-922"
 

@@ -3,7 +3,7 @@
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import manufactured as m
 from fe_drivetrain.cases.verification.orders import add_manufactured
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 
 @case(

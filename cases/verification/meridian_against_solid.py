@@ -14,11 +14,11 @@ from fe_drivetrain.cases.references.shaft_ends import (
     solid_stiffness,
 )
 from fe_drivetrain.cases.references.torsion_meridian import torsion_bounds
-from fe_drivetrain.compare import grid_convergence, richardson
+from fe_drivetrain.comparison import grid_convergence, richardson
+from fe_drivetrain.elasticity.revolution import end_stiffness
 from fe_drivetrain.geometry import Shaft
 from fe_drivetrain.report import trace
-from fe_drivetrain.revolution import end_stiffness
-from fe_drivetrain.suite import Page, Record, Run, column
+from fe_drivetrain.report.suite import Page, Record, Run, column
 
 #: Elements per coarsest element, in all three directions.
 CUTS = (1, 2, 3)

@@ -9,10 +9,10 @@ import numpy as np
 from fe_drivetrain.cases.references import manufactured
 from fe_drivetrain.cases.references.distorted_blocks import reference_points
 from fe_drivetrain.common import Floats, Ints, rigid_motions
-from fe_drivetrain.interfaces import dofs
-from fe_drivetrain.mesh import brick
-from fe_drivetrain.operator import stresses
-from fe_drivetrain.solve import solve_solid
+from fe_drivetrain.elasticity.interfaces import dofs
+from fe_drivetrain.elasticity.mesh import brick
+from fe_drivetrain.elasticity.operator import stresses
+from fe_drivetrain.elasticity.solve import solve_solid
 
 MOTIONS = ("x", "y", "z", "about x", "about y", "about z")
 """The six rigid motions, each of which moves the body by about 1 m."""

@@ -18,8 +18,8 @@ from fe_drivetrain.cases.verification.machine_facts import (
 )
 from fe_drivetrain.cases.verification.mutated_tables import mutated
 from fe_drivetrain.dynamics import MACHINES, Machine, MachineTable, library_machine, parse_machine
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.torsion import Drivetrain, parse_drivetrain
+from fe_drivetrain.dynamics.torsion import Drivetrain, parse_drivetrain
+from fe_drivetrain.report.suite import Page, Record, Run
 
 MACHINES_TRIED, TABLES_TRIED, QUICK, FEWEST = 300, 200, 40, 20
 TABLES = ("drivetrain_a", "drivetrain_b", "drivetrain_c", "nrel_750kw")

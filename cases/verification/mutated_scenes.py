@@ -6,7 +6,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification import scene_mutants
 from fe_drivetrain.cases.verification.scene_mutants import Outcome
 from fe_drivetrain.report import bars
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 SEED = 43
 COUNT, QUICK_COUNT = 500, 60

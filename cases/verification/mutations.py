@@ -23,7 +23,7 @@ from fe_drivetrain.cases.verification.mutation_runs import (
 )
 from fe_drivetrain.common import InputError, cores
 from fe_drivetrain.report import Chart, bars
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 LIMIT, GOAL, CONFIDENCE = 240, 95.0, 0.95
 """Seconds for the tests of a fault; share to catch [%]; level of the interval."""

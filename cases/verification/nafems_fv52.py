@@ -6,10 +6,10 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.loaded_blocks import edge_nodes, supports
 from fe_drivetrain.cases.verification.vibrating_plates import bending_wave, block_modes, thick_plate
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import as_printed
-from fe_drivetrain.mesh import Block, brick
-from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column
+from fe_drivetrain.comparison import as_printed
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.mesh import Block, brick
+from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target, column
 
 STEEL = Material(youngs_modulus=200e9, poisson_ratio=0.3, density=8000.0)
 SIDE, THICKNESS, BELOW = 10.0, 1.0, 20.0  # m, and Hz: below all modes but the free motions

@@ -3,9 +3,9 @@
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import loaded_blocks as blocks
 from fe_drivetrain.cases.verification.elliptic_plate import EllipticPlate
-from fe_drivetrain.operator import pressure
-from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, grouped
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.operator import pressure
+from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target, grouped
 
 STEEL = Material(youngs_modulus=210e9, poisson_ratio=0.3, density=0.0)
 PLATE = EllipticPlate(inner=(2.0, 1.0), outer=(3.25, 2.75), thickness=0.6)  # m

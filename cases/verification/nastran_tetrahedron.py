@@ -4,12 +4,12 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.loaded_blocks import face_loads, solve_block
-from fe_drivetrain.interfaces import fixed
-from fe_drivetrain.mesh import TETRAHEDRON_EDGES, Block
-from fe_drivetrain.operator import pressure
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.interfaces import fixed
+from fe_drivetrain.elasticity.mesh import TETRAHEDRON_EDGES, Block
+from fe_drivetrain.elasticity.operator import pressure
 from fe_drivetrain.report import Cell
-from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import Page, Run, Target
+from fe_drivetrain.report.suite import Page, Run, Target
 
 MATERIAL = Material(youngs_modulus=3e7, poisson_ratio=0.3, density=0.0)
 #: Grids 21 to 24, then 25 to 30 on edges 21-22, 22-23, 21-23, 21-24, 22-24 and 23-24.

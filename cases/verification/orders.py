@@ -7,7 +7,7 @@ import numpy as np
 from fe_drivetrain.cases.references.manufactured import Series, three_waves
 from fe_drivetrain.plots import PALETTE
 from fe_drivetrain.report import Cell, Chart, Table, chart, trace
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 SIZE = "element size relative to the body [-]"
 

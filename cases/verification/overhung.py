@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from fe_drivetrain.beam import pinned_reaction
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.shaft_theory import Tube
 from fe_drivetrain.cases.references.solid_shafts import local_compliance, straight
@@ -13,8 +12,9 @@ from fe_drivetrain.cases.references.supported_shafts import (
     within_evenly,
 )
 from fe_drivetrain.cases.verification import shaft_inputs as inputs
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import Page, Record, Run, Target
+from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.report.suite import Page, Record, Run, Target
+from fe_drivetrain.shafts.beam import pinned_reaction
 
 STEEL = MATERIALS["steel"]
 OUTER, L1, L2 = 0.4, 2.145, 2.615  # m: diameter, hub to bearing, bearing to gearbox

@@ -5,9 +5,9 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import distorted_blocks as blocks
 from fe_drivetrain.common import STRESSES
-from fe_drivetrain.mesh import element_kind
+from fe_drivetrain.elasticity.mesh import element_kind
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, Target
+from fe_drivetrain.report.suite import Page, Record, Run, Target
 
 DEGREES = (1, 2, 3, 4, 5, 6)  # of quadrature, tried for the forces on nodes inside
 ROUND_OFF = "round-off: some thousand operations of 1e-16 each"

@@ -5,7 +5,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification import patched_interfaces as patched
 from fe_drivetrain.report import bars
-from fe_drivetrain.suite import Page, Run, Target, column
+from fe_drivetrain.report.suite import Page, Run, Target, column
 
 DIVISIONS = "elements along a side of the sector"
 ERROR = "error of the stress"

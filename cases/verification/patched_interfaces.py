@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 from fe_drivetrain.cases.references import two_bodies
 from fe_drivetrain.cases.references.two_bodies import Bodies
 from fe_drivetrain.common import Floats, Ints
-from fe_drivetrain.interfaces import (
+from fe_drivetrain.elasticity.interfaces import (
     Constraint,
     ReferencePoint,
     averaged_point,
@@ -27,8 +27,8 @@ from fe_drivetrain.interfaces import (
     rigid_point,
     sliding_sphere,
 )
-from fe_drivetrain.mesh import Block, brick, facet_points
-from fe_drivetrain.operator import traction_loads
+from fe_drivetrain.elasticity.mesh import Block, brick, facet_points
+from fe_drivetrain.elasticity.operator import traction_loads
 
 LAME = (1.2, 0.8)
 """Poisson's ratio 0.3 [Pa]."""

@@ -10,10 +10,10 @@ from fe_drivetrain.cases.references.loaded_blocks import face_loads, supports
 from fe_drivetrain.cases.references.ring_solids import node_at
 from fe_drivetrain.cases.verification.quarter_disc import quarter_disc
 from fe_drivetrain.common import Floats
-from fe_drivetrain.interfaces import Constraint
-from fe_drivetrain.mesh import Block
-from fe_drivetrain.operator import pressure
-from fe_drivetrain.scene import Material
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.interfaces import Constraint
+from fe_drivetrain.elasticity.mesh import Block
+from fe_drivetrain.elasticity.operator import pressure
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import numpy as np
 
 from fe_drivetrain.cases.references.shaft_theory import polar_moment
 from fe_drivetrain.cases.references.twisted_tubes import TwistedTube, twisted_tube
-from fe_drivetrain.suite import Page, Run, Target
+from fe_drivetrain.report.suite import Page, Run, Target
 
 DIGITS = "half of the last published digit"
 CLOSED_FORM = "closed form G J / L"

@@ -19,7 +19,7 @@ from fe_drivetrain.cases.verification.published_checks import (
     check_free_free,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Target
+from fe_drivetrain.report.suite import Page, Record, Target
 
 STEEL_DENSITY = 7850.0  # kg/m^3
 

@@ -15,7 +15,7 @@ from fe_drivetrain.cases.verification.published_checks import (
     compare_stiffness,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record
+from fe_drivetrain.report.suite import Page, Record
 
 
 def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaft) -> None:

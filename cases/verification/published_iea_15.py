@@ -11,7 +11,7 @@ from fe_drivetrain.cases.verification.published_checks import (
     check_torsion,
     compare_stiffness,
 )
-from fe_drivetrain.suite import Page, Record
+from fe_drivetrain.report.suite import Page, Record
 
 TURN, ERROR = "elements round a turn", "relative error"
 

@@ -16,9 +16,9 @@ from fe_drivetrain.cases.verification.published_checks import (
     check_torsion,
     compare_stiffness,
 )
+from fe_drivetrain.elasticity.revolution import end_stiffness
 from fe_drivetrain.report import trace
-from fe_drivetrain.revolution import end_stiffness
-from fe_drivetrain.suite import Page, Record, Target
+from fe_drivetrain.report.suite import Page, Record, Target
 
 
 def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaft) -> None:

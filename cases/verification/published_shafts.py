@@ -14,7 +14,7 @@ from fe_drivetrain.cases.verification import (
 )
 from fe_drivetrain.cases.verification.published_checks import MainShaft, main_shaft
 from fe_drivetrain.cases.verification.shaft_inputs import show_inputs
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: By the turbine of a row: what judges it.
 TURBINES: dict[str, Callable[[Page, Mapping[str, Any], Record, MainShaft], None]] = {

@@ -5,9 +5,9 @@ from fe_drivetrain.cases.references import shaft_theory as theory
 from fe_drivetrain.cases.references.exact_shafts import bent
 from fe_drivetrain.cases.verification import shaft_inputs as inputs
 from fe_drivetrain.cases.verification.shaft_inputs import ERROR, SHAFT
+from fe_drivetrain.drivetrain_file import MATERIALS
 from fe_drivetrain.report import trace
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column
+from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target, column
 
 STEEL = MATERIALS["steel"]
 OUTER, BORE, LENGTH, CURVATURE = 0.4, 0.28, 0.8, 1e-3  # m, and 1/m

@@ -3,7 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.common import Floats
-from fe_drivetrain.mesh import Block, brick, joined
+from fe_drivetrain.elasticity.mesh import Block, brick, joined
 
 _SIDE, _CORNER = 0.5, 0.4
 """Where the square's side and its corner (its y and z) are, as shares of the radius."""

@@ -12,7 +12,7 @@ import numpy as np
 
 from fe_drivetrain.common import InputError
 from fe_drivetrain.common.reading import validated
-from fe_drivetrain.scene import Scene
+from fe_drivetrain.drivetrain_file import Scene
 
 #: The interface of the first bearing, in turn.
 INTERFACES = ("bonded", "spring", "rollers", "sliding", "averaged", "rigid")

@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from fe_drivetrain.common import InputError
+from fe_drivetrain.drivetrain_file import BearingUnit, Gearbox, Scene
 from fe_drivetrain.geometry import Bearing, Housing, MeshSizes, Section, Shaft
-from fe_drivetrain.scene import BearingUnit, Gearbox, Scene
 
 #: Least step between two diameters, over the largest one, and the range of fillets, over their
 #: steps' heights: finer details are possible, and make meshes of many elements.

@@ -6,8 +6,8 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification import scenes
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report import heat_map
-from fe_drivetrain.response import LOADS
-from fe_drivetrain.suite import Page, Record, Run, Target
+from fe_drivetrain.report.suite import Page, Record, Run, Target
+from fe_drivetrain.shafts.response import LOADS
 
 AXES = "displacements under", "work of", "power of ten"
 STOPS = "the energy error at which the solver stops"

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from fe_drivetrain.suite import Page
+from fe_drivetrain.report.suite import Page
 
 
 def check_balance(page: Page, imbalances: Sequence[float]) -> None:

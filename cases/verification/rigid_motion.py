@@ -7,9 +7,9 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification import scenes
 from fe_drivetrain.cases.verification.moved_bodies import MOTIONS, Body, moved, quarter_ring
-from fe_drivetrain.mesh import renumbered
+from fe_drivetrain.elasticity.mesh import renumbered
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 FOLLOWS, REACTION, STRESS = "displacement less the rigid motion [m]", "reaction [-]", "stress [-]"
 EXACT = "exact: a rigid motion has no strain"

@@ -7,9 +7,9 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.plane_rings import plane_strain
 from fe_drivetrain.cases.verification import squeezed_rings as rings
+from fe_drivetrain.drivetrain_file import Material
 from fe_drivetrain.report import trace
-from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, targets_of
+from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target, targets_of
 
 RADIUS, FORCE = 0.33, 1e6  # m, of the wall's middle; N/m of width
 STEEL = Material(youngs_modulus=206e9, poisson_ratio=0.3, density=0.0)

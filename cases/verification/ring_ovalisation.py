@@ -7,8 +7,8 @@ from fe_drivetrain.cases.references.loaded_blocks import face_loads, solve_block
 from fe_drivetrain.cases.references.plane_rings import harmonics, inextensible_ring, plane_strain
 from fe_drivetrain.cases.references.ring_slices import half_wave, wave_pressure
 from fe_drivetrain.cases.references.ring_solids import plane_strain_hold, sector_symmetry
-from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, targets_of
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, targets_of
 
 INNER, OUTER = 0.3175, 0.348  # m
 PRESSURE = 1e6  # Pa, amplitude

@@ -9,10 +9,10 @@ import numpy as np
 
 from fe_drivetrain.cases.references.manufactured import LAME, NORMS, relative_errors
 from fe_drivetrain.common import Floats
-from fe_drivetrain.interfaces import fixed
-from fe_drivetrain.mesh import Block, brick, joined
-from fe_drivetrain.operator import traction_loads
-from fe_drivetrain.solve import solve_solid
+from fe_drivetrain.elasticity.interfaces import fixed
+from fe_drivetrain.elasticity.mesh import Block, brick, joined
+from fe_drivetrain.elasticity.operator import traction_loads
+from fe_drivetrain.elasticity.solve import solve_solid
 
 SHEAR_MODULUS = LAME[1]
 INNER, OUTER = 0.15, 0.35  # radii [m]

@@ -19,23 +19,23 @@ from typing import Any
 
 import numpy as np
 
+from fe_drivetrain.bearing_life.coupled import scene_body
 from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.common.reading import parse_mapping
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.common.strict_yaml import shown
-from fe_drivetrain.coupled import scene_body
-from fe_drivetrain.fidelity import LevelModel, frame_level, shaft_level, statics_level
-from fe_drivetrain.geometry import Bearing, CondensedHousing, Housing, Shaft, build, gmsh_session
-from fe_drivetrain.scene.bearing_unit import BearingUnit
-from fe_drivetrain.scene.component import Component
-from fe_drivetrain.scene.reading import (
+from fe_drivetrain.drivetrain_file.bearing_unit import BearingUnit
+from fe_drivetrain.drivetrain_file.component import Component
+from fe_drivetrain.drivetrain_file.reading import (
     change_scene,
     library_text,
     parse_component,
     parse_scene,
     scene_text,
 )
-from fe_drivetrain.scene.scene import Scene, coarser_scene
+from fe_drivetrain.drivetrain_file.scene import Scene, coarser_scene
+from fe_drivetrain.geometry import Bearing, CondensedHousing, Housing, Shaft, build, gmsh_session
+from fe_drivetrain.shafts.fidelity import LevelModel, frame_level, shaft_level, statics_level
 
 SCENES = (
     "housing_on_bedplate",

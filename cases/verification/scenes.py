@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from fe_drivetrain.common import Floats
-from fe_drivetrain.mesh import Mesh
-from fe_drivetrain.response import Model, Response, build_model, cached_response, mesh_scene
-from fe_drivetrain.scene import Scene, library_scene
-from fe_drivetrain.suite import Run
+from fe_drivetrain.drivetrain_file import Scene, library_scene
+from fe_drivetrain.elasticity.mesh import Mesh
+from fe_drivetrain.report.suite import Run
+from fe_drivetrain.shafts.response import Model, Response, build_model, cached_response, mesh_scene
 
 KINDS = ("spherical", "bonded")
 

@@ -13,8 +13,8 @@ from fe_drivetrain.cases.references.supported_shafts import (
 )
 from fe_drivetrain.cases.verification.shaft_inputs import SIZE, begin, check_motion, show_inputs
 from fe_drivetrain.common import GRAVITY
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column
+from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target, column
 
 STEEL = MATERIALS["steel"]
 OUTER, RATIO, DOWN = 0.4, 6.0, -GRAVITY  # diameter [m], overhang over it, m/s^2

@@ -9,13 +9,13 @@ from fe_drivetrain.cases.references.exact_shafts import ExactShaft
 from fe_drivetrain.cases.references.solid_shafts import Supported, mesh_band, straight
 from fe_drivetrain.cases.references.supported_shafts import Load, SupportedShaft
 from fe_drivetrain.common import Floats
+from fe_drivetrain.drivetrain_file import Material
 from fe_drivetrain.geometry import Shaft
 from fe_drivetrain.report import trace
-from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import Page, Record, Run, Target
+from fe_drivetrain.report.suite import Page, Record, Run, Target
 
 SIZE = "Stirling 2023, Table 3.1, in size"
-HARMONICS = "Fourier harmonics in the meridian (fe_drivetrain.revolution.harmonics)"
+HARMONICS = "Fourier harmonics in the meridian (fe_drivetrain.elasticity.revolution.harmonics)"
 #: Of a mesh under the loads of an exact field, see `of_mesh`.
 SHAFT, REFINEMENT, UNKNOWNS, TURN = "shaft", "refinement", "unknowns", "per turn"
 ERROR = "largest difference from the exact displacements, over the largest"

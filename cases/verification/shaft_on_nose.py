@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from fe_drivetrain.beam import cowper_shear_coefficient
 from fe_drivetrain.cases import case
-from fe_drivetrain.fidelity import shaft_level
+from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.report import shaft_with_rings, trace
-from fe_drivetrain.scene import Scene
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.shafts.beam import cowper_shear_coefficient
+from fe_drivetrain.shafts.fidelity import shaft_level
 
 #: Outer and inner diameters [m].
 SHAFT, NOSE = (3.0, 2.6), (2.2, 1.8)

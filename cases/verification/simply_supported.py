@@ -13,8 +13,8 @@ from fe_drivetrain.cases.references.supported_shafts import (
 )
 from fe_drivetrain.cases.verification import shaft_inputs as inputs
 from fe_drivetrain.common import GRAVITY
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import Page, Record, Run, Target
+from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.report.suite import Page, Record, Run, Target
 
 STEEL, OUTER, L = MATERIALS["steel"], 0.4, 2.4  # m
 TUBE = Tube(OUTER, 0.0, L, STEEL)

@@ -22,10 +22,10 @@ from fe_drivetrain.cases.verification.spherical_shells import (
     squeezed,
     turning_stiffness,
 )
-from fe_drivetrain.compare import grid_convergence
+from fe_drivetrain.comparison import grid_convergence
+from fe_drivetrain.drivetrain_file import Material
 from fe_drivetrain.report import Measure, trace
-from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 #: Radii of core, joint and outside [m]: those of a main bearing's ring and housing.
 CORE, JOINT, OUTSIDE = 0.2, 0.3, 0.41

@@ -10,10 +10,10 @@ from numpy.polynomial import chebyshev
 
 from fe_drivetrain.cases.references import fillet_factors
 from fe_drivetrain.common import Floats
+from fe_drivetrain.elasticity.mesh import Mesh, generate
+from fe_drivetrain.elasticity.operator import Traction, nodal_stresses, tensor, traction_loads
+from fe_drivetrain.elasticity.solve import solve_solid
 from fe_drivetrain.geometry import LocalSizes, MeshSizes, Shaft
-from fe_drivetrain.mesh import Mesh, generate
-from fe_drivetrain.operator import Traction, nodal_stresses, tensor, traction_loads
-from fe_drivetrain.solve import solve_solid
 
 SIZES = MeshSizes(shaft=0.4, elements_per_turn=12)
 """Away from the fillet, in the thinner diameter."""

@@ -5,8 +5,8 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification.determinate_bearings import carried, coarse_bearing
 from fe_drivetrain.report import trace
-from fe_drivetrain.response import LOADS, build_model, mesh_scene
-from fe_drivetrain.suite import Page, Run, Target, column
+from fe_drivetrain.report.suite import Page, Run, Target, column
+from fe_drivetrain.shafts.response import LOADS, build_model, mesh_scene
 
 FORMS = "sliding", "averaged", "rigid", "bonded"  # of the joint, the last one for comparison
 FACTOR, QUICK_FACTOR = 3.0, 4.0  # coarser than the library's mesh: forces are exact on any mesh

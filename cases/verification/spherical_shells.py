@@ -17,11 +17,11 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from fe_drivetrain.common import Floats, Ints
-from fe_drivetrain.interfaces import Constraint, constraints
-from fe_drivetrain.mesh import Block, brick, facet_points, joined
-from fe_drivetrain.operator import pressure as pressure_of
-from fe_drivetrain.operator import traction_loads
-from fe_drivetrain.solve import direct_solvers, solve_solid
+from fe_drivetrain.elasticity.interfaces import Constraint, constraints
+from fe_drivetrain.elasticity.mesh import Block, brick, facet_points, joined
+from fe_drivetrain.elasticity.operator import pressure as pressure_of
+from fe_drivetrain.elasticity.operator import traction_loads
+from fe_drivetrain.elasticity.solve import direct_solvers, solve_solid
 
 Joint = Literal["sliding", "averaged", "rigid", "bonded"]
 JOINTS: tuple[Joint, ...] = ("sliding", "averaged", "rigid", "bonded")

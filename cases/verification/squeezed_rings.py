@@ -15,8 +15,8 @@ from fe_drivetrain.cases.references.ring_solids import (
     sector_symmetry,
 )
 from fe_drivetrain.common import Floats
-from fe_drivetrain.mesh import Block
-from fe_drivetrain.scene import Material
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.mesh import Block
 
 ORDERS = 400
 """Even harmonics of the series: up to n = 798."""

@@ -7,10 +7,10 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import exact_blocks, rigid_ended_shafts
 from fe_drivetrain.cases.verification.rigid_balance import check_balance
-from fe_drivetrain.mesh import ELEMENT_NAMES as NAMES
+from fe_drivetrain.elasticity.mesh import ELEMENT_NAMES as NAMES
+from fe_drivetrain.elasticity.solve import recovery_estimate
 from fe_drivetrain.report import trace
-from fe_drivetrain.solve import recovery_estimate
-from fe_drivetrain.suite import Page, Record, Run, column, grouped
+from fe_drivetrain.report.suite import Page, Record, Run, column, grouped
 
 #: Hexahedra across the bars: linear elements need more of them.
 DIVISIONS = {4: (4, 8), 8: (4, 8), 10: (2, 5), 20: (2, 4), 27: (2, 4)}

@@ -6,8 +6,8 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.manufactured import NORMS, Series
 from fe_drivetrain.cases.verification import round_shafts as bodies
 from fe_drivetrain.cases.verification.orders import add_convergence, check_orders
-from fe_drivetrain.mesh import straightened
-from fe_drivetrain.suite import Page, Run, Target
+from fe_drivetrain.elasticity.mesh import straightened
+from fe_drivetrain.report.suite import Page, Run, Target
 
 WALLS, QUICK_WALLS = (3, 6, 9, 12), (2, 3, 4)  # elements through; eight times as many round
 SHAFT, BUSH = bodies.Torsion(), bodies.Bush()

@@ -4,8 +4,8 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.loaded_blocks import fourth_power, within_surface
 from fe_drivetrain.cases.references.plane_rings import Lame, Plane, plane_strain
 from fe_drivetrain.cases.references.ring_slices import eighth_of, pressed_ring
-from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, grouped, order_of
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target, grouped, order_of
 
 E, NU = 200e9, 0.3
 STEEL = Material(youngs_modulus=E, poisson_ratio=NU, density=0.0)

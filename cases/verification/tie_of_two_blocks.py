@@ -10,11 +10,11 @@ from fe_drivetrain.cases.references import two_bodies
 from fe_drivetrain.cases.verification import tied_bars
 from fe_drivetrain.cases.verification.tied_bars import TIES, Stiffnesses, TieKind
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import GridConvergence, grid_convergence
-from fe_drivetrain.interfaces import eliminate, mortar_tie
-from fe_drivetrain.mesh import brick
+from fe_drivetrain.comparison import GridConvergence, grid_convergence
+from fe_drivetrain.elasticity.interfaces import eliminate, mortar_tie
+from fe_drivetrain.elasticity.mesh import brick
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Divisions of the section's sides: of the slave, of the master.
 RATIOS = ((2, 4), (2, 3), (2, 2), (3, 2), (4, 2))

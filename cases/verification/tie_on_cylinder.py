@@ -11,11 +11,11 @@ from fe_drivetrain.cases.references import tied_rings, two_bodies
 from fe_drivetrain.cases.references.tied_rings import BORE, LAME, OUTSIDE, TIED
 from fe_drivetrain.cases.references.two_bodies import Bodies
 from fe_drivetrain.common import Floats, rigid_motions
-from fe_drivetrain.compare import grid_convergence
-from fe_drivetrain.interfaces import Constraint, dofs, held_dofs, mortar_tie, settled
-from fe_drivetrain.mesh import Block
+from fe_drivetrain.comparison import grid_convergence
+from fe_drivetrain.elasticity.interfaces import Constraint, dofs, held_dofs, mortar_tie, settled
+from fe_drivetrain.elasticity.mesh import Block
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, column
+from fe_drivetrain.report.suite import Page, Record, Run, column
 
 WIDTH = 1.0  # m
 

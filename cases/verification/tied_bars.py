@@ -9,16 +9,16 @@ import numpy as np
 
 from fe_drivetrain.cases.references import two_bodies
 from fe_drivetrain.common import Floats, rigid_motions
-from fe_drivetrain.interfaces import (
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.interfaces import (
     Constraint,
     held_dofs,
     held_nodes,
     mortar_tie,
     node_tie,
 )
-from fe_drivetrain.mesh import Block, brick, straightened
-from fe_drivetrain.operator import traction_loads
-from fe_drivetrain.scene import Material
+from fe_drivetrain.elasticity.mesh import Block, brick, straightened
+from fe_drivetrain.elasticity.operator import traction_loads
 
 LENGTH = 3.0
 """[m], of a bar of section 1 m x 1 m."""

@@ -1,7 +1,7 @@
 """Checks shared by the torsion cases with two bounds from the meridian."""
 
 from fe_drivetrain.cases.references.torsion_meridian import Bounds
-from fe_drivetrain.suite import Page, Target
+from fe_drivetrain.report.suite import Page, Target
 
 BOUNDS = "between two bounds from the meridian (displacements; torsion function)"
 """Where a reference between the bounds comes from."""

@@ -9,7 +9,7 @@ from fe_drivetrain.cases.references.torsion_meridian import series_stiffness, to
 from fe_drivetrain.cases.verification.conical_shaft import HALF_ANGLE, INPUTS, RADII, SHAFT, STEEL
 from fe_drivetrain.cases.verification.shaft_inputs import begin, show_inputs
 from fe_drivetrain.cases.verification.torsion_bound import between, check_plane_sections
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
+from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target
 
 G = STEEL.shear_modulus
 ANGLES, QUICK_ANGLES = (2.5, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0), (5.0, 10.0, 20.0, 30.0)

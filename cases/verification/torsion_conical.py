@@ -7,7 +7,7 @@ from fe_drivetrain.cases.references import end_loaded, solid_shafts
 from fe_drivetrain.cases.references.shaft_theory import michell_torque, within_arcs
 from fe_drivetrain.cases.verification.conical_shaft import HALF_ANGLE, INPUTS, RADII, SHAFT, STEEL
 from fe_drivetrain.cases.verification.shaft_inputs import begin, show_inputs
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
+from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target
 
 #: Of Michell's displacements: u_t = -SCALE r / R^3 [m^3].
 SCALE = 1e-3 * RADII[0] ** 3

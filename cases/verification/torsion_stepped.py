@@ -10,8 +10,8 @@ from fe_drivetrain.cases.references.torsion_meridian import (
 from fe_drivetrain.cases.references.twisted_tubes import twisted_step
 from fe_drivetrain.cases.verification import torsion_bound as bound
 from fe_drivetrain.cases.verification.shaft_inputs import begin, show_inputs
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.report.suite import Page, Record, Run
 
 STEEL = MATERIALS["steel"]
 G = STEEL.shear_modulus

@@ -7,9 +7,18 @@ from fe_drivetrain.cases.references import shaft_theory as theory
 from fe_drivetrain.cases.references.exact_shafts import twisted
 from fe_drivetrain.cases.references.solid_shafts import meshed_moment
 from fe_drivetrain.cases.verification.shaft_inputs import begin_uniform
+from fe_drivetrain.drivetrain_file import MATERIALS
 from fe_drivetrain.report import trace
-from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column, grouped, order_of
+from fe_drivetrain.report.suite import (
+    MeshSeries,
+    Page,
+    Record,
+    Run,
+    Target,
+    column,
+    grouped,
+    order_of,
+)
 
 STEEL = MATERIALS["steel"]
 OUTER, BORE, LENGTH, ANGLE = 0.4, 0.28, 0.8, 1e-3  # m, and rad between the ends

@@ -10,11 +10,11 @@ from scipy.spatial.transform import Rotation
 
 from fe_drivetrain.cases.references.manufactured import HEIGHT, INNER, LAME, OUTER, quarter_ring
 from fe_drivetrain.common import Floats
-from fe_drivetrain.interfaces import Constraint, ReferencePoint, constraints
-from fe_drivetrain.mesh import MEANS, brick, face_weights
-from fe_drivetrain.operator import assemble, body_loads, pressure, traction_loads
-from fe_drivetrain.response import Model, Response, joint_pairs
-from fe_drivetrain.solve import solve_solid
+from fe_drivetrain.elasticity.interfaces import Constraint, ReferencePoint, constraints
+from fe_drivetrain.elasticity.mesh import MEANS, brick, face_weights
+from fe_drivetrain.elasticity.operator import assemble, body_loads, pressure, traction_loads
+from fe_drivetrain.elasticity.solve import solve_solid
+from fe_drivetrain.shafts.response import Model, Response, joint_pairs
 
 #: Divisions of the quarter ring.
 DIVISIONS = (2, 4, 2)

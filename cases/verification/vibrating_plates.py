@@ -6,13 +6,13 @@ import numpy as np
 from scipy.optimize import brentq
 
 from fe_drivetrain.common import Floats
-from fe_drivetrain.interfaces import Constraint
-from fe_drivetrain.interfaces.constraints import eliminate
-from fe_drivetrain.mesh import Block
-from fe_drivetrain.operator import assemble, mass_matrix
-from fe_drivetrain.scene import Material
-from fe_drivetrain.solve import factorise, in_blocks, reduce
-from fe_drivetrain.solve.vibration import held_modes
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.interfaces import Constraint
+from fe_drivetrain.elasticity.interfaces.constraints import eliminate
+from fe_drivetrain.elasticity.mesh import Block
+from fe_drivetrain.elasticity.operator import assemble, mass_matrix
+from fe_drivetrain.elasticity.solve import factorise, in_blocks, reduce
+from fe_drivetrain.elasticity.solve.vibration import held_modes
 
 
 def block_modes(

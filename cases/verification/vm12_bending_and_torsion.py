@@ -6,9 +6,9 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.bar_sections import ROUNDED_LATERAL, round_bar, solve_bar
 from fe_drivetrain.cases.verification.units import INCH, POUND, PSI
 from fe_drivetrain.common import Floats
-from fe_drivetrain.operator import principal
-from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.operator import principal
+from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target
 
 LENGTH, DIAMETER = 300.0 * INCH, 4.67017 * INCH
 AREA, INERTIA = 0.25 * np.pi * DIAMETER**2, np.pi * DIAMETER**4 / 64.0

@@ -6,8 +6,8 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.loaded_blocks import edge_nodes, solve_block
 from fe_drivetrain.cases.verification.pressed_plate import PressedPlate
 from fe_drivetrain.cases.verification.units import INCH, PSI
-from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target
 
 STEEL = Material(youngs_modulus=30e6 * PSI, poisson_ratio=0.3, density=0.0)
 PLATE = PressedPlate(radius=40.0 * INCH, thickness=1.0 * INCH, material=STEEL)

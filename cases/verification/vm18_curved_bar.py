@@ -9,9 +9,9 @@ from fe_drivetrain.cases.references.bar_sections import ROUNDED_LATERAL, round_b
 from fe_drivetrain.cases.references.ring_solids import node_at
 from fe_drivetrain.cases.verification.units import INCH, POUND, PSI
 from fe_drivetrain.common import Floats
-from fe_drivetrain.operator import tensor
-from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.operator import tensor
+from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target
 
 RADIUS, DIAMETER = 100.0 * INCH, 2.0 * INCH
 AREA, INERTIA = 0.25 * np.pi * DIAMETER**2, np.pi * DIAMETER**4 / 64.0

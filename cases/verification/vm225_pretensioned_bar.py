@@ -6,14 +6,14 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.interference_fits import pressed_pairs
 from fe_drivetrain.cases.verification.units import INCH, POUND, PSI
 from fe_drivetrain.common import Floats, Ints
-from fe_drivetrain.compare import round_off
-from fe_drivetrain.interfaces import held_dofs, held_nodes
-from fe_drivetrain.mesh import Block, brick
-from fe_drivetrain.operator import nodal_stresses
+from fe_drivetrain.comparison import round_off
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.interfaces import held_dofs, held_nodes
+from fe_drivetrain.elasticity.mesh import Block, brick
+from fe_drivetrain.elasticity.operator import nodal_stresses
+from fe_drivetrain.elasticity.solve import solve_solid
 from fe_drivetrain.report import Measure
-from fe_drivetrain.scene import Material
-from fe_drivetrain.solve import solve_solid
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 LENGTH, WIDTH, HEIGHT = 12.0 * INCH, 1.0 * INCH, 0.5 * INCH
 FORCE = 125.0 * POUND  # on this half of the bar

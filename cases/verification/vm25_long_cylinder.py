@@ -9,9 +9,9 @@ from fe_drivetrain.cases.references.ring_slices import (
     slice_supports,
 )
 from fe_drivetrain.cases.verification.units import INCH, PSI
-from fe_drivetrain.operator import body_loads, pressure
-from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, targets_of
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.elasticity.operator import body_loads, pressure
+from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, targets_of
 
 INNER, INSIDE, OUTER = 4.0 * INCH, 5.43 * INCH, 8.0 * INCH
 PLACES = {"bore": INNER, "r = 5.43 in": INSIDE, "mid-wall": 6.0 * INCH, "outside": OUTER}

@@ -2,9 +2,9 @@
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.interference_fits import exact_fit, press, quarters
-from fe_drivetrain.compare import as_printed
-from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
+from fe_drivetrain.comparison import as_printed
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target
 
 RADII = 1.25, 1.516, 1.75  # m
 MISFIT = 0.02  # m, on the radius

@@ -4,10 +4,10 @@ import numpy as np
 
 from fe_drivetrain.bearing import point_contact
 from fe_drivetrain.cases import case
-from fe_drivetrain.compare import as_printed, round_off
+from fe_drivetrain.comparison import as_printed, round_off
 from fe_drivetrain.gear import LineContact, reduced_modulus
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Run
 
 # mm, N and MPa, as the manual has them
 SPHERE, SOFT, POISSON, FORCE = 8.0, 1000.0, 0.3, 60.0 * np.pi

@@ -121,7 +121,7 @@ def laminae_of_contacts(row: RollerRow, approach: ArrayLike, lean: ArrayLike) ->
         Row with one lamina or more.
     approach, lean : array_like
         Approach (n, rollers) of the races at the roller's middle [m], and lean along the roller
-        [rad], as `fe_drivetrain.rings.AssemblyEquilibrium.deflections` has them.
+        [rad], as `fe_drivetrain.bearing_life.rings.AssemblyEquilibrium.deflections` has them.
 
     Returns
     -------

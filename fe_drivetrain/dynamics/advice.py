@@ -17,7 +17,7 @@ from fe_drivetrain.dynamics.modes import SystemModes, system_modes
 from fe_drivetrain.dynamics.static import Static, load_sharing, static
 from fe_drivetrain.dynamics.system import System
 from fe_drivetrain.dynamics.tables import Machine
-from fe_drivetrain.torsion.system import natural_modes
+from fe_drivetrain.dynamics.torsion.system import natural_modes
 
 
 @dataclass(frozen=True)

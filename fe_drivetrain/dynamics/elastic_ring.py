@@ -17,10 +17,10 @@ from math import cos, pi, sin
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.drivetrain_file.materials import Material
 from fe_drivetrain.dynamics.bodies import Body
 from fe_drivetrain.dynamics.planetary import PlanetarySet
 from fe_drivetrain.dynamics.springs import Spring
-from fe_drivetrain.scene.materials import Material
 
 _AMPLITUDE = np.eye(6)[0]
 

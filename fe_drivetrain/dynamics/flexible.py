@@ -1,8 +1,8 @@
 """Flexible parts of a machine: carriers, shafts and a housing that are condensed elsewhere.
 
 A carrier comes as a free body at its hub and the middles of its pins, of beams or of finite
-elements (`fe_drivetrain.fidelity.component_frames`, `component_solid`); a shaft as one at its ends
-and its bearings (`fe_drivetrain.fidelity.shafts.condensed_shaft`: beam, meridian or solid); a
+elements (`fe_drivetrain.shafts.fidelity.component_frames`, `component_solid`); a shaft as one at its ends
+and its bearings (`fe_drivetrain.shafts.fidelity.shafts.condensed_shaft`: beam, meridian or solid); a
 housing on its supports as the spring that it is at the axis of its ring, or as a superelement at
 its ring and bearings. The rim of a ring bends by its harmonics.
 """
@@ -21,7 +21,7 @@ from fe_drivetrain.dynamics.bodies import Body, Superelement
 from fe_drivetrain.dynamics.elastic_ring import Rim
 from fe_drivetrain.dynamics.planetary import PlanetarySet
 from fe_drivetrain.dynamics.springs import Place
-from fe_drivetrain.solve.condensation import Condensed
+from fe_drivetrain.elasticity.solve.condensation import Condensed
 
 #: Allowed distance of a carrier's pin from its planet, over the length.
 PLACED = 1e-6

@@ -43,8 +43,8 @@ from fe_drivetrain.dynamics.springs import (
     uniform_shaft,
 )
 from fe_drivetrain.dynamics.system import System, without_massless
-from fe_drivetrain.solve.condensation import Condensed
-from fe_drivetrain.torsion.system import Element, Inertia, Torsional
+from fe_drivetrain.dynamics.torsion.system import Element, Inertia, Torsional
+from fe_drivetrain.elasticity.solve.condensation import Condensed
 
 TURNS = frozenset({"rx"})
 """Degree of freedom of a body in a torsional model."""

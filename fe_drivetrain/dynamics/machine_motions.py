@@ -15,7 +15,7 @@ from fe_drivetrain.dynamics.levels import Assembly, Level, assembly
 from fe_drivetrain.dynamics.machine_rows import MachineTable, PlanetaryData
 from fe_drivetrain.dynamics.modes import spring_frequencies, system_modes
 from fe_drivetrain.dynamics.system import System, without_massless
-from fe_drivetrain.torsion.system import resolved
+from fe_drivetrain.dynamics.torsion.system import resolved
 
 #: Share of what a spring's parts do to its length below which turning that winds it is round-off.
 WOUND = 1e-9

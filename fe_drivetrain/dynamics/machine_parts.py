@@ -5,10 +5,10 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from fe_drivetrain.beam.frame import CrossSection, round_section
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.materials import Material
 from fe_drivetrain.geometry.part import SMALLEST, Assumption, Part, dimension
-from fe_drivetrain.scene.materials import Material
+from fe_drivetrain.shafts.beam.frame import CrossSection, round_section
 
 STEEL = Material(youngs_modulus=2.06e11, poisson_ratio=0.3, density=7850.0)
 """Steel of shafts, where nothing else is given."""

@@ -12,7 +12,7 @@ from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
 from fe_drivetrain.dynamics.system import System
-from fe_drivetrain.torsion.system import Oscillations
+from fe_drivetrain.dynamics.torsion.system import Oscillations
 
 Complex = NDArray[np.complex128]
 

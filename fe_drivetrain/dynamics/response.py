@@ -12,7 +12,7 @@ from fe_drivetrain.dynamics.mesh_errors import harmonic_of
 from fe_drivetrain.dynamics.meshing import Meshing
 from fe_drivetrain.dynamics.modes import Complex, SystemModes, turning_modes
 from fe_drivetrain.dynamics.system import System, springs_named
-from fe_drivetrain.torsion.orders import crossing_speed
+from fe_drivetrain.dynamics.torsion.orders import crossing_speed
 
 
 def frequency_response(

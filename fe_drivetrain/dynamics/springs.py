@@ -11,13 +11,13 @@ from math import cos, sin
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_drivetrain.beam.frame import CrossSection
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
 from fe_drivetrain.common.spatial import along_x, wrench_transport
-from fe_drivetrain.scene.materials import Material
+from fe_drivetrain.drivetrain_file.materials import Material
+from fe_drivetrain.shafts.beam.frame import CrossSection
 
 
 @dataclass(frozen=True)

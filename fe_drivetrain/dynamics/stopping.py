@@ -1,6 +1,6 @@
 """Shutdown of a torsional drivetrain: generator off, blades pitched, disc brake, standstill.
 
-The sequence of Al-Hamadani 2018, section 4.5, on the torsional systems of `fe_drivetrain.torsion`:
+The sequence of Al-Hamadani 2018, section 4.5, on the torsional systems of `fe_drivetrain.dynamics.torsion`:
 normal operation, then the aerodynamic torque falls and the generator is off at once, then a disc
 brake on the high-speed shaft until it stands, and the rotor swings against it.
 """
@@ -23,8 +23,8 @@ from fe_drivetrain.dynamics.integration import Phase, transient
 from fe_drivetrain.dynamics.machines import slip_line
 from fe_drivetrain.dynamics.motion import Motion, State
 from fe_drivetrain.dynamics.steady_state import wind_up
-from fe_drivetrain.torsion.damping import shaft_damping
-from fe_drivetrain.torsion.gear_table import (
+from fe_drivetrain.dynamics.torsion.damping import shaft_damping
+from fe_drivetrain.dynamics.torsion.gear_table import (
     GENERATOR,
     ROTOR,
     Drivetrain,
@@ -32,7 +32,7 @@ from fe_drivetrain.torsion.gear_table import (
     gear_speeds,
     two_masses,
 )
-from fe_drivetrain.torsion.system import Torsional, damped
+from fe_drivetrain.dynamics.torsion.system import Torsional, damped
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from scipy import sparse
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
+from fe_drivetrain.elasticity.operator.incompressible import warn_of_averaging
 from fe_drivetrain.export.calculix_plan import (
     ROUND_OFF,
     DeckPlan,
@@ -24,8 +25,7 @@ from fe_drivetrain.export.calculix_plan import (
     plan_deck,
 )
 from fe_drivetrain.export.superelement import FRAME
-from fe_drivetrain.operator.incompressible import warn_of_averaging
-from fe_drivetrain.response.model import Model
+from fe_drivetrain.shafts.response.model import Model
 
 _TERMS = 4  # of an equation on a line: the most that are read
 _NODES = 16  # of a set on a line

@@ -6,10 +6,10 @@ import numpy as np
 from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.mesh.shapes import element_kind
-from fe_drivetrain.operator import element_loops
-from fe_drivetrain.operator.elasticity import sparsity
-from fe_drivetrain.response.model import Model
+from fe_drivetrain.elasticity.mesh.shapes import element_kind
+from fe_drivetrain.elasticity.operator import element_loops
+from fe_drivetrain.elasticity.operator.elasticity import sparsity
+from fe_drivetrain.shafts.response.model import Model
 
 
 def four_point_model(model: Model) -> Model:

@@ -16,9 +16,9 @@ from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.interfaces.constraints import Constraint, eliminate
-from fe_drivetrain.response.model import LOADS, Model
-from fe_drivetrain.scene.shared_parts import refuse_coupled
+from fe_drivetrain.drivetrain_file.shared_parts import refuse_coupled
+from fe_drivetrain.elasticity.interfaces.constraints import Constraint, eliminate
+from fe_drivetrain.shafts.response.model import LOADS, Model
 
 ROUND_OFF = 1e-14  # coefficients below, relative to the largest of their row, are round-off
 

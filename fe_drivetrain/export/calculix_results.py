@@ -12,7 +12,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.regular_files import text_of
 from fe_drivetrain.common.spatial import resultant, wrench_transport
 from fe_drivetrain.export.calculix_plan import DeckPlan, deck_label, plan_deck
-from fe_drivetrain.response.model import Model
+from fe_drivetrain.shafts.response.model import Model
 
 DIGITS = 7
 """Significant digits in a .dat file (Fortran's 1p,e13.6)."""

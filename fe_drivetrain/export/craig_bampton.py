@@ -25,21 +25,21 @@ from scipy.sparse.linalg import splu
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.materials import Material
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.elasticity.revolution import harmonics
+from fe_drivetrain.elasticity.revolution.meridian_mesh import Meridian
+from fe_drivetrain.elasticity.solve.condensation import Condensed, keep_points
+from fe_drivetrain.elasticity.solve.vibration import lowest_modes
 from fe_drivetrain.export.from_scene import scene_hash
 from fe_drivetrain.export.superelement import Origin, Superelement, refuse_one_point
-from fe_drivetrain.fidelity.shafts import (
+from fe_drivetrain.shafts.fidelity.shafts import (
     harmonic_mass,
     meridian_shaft,
     motion_traction,
     reference_points,
     shaft_meridian,
 )
-from fe_drivetrain.revolution import harmonics
-from fe_drivetrain.revolution.meridian_mesh import Meridian
-from fe_drivetrain.scene.materials import Material
-from fe_drivetrain.scene.scene import Scene
-from fe_drivetrain.solve.condensation import Condensed, keep_points
-from fe_drivetrain.solve.vibration import lowest_modes
 
 
 @dataclass(frozen=True)
@@ -132,7 +132,7 @@ def craig_bampton_shaft(
     at : Sequence[str] or None
         Points that are kept, and stand still; all where not given.
     size, order, rings : float or None, int or None, bool
-        As for `fe_drivetrain.fidelity.shafts.meridian_shaft`.
+        As for `fe_drivetrain.shafts.fidelity.shafts.meridian_shaft`.
 
     Raises
     ------

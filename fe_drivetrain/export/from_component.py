@@ -8,18 +8,21 @@ from importlib.metadata import version
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.stiffness_bands import StiffnessBands
+from fe_drivetrain.drivetrain_file.component import Component, HousingComponent, component_hash
+from fe_drivetrain.elasticity.mesh.measures import mean_size
+from fe_drivetrain.elasticity.solve.condensation import Condensed, keep_points
 from fe_drivetrain.export.superelement import Origin, Superelement, refuse_one_point
-from fe_drivetrain.fidelity.component_frames import carrier_frame, housing_frame
-from fe_drivetrain.fidelity.component_levels import motions_on_supports, stiffness_on_supports
-from fe_drivetrain.fidelity.component_solid import (
+from fe_drivetrain.shafts.fidelity.component_frames import carrier_frame, housing_frame
+from fe_drivetrain.shafts.fidelity.component_levels import (
+    motions_on_supports,
+    stiffness_on_supports,
+)
+from fe_drivetrain.shafts.fidelity.component_solid import (
     SolidComponent,
     recovered_band,
     solid_component,
 )
-from fe_drivetrain.fidelity.shaft_bands import APART, COARSER, ORDER
-from fe_drivetrain.mesh.measures import mean_size
-from fe_drivetrain.scene.component import Component, HousingComponent, component_hash
-from fe_drivetrain.solve.condensation import Condensed, keep_points
+from fe_drivetrain.shafts.fidelity.shaft_bands import APART, COARSER, ORDER
 
 BODY, SUPPORTED = "body", "supported"
 

@@ -10,13 +10,13 @@ import numpy as np
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.stiffness_bands import StiffnessBands
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.elasticity.solve.condensation import Condensed, keep_points
 from fe_drivetrain.export.superelement import Origin, Superelement, refuse_one_point
-from fe_drivetrain.fidelity.bearing_units import banded_unit, unit_matrices
-from fe_drivetrain.fidelity.ladder import LevelModel
-from fe_drivetrain.fidelity.shaft_bands import banded_meridian, banded_solid, meridian_order
-from fe_drivetrain.fidelity.shafts import beam_shaft, reference_points
-from fe_drivetrain.scene.scene import Scene
-from fe_drivetrain.solve.condensation import Condensed, keep_points
+from fe_drivetrain.shafts.fidelity.bearing_units import banded_unit, unit_matrices
+from fe_drivetrain.shafts.fidelity.ladder import LevelModel
+from fe_drivetrain.shafts.fidelity.shaft_bands import banded_meridian, banded_solid, meridian_order
+from fe_drivetrain.shafts.fidelity.shafts import beam_shaft, reference_points
 
 #: Sections of a beam up to which the meridian is solved for its band.
 MOST_BANDED = 100
@@ -26,7 +26,7 @@ def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None
     """The free shaft of a scene, condensed.
 
     Its band is, of a beam, the difference to the meridian and the meridian's own; of the meridian
-    and of a solid see `fe_drivetrain.fidelity.shaft_bands`. A beam of more than `MOST_BANDED`
+    and of a solid see `fe_drivetrain.shafts.fidelity.shaft_bands`. A beam of more than `MOST_BANDED`
     sections has none: its meridian is graded to each step and takes gigabytes.
 
     Parameters
@@ -108,7 +108,7 @@ def unit_superelement(scene: Scene, name: str, mass: bool = False) -> Supereleme
     """A bearing and its housing on the ground, at the bearing's centre: K_R of both planes, too.
 
     The shaft is taken to keep its face in shape; the band reaches to a face that moves on average,
-    and holds the error of the mesh: see `fe_drivetrain.fidelity.banded_unit`.
+    and holds the error of the mesh: see `fe_drivetrain.shafts.fidelity.banded_unit`.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def unit_superelement(scene: Scene, name: str, mass: bool = False) -> Supereleme
     name : str
         Of the bearing.
     mass : bool
-        Whether it has its mass, see `fe_drivetrain.fidelity.unit_matrices`.
+        Whether it has its mass, see `fe_drivetrain.shafts.fidelity.unit_matrices`.
 
     Raises
     ------

@@ -12,13 +12,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from fe_drivetrain.beam.of_scene import beam_of_scene
-from fe_drivetrain.beam.sections import BeamSection
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.export.from_scene import shaft_superelement
 from fe_drivetrain.export.superelement import Superelement
-from fe_drivetrain.fidelity.shafts import ringed_shaft
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.shafts.beam.of_scene import beam_of_scene
+from fe_drivetrain.shafts.beam.sections import BeamSection
+from fe_drivetrain.shafts.fidelity.shafts import ringed_shaft
 
 
 def lumped_superelement(scene: Scene) -> Superelement:

@@ -10,12 +10,12 @@ from scipy import linalg
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
-from fe_drivetrain.operator.mass import mass_matrix
-from fe_drivetrain.response.model import build_model, mesh_scene
-from fe_drivetrain.response.prepared import prepared
-from fe_drivetrain.scene.scene import Scene
-from fe_drivetrain.solve.condensation import on_supports
-from fe_drivetrain.solve.vibration import held_modes
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.elasticity.operator.mass import mass_matrix
+from fe_drivetrain.elasticity.solve.condensation import on_supports
+from fe_drivetrain.elasticity.solve.vibration import held_modes
+from fe_drivetrain.shafts.response.model import build_model, mesh_scene
+from fe_drivetrain.shafts.response.prepared import prepared
 
 
 def natural_frequencies(
@@ -35,7 +35,7 @@ def natural_frequencies(
         Of the same degrees of freedom as the stiffness.
     inertia : Mapping[str, Floats] or None
         (6, 6) mass of supports that moves with a point [kg, kg m, kg m^2], by point, as of
-        `fe_drivetrain.fidelity.unit_matrices`.
+        `fe_drivetrain.shafts.fidelity.unit_matrices`.
 
     Raises
     ------

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.stiffness_bands import StiffnessBands
+from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.export.from_scene import (
     shaft_superelement,
     supported_superelement,
@@ -13,9 +14,8 @@ from fe_drivetrain.export.from_scene import (
 )
 from fe_drivetrain.export.seat_superelements import seats_superelement
 from fe_drivetrain.export.superelement import Superelement
-from fe_drivetrain.fidelity.ladder import assembly_level, housing_springs, shaft_level
-from fe_drivetrain.fidelity.shafts import condensed_shaft
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.shafts.fidelity.ladder import assembly_level, housing_springs, shaft_level
+from fe_drivetrain.shafts.fidelity.shafts import condensed_shaft
 
 SHAFT, DRIVETRAIN, SEATS = "shaft", "drivetrain", "seats"
 AUTO = "auto"

@@ -10,9 +10,9 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.export.from_scene import unit_superelement
 from fe_drivetrain.export.superelement import Superelement
-from fe_drivetrain.scene.scene import Scene
 
 
 def seats_superelement(scene: Scene) -> Superelement:

@@ -12,6 +12,19 @@ from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.cache import Cache
+from fe_drivetrain.drivetrain_file.bearing_unit import BearingUnit
+from fe_drivetrain.drivetrain_file.materials import MATERIALS, Material
+from fe_drivetrain.elasticity.interfaces.constraints import (
+    Constraint,
+    ReferencePoint,
+    averaged_point,
+)
+from fe_drivetrain.elasticity.interfaces.mortar import mortar_tie, settled
+from fe_drivetrain.elasticity.mesh.cached import cached_mesh
+from fe_drivetrain.elasticity.mesh.facets import MEANS, face_weights
+from fe_drivetrain.elasticity.mesh.measures import mass_moments
+from fe_drivetrain.elasticity.mesh.mesh import Mesh
+from fe_drivetrain.elasticity.mesh.side_by_side import beside
 from fe_drivetrain.foreign.clearance import check_clear
 from fe_drivetrain.foreign.further_parts import joined, placed_part, tie_faces, tie_of
 from fe_drivetrain.foreign.housing import placed_housing
@@ -25,15 +38,6 @@ from fe_drivetrain.geometry import (
     bearing_solid,
     unit_solids,
 )
-from fe_drivetrain.interfaces.constraints import Constraint, ReferencePoint, averaged_point
-from fe_drivetrain.interfaces.mortar import mortar_tie, settled
-from fe_drivetrain.mesh.cached import cached_mesh
-from fe_drivetrain.mesh.facets import MEANS, face_weights
-from fe_drivetrain.mesh.measures import mass_moments
-from fe_drivetrain.mesh.mesh import Mesh
-from fe_drivetrain.mesh.side_by_side import beside
-from fe_drivetrain.scene.bearing_unit import BearingUnit
-from fe_drivetrain.scene.materials import MATERIALS, Material
 
 _BESIDE = 1e-6  # of the width: facets further out are beside the bearing
 _BOLT = MATERIALS["steel"]
@@ -102,7 +106,7 @@ class Tied(NamedTuple):
     ----------
     mesh : Mesh
         Mesh whose nodes of tied outer faces are where the tie sees the housing, so that every rigid
-        motion passes, see `fe_drivetrain.interfaces.mortar.settled`.
+        motion passes, see `fe_drivetrain.elasticity.interfaces.mortar.settled`.
     ties : tuple[Constraint, ...]
         Ties in three degrees of freedom for each node of the mesh.
     """

@@ -13,9 +13,9 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from fe_drivetrain.common.arrays import Bools, Ints
-from fe_drivetrain.mesh.facets import facet_points
-from fe_drivetrain.mesh.mesh import FACETS, Mesh
-from fe_drivetrain.mesh.shared_facets import facet_keys
+from fe_drivetrain.elasticity.mesh.facets import facet_points
+from fe_drivetrain.elasticity.mesh.mesh import FACETS, Mesh
+from fe_drivetrain.elasticity.mesh.shared_facets import facet_keys
 
 MOST_BETWEEN_RIMS = 0.1
 """Share of the open facets that may stay joined without a warning."""

@@ -10,10 +10,10 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.bearing_unit import BearingUnit
+from fe_drivetrain.elasticity.mesh.facets import facet_points
+from fe_drivetrain.elasticity.mesh.mesh import Mesh, boundary
 from fe_drivetrain.geometry import Bearing, ForeignFile, Shaft
-from fe_drivetrain.mesh.facets import facet_points
-from fe_drivetrain.mesh.mesh import Mesh, boundary
-from fe_drivetrain.scene.bearing_unit import BearingUnit
 
 # Distance over the radius that nodes of seats may lie within their bearing's raceway; and facets
 # of a mesh whose edges are chords, six round a turn.

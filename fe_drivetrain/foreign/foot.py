@@ -25,9 +25,9 @@ from scipy import sparse
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import scaled_solve
-from fe_drivetrain.interfaces.constraints import ReferencePoint
-from fe_drivetrain.mesh.facets import MEANS, face_weights
-from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.elasticity.interfaces.constraints import ReferencePoint
+from fe_drivetrain.elasticity.mesh.facets import MEANS, face_weights
+from fe_drivetrain.elasticity.mesh.mesh import Mesh
 
 MOST_PATCHES = 400
 """Maximum number of patches of a foot: its contact is a dense problem."""

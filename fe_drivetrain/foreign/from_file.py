@@ -17,17 +17,22 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache, user_cache
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.made_by import file_digest
+from fe_drivetrain.elasticity.mesh.checks import refuse_unsound
+from fe_drivetrain.elasticity.mesh.generation import (
+    ATTEMPTS,
+    GMSH_TO_VTK,
+    REFINEMENT,
+    relax_flat_cells,
+)
+from fe_drivetrain.elasticity.mesh.linear import renumbered
+from fe_drivetrain.elasticity.mesh.measures import inverted_cells, volume
+from fe_drivetrain.elasticity.mesh.mesh import Mesh, boundary
 from fe_drivetrain.foreign.bolted import MOST_BETWEEN_RIMS, SIDES, joined_between_rims, opened
 from fe_drivetrain.foreign.known_healing import read_step, reader_versions
 from fe_drivetrain.foreign.picking import Surface
 from fe_drivetrain.foreign.reading import read_in_process
 from fe_drivetrain.foreign.unfolding import unfolded
 from fe_drivetrain.geometry import ForeignFile, Pick
-from fe_drivetrain.mesh.checks import refuse_unsound
-from fe_drivetrain.mesh.generation import ATTEMPTS, GMSH_TO_VTK, REFINEMENT, relax_flat_cells
-from fe_drivetrain.mesh.linear import renumbered
-from fe_drivetrain.mesh.measures import inverted_cells, volume
-from fe_drivetrain.mesh.mesh import Mesh, boundary
 
 _VOLUME = 0.02  # a mesh that differs more from its solid has lost a part of it
 
@@ -152,7 +157,9 @@ def meshed_step(
             folded = inverted_cells(mesh)
         if len(folded) == 0:
             break
-        if request["optimise"]:  # in vain: finer, as `fe_drivetrain.mesh.generation.generate`
+        if request[
+            "optimise"
+        ]:  # in vain: finer, as `fe_drivetrain.elasticity.mesh.generation.generate`
             request["size"] /= REFINEMENT
             request["per_turn"] = math.ceil(request["per_turn"] * REFINEMENT)
         request["optimise"] = True

@@ -17,6 +17,18 @@ from numpy.typing import NDArray
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.bearing_unit import BearingUnit
+from fe_drivetrain.elasticity.interfaces.constraints import Constraint
+from fe_drivetrain.elasticity.interfaces.mortar import mortar_tie
+from fe_drivetrain.elasticity.interfaces.overlap import (
+    Pieces,
+    common_pieces,
+    curvature,
+    left_by_rims,
+)
+from fe_drivetrain.elasticity.mesh.facets import facet_points
+from fe_drivetrain.elasticity.mesh.mesh import Mesh, boundary
+from fe_drivetrain.elasticity.mesh.shared_facets import are_among
 from fe_drivetrain.foreign.bolted import SIDES
 from fe_drivetrain.foreign.from_file import (
     PlacedPart,
@@ -30,13 +42,6 @@ from fe_drivetrain.foreign.from_file import (
 )
 from fe_drivetrain.foreign.holes import pressed_facets
 from fe_drivetrain.geometry import Bearing, FurtherPart, MeshSizes
-from fe_drivetrain.interfaces.constraints import Constraint
-from fe_drivetrain.interfaces.mortar import mortar_tie
-from fe_drivetrain.interfaces.overlap import Pieces, common_pieces, curvature, left_by_rims
-from fe_drivetrain.mesh.facets import facet_points
-from fe_drivetrain.mesh.mesh import Mesh, boundary
-from fe_drivetrain.mesh.shared_facets import are_among
-from fe_drivetrain.scene.bearing_unit import BearingUnit
 
 _WHOLE = 1e-5  # share of a facet that may be left uncovered: files have round-off
 _TOUCHED = 1e-3  # share of a facet: less of it is round-off at an edge
@@ -299,7 +304,7 @@ def joined(mesh: Mesh, unit: BearingUnit) -> Mesh:
 
 
 def tie_of(name: str, points: Floats, one: Ints, two: Ints) -> Constraint:
-    """Tie of two faces that touch, see `fe_drivetrain.interfaces.mortar.mortar_tie`.
+    """Tie of two faces that touch, see `fe_drivetrain.elasticity.interfaces.mortar.mortar_tie`.
 
     Parameters
     ----------

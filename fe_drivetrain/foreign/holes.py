@@ -11,10 +11,10 @@ from scipy.sparse.csgraph import connected_components
 
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.elasticity.mesh.facets import facet_points
 from fe_drivetrain.foreign.fitting import fitted_circle, fitted_cylinder, from_axis
 from fe_drivetrain.foreign.picking import Surface
 from fe_drivetrain.geometry import BoltedJoint, Bolts
-from fe_drivetrain.mesh.facets import facet_points
 
 _ON_HOLE = 0.02  # of a radius: corners of the wall of a hole
 _ROUND = 1e-3  # of a radius: corners of a cylinder that is found by itself

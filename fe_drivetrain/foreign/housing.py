@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.elasticity.mesh.facets import facet_points
+from fe_drivetrain.elasticity.mesh.mesh import Mesh
 from fe_drivetrain.foreign.from_file import (
     PlacedPart,
     body_of_mesh,
@@ -25,8 +27,6 @@ from fe_drivetrain.foreign.from_file import (
 from fe_drivetrain.foreign.holes import washers
 from fe_drivetrain.geometry import Bearing, ForeignHousing, MeshSizes
 from fe_drivetrain.geometry.foreign_housing import SEAT_TOLERANCE
-from fe_drivetrain.mesh.facets import facet_points
-from fe_drivetrain.mesh.mesh import Mesh
 
 _STEP_UNIT = 1e-3  # what gmsh reads STEP in [m]
 _COVERED = 0.98  # share of a bearing's outer face that facets of a seat must have

@@ -11,8 +11,8 @@ from scipy.sparse.csgraph import connected_components
 
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.elasticity.mesh.shared_facets import are_among
 from fe_drivetrain.geometry import Pick
-from fe_drivetrain.mesh.shared_facets import are_among
 
 _ON_PLANE = 1e-5  # of the solid's size
 _ON_CURVE = 2e-3  # of a radius: nodes of a face that is meant

@@ -11,15 +11,15 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.elasticity.mesh.facets import facet_points
+from fe_drivetrain.elasticity.mesh.measures import enclosed_volume, mass_moments, scaled_jacobians
+from fe_drivetrain.elasticity.mesh.mesh import Mesh, boundary
 from fe_drivetrain.foreign.holes import cylinders, planes
 from fe_drivetrain.foreign.known_healing import read_step
 from fe_drivetrain.foreign.picking import Surface
 from fe_drivetrain.foreign.reading import read_in_process
 from fe_drivetrain.foreign.words import nearly
 from fe_drivetrain.geometry.foreign_housing import MESH_ENDINGS, STEP_ENDINGS
-from fe_drivetrain.mesh.facets import facet_points
-from fe_drivetrain.mesh.measures import enclosed_volume, mass_moments, scaled_jacobians
-from fe_drivetrain.mesh.mesh import Mesh, boundary
 
 _MOST_ROWS = 24
 _TURNS = {0: "", 1: "rotate: [0, 0, -90]", 2: "rotate: [0, 90, 0]"}  # of an axis to x

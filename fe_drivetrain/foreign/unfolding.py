@@ -13,11 +13,11 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.mesh.measures import area_vectors, scaled_jacobians
-from fe_drivetrain.mesh.mesh import Mesh, boundary
-from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES
-from fe_drivetrain.mesh.shared_facets import are_among
-from fe_drivetrain.operator.elasticity import assemble
+from fe_drivetrain.elasticity.mesh.measures import area_vectors, scaled_jacobians
+from fe_drivetrain.elasticity.mesh.mesh import Mesh, boundary
+from fe_drivetrain.elasticity.mesh.shapes import TETRAHEDRON_EDGES
+from fe_drivetrain.elasticity.mesh.shared_facets import are_among
+from fe_drivetrain.elasticity.operator.elasticity import assemble
 
 _LAYERS = 2  # of elements round those that are folded, which deform, too
 _STIFFER = 10.0

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.gear.strength import LifeCurve
-from fe_drivetrain.histories.levels import Levels
+from fe_drivetrain.turbine_loads.histories.levels import Levels
 
 
 @dataclass(frozen=True)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from fe_drivetrain.fidelity.adviser import LevelResult
 from fe_drivetrain.report.pictures.sketch import shaft_with_rings
 from fe_drivetrain.report.results import Cell, Chart, Section, Table, Text
+from fe_drivetrain.report.suite.page import Page
+from fe_drivetrain.report.suite.run import Run
+from fe_drivetrain.shafts.fidelity.adviser import LevelResult
 from fe_drivetrain.studies.level_advice import AdviseResult, effects_level_title
-from fe_drivetrain.suite.page import Page
-from fe_drivetrain.suite.run import Run
 
 QUICK_BAND = "A quick run's mesh is coarser than what was asked for: its band is not judged."
 

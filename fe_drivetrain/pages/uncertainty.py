@@ -7,10 +7,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fe_drivetrain.fidelity.quantities import Number
+from fe_drivetrain.drivetrain_file.scene import Spread
 from fe_drivetrain.report.charts import chart, rounded
 from fe_drivetrain.report.results import Cell, Chart, Section, Table, Text
-from fe_drivetrain.scene.scene import Spread
+from fe_drivetrain.report.suite.page import Page
+from fe_drivetrain.report.suite.run import Run
+from fe_drivetrain.shafts.fidelity.quantities import Number
+from fe_drivetrain.shafts.uncertainty.input_study import Study, result_at
+from fe_drivetrain.shafts.uncertainty.numbers import first_order, half_band, relative_spread
+from fe_drivetrain.shafts.uncertainty.sampling import SHARE, Samples, distribution, nominal_value
 from fe_drivetrain.studies.input_uncertainty import (
     UncertaintyResult,
     charted,
@@ -18,11 +23,6 @@ from fe_drivetrain.studies.input_uncertainty import (
     horizontal_bars,
     sample_count,
 )
-from fe_drivetrain.suite.page import Page
-from fe_drivetrain.suite.run import Run
-from fe_drivetrain.uncertainty.input_study import Study, result_at
-from fe_drivetrain.uncertainty.numbers import first_order, half_band, relative_spread
-from fe_drivetrain.uncertainty.sampling import SHARE, Samples, distribution, nominal_value
 
 _BINS = 16
 _LEAST = 1e-4  # smaller numbers in tables are round-off

@@ -8,7 +8,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.histories.levels import Levels
+from fe_drivetrain.turbine_loads.histories.levels import Levels
 
 THERMAL = 600.0
 """Averaging time of a motor's heat [s] (PROTEST 2010, sections 7.1.2.3 and 7.2.2.3)."""

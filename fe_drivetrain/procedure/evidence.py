@@ -16,14 +16,14 @@ from typing import Literal
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.made_by import program_hash
 from fe_drivetrain.common.reading import value_changes
+from fe_drivetrain.drivetrain_file.reading import parse_scene
+from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.procedure.answers import Answer, answer_of, quantities_of
 from fe_drivetrain.procedure.project import Accepted, EvidenceLink
 from fe_drivetrain.procedure.steps import Evidence
 from fe_drivetrain.procedure.tolerances import is_guess, is_vacuous, why_no_limit
 from fe_drivetrain.report.results import DrivetrainRecord, Figure, Results, Verdict, is_met
 from fe_drivetrain.report.seal import Described, drivetrain_record, results_digest
-from fe_drivetrain.scene.reading import parse_scene
-from fe_drivetrain.scene.scene import Scene
 
 State = Literal[
     "passed",

@@ -23,9 +23,9 @@ from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.common.reading import unreadable
 from fe_drivetrain.common.regular_files import text_of
 from fe_drivetrain.common.spatial import wrench_transport
-from fe_drivetrain.histories.cycles import Cycles, rainflow_cycles
-from fe_drivetrain.histories.damage import damage_equivalent_load
-from fe_drivetrain.histories.levels import even_levels, time_at_level
+from fe_drivetrain.turbine_loads.histories.cycles import Cycles, rainflow_cycles
+from fe_drivetrain.turbine_loads.histories.damage import damage_equivalent_load
+from fe_drivetrain.turbine_loads.histories.levels import even_levels, time_at_level
 
 Source = Literal["measured", "simulated", "estimated"]
 GROUND = "ground"

@@ -10,11 +10,11 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.fidelity.ladder import LevelModel
-from fe_drivetrain.fidelity.shafts import reference_points
+from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.procedure.interface_loads import GROUND, Body, Interface, LoadTable
-from fe_drivetrain.response.entering import Loads, entering
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.shafts.fidelity.ladder import LevelModel
+from fe_drivetrain.shafts.fidelity.shafts import reference_points
+from fe_drivetrain.shafts.response.entering import Loads, entering
 
 
 def level_loads(scene: Scene, model: LevelModel, time: Floats, hub: Loads) -> LoadTable:
@@ -29,7 +29,7 @@ def level_loads(scene: Scene, model: LevelModel, time: Floats, hub: Loads) -> Lo
     time : ndarray, (n,)
         Of uniform step [s].
     hub : LoadHistory, PointLoads or array_like
-        (n, 6) of the rotor on the shaft, as `response.entering` takes them [N, N m]; those at load
+        (n, 6) of the rotor on the shaft, as `shafts.response.entering` takes them [N, N m]; those at load
         points are left out.
 
     Returns
@@ -40,7 +40,7 @@ def level_loads(scene: Scene, model: LevelModel, time: Floats, hub: Loads) -> Lo
     Raises
     ------
     InputError
-        The level has no displacements, or `response.entering` refuses the loads.
+        The level has no displacements, or `shafts.response.entering` refuses the loads.
     """
     if not model.points:
         raise InputError(

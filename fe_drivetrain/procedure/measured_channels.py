@@ -10,13 +10,17 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.histories.cycles import rainflow_cycles
-from fe_drivetrain.histories.damage import damage_equivalent_load
-from fe_drivetrain.histories.windows import CaptureMatrix, capture_matrix, window_statistics
 from fe_drivetrain.procedure.channels import ChannelFile, Channels, read_channels
 from fe_drivetrain.procedure.project import Capture, Compared, Comparison, Identified
 from fe_drivetrain.procedure.spectral_fit import spectral_fit
 from fe_drivetrain.report.results import Results, Verdict, judge, read_results
+from fe_drivetrain.turbine_loads.histories.cycles import rainflow_cycles
+from fe_drivetrain.turbine_loads.histories.damage import damage_equivalent_load
+from fe_drivetrain.turbine_loads.histories.windows import (
+    CaptureMatrix,
+    capture_matrix,
+    window_statistics,
+)
 
 WIND = "wind speed"
 """Channel of a capture matrix."""

@@ -18,10 +18,10 @@ from pydantic import BaseModel, ConfigDict
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import parse_mapping, validated
-from fe_drivetrain.histories.cycles import rainflow_cycles
-from fe_drivetrain.histories.damage import damage_equivalent_load
-from fe_drivetrain.histories.levels import even_levels, time_at_level
 from fe_drivetrain.procedure.duty import thermal_torque
+from fe_drivetrain.turbine_loads.histories.cycles import rainflow_cycles
+from fe_drivetrain.turbine_loads.histories.damage import damage_equivalent_load
+from fe_drivetrain.turbine_loads.histories.levels import even_levels, time_at_level
 
 Analysis = Literal["extreme", "mean", "durations", "cycles", "peak", "rms", "rms durations"]
 """Asked for: of a load or motion its extremes, mean, time at level, rainflow cycles, largest size,

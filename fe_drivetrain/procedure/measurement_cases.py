@@ -19,8 +19,8 @@ from pydantic import BaseModel, ConfigDict, model_validator
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import parse_mapping, read_text, validated
+from fe_drivetrain.dynamics.torsion.system import Torsional
 from fe_drivetrain.procedure.motions import driven_motions, element_torques
-from fe_drivetrain.torsion.system import Torsional
 
 _RPM = np.pi / 30.0
 

@@ -17,7 +17,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.equations import varying
 from fe_drivetrain.dynamics.stopping import torsional_equations
 from fe_drivetrain.dynamics.superposition import energy_error
-from fe_drivetrain.torsion.system import Torsional
+from fe_drivetrain.dynamics.torsion.system import Torsional
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,8 +17,8 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.torsion.gear_table import GENERATOR, ROTOR
-from fe_drivetrain.torsion.orders import Geared, crossing_speed, mesh_orders
+from fe_drivetrain.dynamics.torsion.gear_table import GENERATOR, ROTOR
+from fe_drivetrain.dynamics.torsion.orders import Geared, crossing_speed, mesh_orders
 
 NEAR, MOVED = 0.1, 0.01
 """Margin below which a frequency is near, and energy share below which a mode is not excited."""

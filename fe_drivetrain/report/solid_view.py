@@ -17,15 +17,15 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.components import FORCES
-from fe_drivetrain.mesh.facets import outside
-from fe_drivetrain.mesh.mesh import Mesh
-from fe_drivetrain.operator.stress import nodal_stresses, von_mises
+from fe_drivetrain.elasticity.mesh.facets import outside
+from fe_drivetrain.elasticity.mesh.mesh import Mesh
+from fe_drivetrain.elasticity.operator.stress import nodal_stresses, von_mises
 from fe_drivetrain.report.pictures.deformation import exaggeration, picture_of_deformation
 from fe_drivetrain.report.results import Image, Solid
 
 if TYPE_CHECKING:
-    from fe_drivetrain.response.model import Model
-    from fe_drivetrain.response.unit_loads import Response
+    from fe_drivetrain.shafts.response.model import Model
+    from fe_drivetrain.shafts.response.unit_loads import Response
 
 MOST_TRIANGLES = 100_000
 """Of a surface: with its values it then takes less than 3 MB."""
@@ -80,7 +80,7 @@ def deformed_shape(
     model, response : Model, Response
         A model and its response to the unit loads.
     load_factors : Floats
-        (10,) multiples of the loads of `fe_drivetrain.response.LOADS`.
+        (10,) multiples of the loads of `fe_drivetrain.shafts.response.LOADS`.
     folder : Path
         Takes deformed.png and deformed.3d.json.
     what : str

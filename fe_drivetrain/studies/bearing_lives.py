@@ -15,16 +15,15 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from fe_drivetrain.bearing_life.life.roller_damage import KINDS, LifeRules
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
-from fe_drivetrain.histories.sites import Site
-from fe_drivetrain.hub_loads.recorded import Files, recorded_files
-from fe_drivetrain.life.roller_damage import KINDS, LifeRules
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.drivetrain_file.without_weight import weightless
 from fe_drivetrain.report.charts import bars
 from fe_drivetrain.report.results import Chart
-from fe_drivetrain.scene.scene import Scene
-from fe_drivetrain.scene.without_weight import weightless
+from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.life_digest import kept_digest
 from fe_drivetrain.studies.life_findings import answers, assumptions, cautions, checks
 from fe_drivetrain.studies.life_options import LifeOptions
@@ -32,7 +31,8 @@ from fe_drivetrain.studies.life_sums import BearingLife, BearingSums
 from fe_drivetrain.studies.life_tables import limit_rows, long_tables, result_tables
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.rolling_bearings import bearings_of
-from fe_drivetrain.suite.findings import Findings
+from fe_drivetrain.turbine_loads.histories.sites import Site
+from fe_drivetrain.turbine_loads.hub_loads.recorded import Files, recorded_files
 
 _MANY = 8  # files, each of every bearing, for which it pays to start processes
 

@@ -11,19 +11,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.beam import closed_forms
-from fe_drivetrain.beam.closed_forms import MainBearingBeam
-from fe_drivetrain.beam.of_scene import main_bearing_beam
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.compare import statistics
-from fe_drivetrain.fidelity.bearing_units import UnitBounds
-from fe_drivetrain.fidelity.quantities import unit_numbers
-from fe_drivetrain.hub_loads.point_loads import PointLoads
-from fe_drivetrain.response.unit_loads import Response
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.comparison import statistics
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.shafts.beam import closed_forms
+from fe_drivetrain.shafts.beam.closed_forms import MainBearingBeam
+from fe_drivetrain.shafts.beam.of_scene import main_bearing_beam
+from fe_drivetrain.shafts.fidelity.bearing_units import UnitBounds
+from fe_drivetrain.shafts.fidelity.quantities import unit_numbers
+from fe_drivetrain.shafts.response.unit_loads import Response
 from fe_drivetrain.studies.study_loads import EnteredLoads
-from fe_drivetrain.suite.records import Record
+from fe_drivetrain.turbine_loads.hub_loads.point_loads import PointLoads
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +54,7 @@ class LinearModel:
     def of_beam(
         cls, model: Callable[[Floats, MainBearingBeam], Floats], beam: MainBearingBeam
     ) -> LinearModel:
-        """A closed form of `beam.closed_forms`."""
+        """A closed form of `shafts.beam.closed_forms`."""
         constant = model(np.zeros(6), beam)
         # loads as large as the weight in the constant, which would swallow digits of a unit load's
         size = 1e6

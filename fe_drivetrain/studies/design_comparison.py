@@ -10,16 +10,16 @@ import numpy as np
 
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
-from fe_drivetrain.fidelity.designs import Difference, compare_designs, scene_changes
-from fe_drivetrain.fidelity.ladder import TITLES
-from fe_drivetrain.fidelity.quantity import Quantity
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.drivetrain_file.units import unit_of_key
 from fe_drivetrain.report.charts import bars, chart
 from fe_drivetrain.report.results import Chart
-from fe_drivetrain.scene.scene import Scene
-from fe_drivetrain.scene.units import unit_of_key
+from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.report.suite.records import Record, curves
+from fe_drivetrain.shafts.fidelity.designs import Difference, compare_designs, scene_changes
+from fe_drivetrain.shafts.fidelity.ladder import TITLES
+from fe_drivetrain.shafts.fidelity.quantity import Quantity
 from fe_drivetrain.studies.result import Result
-from fe_drivetrain.suite.findings import Findings
-from fe_drivetrain.suite.records import Record, curves
 
 #: Changes that the answer names, and that have a curve of their own.
 _NAMED, _CURVES = 3, 6
@@ -113,7 +113,7 @@ def compare(
     designs : mapping of str to Scene
         By name; the others are compared with the first.
     quantities : sequence of Quantity or None
-        What is compared; see `fe_drivetrain.fidelity.compare_designs`.
+        What is compared; see `fe_drivetrain.shafts.fidelity.compare_designs`.
     tolerance : float
         Allowed error of a change, relative.
     load : mapping of str to float or None

@@ -9,13 +9,16 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
-from fe_drivetrain.fidelity.ladder import LevelModel
-from fe_drivetrain.fidelity.over_loads import (
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.shafts.fidelity.ladder import LevelModel
+from fe_drivetrain.shafts.fidelity.over_loads import (
     ROUND_OFF,
     Levels,
     reaction_history,
 )
-from fe_drivetrain.histories.model_errors import (
+from fe_drivetrain.studies.study_loads import EnteredLoads
+from fe_drivetrain.turbine_loads.histories.model_errors import (
     USES,
     Measured,
     damage_ratio,
@@ -23,9 +26,6 @@ from fe_drivetrain.histories.model_errors import (
     measured,
     model_errors,
 )
-from fe_drivetrain.scene.scene import Scene
-from fe_drivetrain.studies.study_loads import EnteredLoads
-from fe_drivetrain.suite.records import Record
 
 _MOST = 12
 """Histories that are counted, evenly over all: a count takes longer than a reaction."""
@@ -159,7 +159,7 @@ def failure(seen: Mapping[str, Mapping[str, Mapping[str, float]]], use: str) -> 
     seen : mapping
         By level and reaction: errors by measure, as shares; NaN where there is no such load.
     use : str
-        A key of `fe_drivetrain.histories.model_errors.USES`.
+        A key of `fe_drivetrain.turbine_loads.histories.model_errors.USES`.
 
     Returns
     -------

@@ -10,21 +10,21 @@ from fe_drivetrain.common.errors import InputError, require_known
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.common.stiffness_bands import KINDS, StiffnessBands
+from fe_drivetrain.drivetrain_file.component import Component
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.elasticity.mesh.mesh import Mesh
 from fe_drivetrain.export.craig_bampton import CraigBampton, craig_bampton_shaft
 from fe_drivetrain.export.formats.summary import SummaryFile, summary
 from fe_drivetrain.export.from_component import BODY, component_superelement
 from fe_drivetrain.export.scene_export import AUTO, SHAFT, superelement_of
 from fe_drivetrain.export.superelement import Superelement
-from fe_drivetrain.fidelity.component_solid import component_mesh
-from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.report.charts import bars, stiffness_chart
 from fe_drivetrain.report.results import Chart
-from fe_drivetrain.response.model import Model, build_model, mesh_scene
-from fe_drivetrain.scene.component import Component
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.shafts.fidelity.component_solid import component_mesh
+from fe_drivetrain.shafts.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.studies.part_survey import place_records
 from fe_drivetrain.studies.result import Result
-from fe_drivetrain.suite.findings import Findings
 
 Kind = Literal["superelement", "modes", "summary", "model", "mesh"]
 """A part condensed to points; the free shaft with fixed-interface modes, too; numbers of a

@@ -9,23 +9,23 @@ from typing import Any, ClassVar
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
-from fe_drivetrain.fidelity.quantities import Number
-from fe_drivetrain.fidelity.quantity import named_load
+from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.report.charts import chart, rounded
 from fe_drivetrain.report.results import Chart
-from fe_drivetrain.scene.scene import Scene
-from fe_drivetrain.studies.result import Result
-from fe_drivetrain.suite.findings import Findings
-from fe_drivetrain.suite.records import Record
-from fe_drivetrain.uncertainty.input_study import (
+from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.shafts.fidelity.quantities import Number
+from fe_drivetrain.shafts.fidelity.quantity import named_load
+from fe_drivetrain.shafts.uncertainty.input_study import (
     ModelError,
     Study,
     level_error,
     result_at,
     study,
 )
-from fe_drivetrain.uncertainty.numbers import figures, half_band
-from fe_drivetrain.uncertainty.sampling import SHARE, Band, Shares
+from fe_drivetrain.shafts.uncertainty.numbers import figures, half_band
+from fe_drivetrain.shafts.uncertainty.sampling import SHARE, Band, Shares
+from fe_drivetrain.studies.result import Result
 
 _CHARTED = 6  # quantities with their own charts; the tables have all of them
 
@@ -135,7 +135,7 @@ def uncertainty(
     Raises
     ------
     InputError
-        See `fe_drivetrain.uncertainty.input_study.study`; the load has an unknown name, or there
+        See `fe_drivetrain.shafts.uncertainty.input_study.study`; the load has an unknown name, or there
         are too few samples for a band.
     """
     if samples < MIN_SAMPLES:

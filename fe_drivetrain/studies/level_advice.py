@@ -10,16 +10,16 @@ import numpy as np
 
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
-from fe_drivetrain.fidelity.ablation import Effect, effects
-from fe_drivetrain.fidelity.adviser import Advice, LevelResult
-from fe_drivetrain.fidelity.adviser import advise as run_levels
-from fe_drivetrain.fidelity.quantity import Quantity, named_load
+from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.report.charts import chart, rounded, trace
 from fe_drivetrain.report.results import Chart
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.shafts.fidelity.ablation import Effect, effects
+from fe_drivetrain.shafts.fidelity.adviser import Advice, LevelResult
+from fe_drivetrain.shafts.fidelity.adviser import advise as run_levels
+from fe_drivetrain.shafts.fidelity.quantity import Quantity, named_load
 from fe_drivetrain.studies.result import Result
-from fe_drivetrain.suite.findings import Findings
-from fe_drivetrain.suite.records import Record
 
 _LEAST = 1e-6  # in percent; statics has no error, but a logarithmic axis needs one
 

@@ -8,19 +8,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.common.components import FORCES
-from fe_drivetrain.compare.time_weighted import weighted_rms
-from fe_drivetrain.fidelity.judgement import Judged, Judgement, is_within
-from fe_drivetrain.fidelity.over_loads import (
+from fe_drivetrain.comparison.time_weighted import weighted_rms
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.shafts.fidelity.judgement import Judged, Judgement, is_within
+from fe_drivetrain.shafts.fidelity.over_loads import (
     COARSER_ASSEMBLY,
     ROUND_OFF,
     Levels,
     reaction_history,
     relative_errors,
 )
-from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.studies.reaction_statistics import SHOWN_UNITS
 from fe_drivetrain.studies.study_loads import EnteredLoads
-from fe_drivetrain.suite.records import Record
 
 ENOUGH = 0.05
 """Share of the root mean square that the study takes for accurate enough."""

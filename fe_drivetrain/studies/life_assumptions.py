@@ -14,13 +14,13 @@ from math import floor, log10
 import numpy as np
 
 from fe_drivetrain.bearing.geometry import Bearing, largest_clearance
+from fe_drivetrain.bearing_life.life.lubricants import GRADES, SUPPLIES
+from fe_drivetrain.bearing_life.life.rated import RatedBearing
+from fe_drivetrain.bearing_life.life.roller_damage import LifeRules, damage_of_steps
+from fe_drivetrain.bearing_life.life.steps import Steps
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.hub_loads.point_loads import PointLoads
-from fe_drivetrain.life.lubricants import GRADES, SUPPLIES
-from fe_drivetrain.life.rated import RatedBearing
-from fe_drivetrain.life.roller_damage import LifeRules, damage_of_steps
-from fe_drivetrain.life.steps import Steps
 from fe_drivetrain.studies.rolling_bearings import PROFILE, Choices, OneBearing
+from fe_drivetrain.turbine_loads.hub_loads.point_loads import PointLoads
 
 PLAYED = 1.0 / 4000.0
 """Clearance to compare with over the pitch diameter: 0.2 mm at 0.8 m. A size of what bearings have

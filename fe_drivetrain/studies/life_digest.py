@@ -10,24 +10,24 @@ import numpy as np
 
 from fe_drivetrain.bearing.answers import race_pressures
 from fe_drivetrain.bearing.geometry import RollerRow
+from fe_drivetrain.bearing_life.life.limits import check_speed
+from fe_drivetrain.bearing_life.life.roller_damage import Damage, LifeRules, damage_of_steps
+from fe_drivetrain.bearing_life.life.steps import Steps
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.made_by import file_digest, program_hash
 from fe_drivetrain.common.progress import Progress, silent
-from fe_drivetrain.hub_loads.channel_map import ChannelMap
-from fe_drivetrain.hub_loads.histories import MIN_SAMPLES
-from fe_drivetrain.hub_loads.recorded import read_recorded
-from fe_drivetrain.hub_loads.turbines import vertical_forces
-from fe_drivetrain.life.limits import check_speed
-from fe_drivetrain.life.roller_damage import Damage, LifeRules, damage_of_steps
-from fe_drivetrain.life.steps import Steps
-from fe_drivetrain.response.cached import whole_content
-from fe_drivetrain.response.entering import entering
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.shafts.response.cached import whole_content
+from fe_drivetrain.shafts.response.entering import entering
 from fe_drivetrain.studies.life_assumptions import ratios, what_ifs
 from fe_drivetrain.studies.rolling_bearings import Choices, OneBearing
 from fe_drivetrain.studies.unused import RPM, own_speeds, require_samples
+from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
+from fe_drivetrain.turbine_loads.hub_loads.histories import MIN_SAMPLES
+from fe_drivetrain.turbine_loads.hub_loads.recorded import read_recorded
+from fe_drivetrain.turbine_loads.hub_loads.turbines import vertical_forces
 
 WINDOWS = 60
 """Parts of a file, over which the damage map follows the time."""

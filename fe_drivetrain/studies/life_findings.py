@@ -7,22 +7,22 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.histories.sites import Site
-from fe_drivetrain.hub_loads.recorded import short_name
-from fe_drivetrain.hub_loads.turbines import different_turbines
-from fe_drivetrain.life.limits import centrifugal_load
-from fe_drivetrain.life.reference_life import RINGS
-from fe_drivetrain.life.roller_damage import LifeRules
+from fe_drivetrain.bearing_life.life.limits import centrifugal_load
+from fe_drivetrain.bearing_life.life.reference_life import RINGS
+from fe_drivetrain.bearing_life.life.roller_damage import LifeRules
+from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.procedure.failure_modes import TORQUE_AND_BENDING
 from fe_drivetrain.report.answer import value_with_band
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.life_assumptions import in_words, in_years
 from fe_drivetrain.studies.life_options import LifeOptions
 from fe_drivetrain.studies.life_sums import BearingLife, row_names, scatter
 from fe_drivetrain.studies.rolling_bearings import rollers_in_words
 from fe_drivetrain.studies.unused import choices_not_used, speed_not_used
-from fe_drivetrain.suite.findings import Findings
-from fe_drivetrain.suite.records import Record
+from fe_drivetrain.turbine_loads.histories.sites import Site
+from fe_drivetrain.turbine_loads.hub_loads.recorded import short_name
+from fe_drivetrain.turbine_loads.hub_loads.turbines import different_turbines
 
 PRESSED_OUT = 0.01
 """Centrifugal load over the largest of a rolling element from which on it is spoken of."""

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 from fe_drivetrain.common.errors import InputError, require_known
 
 if TYPE_CHECKING:
-    from fe_drivetrain.hub_loads.channel_map import ChannelMap
-    from fe_drivetrain.life.lubricants import Lubricant, Supply
-    from fe_drivetrain.life.reference_life import Turning
-    from fe_drivetrain.life.roller_damage import LifeRules
+    from fe_drivetrain.bearing_life.life.lubricants import Lubricant, Supply
+    from fe_drivetrain.bearing_life.life.reference_life import Turning
+    from fe_drivetrain.bearing_life.life.roller_damage import LifeRules
     from fe_drivetrain.studies.life_digest import Reading
     from fe_drivetrain.studies.rolling_bearings import Choices
+    from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
 
 #: Options whose defaults change lives, though the user may never have thought of them.
 ASSUMED = ("lubricant", "temperature", "cleanliness", "profile", "riser", "turning")
@@ -35,14 +35,14 @@ class LifeOptions:
     catalogues : Sequence[Path]
         Bearing catalogues of the user, beside the program's own.
     lubricant : str, tuple of float, or None
-        A grade of `fe_drivetrain.life.GRADES`, or viscosities at 40 and at 100 degC [mm2/s]; None
+        A grade of `fe_drivetrain.bearing_life.life.GRADES`, or viscosities at 40 and at 100 degC [mm2/s]; None
         leaves modified lives out, which are then equal to the basic ones.
     temperature : float
         Temperature of the bearings in operation [degC].
     supply : {"grease", "filtered oil", "oil bath"}
         How the lubricant comes to the rollers.
     cleanliness : str or None
-        A class of `fe_drivetrain.life.SUPPLIES`; None takes a usual one.
+        A class of `fe_drivetrain.bearing_life.life.SUPPLIES`; None takes a usual one.
     profile : bool
         Rollers have the standard's logarithmic profile where their entry has none.
     riser : bool
@@ -54,7 +54,7 @@ class LifeOptions:
     rings : {"rigid", "three-degree", "housing"}
         How the rings share the load among the rollers.
     reliability_percent : float
-        Reliability of modified lives, one of `fe_drivetrain.life.RELIABILITY` [%].
+        Reliability of modified lives, one of `fe_drivetrain.bearing_life.life.RELIABILITY` [%].
     channels : ChannelMap or None
         How files call their channels, and their frame and origin; None takes OpenFAST's names, and
         those of the program's own tables.
@@ -116,7 +116,7 @@ class LifeOptions:
     @property
     def rules(self) -> LifeRules:
         """Choices that change the life of a bearing under given loads of its rollers."""
-        from fe_drivetrain.life.roller_damage import RELIABILITY, LifeRules
+        from fe_drivetrain.bearing_life.life.roller_damage import RELIABILITY, LifeRules
 
         if self.reliability_percent not in RELIABILITY:
             known = ", ".join(f"{value:g}" for value in RELIABILITY)
@@ -131,8 +131,8 @@ class LifeOptions:
     @property
     def reading(self) -> Reading:
         """How files are read."""
-        from fe_drivetrain.hub_loads.recorded import OWN_NAMES
         from fe_drivetrain.studies.life_digest import Reading
+        from fe_drivetrain.turbine_loads.hub_loads.recorded import OWN_NAMES
 
         names = OWN_NAMES if self.channels is None else self.channels
         return Reading(names, self.skip, self.every, self.rotor_speed_rpm)
@@ -155,7 +155,7 @@ class LifeOptions:
 
     @property
     def _oil(self) -> Lubricant | None:
-        from fe_drivetrain.life.lubricants import GRADES, Lubricant
+        from fe_drivetrain.bearing_life.life.lubricants import GRADES, Lubricant
 
         if self.lubricant is None:
             return None

@@ -9,14 +9,14 @@ from pathlib import Path
 import numpy as np
 
 from fe_drivetrain.bearing.geometry import Row
+from fe_drivetrain.bearing_life.life.at_site import SiteLife, site_lives
+from fe_drivetrain.bearing_life.life.limits import Limits
+from fe_drivetrain.bearing_life.life.roller_damage import KINDS, Damage, LifeRules
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.histories.sites import Site, require_winds, rounded_wind
-from fe_drivetrain.life.at_site import SiteLife, site_lives
-from fe_drivetrain.life.limits import Limits
-from fe_drivetrain.life.roller_damage import KINDS, Damage, LifeRules
 from fe_drivetrain.studies.life_assumptions import Assumption, what_ifs
 from fe_drivetrain.studies.life_digest import LifeDigest, worse
 from fe_drivetrain.studies.rolling_bearings import Choices, OneBearing
+from fe_drivetrain.turbine_loads.histories.sites import Site, require_winds, rounded_wind
 
 
 @dataclass(frozen=True, eq=False)
@@ -269,7 +269,7 @@ def scatter(life: BearingLife, kind: str = "L10mr") -> float | None:
     life : BearingLife
         The bearing.
     kind : str
-        Kind of life, one of `fe_drivetrain.life.KINDS`.
+        Kind of life, one of `fe_drivetrain.bearing_life.life.KINDS`.
     """
     site = life.site
     if site is None:

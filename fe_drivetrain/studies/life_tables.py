@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.bearing.geometry import RollerRow, Row, angles
+from fe_drivetrain.bearing_life.life.reference_life import RINGS, reference_load
+from fe_drivetrain.bearing_life.life.roller_damage import KINDS
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.histories.sites import HOURS_A_YEAR
-from fe_drivetrain.life.reference_life import RINGS, reference_load
-from fe_drivetrain.life.roller_damage import KINDS
+from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.life_sums import BearingLife, row_names
-from fe_drivetrain.suite.records import Record
+from fe_drivetrain.turbine_loads.histories.sites import HOURS_A_YEAR
 
 
 def life_rows(lives: Sequence[BearingLife]) -> list[Record]:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from fe_drivetrain.histories.faults import FAR
-from fe_drivetrain.histories.windows import TEN_MINUTES
-from fe_drivetrain.hub_loads.turbines import different_turbines
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.studies.load_digest import LOADS, LoadOptions
 from fe_drivetrain.studies.load_totals import LoadTotals, Suspects
+from fe_drivetrain.turbine_loads.histories.faults import FAR
+from fe_drivetrain.turbine_loads.histories.windows import TEN_MINUTES
+from fe_drivetrain.turbine_loads.hub_loads.turbines import different_turbines
 
 MUCH = 0.1
 """Share of damage from half cycles that is named."""

@@ -9,14 +9,14 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.histories.sets import CHANCE, Difference, differences
-from fe_drivetrain.histories.sites import WIND_BIN, rounded_wind
-from fe_drivetrain.histories.spectra import MULTIPLES
-from fe_drivetrain.histories.windows import COLUMNS
 from fe_drivetrain.studies.load_digest import LOADS, UNITS, Digest
 from fe_drivetrain.studies.load_planes import PLANES
 from fe_drivetrain.studies.load_reactions import ALONE, FileDigest
 from fe_drivetrain.studies.load_records import shown_unit
+from fe_drivetrain.turbine_loads.histories.sets import CHANCE, Difference, differences
+from fe_drivetrain.turbine_loads.histories.sites import WIND_BIN, rounded_wind
+from fe_drivetrain.turbine_loads.histories.spectra import MULTIPLES
+from fe_drivetrain.turbine_loads.histories.windows import COLUMNS
 
 
 def features(found: Digest, slopes: Sequence[float]) -> dict[str, float]:

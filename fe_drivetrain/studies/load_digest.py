@@ -13,23 +13,23 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError, require_known
 from fe_drivetrain.common.made_by import file_digest, program_hash
-from fe_drivetrain.histories.cycle_sums import CycleRule, CycleSums, count_cycles
-from fe_drivetrain.histories.cycles import RESIDUES, Cycles, Residue
-from fe_drivetrain.histories.damage import FREQUENCY, SLOPES, check_slope
-from fe_drivetrain.histories.faults import lone_samples, times_as_far
-from fe_drivetrain.histories.level_sums import (
+from fe_drivetrain.studies.load_planes import PLANES, PlaneDigest, plane_digest
+from fe_drivetrain.studies.unused import own_speeds
+from fe_drivetrain.turbine_loads.histories.cycle_sums import CycleRule, CycleSums, count_cycles
+from fe_drivetrain.turbine_loads.histories.cycles import RESIDUES, Cycles, Residue
+from fe_drivetrain.turbine_loads.histories.damage import FREQUENCY, SLOPES, check_slope
+from fe_drivetrain.turbine_loads.histories.faults import lone_samples, times_as_far
+from fe_drivetrain.turbine_loads.histories.level_sums import (
     LevelSums,
     TorqueSums,
     level_sums,
     torque_sums,
     turns_of,
 )
-from fe_drivetrain.histories.spectrum_sums import HistorySpectra, history_spectra
-from fe_drivetrain.histories.windows import Windows, window_statistics
-from fe_drivetrain.hub_loads.channel_map import ChannelMap
-from fe_drivetrain.hub_loads.recorded import OWN_NAMES, Recorded
-from fe_drivetrain.studies.load_planes import PLANES, PlaneDigest, plane_digest
-from fe_drivetrain.studies.unused import own_speeds
+from fe_drivetrain.turbine_loads.histories.spectrum_sums import HistorySpectra, history_spectra
+from fe_drivetrain.turbine_loads.histories.windows import Windows, window_statistics
+from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
+from fe_drivetrain.turbine_loads.hub_loads.recorded import OWN_NAMES, Recorded
 
 LOADS = (*FORCES, "radial force", "bending moment")
 """Channels that are counted; the last two are sizes across the shaft."""

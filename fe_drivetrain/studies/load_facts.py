@@ -8,13 +8,13 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
-from fe_drivetrain.compare.time_weighted import weighted_statistics
-from fe_drivetrain.hub_loads.histories import LoadHistory
-from fe_drivetrain.hub_loads.point_loads import PointLoads
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.comparison.time_weighted import weighted_statistics
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.reaction_statistics import COLUMNS, SHOWN_UNITS
 from fe_drivetrain.studies.study_loads import EnteredLoads
-from fe_drivetrain.suite.records import Record
+from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
+from fe_drivetrain.turbine_loads.hub_loads.point_loads import PointLoads
 
 _SHOWN = 60.0  # seconds of the history whose beginning is kept
 

@@ -13,14 +13,13 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
-from fe_drivetrain.histories.sites import Site, require_winds
-from fe_drivetrain.histories.spectra import MULTIPLES
-from fe_drivetrain.hub_loads.recorded import Files, recorded_files, short_name
+from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.procedure.failure_modes import ROTOR_TORQUE
 from fe_drivetrain.report.answer import value_with_band
 from fe_drivetrain.report.charts import chart, trace
 from fe_drivetrain.report.results import Chart
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies import load_tables as rows
 from fe_drivetrain.studies.load_cautions import cautions
 from fe_drivetrain.studies.load_comparison import Comparison, LoadSet, compare_sets
@@ -40,8 +39,9 @@ from fe_drivetrain.studies.load_totals import EquivalentLoad, LoadSums, LoadTota
 from fe_drivetrain.studies.load_winds import Capture, CaptureTarget, captured, winds_not_used
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.unused import RPM, speed_not_used
-from fe_drivetrain.suite.findings import Findings
-from fe_drivetrain.suite.records import Record
+from fe_drivetrain.turbine_loads.histories.sites import Site, require_winds
+from fe_drivetrain.turbine_loads.histories.spectra import MULTIPLES
+from fe_drivetrain.turbine_loads.hub_loads.recorded import Files, recorded_files, short_name
 
 if TYPE_CHECKING:
     pass

@@ -9,9 +9,11 @@ from pathlib import Path
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.histories.classes import Classes, added
-from fe_drivetrain.histories.level_sums import LevelSums
-from fe_drivetrain.histories.sites import (
+from fe_drivetrain.studies.load_digest import LOADS, Digest
+from fe_drivetrain.studies.load_totals import LoadTotals
+from fe_drivetrain.turbine_loads.histories.classes import Classes, added
+from fe_drivetrain.turbine_loads.histories.level_sums import LevelSums
+from fe_drivetrain.turbine_loads.histories.sites import (
     HOURS_A_YEAR,
     Site,
     Transient,
@@ -20,8 +22,6 @@ from fe_drivetrain.histories.sites import (
     rounded_wind,
     time_factors,
 )
-from fe_drivetrain.studies.load_digest import LOADS, Digest
-from fe_drivetrain.studies.load_totals import LoadTotals
 
 CYCLES = 1e7
 """Number of cycles of the equivalent load of a lifetime."""
@@ -127,7 +127,7 @@ def lifetime(found: LoadTotals, site: Site, events: Sequence[Event] = ()) -> Lif
     Parameters
     ----------
     found : LoadTotals
-        All files, of two winds or more: see `fe_drivetrain.histories.sites.require_winds`.
+        All files, of two winds or more: see `fe_drivetrain.turbine_loads.histories.sites.require_winds`.
     site : Site
         The site.
     events : sequence of Event

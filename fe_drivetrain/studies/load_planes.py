@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.histories.classes import Classes, added, in_classes
-from fe_drivetrain.histories.polar import direction
-from fe_drivetrain.hub_loads.loops import find_loops, loop_statistics, time_on_loops
+from fe_drivetrain.turbine_loads.histories.classes import Classes, added, in_classes
+from fe_drivetrain.turbine_loads.histories.polar import direction
+from fe_drivetrain.turbine_loads.hub_loads.loops import find_loops, loop_statistics, time_on_loops
 
 PLANES = (("force", 1), ("moment", 4))
 """Names, and where the component along y stands among the six."""

@@ -15,15 +15,15 @@ from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import require_known
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress
-from fe_drivetrain.fidelity.ladder import LevelModel, assembly_level, shaft_level
-from fe_drivetrain.fidelity.over_loads import ROUND_OFF, reaction_history
-from fe_drivetrain.hub_loads.histories import LoadHistory
-from fe_drivetrain.hub_loads.recorded import Recorded, read_recorded
-from fe_drivetrain.response.cached import whole_content
-from fe_drivetrain.response.entering import entering
-from fe_drivetrain.response.stated import Stated, stated_reactions
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.shafts.fidelity.ladder import LevelModel, assembly_level, shaft_level
+from fe_drivetrain.shafts.fidelity.over_loads import ROUND_OFF, reaction_history
+from fe_drivetrain.shafts.response.cached import whole_content
+from fe_drivetrain.shafts.response.entering import entering
+from fe_drivetrain.shafts.response.stated import Stated, stated_reactions
 from fe_drivetrain.studies.load_digest import LOADS, Digest, LoadOptions, digest
+from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
+from fe_drivetrain.turbine_loads.hub_loads.recorded import Recorded, read_recorded
 
 ALONE = "Fx"
 """Load under which a digest has another channel of the files, which is no vector; all else is

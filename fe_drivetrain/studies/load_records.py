@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.histories.level_sums import POWER
-from fe_drivetrain.histories.spectra import MULTIPLES
-from fe_drivetrain.histories.windows import COLUMNS
+from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.load_digest import LOADS, UNITS, LoadOptions
 from fe_drivetrain.studies.load_lifetime import Lifetime
 from fe_drivetrain.studies.load_reactions import ALONE
 from fe_drivetrain.studies.load_totals import LoadTotals
-from fe_drivetrain.suite.records import Record
+from fe_drivetrain.turbine_loads.histories.level_sums import POWER
+from fe_drivetrain.turbine_loads.histories.spectra import MULTIPLES
+from fe_drivetrain.turbine_loads.histories.windows import COLUMNS
 
 
 def shown_unit(unit: str) -> str:

@@ -6,10 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from fe_drivetrain.histories.classes import Classes
-from fe_drivetrain.histories.cycle_sums import equivalent_loads
-from fe_drivetrain.histories.sets import Difference
-from fe_drivetrain.histories.windows import COLUMNS
+from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.load_comparison import Comparison
 from fe_drivetrain.studies.load_digest import (
     CHANNELS,
@@ -23,7 +20,10 @@ from fe_drivetrain.studies.load_lifetime import Lifetime
 from fe_drivetrain.studies.load_reactions import ALONE
 from fe_drivetrain.studies.load_totals import LoadTotals
 from fe_drivetrain.studies.load_winds import Capture, by_wind_and_turbulence
-from fe_drivetrain.suite.records import Record
+from fe_drivetrain.turbine_loads.histories.classes import Classes
+from fe_drivetrain.turbine_loads.histories.cycle_sums import equivalent_loads
+from fe_drivetrain.turbine_loads.histories.sets import Difference
+from fe_drivetrain.turbine_loads.histories.windows import COLUMNS
 
 
 def file_rows(found: LoadTotals) -> list[Record]:

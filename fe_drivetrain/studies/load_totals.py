@@ -9,13 +9,13 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
-from fe_drivetrain.histories.cycle_sums import CycleSums, equivalent_loads
-from fe_drivetrain.histories.level_sums import LevelSums, TorqueSums
-from fe_drivetrain.histories.sites import rounded_wind
-from fe_drivetrain.histories.spectrum_sums import MeanSpectra, SpectrumSums
-from fe_drivetrain.histories.windows import Windows, joined_windows
 from fe_drivetrain.studies.load_digest import CHANNELS, LOADS, Digest, LoadOptions, Span
 from fe_drivetrain.studies.load_planes import PLANES, PlaneSums, PlaneTotals
+from fe_drivetrain.turbine_loads.histories.cycle_sums import CycleSums, equivalent_loads
+from fe_drivetrain.turbine_loads.histories.level_sums import LevelSums, TorqueSums
+from fe_drivetrain.turbine_loads.histories.sites import rounded_wind
+from fe_drivetrain.turbine_loads.histories.spectrum_sums import MeanSpectra, SpectrumSums
+from fe_drivetrain.turbine_loads.histories.windows import Windows, joined_windows
 
 
 @dataclass(frozen=True, eq=False)

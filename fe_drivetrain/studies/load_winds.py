@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.histories.sites import WIND_BIN
-from fe_drivetrain.histories.windows import CaptureMatrix, capture_matrix
 from fe_drivetrain.studies.load_digest import CHANNELS
 from fe_drivetrain.studies.load_totals import LoadStatistics
+from fe_drivetrain.turbine_loads.histories.sites import WIND_BIN
+from fe_drivetrain.turbine_loads.histories.windows import CaptureMatrix, capture_matrix
 
 TURBULENCE_BIN = 0.02
 """Height of the capture matrix's rows; its columns are `WIND_BIN` wide, about whole m/s."""

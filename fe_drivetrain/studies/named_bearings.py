@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.strict_yaml import shown
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.drivetrain_file.scene import Scene
 
 if TYPE_CHECKING:
     from fe_drivetrain.bearing.catalogue import Entry
@@ -85,7 +85,7 @@ def named_bearings(
         misfit = check_seat(name, entry, known[entry], seat)
         found[name] = NamedBearing(entry, known[entry], seat, misfit)
     if len(found) == len(scene.bearing_units) and scene.nose is None:
-        from fe_drivetrain.coupled.of_scene import scene_body
+        from fe_drivetrain.bearing_life.coupled.of_scene import scene_body
 
         scene_body(scene, 1)  # rolling bearings hold no torque, which the scene's joints may
     return found

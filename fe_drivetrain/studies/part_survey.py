@@ -21,9 +21,9 @@ from fe_drivetrain.foreign.survey import Survey, surveyed
 from fe_drivetrain.geometry import CondensedHousing
 from fe_drivetrain.report.charts import bars, stiffness_chart
 from fe_drivetrain.report.results import Chart
+from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.result import Result
-from fe_drivetrain.suite.findings import Findings
-from fe_drivetrain.suite.records import Record
 
 SUPERELEMENTS = {".json": "json", ".csv": "csv", ".bdf": "dmig", ".op4": "op4", ".h5": "hdf5"}
 """Format of a superelement by the ending of its file."""

@@ -9,8 +9,9 @@ from typing import ClassVar
 
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
+from fe_drivetrain.drivetrain_file.named_scenes import named_scene
+from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.dynamics.tables import Machine, named_machine
-from fe_drivetrain.histories.windows import CaptureMatrix
 from fe_drivetrain.procedure.assessment import Measured, StepState, assessed, claims_of
 from fe_drivetrain.procedure.channels import missing_file
 from fe_drivetrain.procedure.evidence import (
@@ -35,11 +36,10 @@ from fe_drivetrain.procedure.steps import STEPS
 from fe_drivetrain.report.charts import bars
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.results import Chart, DrivetrainRecord, expectation
-from fe_drivetrain.scene.named_scenes import named_scene
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.result import Result
-from fe_drivetrain.suite.findings import Findings
-from fe_drivetrain.suite.records import Record
+from fe_drivetrain.turbine_loads.histories.windows import CaptureMatrix
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)

@@ -9,14 +9,14 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
-from fe_drivetrain.compare.time_weighted import weighted_statistics
-from fe_drivetrain.fidelity.ladder import LevelModel
-from fe_drivetrain.fidelity.over_loads import Levels, reaction_history
-from fe_drivetrain.histories.cycles import Cycles, rainflow_cycles
-from fe_drivetrain.histories.damage import damage_equivalent_load
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.comparison.time_weighted import weighted_statistics
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.shafts.fidelity.ladder import LevelModel
+from fe_drivetrain.shafts.fidelity.over_loads import Levels, reaction_history
 from fe_drivetrain.studies.study_loads import EnteredLoads
-from fe_drivetrain.suite.records import Record
+from fe_drivetrain.turbine_loads.histories.cycles import Cycles, rainflow_cycles
+from fe_drivetrain.turbine_loads.histories.damage import damage_equivalent_load
 
 COLUMNS = ("least", "mean", "largest", "standard deviation")
 """Columns of `Statistics.values`."""

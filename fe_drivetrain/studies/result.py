@@ -13,8 +13,8 @@ from pydantic import BaseModel
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.report.answer import value_with_band
 from fe_drivetrain.report.results import Chart, Figure
-from fe_drivetrain.suite.findings import Found
-from fe_drivetrain.suite.records import as_json
+from fe_drivetrain.report.suite.findings import Found
+from fe_drivetrain.report.suite.records import as_json
 
 if TYPE_CHECKING:
     import pandas as pd

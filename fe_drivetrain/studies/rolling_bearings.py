@@ -11,18 +11,18 @@ from typing import Any
 from fe_drivetrain.bearing.catalogue import Entry, read_catalogue
 from fe_drivetrain.bearing.geometry import Bearing, RollerRow
 from fe_drivetrain.bearing.races import Races
-from fe_drivetrain.common.components import GRAVITY
-from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.coupled.load_paths import PINNED, LoadPath
-from fe_drivetrain.coupled.of_scene import scene_body
-from fe_drivetrain.life.rated import RatedBearing, rated_from_catalogue
-from fe_drivetrain.life.roller_models import (
+from fe_drivetrain.bearing_life.coupled.load_paths import PINNED, LoadPath
+from fe_drivetrain.bearing_life.coupled.of_scene import scene_body
+from fe_drivetrain.bearing_life.life.rated import RatedBearing, rated_from_catalogue
+from fe_drivetrain.bearing_life.life.roller_models import (
     RollerModel,
     flexible_rings,
     rigid_rings,
     three_degree_rings,
 )
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.common.components import GRAVITY
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.studies.named_bearings import named_bearings
 
 SUPPORTS = ("rollers", "pinned")
@@ -180,7 +180,7 @@ def _rollers(
     """How a bearing's load is shared, for any clearance and profile of its rollers."""
     if rings != "housing":
         return three_degree_rings if rings == "three-degree" else rigid_rings
-    from fe_drivetrain.rings.housing import housing_races
+    from fe_drivetrain.bearing_life.rings.housing import housing_races
 
     races = housing_races(scene, name, bearing)
     return partial(_on_races, races)

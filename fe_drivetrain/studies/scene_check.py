@@ -9,18 +9,18 @@ from typing import ClassVar
 
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
-from fe_drivetrain.fidelity.level_costs import Forecast, forecast
+from fe_drivetrain.drivetrain_file.left_out import left_out
+from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.report.charts import chart, trace
 from fe_drivetrain.report.results import Chart
-from fe_drivetrain.response.model import Model
-from fe_drivetrain.scene.left_out import left_out
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.shafts.fidelity.level_costs import Forecast, forecast
+from fe_drivetrain.shafts.response.model import Model
 from fe_drivetrain.studies.named_bearings import named_bearings
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.scene_description import checked_model, description
 from fe_drivetrain.studies.unused import catalogues_not_used
-from fe_drivetrain.suite.findings import Findings
-from fe_drivetrain.suite.records import Record
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)

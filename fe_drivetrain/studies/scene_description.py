@@ -7,12 +7,12 @@ from pathlib import Path
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.steps import Clock
 from fe_drivetrain.common.typeset import with_prefix
+from fe_drivetrain.drivetrain_file.bearing_unit import SPHERICAL_JOINTS, BearingUnit, Springs
+from fe_drivetrain.drivetrain_file.nose import NoseBearing
+from fe_drivetrain.drivetrain_file.scene import Scene, coarser_scene
 from fe_drivetrain.geometry import FurtherPart
-from fe_drivetrain.response.model import Model, build_model, mesh_scene
-from fe_drivetrain.scene.bearing_unit import SPHERICAL_JOINTS, BearingUnit, Springs
-from fe_drivetrain.scene.nose import NoseBearing
-from fe_drivetrain.scene.scene import Scene, coarser_scene
-from fe_drivetrain.suite.records import Record
+from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.shafts.response.model import Model, build_model, mesh_scene
 
 #: Coarsening of the mesh of a quick study: factor of the sizes, and elements a turn.
 _QUICK = (2.0, 8)
@@ -38,7 +38,7 @@ def checked_model(steps: Clock, scene: Scene) -> Model:
     Raises
     ------
     InputError
-        The scene cannot be built, or is a mechanism; see `fe_drivetrain.response.build_model`.
+        The scene cannot be built, or is a mechanism; see `fe_drivetrain.shafts.response.build_model`.
     """
     with steps.step("mesh"):
         mesh = mesh_scene(scene)

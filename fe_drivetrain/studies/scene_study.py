@@ -12,24 +12,26 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
-from fe_drivetrain.fidelity.bearing_units import UnitBounds
-from fe_drivetrain.fidelity.foot_opening import foot_warnings
-from fe_drivetrain.fidelity.judgement import Judgement, judge_levels
-from fe_drivetrain.fidelity.ladder import statics_level
-from fe_drivetrain.fidelity.over_loads import Levels, imbalance, levels_of, reaction_history
-from fe_drivetrain.fidelity.quantities import UNIT, unit_numbers
-from fe_drivetrain.histories.damage import SLOPES, check_slope
-from fe_drivetrain.hub_loads.histories import LoadHistory
+from fe_drivetrain.drivetrain_file.left_out import left_out
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.drivetrain_file.without_weight import weightless
 from fe_drivetrain.report.charts import bars
 from fe_drivetrain.report.results import Chart
-from fe_drivetrain.response.cached import cached_response
-from fe_drivetrain.response.entering import Factors, Loads
-from fe_drivetrain.response.model import Model
-from fe_drivetrain.response.stated import Stated, stated_reactions
-from fe_drivetrain.response.unit_loads import Response
-from fe_drivetrain.scene.left_out import left_out
-from fe_drivetrain.scene.scene import Scene
-from fe_drivetrain.scene.without_weight import weightless
+from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.shafts.fidelity.bearing_units import UnitBounds
+from fe_drivetrain.shafts.fidelity.foot_opening import foot_warnings
+from fe_drivetrain.shafts.fidelity.judgement import Judgement, judge_levels
+from fe_drivetrain.shafts.fidelity.ladder import statics_level
+from fe_drivetrain.shafts.fidelity.over_loads import Levels, imbalance, levels_of, reaction_history
+from fe_drivetrain.shafts.fidelity.quantities import UNIT, unit_numbers
+from fe_drivetrain.shafts.response.cached import cached_response
+from fe_drivetrain.shafts.response.entering import Factors, Loads
+from fe_drivetrain.shafts.response.model import Model
+from fe_drivetrain.shafts.response.stated import Stated, stated_reactions
+from fe_drivetrain.shafts.response.unit_loads import Response
+from fe_drivetrain.shafts.uncertainty import input_study
+from fe_drivetrain.shafts.uncertainty.numbers import figures
 from fe_drivetrain.studies.closed_forms import ForceErrors, closed_form_errors, closed_form_rows
 from fe_drivetrain.studies.design_measures import DesignMeasures, design_measures
 from fe_drivetrain.studies.level_errors import (
@@ -55,10 +57,8 @@ from fe_drivetrain.studies.study_loads import (
     surrogate_loads,
 )
 from fe_drivetrain.studies.tilt_secants import TiltSecant, secant_rows, tilt_secants
-from fe_drivetrain.suite.findings import Findings
-from fe_drivetrain.suite.records import Record
-from fe_drivetrain.uncertainty import input_study
-from fe_drivetrain.uncertainty.numbers import figures
+from fe_drivetrain.turbine_loads.histories.damage import SLOPES, check_slope
+from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
 
 ASSEMBLY = "assembly"
 """Name of the assembly of solids among the models."""
@@ -127,7 +127,7 @@ class StudyResult(Result):
         Parameters
         ----------
         loads : LoadHistory, PointLoads or array_like
-            Hub loads, as `fe_drivetrain.response.entering` takes them.
+            Hub loads, as `fe_drivetrain.shafts.response.entering` takes them.
         model : str
             Name of a model, as the tables of errors have it.
 
@@ -176,7 +176,7 @@ def study(
     scene : Scene
         Any scene that the library solves.
     loads : StudyLoads, sequence of LoadHistory or None
-        Hub loads, of any length and step, see `fe_drivetrain.hub_loads.read_hub_load_files`; those
+        Hub loads, of any length and step, see `fe_drivetrain.turbine_loads.hub_loads.read_hub_load_files`; those
         of a surrogate where None.
     slopes : sequence of float
         Slopes of S-N curves, for damage-equivalent loads.

@@ -10,17 +10,17 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.steps import Clock
-from fe_drivetrain.compare.time_weighted import sample_weights
-from fe_drivetrain.hub_loads.aero_rotor import assumptions
-from fe_drivetrain.hub_loads.channel_map import ChannelMap
-from fe_drivetrain.hub_loads.files import read_hub_load_files, read_hub_loads
-from fe_drivetrain.hub_loads.histories import LoadHistory
-from fe_drivetrain.hub_loads.point_loads import PointLoads
-from fe_drivetrain.hub_loads.recorded import read_mapped
-from fe_drivetrain.hub_loads.surrogate import hub_load_set, surrogate_grid
-from fe_drivetrain.hub_loads.turbines import different_turbines, vertical_forces
-from fe_drivetrain.response.entering import at_front, entering, joined
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.comparison.time_weighted import sample_weights
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.shafts.response.entering import at_front, entering, joined
+from fe_drivetrain.turbine_loads.hub_loads.aero_rotor import assumptions
+from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
+from fe_drivetrain.turbine_loads.hub_loads.files import read_hub_load_files, read_hub_loads
+from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
+from fe_drivetrain.turbine_loads.hub_loads.point_loads import PointLoads
+from fe_drivetrain.turbine_loads.hub_loads.recorded import read_mapped
+from fe_drivetrain.turbine_loads.hub_loads.surrogate import hub_load_set, surrogate_grid
+from fe_drivetrain.turbine_loads.hub_loads.turbines import different_turbines, vertical_forces
 
 _QUICK_SEEDS = 1
 

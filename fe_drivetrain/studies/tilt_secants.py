@@ -5,16 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from fe_drivetrain.bearing_life.coupled.body import factors_of
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.coupled.body import factors_of
-from fe_drivetrain.fidelity.bearing_units import UnitBounds
-from fe_drivetrain.fidelity.quantities import unit_numbers
-from fe_drivetrain.response.secant_stiffness import fitted_spring, parts_of, secant, statement
-from fe_drivetrain.response.unit_loads import Response
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.shafts.fidelity.bearing_units import UnitBounds
+from fe_drivetrain.shafts.fidelity.quantities import unit_numbers
+from fe_drivetrain.shafts.response.secant_stiffness import (
+    fitted_spring,
+    parts_of,
+    secant,
+    statement,
+)
+from fe_drivetrain.shafts.response.unit_loads import Response
 from fe_drivetrain.studies.study_loads import EnteredLoads
-from fe_drivetrain.suite.records import Record
 
 #: Load steps that are taken, evenly over all.
 _MOST = 5000

@@ -12,7 +12,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 
 if TYPE_CHECKING:
-    from fe_drivetrain.scene.scene import Scene
+    from fe_drivetrain.drivetrain_file.scene import Scene
     from fe_drivetrain.studies.rolling_bearings import Choices, OneBearing
 
 RPM = 30.0 / np.pi

@@ -9,12 +9,12 @@ from skfem.refdom import RefTet
 
 from fe_drivetrain.cases.performance.peers.runner import Problem
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.drivetrain_file.materials import MATERIALS, Material
+from fe_drivetrain.drivetrain_file.reading import library_scene
+from fe_drivetrain.elasticity.mesh.cached import cached_mesh
+from fe_drivetrain.elasticity.mesh.mesh import Mesh
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
-from fe_drivetrain.mesh.cached import cached_mesh
-from fe_drivetrain.mesh.mesh import Mesh
-from fe_drivetrain.response.model import mesh_scene
-from fe_drivetrain.scene.materials import MATERIALS, Material
-from fe_drivetrain.scene.reading import library_scene
+from fe_drivetrain.shafts.response.model import mesh_scene
 
 DEGREE = 4
 """Of the common quadrature: scikit-fem's eleven points, exact where the edges are straight."""

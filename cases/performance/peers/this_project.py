@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from scipy import sparse
 
     from fe_drivetrain.cases.performance.peers.runner import Clock, Problem
-    from fe_drivetrain.operator import Pattern
+    from fe_drivetrain.elasticity.operator import Pattern
 
 NAME = "this project"
 TOGETHER = True
@@ -40,7 +40,7 @@ def load(problem: Problem) -> Problem:
 
 def assembled(problem: Problem, pattern: Pattern) -> sparse.bsr_array:
     """The stiffness of all materials in one pattern."""
-    from fe_drivetrain.operator import assemble_materials
+    from fe_drivetrain.elasticity.operator import assemble_materials
 
     materials = [
         (problem.material == number, lame)
@@ -51,11 +51,11 @@ def assembled(problem: Problem, pattern: Pattern) -> sparse.bsr_array:
 
 def solve(problem: Problem, variant: str, clock: Clock) -> list[float]:
     """The stiffnesses, by one solve of all motions."""
-    from fe_drivetrain.interfaces import eliminate, fixed
-    from fe_drivetrain.operator import sparsity
-    from fe_drivetrain.operator.kernels import product
-    from fe_drivetrain.solve import reduce
-    from fe_drivetrain.solve import solve as solve_system
+    from fe_drivetrain.elasticity.interfaces import eliminate, fixed
+    from fe_drivetrain.elasticity.operator import sparsity
+    from fe_drivetrain.elasticity.operator.kernels import product
+    from fe_drivetrain.elasticity.solve import reduce
+    from fe_drivetrain.elasticity.solve import solve as solve_system
 
     with clock.step("assembly"):
         n = len(problem.points)

@@ -16,16 +16,16 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
+from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.export.formats.superelement_json import OriginFile, read_content
 from fe_drivetrain.export.from_scene import scene_origin
 from fe_drivetrain.export.superelement import FRAME, UNITS
-from fe_drivetrain.fidelity.bearing_units import UnitBounds, unit_bounds
-from fe_drivetrain.fidelity.ladder import LevelModel, assembly_level, shaft_level
-from fe_drivetrain.fidelity.quantities import shaft_numbers, unit_numbers
-from fe_drivetrain.fidelity.shafts import meridian_shaft
 from fe_drivetrain.foreign.assembly import solids_of_unit
-from fe_drivetrain.response.model import scene_loads
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.shafts.fidelity.bearing_units import UnitBounds, unit_bounds
+from fe_drivetrain.shafts.fidelity.ladder import LevelModel, assembly_level, shaft_level
+from fe_drivetrain.shafts.fidelity.quantities import shaft_numbers, unit_numbers
+from fe_drivetrain.shafts.fidelity.shafts import meridian_shaft
+from fe_drivetrain.shafts.response.model import scene_loads
 
 
 class _File(BaseModel):

@@ -26,14 +26,14 @@ from typing import Any
 import numpy as np
 from scipy import linalg
 
-from fe_drivetrain.beam.beam import Beam
-from fe_drivetrain.beam.of_scene import beam_of_scene
-from fe_drivetrain.beam.sections import BeamSection
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.common.scaling import scaled_solve
-from fe_drivetrain.fidelity.shafts import ringed_shaft
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.shafts.beam.beam import Beam
+from fe_drivetrain.shafts.beam.of_scene import beam_of_scene
+from fe_drivetrain.shafts.beam.sections import BeamSection
+from fe_drivetrain.shafts.fidelity.shafts import ringed_shaft
 
 #: ROSS's x, y, z, alpha, beta, theta among this project's ux, uy, uz, rx, ry, rz.
 FROM_PROJECT = (1, 2, 0, 4, 5, 3)
@@ -148,7 +148,7 @@ def ross_rotor(
     Parameters
     ----------
     beam : Beam
-        With its supports; see `fe_drivetrain.beam.of_scene.beam_of_scene`.
+        With its supports; see `fe_drivetrain.shafts.beam.of_scene.beam_of_scene`.
     stations : Sequence[float]
         Where nodes must be [m], besides the ends of sections and the supports.
     longest : float or None
@@ -256,14 +256,14 @@ def rotor_of_scene(
     scene : Scene
         The scene; what its gearbox weighs is a load, see `Rotor.deflections`.
     bearing_stiffness : Mapping[str, Floats]
-        (6, 6) by bearing [N/m, N, N m/rad], as `fe_drivetrain.fidelity.unit_stiffness` or the
+        (6, 6) by bearing [N/m, N, N m/rad], as `fe_drivetrain.shafts.fidelity.unit_stiffness` or the
         ``stiffness`` of `fe_drivetrain.export.unit_superelement` gives it.
     rings : bool
-        Whether the shaft has its rings, see `fe_drivetrain.fidelity.shafts.ringed_shaft`.
+        Whether the shaft has its rings, see `fe_drivetrain.shafts.fidelity.shafts.ringed_shaft`.
     longest, stiffer : float or None, float
         As for `ross_rotor`.
     inertia : Mapping[str, Floats] or None
-        (6, 6) by bearing [kg, kg m, kg m^2], as `fe_drivetrain.fidelity.unit_matrices` gives it;
+        (6, 6) by bearing [kg, kg m, kg m^2], as `fe_drivetrain.shafts.fidelity.unit_matrices` gives it;
         supports have no mass where it is not given.
     """
     beam = (ringed_beam if rings else beam_of_scene)(scene, bearing_stiffness)

@@ -10,14 +10,14 @@ import numpy as np
 import numpy.typing as npt
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.mesh.mesh import Mesh, boundary
+from fe_drivetrain.elasticity.mesh.mesh import Mesh, boundary
 from fe_drivetrain.report.pictures.sheet import FAINT, INK, Sheet, drawing
 from fe_drivetrain.report.pictures.surfaces import curved_surface, sharp_edges
 from fe_drivetrain.report.pictures.view import ALONG_THE_SHAFT, SIZE, STRIP, View
 
 if TYPE_CHECKING:
-    from fe_drivetrain.response.model import Model
-    from fe_drivetrain.response.unit_loads import Response
+    from fe_drivetrain.shafts.response.model import Model
+    from fe_drivetrain.shafts.response.unit_loads import Response
 
 _EXAGGERATION = 0.08  # largest displacement as drawn, of the length of what is drawn
 _VISIBLE = 4.0  # a movement as drawn that the eye can tell, pixels
@@ -39,7 +39,7 @@ def picture_of_deformation(
     model, response : Model, Response
         A model and its response to the unit loads.
     load_factors : array_like
-        (10,) multiples of the loads of `fe_drivetrain.response.model.LOADS`.
+        (10,) multiples of the loads of `fe_drivetrain.shafts.response.model.LOADS`.
     path : Path
         PNG to write, of `view.SIZE`.
     title : str

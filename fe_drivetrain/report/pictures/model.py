@@ -11,7 +11,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.typeset import with_prefix
-from fe_drivetrain.mesh.mesh import Mesh, boundary
+from fe_drivetrain.elasticity.mesh.mesh import Mesh, boundary
 from fe_drivetrain.report.pictures.sheet import FAINT, INK, Sheet, drawing
 from fe_drivetrain.report.pictures.surfaces import curved_surface, cut_open, part_solid, sharp_edges
 from fe_drivetrain.report.pictures.symbols import (
@@ -28,7 +28,7 @@ from fe_drivetrain.report.pictures.symbols import (
 from fe_drivetrain.report.pictures.view import ALONG_THE_SHAFT, STRIP, View
 
 if TYPE_CHECKING:
-    from fe_drivetrain.response.model import Model
+    from fe_drivetrain.shafts.response.model import Model
 
 PARTS = {"shaft": "#9fb4c7", "bearing": "#e8a33d", "housing": "#6ba292", "nose": "#b3bf72"}
 """Colour of each kind of part."""

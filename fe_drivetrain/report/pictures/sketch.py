@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
+from fe_drivetrain.elasticity.mesh.facets import outside
+from fe_drivetrain.elasticity.mesh.mesh import Mesh
 from fe_drivetrain.geometry.shaft import Section, Segment, Shaft
-from fe_drivetrain.mesh.facets import outside
-from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.plots.style import PALETTE
 
 if TYPE_CHECKING:
     from PIL import ImageDraw
 
-    from fe_drivetrain.scene.scene import Scene
+    from fe_drivetrain.drivetrain_file.scene import Scene
 
 MOST_FACES = 20_000
 """From a quarter of as many facets on curved ones are drawn by their corners."""

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.elasticity.mesh.mesh import Mesh
 
 _FINE = 20_000  # facets; of more, each is small enough to be drawn with fewer pieces
 

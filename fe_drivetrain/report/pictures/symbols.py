@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.elasticity.mesh.mesh import Mesh
 from fe_drivetrain.report.pictures.surfaces import curved_surface
 
 if TYPE_CHECKING:
-    from fe_drivetrain.scene.bearing_unit import BearingUnit
-    from fe_drivetrain.scene.scene import Gearbox, LoadPoint
+    from fe_drivetrain.drivetrain_file.bearing_unit import BearingUnit
+    from fe_drivetrain.drivetrain_file.scene import Gearbox, LoadPoint
 
 FORCE = "#b3261e"
 MOMENT = "#6b3fa0"

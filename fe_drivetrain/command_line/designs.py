@@ -1,0 +1,170 @@
+"""The command ``compare``: designs side by side, or one design over values of a parameter."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fe_drivetrain.command_line.options import Scheduler
+from fe_drivetrain.command_line.settings import (
+    Loads,
+    SceneSettings,
+    Tolerance,
+    parse_loads,
+    parse_settings,
+    parse_tolerance,
+)
+from fe_drivetrain.command_line.showing import shown
+from fe_drivetrain.command_line.studies import OutFolder, run_on_scene
+from fe_drivetrain.command_line.terminal import guarded
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.threads import hold_threads
+from fe_drivetrain.drivetrain_file.named_scenes import named_scene
+
+if TYPE_CHECKING:
+    from fe_drivetrain.drivetrain_file.scene import Scene
+    from fe_drivetrain.studies.design_comparison import Varied
+
+#: Most designs of one comparison.
+_MOST = 50
+
+
+def compare_command(
+    scenes: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="SCENE...",
+            help="Scene files, or names of the library: the others are compared with the first.",
+        ),
+    ],
+    vary: Annotated[
+        str | None,
+        typer.Option(
+            "--vary",
+            metavar="KEY=VALUES",
+            help="Compare one scene over values of a parameter: a list, as in "
+            "shaft.sections.0.inner_diameter=0.2,0.3,0.4, or a range and a number of values, as in "
+            "0.2:0.4:5.",
+        ),
+    ] = None,
+    quantity: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--quantity",
+            metavar="NAME",
+            help="What is compared: a reaction, as in main_bearing.My, or a stiffness, "
+            "hub.stiffness.ux to hub.stiffness.rz. May be repeated. Default: all of them.",
+        ),
+    ] = None,
+    tolerance: Tolerance = "5%",
+    load: Loads = None,
+    scheduler: Scheduler = None,
+    out: OutFolder = None,
+    set_: SceneSettings = None,
+) -> None:
+    """Compare designs: the differences of their stiffnesses and reactions, ranked.
+
+    Each quantity comes from the cheapest level that is enough: its bands in both designs together
+    are within the tolerance. A change that is smaller than its band may be zero: it is named.
+
+    The exit status is 0 if every change is known within the tolerance, 1 if not.
+    """
+
+    def work() -> int:
+        hold_threads()
+        changes = parse_settings(set_ or ())
+        varied = None if vary is None else parse_values(vary)
+        designs = _designs(scenes, changes, varied)
+        from fe_drivetrain.command_line.design_page import show_compare
+        from fe_drivetrain.shafts.fidelity.quantity import Quantity
+        from fe_drivetrain.shafts.response.model import scene_loads
+        from fe_drivetrain.studies.design_comparison import compare
+
+        given = parse_loads(load or (), scene_loads(next(iter(designs.values()))))
+        asked = [Quantity(name) for name in quantity] if quantity else None
+        for one in asked or ():
+            for scene in designs.values():
+                one.check(scene)
+        share = parse_tolerance(tolerance)
+        title = f"{' against '.join(reversed(scenes))}: what changes"
+        if varied is not None:
+            title = f"{scenes[0]}: what changes with {varied.key}"
+        return run_on_scene(
+            "compare",
+            scenes,
+            title,
+            out,
+            shown(
+                lambda run: compare(designs, asked, share, given, varied, report=run.report),
+                show_compare,
+            ),
+            scheduler=scheduler,
+        )
+
+    raise typer.Exit(guarded(work))
+
+
+def parse_values(text: str) -> Varied:
+    """Values of one parameter from ``--vary KEY=V1,V2,...`` or ``KEY=FROM:TO:COUNT``.
+
+    Parameters
+    ----------
+    text : str
+        What the user wrote.
+
+    Raises
+    ------
+    InputError
+        It is neither, has fewer than two values, one twice, or too many.
+    """
+    import numpy as np
+
+    from fe_drivetrain.studies.design_comparison import Varied
+
+    key, _, given = (part.strip() for part in text.partition("="))
+    shape = "write it as in --vary shaft.front=-1.2,-1.0 or --vary shaft.front=-1.2:-0.8:5"
+    try:
+        if given.count(":") == 2:
+            low, high, count = given.split(":")
+            values = np.linspace(float(low), float(high), int(count)).tolist()
+        else:
+            values = [float(part) for part in given.split(",")]
+    except ValueError as error:
+        raise InputError(f"--vary {text!r} is no KEY=VALUES: {shape}") from error
+    if not key or not np.isfinite(values).all():
+        raise InputError(f"--vary {text!r} is no KEY=VALUES: {shape}")
+    if not 2 <= len(set(values)) == len(values) <= _MOST:
+        raise InputError(
+            f"--vary {key} has {len(set(values))} different values but must have 2 to {_MOST}, "
+            f"none of them twice: {shape}"
+        )
+    return Varied(key, tuple(values))
+
+
+def _designs(
+    scenes: Sequence[str], changes: Mapping[str, object], varied: Varied | None
+) -> dict[str, Scene]:
+    """Scenes by a name for tables: their own, or that of their value."""
+    if varied is not None:
+        if len(scenes) > 1:
+            raise InputError("--vary changes one scene: give one, or leave --vary out")
+        return {
+            f"{value:g}": named_scene(scenes[0], {**changes, varied.key: value})
+            for value in varied.values
+        }
+    if len(scenes) < 2:
+        raise InputError(
+            f"there is nothing to compare {scenes[0]} with: give a second scene, or values of a "
+            "parameter with --vary"
+        )
+    if len(scenes) > _MOST:
+        raise InputError(f"{len(scenes)} scenes are given but {_MOST} can be compared at once")
+    stems = [Path(name).stem for name in scenes]
+    unique = len(set(stems)) == len(stems)
+    names = stems if unique else list(scenes)
+    if len(set(names)) < len(names):
+        raise InputError(f"{' and '.join(names)}: one scene is given twice; give each of them once")
+    return {name: named_scene(one, changes) for name, one in zip(names, scenes, strict=True)}

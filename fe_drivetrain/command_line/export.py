@@ -1,0 +1,306 @@
+"""The command ``export``: matrices, CalculiX model or mesh of a scene or component."""
+
+from __future__ import annotations
+
+import re
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fe_drivetrain.command_line.progress import show_steps
+from fe_drivetrain.command_line.settings import SceneSettings, parse_settings
+from fe_drivetrain.command_line.terminal import PASSED, guarded, write
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.files import check_writable
+from fe_drivetrain.common.threads import hold_threads
+from fe_drivetrain.drivetrain_file.named_scenes import named_scene_or_component
+
+if TYPE_CHECKING:
+    from fe_drivetrain.drivetrain_file.component import Component
+    from fe_drivetrain.drivetrain_file.scene import Scene
+    from fe_drivetrain.studies.export_content import ExportResult, Kind
+
+_ENDINGS = (".inp", ".vtu", ".msh")
+_AUTO, _SHAFT, _SUMMARY = "auto", "shaft", "summary"
+
+
+def export_command(
+    scene: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="SCENE",
+            help="A scene or component: a file, or a name of the library, such as "
+            "main_bearing_bonded, main_bearing_spherical, gearbox_housing, planet_carrier.",
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out",
+            metavar="FILE",
+            help="The file to write. Without --format its ending decides: .inp is the whole model "
+            "for CalculiX, with interfaces, supports and unit loads; .vtu (ParaView) and .msh "
+            "(gmsh) are the mesh.",
+        ),
+    ] = None,
+    format_: Annotated[
+        str | None,
+        typer.Option(
+            "--format",
+            metavar="NAME",
+            help="Condense to points, and write stiffness and mass in this format; --list shows "
+            "the formats.",
+        ),
+    ] = None,
+    what: Annotated[
+        str | None,
+        typer.Option(
+            "--what",
+            metavar="NAME",
+            help="Part to condense. Of a scene: shaft (the free shaft, default); drivetrain (the "
+            "shaft on its supports); the name of a bearing (with its housing on the ground); seats "
+            "(all bearings); or, in json, summary (stiffness of the shaft, K_R, reaction matrices, "
+            "masses). Of a component: body (default) or supported.",
+        ),
+    ] = None,
+    at: Annotated[
+        str | None,
+        typer.Option(
+            "--at",
+            metavar="POINTS",
+            help="Points to keep, as in hub,gearbox: hub, gearbox, and bearings by name. Default: "
+            "all points of the shaft; of the drivetrain the hub.",
+        ),
+    ] = None,
+    level: Annotated[
+        str | None,
+        typer.Option(
+            "--level",
+            metavar="LEVEL",
+            help="1 beam, 2 meridian, 3 solid shaft, 4 assembly of solids (for bearings, and for "
+            "the drivetrain at its hub), or auto (default): 4 for bearings, 2 for all else of a "
+            "scene, 3 for a component.",
+        ),
+    ] = None,
+    modes: Annotated[
+        int | None,
+        typer.Option(
+            "--modes",
+            metavar="COUNT",
+            min=0,
+            help="Add this many fixed-interface modes to the free shaft (Craig-Bampton), in json.",
+        ),
+    ] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace an existing file.")
+    ] = False,
+    formats: Annotated[bool, typer.Option("--list", help="List the formats and exit.")] = False,
+    set_: SceneSettings = None,
+) -> None:
+    """Write a scene for other programs: condensed matrices, a model for CalculiX, or its mesh."""
+
+    def work() -> int:
+        if formats:
+            write(sys.stdout, formats_table())
+            return PASSED
+        hold_threads()
+        changes = parse_settings(set_ or ())
+        if scene is None or out is None:
+            missing = "SCENE" if scene is None else "--out FILE"
+            raise InputError(f"Missing {missing}: give it, or --list to see the formats")
+        wanted = Export(out, format_, what, at, level, modes, overwrite)
+        wanted.check()
+        found = named_scene_or_component(scene, changes)
+        if out.exists() and not overwrite:
+            raise InputError(f"--out {out} exists: give another file, or add --overwrite")
+        if out.exists() and Path(scene).exists() and out.samefile(scene):
+            raise InputError(f"--out {out} is the scene itself: give another file")
+        write(sys.stdout, f"{out}: {_written(found, wanted)}\n")
+        return PASSED
+
+    raise typer.Exit(guarded(work, "an existing file of that name is unchanged"))
+
+
+@dataclass(frozen=True)
+class Export:
+    """What to export, and where; the options of the command.
+
+    Attributes
+    ----------
+    out : Path
+        The file.
+    format : str or None
+        Of condensed matrices; None for a mesh or a model, by the ending of the file.
+    what, at, level : str or None
+        Part, points and model level; None for the default.
+    modes : int or None
+        Number of fixed-interface modes; None for a superelement without modes.
+    overwrite : bool
+        Whether to replace an existing file.
+    """
+
+    out: Path
+    format: str | None = None
+    what: str | None = None
+    at: str | None = None
+    level: str | None = None
+    modes: int | None = None
+    overwrite: bool = False
+
+    def check(self) -> None:
+        """Check what does not depend on the scene.
+
+        Raises
+        ------
+        InputError
+            The format or the file's ending is unknown, options contradict each other, or the file
+            cannot be created.
+        """
+        condensing = {
+            "--what": self.what,
+            "--at": self.at,
+            "--level": self.level,
+            "--modes": self.modes,
+        }
+        if self.format is None:
+            given = [option for option, value in condensing.items() if value is not None]
+            if given:
+                raise InputError(f"{given[0]} needs --format: give one that --list shows")
+            if self.out.suffix not in _ENDINGS:
+                raise InputError(
+                    f"--out {self.out} ends in {self.out.suffix!r}: use {', '.join(_ENDINGS)}, or "
+                    "give --format"
+                )
+        else:
+            from fe_drivetrain.export.files import FORMATS
+
+            if self.format not in FORMATS:
+                raise InputError(f"--format {self.format!r} is unknown: use {', '.join(FORMATS)}")
+        if self.out.is_dir() or not self.out.resolve().parent.is_dir():
+            raise InputError(
+                f"--out {self.out} must be a file in an existing folder: give such a file"
+            )
+        check_writable(self.out)
+
+    @property
+    def points(self) -> list[str] | None:
+        """Names of the points to keep; None for the default."""
+        if self.at is None:
+            return None
+        return [name.strip() for name in self.at.split(",") if name.strip()]
+
+    @property
+    def level_number(self) -> int | None:
+        """The level; None for the default.
+
+        Raises
+        ------
+        InputError
+            It is no number.
+        """
+        if self.level in (None, _AUTO):
+            return None
+        if not re.fullmatch("[0-9]+", self.level):
+            raise InputError(
+                f"--level {self.level!r} must be {_AUTO} or a number: write it as in --level 2"
+            )
+        return int(self.level)
+
+    @property
+    def kind(self) -> Kind:
+        """What is written."""
+        if self.modes is not None:
+            return "modes"
+        if self.format is None:
+            return "model" if self.out.suffix == ".inp" else "mesh"
+        return "summary" if self.what == _SUMMARY else "superelement"
+
+
+def _written(found: Scene | Component, wanted: Export) -> str:
+    """Write the file; returns what is in it."""
+    from fe_drivetrain.drivetrain_file.scene import Scene
+    from fe_drivetrain.studies.export_content import prepare_export
+
+    is_scene = isinstance(found, Scene)
+    kind = "superelement" if wanted.kind == "summary" and not is_scene else wanted.kind
+    if kind == "model" and not is_scene:
+        raise InputError(
+            f"--out {wanted.out}: a component is written as .vtu or .msh, or with --format"
+        )
+    if is_scene:
+        _check_format(wanted, kind)
+    what = "" if kind == "summary" else wanted.what or ""
+    with show_steps() as report:
+        result = prepare_export(
+            found,
+            kind,
+            what,
+            wanted.points,
+            wanted.level_number,
+            wanted.modes or 0,
+            report=report,
+        )
+        for warning in result.notes:
+            report(f"warning: {warning}")
+        report("write")
+        _write(result, wanted)
+    return result.answer[0]
+
+
+def _check_format(wanted: Export, kind: Kind) -> None:
+    """Refuse a format that cannot hold modes or a summary of a scene."""
+    if kind == "modes" and wanted.what in (None, _SHAFT) and wanted.format != "json":
+        raise InputError(
+            f"--modes is written in json, not as --format {wanted.format}: give --format json"
+        )
+    if kind == "summary" and wanted.format != "json":
+        raise InputError(f"--what summary is json, not {wanted.format}: give --format json")
+
+
+def _write(result: ExportResult, wanted: Export) -> None:
+    """Write the file in the format of its content."""
+    from fe_drivetrain import export
+    from fe_drivetrain.elasticity.mesh.files import write as write_mesh
+    from fe_drivetrain.elasticity.mesh.mesh import Mesh
+    from fe_drivetrain.export.craig_bampton import CraigBampton
+    from fe_drivetrain.export.formats.craig_bampton_json import write_craig_bampton
+    from fe_drivetrain.export.formats.summary import SummaryFile, write_summary
+    from fe_drivetrain.export.superelement import Superelement
+
+    content = result.content
+    if isinstance(content, Superelement):
+        export.write(wanted.out, content, wanted.format or "", wanted.overwrite)
+    elif isinstance(content, CraigBampton):
+        write_craig_bampton(wanted.out, content)
+    elif isinstance(content, SummaryFile):
+        write_summary(wanted.out, content)
+    elif isinstance(content, Mesh):
+        write_mesh(content, wanted.out)
+    else:
+        export.write_inp(content, wanted.out)
+
+
+def formats_table() -> str:
+    """Formats: name, usual ending, programs that read it, and the extra that it needs.
+
+    Returns
+    -------
+    str
+        A heading, and a line for each format.
+    """
+    from fe_drivetrain.export.files import FORMATS
+
+    head = ("format", "ending", "read by", "needs")
+    rows = [head] + [
+        (f.name, f.suffix, f.reader, f"fe-drivetrain[{f.extra}]" if f.extra else "")
+        for f in FORMATS.values()
+    ]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = [
+        "  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    ]
+    return "".join(f"{line}\n" for line in lines)

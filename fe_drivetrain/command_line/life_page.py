@@ -1,0 +1,135 @@
+"""The page of ``life``: lives of a scene's bearings, what takes them, and where methods end."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from fe_drivetrain.bearing_life.life.roller_damage import KINDS
+from fe_drivetrain.command_line.life_sections import laminae, places, winds
+from fe_drivetrain.command_line.loads_tables import write_tables
+from fe_drivetrain.report.suite.page import Page
+from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.report.suite.run import Run
+from fe_drivetrain.shafts.response.stated import HUB_LOADS
+from fe_drivetrain.studies.bearing_lives import LifeResult
+from fe_drivetrain.studies.life_sums import BearingLife
+
+#: Columns of the table of limits that are about static safety; the others are shares of the time.
+_OF_SAFETY = 7
+
+
+def show_life(run: Run, page: Page, result: LifeResult) -> None:
+    """Show lives, what takes them, and where methods end; write the tables.
+
+    Parameters
+    ----------
+    run : Run
+        Its folder takes the tables.
+    page : Page
+        Takes tables and charts.
+    result : LifeResult
+        What was found.
+    """
+    _lives(page, result)
+    _limits(page, result)
+    _assumed(page, result)
+    for life in result.lives:
+        page.section(f"Bearing {life.name}: {life.bearing.entry.title}")
+        winds(page, life)
+        places(page, life, result.tables[f"{life.name}: rows and rings"])
+        laminae(page, life)
+    known = result.all_tables()
+    tables: dict[str, list[Record]] = {
+        name: known[name] for name in ("lives", "files", "winds", "places", "laminae")
+    }
+    facts = {
+        "frame": f"{HUB_LOADS.frame}; places of rollers: 0 right, 90 deg on top",
+        "units": "as in the heads of columns",
+        "lives": "with 90 % reliability but for a_1 of modified ones",
+    }
+    write_tables(run.folder, tables, dict.fromkeys(tables, facts))
+    page.section("Tables")
+    names = ", ".join(f"{name}.csv" for name, rows in tables.items() if rows)
+    page.text(f"Beside this page: {names}, and results.json with the numbers of all charts.")
+
+
+def _lives(page: Page, result: LifeResult) -> None:
+    page.section("Lives")
+    rows: list[Record] = result.tables["lives"]
+    page.table("Ratings, and the constant load that has the same life", rows, list(rows[0])[:7])
+    page.table(
+        "Lives in years, standstill of the files with them",
+        rows,
+        ["bearing", *(f"{kind} [years]" for kind in KINDS)],
+    )
+    page.table(
+        "Lives in million revolutions", rows, ["bearing", *(f"{kind} [Mrev]" for kind in KINDS)]
+    )
+    page.text(
+        "L10 and L10m are those of ISO 281, of radial and axial force alone: a moment, and how the "
+        "load is spread over rollers, is not in them. L10r and L10mr are the reference lives of "
+        "ISO/TS 16281, from the loads of all laminae; P_ref is the load that has L10r as its L10. "
+        "The m stands for lubricant and contamination."
+    )
+    if any(np.isfinite(list(life.years.values())).any() for life in result.lives):
+        page.add(result.chart())
+    _seats(page, result.lives)
+
+
+def _seats(page: Page, lives: Sequence[BearingLife]) -> None:
+    seats: list[Record] = [
+        {
+            "bearing": life.name,
+            "entry": life.bearing.entry_name,
+            "bore [mm]": None if life.bearing.entry.bore is None else 1e3 * life.bearing.entry.bore,
+            "inside of its rolling elements [mm]": 1e3 * life.bearing.entry.inside,
+            "shaft at its seat [mm]": 1e3 * life.bearing.seat,
+        }
+        for life in lives
+    ]
+    page.table("Bearings on their seats", seats)
+    sources: list[Record] = [
+        {"bearing": life.name, "rating": name, "source": text}
+        for life in lives
+        for name, text in zip(("C", "C0", "Cu"), life.bearing.rated.sources, strict=True)
+    ]
+    page.table("Where ratings come from", sources)
+
+
+def _limits(page: Page, result: LifeResult) -> None:
+    page.section("Static safety, and limits of the methods")
+    rows: list[Record] = result.tables["limits"]
+    first, last = list(rows[0])[:_OF_SAFETY], list(rows[0])[_OF_SAFETY:]
+    page.table("Static safety", rows, first)
+    page.table(
+        "Time beyond the limits of the methods, in the files as they are", rows, ["bearing", *last]
+    )
+    page.text(
+        "S0 is the lesser of C0 / P0 of ISO 76, whose P0 knows no moment, and of that of the "
+        "rollers: the load at which the most loaded contact has the pressure that C0 stands for "
+        "(4,000 MPa on rollers, 4,200 MPa on balls), over what it carries, by the pressure squared "
+        "in line contact and cubed in point contact. Above C/2 the load is beyond the range of ISO "
+        "281: P, or the radial load that has the life of the rollers, C / L10r^(1/4), of balls "
+        "C / L10r^(1/3), in which moments are. Below kappa = 0.1 a_ISO is "
+        "its smallest value, 0.1; above 4 it stays that of 4. Below "
+        f"{result.rules.standing_rpm:g} 1/min a bearing stands: marks of standstill and of "
+        "oscillation are no fatigue of rolling contact, and no life is computed for them."
+    )
+
+
+def _assumed(page: Page, result: LifeResult) -> None:
+    """A table of what was not stated, and of what it does."""
+    rows = result.tables.get("assumed")
+    if not rows:
+        return
+    page.section("What was not stated, and what it does to L10mr")
+    page.table("Other values of what is assumed, one at a time", rows)
+    page.text(
+        "By a sample of a hundredth of the load steps of each file, drawn by the damage that they "
+        "do. The clearance is 1/4000 of the pitch diameter, rounded, along the contact normal, "
+        "and the preload a tenth of it: a size to compare with, of no table. Give the clearance of "
+        "the mounted bearing in its catalogue entry, and the others by their options. How rings, "
+        "housing and the shaft's support give way is not varied here: see --rings and --support."
+    )

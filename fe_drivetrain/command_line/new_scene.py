@@ -1,0 +1,99 @@
+"""The command ``new``: write a scene to start from."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fe_drivetrain.command_line.terminal import PASSED, guarded, write
+from fe_drivetrain.common.errors import InputError
+
+SUFFIXES = (".yaml", ".yml")
+"""Endings of files that a user edits."""
+
+
+def new_command(
+    file: Annotated[
+        Path | None,
+        typer.Argument(metavar="FILE", help="The scene file to write, as in my.yaml."),
+    ] = None,
+    arrangement: Annotated[
+        str,
+        typer.Option(
+            "--arrangement",
+            metavar="NAME",
+            help="How the shaft is supported; --list shows the arrangements.",
+        ),
+    ] = "three-point",
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace existing files.")] = False,
+    list_: Annotated[bool, typer.Option("--list", help="List the arrangements and exit.")] = False,
+) -> None:
+    """Write a scene to start from, with comments, and its schema for editors beside it."""
+
+    def work() -> int:
+        from fe_drivetrain.drivetrain_file.arrangements import (
+            ARRANGEMENTS,
+            SCHEMA_FILE,
+            scene_schema,
+            starting_scene,
+        )
+
+        if list_:
+            width = max(map(len, ARRANGEMENTS))
+            lines = [f"{name:<{width}}  {found.title}\n" for name, found in ARRANGEMENTS.items()]
+            write(sys.stdout, "".join(lines))
+            return PASSED
+        if file is None:
+            raise InputError("Missing FILE: name the scene file to write, as in my.yaml, or --list")
+        if file.suffix.lower() not in SUFFIXES:
+            raise InputError(f"{file} must end in {' or '.join(SUFFIXES)}: name it as in my.yaml")
+        texts = {
+            file: starting_scene(arrangement),
+            file.with_name(SCHEMA_FILE): scene_schema(),
+        }
+        write_all(texts, overwrite)
+        write(
+            sys.stdout,
+            f"{file}: {ARRANGEMENTS[arrangement].title}\n"
+            f"Edit it, then: fe-drivetrain check {shlex.quote(str(file))}\n",
+        )
+        return PASSED
+
+    raise typer.Exit(guarded(work, "existing files are unchanged"))
+
+
+def write_all(texts: dict[Path, str], overwrite: bool) -> None:
+    """Write files; those of the same content stay, others only go with leave to overwrite.
+
+    Parameters
+    ----------
+    texts : dict
+        Content by path.
+    overwrite : bool
+        The leave.
+
+    Raises
+    ------
+    InputError
+        A file is there, or its folder is not.
+    """
+    from fe_drivetrain.common.files import atomic_path, check_writable
+
+    changed = {
+        path: text
+        for path, text in texts.items()
+        if not (path.is_file() and path.read_bytes() == text.encode("utf-8"))
+    }
+    for path in changed:
+        if not path.parent.is_dir():
+            raise InputError(f"cannot write {path}: there is no folder {path.parent}: create it")
+        check_writable(path)
+        if path.exists() and not overwrite:
+            raise InputError(f"{path} exists: give another file, or add --overwrite")
+    for path, text in changed.items():
+        with atomic_path(path) as temporary:
+            temporary.write_text(text, "utf-8")

@@ -1,0 +1,114 @@
+"""The command ``part``: what is in a STEP or mesh file, before a scene takes it as a housing."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fe_drivetrain.command_line.terminal import PASSED, guarded, write
+from fe_drivetrain.common.errors import InputError
+
+if TYPE_CHECKING:
+    from fe_drivetrain.export.superelement import Superelement
+    from fe_drivetrain.foreign.survey import Survey
+    from fe_drivetrain.geometry import CondensedHousing
+
+
+def part_command(
+    file: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FILE",
+            help="STEP (.step, .stp), mesh (.msh, .vtu, .inp), or superelement (.json, .csv, .bdf, "
+            ".op4, .h5) as fe-drivetrain export writes it.",
+        ),
+    ],
+    bore: Annotated[
+        str, typer.Option("--bore", help="Of a superelement: the point in the middle of its bore.")
+    ] = "",
+    held: Annotated[
+        str,
+        typer.Option("--held", help="Of a superelement: points on the ground, as in left,right."),
+    ] = "",
+    picture: Annotated[
+        Path | None,
+        typer.Option("--picture", metavar="PNG", help="Write a picture with the names of faces."),
+    ] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="With --picture: replace an existing file.")
+    ] = False,
+) -> None:
+    """Show what is in a STEP or mesh file: volume, bores that may be seats, planes, labels.
+
+    The last lines are a housing for a scene, with the widest bore as its seat. Of a superelement
+    they are its stiffness at the bore.
+    """
+
+    def work() -> int:
+        from fe_drivetrain.studies.part_survey import SUPERELEMENTS, part
+
+        if overwrite and picture is None:
+            raise InputError("--overwrite is for the file of --picture: give --picture PNG, too")
+        if picture is not None and file.suffix.lower() in SUPERELEMENTS:
+            raise InputError(
+                f"--picture {picture} is of a STEP or mesh file, and {file} is a superelement, "
+                "which has no faces: leave --picture out"
+            )
+        if picture is not None:
+            _check_picture(picture, overwrite)
+        result = part(file, bore, [point for point in held.split(",") if point])
+        if result.survey is not None:
+            write(sys.stdout, result.survey.text)
+            if picture is not None and len(result.survey.triangles):
+                _draw(result.survey, picture)
+        elif result.element is not None and result.housing is not None:
+            write(sys.stdout, _stiffness_text(file, result.element, result.housing))
+        return PASSED
+
+    raise typer.Exit(guarded(work, "nothing is changed"))
+
+
+def _check_picture(picture: Path, overwrite: bool) -> None:
+    """Refuse a file that cannot be written, or that is there already, before any work."""
+    from fe_drivetrain.common.files import check_writable
+
+    if picture.suffix != ".png" or not picture.absolute().parent.is_dir():
+        raise InputError(f"{picture} must end in .png, in a folder that there is")
+    check_writable(picture)
+    if picture.exists() and not overwrite:
+        raise InputError(f"--picture {picture} exists: give another file, or add --overwrite")
+
+
+def _draw(found: Survey, picture: Path) -> None:
+    """Draw what was found; the file appears whole or not at all."""
+    from fe_drivetrain.common.files import atomic_path, scratch_folder
+    from fe_drivetrain.report.pictures import NoPictureError
+    from fe_drivetrain.report.pictures.part import picture_of_part
+
+    with scratch_folder() as scratch:
+        drawn = scratch / "picture.png"
+        try:
+            picture_of_part(found.points, found.triangles, found.marks, drawn)
+        except NoPictureError as error:
+            write(sys.stderr, f"fe-drivetrain: no picture: {error}\n")
+            return
+        with atomic_path(picture) as unfinished:
+            unfinished.write_bytes(drawn.read_bytes())
+    write(sys.stdout, f"\npicture: {picture}\n")
+
+
+def _stiffness_text(file: Path, element: Superelement, housing: CondensedHousing) -> str:
+    """Points of a superelement, and the housing that it is in a scene."""
+    lines = [f"{file.name}: superelement {element.name}, its points [m]:"]
+    lines += [
+        f"  {name}  ({x:.6g}, {y:.6g}, {z:.6g})"
+        for name, (x, y, z) in zip(element.points, element.positions.tolist(), strict=True)
+    ]
+    lines.append("on its supports" if element.supported else "free")
+    lines += ["", "In a scene, for a bearing whose centre is the bore's point:", "    housing:"]
+    lines += [f"      source: {housing.source}", "      stiffness:"]
+    lines += [f"        - [{', '.join(f'{k:.15e}' for k in row)}]" for row in housing.stiffness]
+    return "\n".join(lines) + "\n"

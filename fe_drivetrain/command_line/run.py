@@ -1,0 +1,443 @@
+"""The commands ``list`` and ``run``: find cases, run them, and print each verdict."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from itertools import groupby
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from typer.core import TyperCommand
+
+from fe_drivetrain.command_line.options import Scheduler
+from fe_drivetrain.command_line.progress import show_steps
+from fe_drivetrain.command_line.settings import CaseSettings, parse_settings
+from fe_drivetrain.command_line.terminal import FAILED, KEPT, MISTAKE, PASSED, guarded, write
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.jobs import scheduled_by
+from fe_drivetrain.common.threads import hold_threads
+
+if TYPE_CHECKING:
+    from fe_drivetrain.report.results import Problem, Results, Verdict
+    from fe_drivetrain.report.suite.case import Case
+
+_SUMMARY_SENTENCES = 3
+
+OutFolder = Annotated[
+    Path | None,
+    typer.Option(
+        "--out",
+        metavar="DIR",
+        help="Result folder: new, empty, or of an earlier run, whose own files are replaced; files "
+        "of yours in it stay. "
+        "Default: reports/GROUP/NAME in the current folder. For several cases, the folder above "
+        "their result folders: DIR/GROUP/NAME.",
+    ),
+]
+Quick = Annotated[bool, typer.Option("--quick", help="Coarser and smaller, for a first look.")]
+
+
+def list_command(
+    settings: Annotated[
+        bool, typer.Option("--settings", help="Show what --set changes of each case, too.")
+    ] = False,
+) -> None:
+    """List the validation cases."""
+
+    def work() -> int:
+        from fe_drivetrain.report.suite.case import all_cases
+
+        cases = all_cases()
+        taken = {}
+        if settings:
+            from fe_drivetrain.report.suite.settings import settings_in_words
+
+            taken = {name: settings_in_words(case) for name, case in cases.items()}
+        write(sys.stdout, cases_text({name: case.title for name, case in cases.items()}, taken))
+        return PASSED
+
+    raise typer.Exit(guarded(work))
+
+
+def run_command(
+    cases: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="CASE",
+            help="GROUP/NAME, NAME if it is unique, or GROUP for all its cases. CASE --help shows "
+            "what --set changes of it.",
+        ),
+    ] = None,
+    all_: Annotated[bool, typer.Option("--all", help="Run every case.")] = False,
+    out: OutFolder = None,
+    set_: CaseSettings = None,
+    quick: Quick = False,
+    resume: Annotated[
+        bool,
+        typer.Option(
+            "--resume",
+            help="Go on where a run of several cases was stopped: leave out those whose results "
+            "are there, made by the same program with the same settings. A case with a file of "
+            "your own (scene, loads) runs again.",
+        ),
+    ] = False,
+    junit: Annotated[
+        Path | None,
+        typer.Option(
+            "--junit", metavar="FILE", help="Write the verdicts as JUnit XML, for CI servers."
+        ),
+    ] = None,
+    scheduler: Scheduler = None,
+) -> None:
+    """Run validation cases and write their reports.
+
+    Several cases run in parallel processes, as many as there are cores, or on a cluster, except
+    those that measure time, which run one by one at the end, on this machine; in quick runs only
+    those whose checks depend on it. An index.html lists all of them.
+
+    The exit status is 0 if every check passes, 1 if one fails, 2 for a wrong option or setting,
+    and 130 if stopped. A case that needs a program that is not installed is listed as skipped.
+    """
+    names = cases or []
+
+    def find() -> list[Case]:
+        from fe_drivetrain.report.suite.case import all_cases, find_cases
+
+        if all_ and names:
+            raise InputError(f"--all runs {', '.join(names)} too: drop one of the two")
+        if not all_ and not names:
+            raise InputError("Missing CASE: name one or more, or give --all")
+        if all_:
+            return list(all_cases().values())
+        found = [case for name in names for case in find_cases(name)]
+        return list({case.name: case for case in found}.values())
+
+    raise typer.Exit(run_and_print(find, out, set_ or (), quick, junit, resume, scheduler))
+
+
+class HelpOfCases(TyperCommand):
+    """Help that ends with the source and the settings of the cases that were named."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Keep what was typed: ``--help`` ends the program before arguments are read.
+
+        Parameters
+        ----------
+        ctx : click.Context
+            Keeps it.
+        args : list of str
+            What was typed.
+
+        Returns
+        -------
+        list of str
+        """
+        ctx.meta["typed"] = list(args)
+        return super().parse_args(ctx, args)
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Write the help, and what is said of the cases, if there are any.
+
+        Parameters
+        ----------
+        ctx : click.Context
+            With what was typed.
+        formatter : click.HelpFormatter
+            As of click.
+        """
+        super().format_help(ctx, formatter)
+        if words := [word for word in ctx.meta.get("typed", ()) if not word.startswith("-")]:
+            write(sys.stdout, help_of_cases(words))
+
+
+def help_of_cases(names: Sequence[str]) -> str:
+    """Title, source and settings of cases in plain text.
+
+    Parameters
+    ----------
+    names : sequence of str
+        As typed; an unknown one is said to be unknown.
+
+    Returns
+    -------
+    str
+    """
+    from fe_drivetrain.report.suite.case import find_cases
+    from fe_drivetrain.report.suite.settings import settings_in_words
+
+    lines = []
+    for name in names:
+        try:
+            found = find_cases(name)
+        except InputError as error:
+            lines += [f"{error}", ""]
+            continue
+        for case in found:
+            taken = settings_in_words(case) or "nothing"
+            lines += [case.name, f"  {case.title}", f"  Source: {case.source}"]
+            lines += [f"  --set: {taken}", ""]
+    return "\n".join(lines)
+
+
+def run_and_print(
+    find: Callable[[], Sequence[Case]],
+    out: Path | None = None,
+    settings: Sequence[str] = (),
+    quick: bool = False,
+    junit: Path | None = None,
+    resume: bool = False,
+    scheduler: str | None = None,
+) -> int:
+    """Run cases, several of them in parallel, and print the verdicts.
+
+    Parameters
+    ----------
+    find : callable
+        Returns the cases.
+    out : Path or None
+        Result folder of one case, or the folder above those of several; None for ``reports``.
+    settings : sequence of str
+        Each "KEY=VALUE".
+    quick : bool
+        Coarser and smaller.
+    junit : Path or None
+        File for the verdicts as JUnit XML.
+    resume : bool
+        Leave out cases whose results are there already; for several cases.
+    scheduler : str or None
+        Address of the cluster that does the work.
+
+    Returns
+    -------
+    int
+        Exit status.
+    """
+
+    def work() -> int:
+        hold_threads()
+        values = parse_settings(settings)
+        if junit is not None:
+            if not junit.resolve().parent.is_dir():
+                raise InputError(
+                    f"--junit {junit}: there is no folder {junit.parent}: create it first"
+                )
+            from fe_drivetrain.report.junit import check_junit
+
+            check_junit(junit)
+            junit.resolve().unlink(
+                missing_ok=True
+            )  # of an earlier run: it says nothing of this one
+        cases = find()
+        if resume and len(cases) == 1:
+            raise InputError(
+                "--resume is for several cases, and a long one goes on by itself: leave it out"
+            )
+        if junit is not None:
+            from fe_drivetrain.report.junit import write_junit
+            from fe_drivetrain.report.suite.result_folders import NOT_RUN
+
+            # stays if the run is stopped
+            write_junit(junit, [c.name for c in cases], {}, {c.name: NOT_RUN for c in cases})
+        results: dict[str, Results]
+        problems: dict[str, Problem] = {}
+        with scheduled_by(scheduler):
+            if len(cases) == 1:
+                results = {cases[0].name: _run_one(cases[0], out, values, quick)}
+            else:
+                results, problems = _run_several(cases, out, values, quick, resume)
+        if junit is not None:
+            write_junit(junit, [case.name for case in cases], results, problems)
+        if any(problem.state != "skipped" for problem in problems.values()):
+            return MISTAKE
+        return PASSED if all(found.passed for found in results.values()) else FAILED
+
+    return guarded(work, f"finished cases are kept, {KEPT}")
+
+
+def _run_one(case: Case, out: Path | None, settings: Mapping[str, Any], quick: bool) -> Results:
+    from fe_drivetrain.report.suite.result_folders import run_case
+
+    folder = Path("reports", *case.name.split("/")) if out is None else out
+    with show_steps() as report:
+        # a link or "." is resolved, so that the folder it leads to is replaced, not the link
+        results = run_case(case, folder.resolve(), settings, quick, report)
+    write(sys.stdout, results_text(results, folder / "report.html"))
+    return results
+
+
+def _run_several(
+    cases: Sequence[Case],
+    out: Path | None,
+    settings: Mapping[str, Any],
+    quick: bool,
+    resume: bool,
+) -> tuple[dict[str, Results], dict[str, Problem]]:
+    from fe_drivetrain.report.results import read_results
+    from fe_drivetrain.report.suite.result_folders import result_folder
+    from fe_drivetrain.report.suite.resuming import finished_cases
+    from fe_drivetrain.report.suite.suite import run_cases
+
+    folder = Path("reports") if out is None else out
+    kept = finished_cases(cases, folder.resolve(), settings, quick) if resume else []
+    if kept:
+        write(sys.stderr, f"{len(kept)} of {len(cases)} cases are there from an earlier run\n")
+    with show_steps() as report:
+        problems = run_cases(cases, folder.resolve(), settings, quick, report, kept)
+    results = {
+        case.name: read_results(result_folder(folder, case) / "results.json")
+        for case in cases
+        if case.name not in problems
+    }
+    names = [case.name for case in cases]
+    write(sys.stdout, several_results_text(names, results, problems, folder / "index.html"))
+    return results, problems
+
+
+def cases_text(titles: Mapping[str, str], settings: Mapping[str, str]) -> str:
+    """Names and titles of cases, one a line, under their groups.
+
+    Parameters
+    ----------
+    titles : mapping
+        Title by "GROUP/NAME", in order.
+    settings : mapping
+        What can be set, by the same names, for a line below; none where there is nothing.
+
+    Returns
+    -------
+    str
+    """
+    width = max((len(name) for name in titles), default=0)
+    groups = []
+    for group, names in groupby(titles, lambda name: name.partition("/")[0]):
+        lines = [group]
+        for name in names:
+            lines.append(f"  {name:<{width}}  {titles[name]}")
+            if settings.get(name):
+                lines.append(f"  {'':<{width}}  --set: {settings[name]}")
+        groups.append("\n".join([*lines, ""]))
+    return "\n".join(groups)
+
+
+def results_text(results: Results, page: Path) -> str:
+    """Outcome of one case: its notes, each check, the first sentences, and where its report is.
+
+    Parameters
+    ----------
+    results : Results
+        Of the case.
+    page : Path
+        Its report.
+
+    Returns
+    -------
+    str
+    """
+    before = [*results.notes, *results.unsettled]
+    lines = [*before, *([""] if before else [])]
+    lines += [verdict_line(verdict) for verdict in results.verdicts]
+    lines += ["", *results.summary[:_SUMMARY_SENTENCES], ""]
+    lines += [f"{_count(results)}: {page}"]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def tables_text(results: Results, page: Path) -> str:
+    """Summary and tables of a case in plain text, and where its report is.
+
+    Parameters
+    ----------
+    results : Results
+        Of the case.
+    page : Path
+        Its report.
+
+    Returns
+    -------
+    str
+    """
+    from fe_drivetrain.report.number_text import formatted
+    from fe_drivetrain.report.results import Table
+
+    lines = [*results.summary]
+    for section in results.sections:
+        for table in (item for item in section.items if isinstance(item, Table)):
+            rows = [table.columns, *([formatted(cell) for cell in row] for row in table.rows)]
+            widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+            lines += ["", table.caption]
+            lines += [
+                "  " + "  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip()
+                for row in rows
+            ]
+    lines += ["", f"Report: {page}"]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def several_results_text(
+    names: Sequence[str],
+    results: Mapping[str, Results],
+    problems: Mapping[str, Problem],
+    page: Path,
+) -> str:
+    """Outcome of several cases: a line for each, its failed checks, and where the list is.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Of the cases, in order.
+    results : mapping
+        Results by name.
+    problems : mapping
+        Why there are no results, by name.
+    page : Path
+        The page that lists the cases.
+
+    Returns
+    -------
+    str
+    """
+    lines = []
+    for name in names:
+        if name in problems:
+            problem = problems[name]
+            kind = "skip" if problem.state == "skipped" else "none"
+            lines.append(f"{kind}  {name}: {problem.message}")
+            continue
+        found = results[name]
+        outcome = "pass" if found.settled else "open" if found.passed else "FAIL"
+        lines.append(f"{outcome}  {name}: {_count(found)}, {sum(found.times.values()):.1f} s")
+        lines += [f"      {note}" for note in found.notes if not found.environment.quick]
+        lines += [f"      {sentence}" for sentence in found.unsettled]
+        lines += [f"      {verdict_line(v)}" for v in found.verdicts if not v.passed]
+    passed = sum(found.settled for found in results.values())
+    left = sum(found.passed and not found.settled for found in results.values())
+    still = f", {left} open" if left else ""
+    lines += ["", f"{passed} of {len(names)} cases pass{still}: {page}"]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _count(results: Results) -> str:
+    passed = sum(verdict.passed for verdict in results.verdicts)
+    return f"{passed} of {len(results.verdicts)} checks pass"
+
+
+def verdict_line(verdict: Verdict) -> str:
+    """One check: outcome, quantity, computed value, reference and tolerance.
+
+    Parameters
+    ----------
+    verdict : Verdict
+        The check.
+
+    Returns
+    -------
+    str
+    """
+    from fe_drivetrain.report.results import expectation
+
+    unit = f" {verdict.unit}" if verdict.unit not in ("", "-") else ""
+    return (
+        f"{'pass' if verdict.passed else 'FAIL'}  {verdict.quantity}: "
+        f"computed {verdict.computed:.5g}{unit}, {expectation(verdict)}"
+    )

@@ -1,0 +1,85 @@
+"""A scene on a page: its parts, bearings and supports, its picture, and what it costs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from fe_drivetrain.report.pictures import NoPictureError, picture_of_model
+from fe_drivetrain.report.suite.page import Page
+from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.report.suite.run import Run
+from fe_drivetrain.shafts.response.model import Model
+from fe_drivetrain.studies.scene_check import CheckResult
+
+
+def show_check(run: Run, page: Page, result: CheckResult) -> None:
+    """Show what a scene is, and what it costs.
+
+    Parameters
+    ----------
+    run : Run
+        Its folder takes the picture.
+    page : Page
+        Takes the tables.
+    result : CheckResult
+        What was found.
+    """
+    page.section("Scene")
+    picture(run, page, result.model)
+    describe(page, result.described)
+    page.section("Cost")
+    page.table(
+        "What each level costs: unknowns of its largest system, time, memory",
+        result.tables["levels"],
+    )
+    page.text(
+        "Predicted times are those of the solver, fitted on two cores, without mesh and assembly, "
+        "whose times stand below; a mesh comes from the cache the next time. "
+        + (
+            "Housings as springs are solved for two bounds, all bearing units; the shaft on them "
+            "was run. "
+            if result.model.scene.bearing_units
+            else "The bearings on the nose have no solids: as far as the mesh is the same, the "
+            "assembly (4) answers as solid shaft and solid nose (3) do. "
+        )
+        + "advise solves coarser meshes, too, for the band of the assembly."
+    )
+
+
+def picture(run: Run, page: Page, model: Model) -> None:
+    """Draw the model; where nothing can be drawn, say why.
+
+    Parameters
+    ----------
+    run : Run
+        Its folder takes the picture.
+    page : Page
+        Shows it.
+    model : Model
+        The model.
+    """
+    with run.step("picture"):
+        try:
+            picture_of_model(model, run.folder / "model.png")
+        except NoPictureError as reason:
+            page.text(f"No picture: {reason}")
+            return
+    page.image(f"{model.scene.title}: parts, loads and supports", "model.png")
+
+
+def describe(page: Page, described: Mapping[str, Sequence[Record]]) -> None:
+    """Tables of the parts, bearings and supports of a scene.
+
+    Parameters
+    ----------
+    page : Page
+        Takes them.
+    described : Mapping[str, Sequence[Record]]
+        Tables by caption, see `fe_drivetrain.studies.scene_description.description`.
+    """
+    for caption, rows in described.items():
+        page.table(caption, rows)
+    page.text(
+        "Frame: x downwind along the shaft, z up, y = z cross x. Lengths in m, forces in N, "
+        "moments in N m, angles in rad."
+    )

@@ -1,0 +1,151 @@
+"""The command ``validate``: the six steps of a project as one report that grows with it."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fe_drivetrain.command_line.new_scene import SUFFIXES, write_all
+from fe_drivetrain.command_line.progress import show_steps
+from fe_drivetrain.command_line.terminal import FAILED, PASSED, as_typed, guarded, write
+from fe_drivetrain.common.errors import InputError
+
+if TYPE_CHECKING:
+    from fe_drivetrain.procedure.iteration_log import Entry
+    from fe_drivetrain.studies.project_validation import ValidateResult
+
+
+def validate_command(
+    project: Annotated[
+        Path, typer.Argument(metavar="PROJECT", help="A project file, as in project.yaml.")
+    ],
+    new: Annotated[
+        bool,
+        typer.Option(
+            "--new", help="Write a project to start from, with its schema for editors, and exit."
+        ),
+    ] = False,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="With --new: replace existing files.")
+    ] = False,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out",
+            metavar="DIR",
+            help="Result folder. Default: validate/PROJECT in the project's folder of reports.",
+        ),
+    ] = None,
+) -> None:
+    """Validate a model in the six steps of PROTEST 2010: one report, from failure modes on.
+
+    The project file has the decisions of each step, and links the cases that they rest on. The
+    report shows their verdicts, bands, dates and versions, names what is stale, and states what
+    each step still lacks. What has changed since the last run is added to PROJECT.log.jsonl.
+
+    The exit status is 0 if all six steps are complete, 1 if not, 2 for a faulty file.
+    """
+
+    def work() -> int:
+        if project.suffix.lower() not in SUFFIXES:
+            raise InputError(
+                f"{project} must end in {' or '.join(SUFFIXES)}: name it as in project.yaml"
+            )
+        if new:
+            from fe_drivetrain.procedure.project import (
+                PROJECT_SCHEMA_FILE,
+                project_schema,
+                starting_project,
+            )
+
+            texts = {
+                project: starting_project(),
+                project.with_name(PROJECT_SCHEMA_FILE): project_schema(),
+            }
+            write_all(texts, overwrite)
+            write(sys.stdout, _begun(project))
+            return PASSED
+        return _validated(project, out)
+
+    raise typer.Exit(guarded(work, "existing files are unchanged"))
+
+
+def _begun(path: Path) -> str:
+    """What a new project is, and what to type next."""
+    from fe_drivetrain.command_line.validate_commands import ready_commands
+    from fe_drivetrain.procedure.project import read_project
+    from fe_drivetrain.studies.project_validation import validate
+
+    result = validate(read_project(path), path.parent)
+    lines = [
+        f"{path} has the six steps of the 750 kW reference drivetrain: put in your own.",
+        "Its evidence is made, and looked at, by:",
+        *(f"  {command}" for command in ready_commands(result, path)),
+        "It stays open where nothing is published: its page says what, step by step.",
+    ]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _validated(path: Path, out: Path | None) -> int:
+    from fe_drivetrain.command_line.showing import shown
+    from fe_drivetrain.command_line.validate_commands import ready_commands
+    from fe_drivetrain.command_line.validate_page import show_validate
+    from fe_drivetrain.procedure.iteration_log import log_file
+    from fe_drivetrain.procedure.project import read_project
+    from fe_drivetrain.procedure.steps import STEPS
+    from fe_drivetrain.report.suite.case import Case
+    from fe_drivetrain.report.suite.ownership import check_result_folder
+    from fe_drivetrain.report.suite.result_folders import run_case
+    from fe_drivetrain.studies.project_validation import reasons, validate
+
+    project = read_project(path)
+    reports = path.parent / project.reports
+    folder = (reports / "validate" / path.stem if out is None else out).resolve()
+    check_result_folder(folder)
+    result = validate(project, path.parent)
+    log = _logged(result, log_file(path))
+    commands = ready_commands(result, path)
+    case = Case(
+        f"validate/{path.stem}",
+        f"{project.subject}: from failure modes to comparison",
+        "PROTEST 2010, ECN-E--10-100: six steps; Tables 4.1 to 4.10",
+        shown(
+            lambda run: result,
+            lambda run, page, of: show_validate(page, of, log, reports.resolve(), folder, commands),
+        ),
+        command=as_typed(),
+    )
+    with show_steps() as report:
+        results = run_case(case, folder, report=report)
+    lines = [*results.notes, *([""] if results.notes else []), results.summary[0]]
+    for state in result.states:
+        if not state.complete:
+            lines += ["", f"Step {state.number}, {STEPS[state.number - 1]}:"]
+            lines += [f"  {text}." for text in reasons(state)]
+    lines.append("")
+    if commands:
+        lines += ["Run next:", *(f"  {command}" for command in commands), ""]
+    lines += [f"Report: {folder / 'report.html'}"]
+    write(sys.stdout, "".join(f"{line}\n" for line in lines))
+    return PASSED if results.passed else FAILED
+
+
+def _logged(result: ValidateResult, file: Path) -> tuple[Entry, ...]:
+    """The log, with what this run adds to it."""
+    from datetime import UTC, datetime
+    from importlib.metadata import version
+
+    from fe_drivetrain.common.made_by import program_hash
+    from fe_drivetrain.procedure.iteration_log import next_entry, read_log, write_log
+
+    log = read_log(file)
+    now = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
+    made_by = f"{version('fe-drivetrain')} {program_hash()[:8]}"
+    entry = next_entry(log, result.project, result.states, now, made_by)
+    if entry is not None:
+        log = (*log, entry)
+        write_log(file, log)
+    return log

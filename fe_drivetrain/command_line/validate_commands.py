@@ -1,0 +1,113 @@
+"""What to type next for a project: commands that make evidence which does not count yet."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterable
+from pathlib import Path
+
+from fe_drivetrain.procedure.project import Capture, Comparison, Project
+from fe_drivetrain.report.suite.case import Case, all_cases
+from fe_drivetrain.studies.project_validation import ValidateResult
+
+_MADE_AGAIN = frozenset({"missing", "edited", "stale", "quick", "of another drivetrain"})
+"""States of evidence that a run may change."""
+
+_ON_SCENES = ("advise", "check", "study", "uncertainty")
+"""Commands whose only argument is a scene."""
+
+
+def ready_commands(result: ValidateResult, path: Path) -> list[str]:
+    """Commands to be copied, with all names and paths quoted; the last one validates again.
+
+    Parameters
+    ----------
+    result : ValidateResult
+        How the project stands.
+    path : Path
+        The project file, as the user named it.
+
+    Returns
+    -------
+    list of str
+        Empty where no run would change anything.
+    """
+    project = result.project
+    reports = path.parent / project.reports
+    wanted = _missing(result, path.parent, reports)
+    known = all_cases()
+    machine = _machine(project, path.parent)
+    cases = [known[name] for name in wanted if name in known]
+    groups = [
+        [case for case in cases if machine and "machine" in case.settings],
+        [case for case in cases if not (machine and "machine" in case.settings)],
+    ]
+    commands = [
+        _run(group, project, reports, machine if number == 0 else "")
+        for number, group in enumerate(groups)
+        if group
+    ]
+    commands += [
+        command
+        for name in wanted
+        if name not in known
+        if (command := _of_scene(name, path, project))
+    ]
+    return [*commands, shlex.join(["fe-drivetrain", "validate", str(path)])] if commands else []
+
+
+def _missing(result: ValidateResult, folder: Path, reports: Path) -> list[str]:
+    """Names of results that are to be made: of evidence, and beside files of channels."""
+    found = [
+        one.link.case
+        for state in result.states
+        for one in state.evidence
+        if one.state in _MADE_AGAIN and not one.counts
+    ]
+    project = result.project
+    given: Iterable[str] = (
+        *_files(project.campaign.capture if project.campaign else None),
+        *_files(project.comparison),
+    )
+    for name in given:
+        file = folder / name
+        if not file.is_file() and reports in file.parents:
+            found.append(file.parent.relative_to(reports).as_posix())
+    return list(dict.fromkeys(found))
+
+
+def _files(of: Capture | Comparison | None) -> list[str]:
+    if of is None:
+        return []
+    if isinstance(of, Capture):
+        return [of.files.file]
+    return [of.measured.file, *([of.computed.file] if of.computed else [])]
+
+
+def _machine(project: Project, folder: Path) -> str:
+    """The machine as a case takes it: a file by its path, or a name of the library."""
+    name = project.model.machine if project.model else ""
+    return str(folder / name) if name and (folder / name).is_file() else name
+
+
+def _run(cases: list[Case], project: Project, reports: Path, machine: str) -> str:
+    # of one case, --out is its own folder
+    out = reports if len(cases) > 1 else reports / cases[0].name
+    words = ["fe-drivetrain", "run", "--out", str(out)]
+    words += ["--quick"] if "quick" in project.accept else []
+    words += ["--set", f"machine={machine}"] if machine else []
+    return shlex.join([*words, *(case.name for case in cases)])
+
+
+def _of_scene(name: str, path: Path, project: Project) -> str:
+    """The command whose results a name is of; empty where it is of none on scenes."""
+    command, _, _ = name.partition("/")
+    scene = project.model.scene if project.model else ""
+    if not scene or command not in _ON_SCENES:
+        return ""
+    file = path.parent / scene
+    words = ["fe-drivetrain", command, str(file) if file.is_file() else scene]
+    if command == "advise" and project.model:
+        for need in project.model.needs[:1]:
+            words += ["--quantity", need.quantity, "--tolerance", f"{100 * need.tolerance:g}%"]
+    return shlex.join([*words, "--out", str(path.parent / project.reports / name)])

@@ -1,0 +1,178 @@
+"""Scenes and components from YAML files, from the library, and with changed values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.reading import (
+    changed,
+    parse_mapping,
+    read_text,
+    set_by_key,
+    validated,
+)
+from fe_drivetrain.drivetrain_file.component import COMPONENTS, Component, SomeComponent
+from fe_drivetrain.drivetrain_file.gate import check_files
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.geometry import Bearing
+
+
+def read_scene(path: str | Path, changes: Mapping[str, Any] | None = None) -> Scene:
+    """Read a scene from a YAML file.
+
+    Parameters
+    ----------
+    path : str or Path
+        A file of at most 1 MB, plain YAML without anchors, aliases or tags.
+    changes : mapping, optional
+        Values by dotted key that replace those of the file, as in
+        ``{"shaft.sections.0.inner_diameter": 0.2}``; a bearing unit is addressed by its
+        bearing's name. Files that it names are looked for in the scene's folder.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, is not such YAML, does not describe a scene, or a file that it
+        names is not there.
+    """
+    data = _changed_mapping(read_text(path, "scene"), changes, str(path))
+    _beside(Path(path).parent, data.get("bearing_units"))
+    scene = _scene(data, str(path))
+    check_files(scene.bearing_units)
+    return scene
+
+
+def parse_scene(
+    text: str, changes: Mapping[str, Any] | None = None, source: str = "scene"
+) -> Scene:
+    """A scene from YAML text; see `read_scene`."""
+    return _scene(_changed_mapping(text, changes, source), source)
+
+
+def _scene(data: dict[str, Any], source: str) -> Scene:
+    for kind in COMPONENTS:
+        if kind in data:
+            raise InputError(
+                f"{source} is a component, for it has {kind!r}, and no scene of a shaft: "
+                "components can be exported, and have cases of their own"
+            )
+    return validated(Scene, data, source)
+
+
+def scene_text(scene: Scene) -> str:
+    """A scene as a file: plain YAML that `parse_scene` reads as the same scene."""
+    import yaml
+
+    data = scene.model_dump(mode="json", exclude_unset=True)
+    return yaml.safe_dump(data, sort_keys=False, allow_unicode=True)
+
+
+def library_scene(name: str) -> Scene:
+    """A scene that comes with the package, by name: "main_bearing_spherical", "..._bonded"."""
+    return parse_scene(library_text(name), source=name)
+
+
+def change_scene(scene: Scene, changes: Mapping[str, Any]) -> Scene:
+    """A copy of the scene with other values by dotted key; see `read_scene`."""
+    return changed(scene, changes, "scene")
+
+
+def read_component(path: str | Path, changes: Mapping[str, Any] | None = None) -> Component:
+    """Read a component from a YAML file.
+
+    Parameters
+    ----------
+    path : str or Path
+        A file of at most 1 MB, plain YAML without anchors, aliases or tags.
+    changes : mapping, optional
+        Values by dotted key that replace those of the file, as in
+        ``{"gearbox_housing.arm_z": -0.1}``.
+
+    Returns
+    -------
+    Component
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, is not such YAML, or does not describe a component.
+    """
+    return parse_component(read_text(path, "scene"), changes, source=str(path))
+
+
+def parse_component(
+    text: str, changes: Mapping[str, Any] | None = None, source: str = "component"
+) -> Component:
+    """A component from YAML text; see `read_component`."""
+    data = _changed_mapping(text, changes, source)
+    kinds = [kind for kind in COMPONENTS if kind in data]
+    if len(kinds) != 1:
+        raise InputError(
+            f"{source} must have one of the keys {', '.join(COMPONENTS)}, not "
+            f"{' and '.join(kinds) or 'none of them'}: the key determines the kind of component"
+        )
+    return validated(COMPONENTS[kinds[0]], data, source)
+
+
+def library_component(name: str) -> Component:
+    """A component that comes with the package: "gearbox_housing" or "planet_carrier"."""
+    return parse_component(library_text(name), source=name)
+
+
+def change_component(component: SomeComponent, changes: Mapping[str, Any]) -> SomeComponent:
+    """A copy with other values by dotted key; see `read_component`."""
+    return changed(component, changes, "component")
+
+
+def is_component(text: str) -> bool:
+    """Whether YAML text describes a component; False of text that cannot be read at all."""
+    try:
+        data = parse_mapping(text, "text")
+    except InputError:
+        return False
+    return any(kind in data for kind in COMPONENTS)
+
+
+def library_text(name: str) -> str:
+    """The text of a file of the library, by its name without ending."""
+    folder = files("fe_drivetrain.geometry") / "library"
+    names = sorted(f.name.removesuffix(".yaml") for f in folder.iterdir())
+    if name not in names:
+        raise InputError(f"no scene {name!r} in the library: use one of {', '.join(names)}")
+    return (folder / f"{name}.yaml").read_text("utf-8")
+
+
+def _changed_mapping(text: str, changes: Mapping[str, Any] | None, source: str) -> dict[str, Any]:
+    data = parse_mapping(text, source)
+    _name_bearings(data.get("bearing_units"))
+    for key, value in (changes or {}).items():
+        set_by_key(data, key, value)
+    return data
+
+
+def _beside(folder: Path, units: Any) -> None:
+    """Take the names of files in a scene's file as from its own folder."""
+    for unit in units if isinstance(units, list) else []:
+        if not isinstance(unit, dict):
+            continue
+        parts = unit.get("parts")
+        for part in (unit.get("housing"), *(parts if isinstance(parts, list) else ())):
+            for key in ("step", "mesh"):
+                if isinstance(part, dict) and isinstance(part.get(key), str):
+                    part[key] = str(folder / part[key])
+
+
+def _name_bearings(units: Any) -> None:
+    """Write out the default name of bearings without one, so that changes can go by it."""
+    for unit in units if isinstance(units, list) else []:
+        bearing = unit.get("bearing") if isinstance(unit, dict) else None
+        if isinstance(bearing, dict):
+            bearing.setdefault("name", Bearing.model_fields["name"].default)

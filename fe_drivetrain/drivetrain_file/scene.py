@@ -1,0 +1,292 @@
+"""A scene: shaft, bearing units, supports and mesh sizes; typed, validated, and sound."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal
+
+from pydantic import (
+    Field,
+    model_validator,
+)
+
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.reading import value_by_key
+from fe_drivetrain.common.strict_yaml import shown
+from fe_drivetrain.drivetrain_file.bearing_unit import BearingUnit, Keys, Springs
+from fe_drivetrain.drivetrain_file.entrance import Entrance
+from fe_drivetrain.drivetrain_file.gate import check_scene
+from fe_drivetrain.drivetrain_file.materials import MATERIALS, Material, known_materials
+from fe_drivetrain.drivetrain_file.nose import Nose, NoseBearing
+from fe_drivetrain.drivetrain_file.shared_parts import coupled_units
+from fe_drivetrain.geometry import Band, Housing, MeshSizes, Shaft, within_walls
+
+#: How a reference point holds its face: as its mean motion (RBE3) or as a rigid body (RBE2).
+Coupling = Literal["averaged", "rigid"]
+
+#: Largest weight of a part [N]: a hundred times the nacelle of the largest turbines.
+HEAVIEST = 1e9
+
+
+class Hub(Keys):
+    """The reference point of the hub loads, at the centre of the shaft's front face.
+
+    Histories of one's own may be about another point of the shaft's axis: the rotor's centre ahead
+    of the flange, say, or a strain gauge behind it.
+    """
+
+    coupling: Coupling = "averaged"
+    loads_at: float | None = Field(
+        default=None,
+        ge=-1e3,
+        le=1e3,
+        description="x of what files of hub loads are about [m], at most five lengths of the "
+        "shaft from its front face, which it is if left out",
+    )
+
+
+class Gearbox(Keys):
+    """Springs to ground and a weight, at the centre of the shaft's rear face."""
+
+    stiffness: Springs
+    weight: float = Field(default=0.0, ge=0, le=HEAVIEST, description="weight [N], along -z")
+    coupling: Coupling = "averaged"
+
+    @property
+    def held(self) -> list[int]:
+        """The motions (0-2 displacements, 3-5 rotations) that are rigidly held."""
+        return [c for c, k in enumerate(self.stiffness) if k == "rigid"]
+
+
+class LoadPoint(Keys):
+    """Another point of the shaft where loads enter: a gear, a brake disc, a coupling, a mass.
+
+    Forces and moments act on average on the outer surface of the shaft, over a width.
+    """
+
+    name: str = Field(
+        pattern=r"^[A-Za-z][A-Za-z0-9_-]*$", description="name: letters, digits, '_' and '-'"
+    )
+    x: float = Field(ge=-1e3, le=1e3, description="x of the middle of its width [m]")
+    width: float = Field(gt=0, le=1e3, description="over which the shaft takes its loads [m]")
+    weight: float = Field(default=0.0, ge=0, le=HEAVIEST, description="weight [N], along -z")
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """x of both ends of its width [m]."""
+        return self.x - self.width / 2, self.x + self.width / 2
+
+
+class Spread(Keys):
+    """How certain a value is, relative to it: half the width of an even distribution, the standard
+    deviation of a normal one, or the coefficient of variation of a lognormal one about its median.
+    """
+
+    uniform: float | None = Field(default=None, gt=0, lt=1)
+    normal: float | None = Field(default=None, gt=0, lt=1)
+    lognormal: float | None = Field(default=None, gt=0, lt=10)
+
+    @model_validator(mode="after")
+    def _one(self) -> "Spread":
+        given = [k for k in ("uniform", "normal", "lognormal") if getattr(self, k) is not None]
+        if len(given) != 1:
+            raise ValueError(
+                f"give one of uniform, normal and lognormal, not {' and '.join(given) or 'none'}"
+            )
+        return self
+
+
+class Scene(Keys):
+    """A drivetrain: one shaft on any number of bearing units, or round a nose; a hub, a gearbox.
+
+    Whatever is to be done with a scene, it is sound from the start: see
+    `fe_drivetrain.drivetrain_file.gate.check_scene`.
+    """
+
+    title: str
+    shaft: Shaft
+    bearing_units: tuple[BearingUnit, ...] = ()
+    nose: Nose | None = None
+    hub: Hub = Hub()
+    gearbox: Gearbox
+    load_points: tuple[LoadPoint, ...] = ()
+    materials: Mapping[str, Material] = {}
+    mesh: MeshSizes = MeshSizes()
+    uncertainty: Mapping[str, Spread] = {}
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Scene":
+        check_scene(self, self.gearbox.stiffness, [point.name for point in self.load_points])
+        check_spreads(self)
+        return self
+
+    def material_of(self, part: str) -> Material:
+        """The material of a part, by the part's name in the mesh."""
+        return known_materials(self.materials)[self.material_name(part)]
+
+    def material_name(self, part: str) -> str:
+        """The name of a part's material, by the part's name in the mesh."""
+        if part == "shaft":
+            return self.shaft.material
+        if part == "nose" and self.nose is not None:
+            return self.nose.body.material
+        name, _, housing = part.partition(".")
+        unit = self.bearing_unit(name)
+        if not housing:
+            return unit.bearing.material
+        if unit.condensed is not None:
+            raise InputError(f"{part} is a stiffness alone, and has no material: leave it out")
+        return unit.housing_parts[part].material
+
+    @property
+    def blocks(self) -> dict[str, Housing]:
+        """Parametric housings by the name of the bearing; those from files are none."""
+        return {
+            unit.bearing.name: unit.housing
+            for unit in self.bearing_units
+            if isinstance(unit.housing, Housing)
+        }
+
+    @property
+    def bands(self) -> dict[str, Band]:
+        """Where on the shaft each load point's loads enter, by its name."""
+        return {point.name: Band(*point.span) for point in self.load_points}
+
+    @property
+    def coupled_units(self) -> tuple[tuple[str, ...], ...]:
+        """Names of bearings whose housings stand on the same parts, the parts' own unit first."""
+        return coupled_units(self.bearing_units)
+
+    @property
+    def guests(self) -> frozenset[str]:
+        """Names of bearings whose housings stand on parts of another unit alone."""
+        return frozenset(name for _, *others in self.coupled_units for name in others)
+
+    @property
+    def nose_bearings(self) -> tuple[NoseBearing, ...]:
+        """The bearings between shaft and nose; none where there is no nose."""
+        return () if self.nose is None else self.nose.bearings
+
+    @property
+    def seats(self) -> dict[str, Band]:
+        """Faces of the shaft beside its ends and the seats of bearing units: of nose and loads."""
+        return {b.name: Band(*b.span, inside=True) for b in self.nose_bearings} | self.bands
+
+    @property
+    def bearing_names(self) -> list[str]:
+        """Names of all bearings, those of bearing units first."""
+        return [
+            *(u.bearing.name for u in self.bearing_units),
+            *(b.name for b in self.nose_bearings),
+        ]
+
+    @property
+    def loads_at(self) -> float:
+        """x of the point that files of hub loads are about [m]."""
+        return self.shaft.front if self.hub.loads_at is None else self.hub.loads_at
+
+    @property
+    def entrance(self) -> Entrance:
+        """Where loads enter, and which point they are about."""
+        return Entrance(
+            self.shaft.front,
+            self.loads_at,
+            tuple(point.name for point in self.load_points),
+            tuple(point.weight for point in self.load_points),
+        )
+
+    def bearing_unit(self, name: str) -> BearingUnit:
+        """The bearing unit of that name."""
+        return next(unit for unit in self.bearing_units if unit.bearing.name == name)
+
+    def seat_diameter(self, name: str) -> float:
+        """Diameter of the shaft under the bearing of a unit [m]: all that the unit knows of it."""
+        bearing = self.bearing_unit(name).bearing
+        return self.shaft.seat_diameter(bearing.x, bearing.width, name)
+
+
+def with_materials(scene: Scene) -> Scene:
+    """The scene with materials of the program that it uses among its own, where they have keys."""
+    used = {scene.shaft.material}
+    if scene.nose is not None:
+        used.add(scene.nose.body.material)
+    for unit in scene.bearing_units:
+        solids = (unit.bearing, *unit.housing_parts.values())
+        used |= {solid.material for solid in solids}
+    own = {name: MATERIALS[name] for name in used if name in MATERIALS}
+    return scene.model_copy(update={"materials": own | dict(scene.materials)})
+
+
+def nominal_values(scene: Scene, keys: Sequence[str]) -> list[float]:
+    """The numbers that dotted keys lead to; a bearing unit is addressed by its bearing's name.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    keys : Sequence[str]
+        As for `fe_drivetrain.drivetrain_file.change_scene`.
+
+    Raises
+    ------
+    InputError
+        There is none, or it is no number.
+    """
+    data = with_materials(scene).model_dump(mode="json")
+    return [_number(data, key) for key in keys]
+
+
+def _number(data: Any, key: str) -> float:
+    value = value_by_key(data, key)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InputError(
+            f"uncertainty of {shown(key)}: the scene has no number there: name a value that it "
+            "gives, as in shaft.sections.0.outer_diameter"
+        )
+    return float(value)
+
+
+def check_spreads(scene: Scene) -> None:
+    """Refuse uncertain values that cannot be uncertain.
+
+    Parameters
+    ----------
+    scene : Scene
+        With spreads, or without any.
+
+    Raises
+    ------
+    InputError
+        A key leads to no number, or to zero, which has no relative spread.
+    """
+    if not scene.uncertainty:
+        return
+    keys = list(scene.uncertainty)
+    for key, value in zip(keys, nominal_values(scene, keys), strict=True):
+        if value == 0.0:
+            raise InputError(
+                f"uncertainty of {shown(key)}: the value is 0, and a spread is relative to it: "
+                "leave it out, or shift the frame so that the value differs from 0"
+            )
+
+
+def coarser_scene(scene: Scene, factor: float, elements_per_turn: int) -> Scene:
+    """A scene on a coarser mesh, as far as its walls allow.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    factor : float
+        Of its mesh sizes; what a thin wall does not allow stays smaller.
+    elements_per_turn : int
+        Round any cylinder.
+    """
+    units = scene.bearing_units
+    sizes = within_walls(
+        scene.mesh.scaled(factor, elements_per_turn),
+        scene.shaft,
+        [unit.bearing for unit in units],
+        scene.blocks,
+    )
+    if scene.nose is not None:
+        sizes = within_walls(sizes, scene.nose.body, [], {})
+    return scene.model_copy(update={"mesh": sizes})

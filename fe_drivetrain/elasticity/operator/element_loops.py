@@ -1,0 +1,253 @@
+"""Compiled loops over elements: the sparsity of a stiffness, and its entries.
+
+Compiled by numba at the first call (seconds), then kept in its cache on disk.
+"""
+
+import numpy as np
+from numba import njit, prange
+from numpy.typing import NDArray
+
+from fe_drivetrain.common.arrays import Bools, Floats, Ints
+from fe_drivetrain.elasticity.mesh.shapes import TETRAHEDRON_EDGES
+from fe_drivetrain.elasticity.operator.kernels import Index, inverse_transposed
+from fe_drivetrain.elasticity.operator.vectors import LANES, fetch, load, plus, store, times
+
+# Rows that a thread takes at once have a marker for each node.
+_PIECES = 8
+
+#: An edge node this close to the middle of its edge, per length of the edge, is on it.
+_STRAIGHT = 2e-13
+
+
+def is_straight(points: Floats, cells: Index | Ints) -> Bools:
+    """Which ten-node tetrahedra have only straight edges, and so an affine map; (n_cells,)."""
+    found = np.empty(len(cells), dtype=np.bool_)
+    nodes = np.ascontiguousarray(cells, dtype=np.int32)
+    _find_straight(points, nodes, TETRAHEDRON_EDGES, found)
+    return found
+
+
+@njit(cache=True)
+def _find_straight(points: Floats, cells: Index, edges: NDArray[np.int64], found: Bools) -> None:
+    for e in range(len(cells)):  # so little to do that threads would take longer to compile
+        found[e] = True
+        for edge in range(len(edges)):
+            length = off = 0.0
+            a, b = cells[e, edges[edge, 0]], cells[e, edges[edge, 1]]
+            for i in range(3):
+                one, other = points[a, i], points[b, i]
+                length += (other - one) ** 2
+                off += (points[cells[e, 4 + edge], i] - 0.5 * (one + other)) ** 2
+            if off > _STRAIGHT**2 * length:
+                found[e] = False
+
+
+def sparsity(cells: Index, n_nodes: int) -> tuple[Index, Index, Index]:
+    """Which nodes share a cell.
+
+    Returns
+    -------
+    indptr, indices, slots
+        Rows of the pattern, sorted; and (n_cells, k, k) where in ``indices`` the pair of local
+        nodes (a, b) of each cell stands.
+    """
+    # NumPy makes the arrays out here: in a compiled loop that takes a second to compile
+    n_cells, k = cells.shape
+    start, fill = np.zeros(n_nodes + 1, np.int64), np.empty(n_nodes, np.int64)
+    where, indptr = np.empty(n_cells * k, np.int64), np.zeros(n_nodes + 1, np.int32)
+    _find_cells(cells, start, fill, where)
+    markers = np.full((_PIECES, n_nodes), -1, np.int32)
+    _count_pairs(cells, start, where, markers, indptr)
+    np.cumsum(indptr, out=indptr)
+    indices, slots = np.empty(indptr[-1], np.int32), np.empty((n_cells, k, k), np.int32)
+    markers[:] = -1
+    _place_pairs(cells, start, where, markers, indptr, indices, slots)
+    return indptr, indices, slots
+
+
+@njit(cache=True)
+def _find_cells(
+    cells: Index, start: NDArray[np.int64], fill: NDArray[np.int64], where: NDArray[np.int64]
+) -> None:
+    """In ``where``, from its start, each node's places in ``cells``, flat."""
+    n_cells, k = cells.shape
+    for c in range(n_cells):
+        for a in range(k):
+            start[cells[c, a] + 1] += 1
+    for i in range(len(fill)):
+        start[i + 1] += start[i]
+        fill[i] = start[i]
+    for c in range(n_cells):
+        for a in range(k):
+            i = cells[c, a]
+            where[fill[i]] = c * k + a
+            fill[i] += 1
+
+
+@njit(cache=True, parallel=True)
+def _count_pairs(
+    cells: Index, start: NDArray[np.int64], where: NDArray[np.int64], markers: Index, counts: Index
+) -> None:
+    """Number of nodes that share a cell with node i, in ``counts[i + 1]``."""
+    k, n = cells.shape[1], len(start) - 1
+    for piece in prange(_PIECES):
+        seen = markers[piece]
+        for i in range(piece * n // _PIECES, (piece + 1) * n // _PIECES):
+            count = 0
+            for w in range(start[i], start[i + 1]):
+                c = where[w] // k
+                for b in range(k):
+                    j = cells[c, b]
+                    if seen[j] != i:
+                        seen[j] = i
+                        count += 1
+            counts[i + 1] = count
+
+
+@njit(cache=True, parallel=True)
+def _place_pairs(
+    cells: Index,
+    start: NDArray[np.int64],
+    where: NDArray[np.int64],
+    markers: Index,
+    indptr: Index,
+    indices: Index,
+    slots: Index,
+) -> None:
+    """Columns of the rows, and where each pair of a cell stands among them."""
+    k, n = cells.shape[1], len(start) - 1
+    for piece in prange(_PIECES):
+        # where a node stands in the row; before this row's first place it stood in another one
+        place = markers[piece]
+        for i in range(piece * n // _PIECES, (piece + 1) * n // _PIECES):
+            first = end = indptr[i]
+            for w in range(start[i], start[i + 1]):
+                c = where[w] // k
+                for b in range(k):
+                    j = cells[c, b]
+                    if place[j] < first:
+                        place[j] = first
+                        indices[end] = j
+                        end += 1
+            # By insertion: rows are short, and NumPy's sort would take a second to compile.
+            for p in range(first, end):
+                j, q = indices[p], p
+                while q > first and indices[q - 1] > j:
+                    indices[q] = indices[q - 1]
+                    q -= 1
+                indices[q] = j
+            for p in range(first, end):
+                place[indices[p]] = p
+            for w in range(start[i], start[i + 1]):
+                c = where[w] // k
+                a = where[w] - c * k
+                for b in range(k):
+                    slots[c, a, b] = place[cells[c, b]]
+
+
+@njit(inline="always")
+def _add_pair(
+    S: Floats, b: int, width: int, lam: float, mu: float, data: Floats, ab: int, ba: int
+) -> None:
+    """Add lam H + mu H^T + mu tr(H) I at (a, b), and its transpose at (b, a).
+
+    H is column b of a's three rows in S; indices cannot be negative.
+    """
+    three, wide, first = np.uint64(3), np.uint64(width), np.uint64(3 * b)
+    t, back = np.uint64(9 * ab), np.uint64(9 * ba)
+    one = np.uint64(1)
+    trace = mu * (S[first] + S[wide + first + one] + S[wide + wide + first + one + one])
+    for i in range(three):
+        for j in range(three):
+            value = lam * S[wide * i + first + j] + mu * S[wide * j + first + i]
+            if i == j:
+                value += trace
+            data[t + three * i + j] += value
+            if ab != ba:
+                data[back + three * j + i] += value
+
+
+def add_elements(
+    points: Floats,
+    cells: Index,
+    chosen: NDArray[np.int64],
+    gradients: Floats,
+    weights: Floats,
+    lam: float,
+    mu: float,
+    slots: Index,
+    data: Floats,
+) -> None:
+    """Add the stiffness of isoparametric elements of any kind, by quadrature.
+
+    Parameters
+    ----------
+    chosen : NDArray[np.int64]
+        Numbers of the cells.
+    gradients, weights : Floats
+        (n_q, 3, k) reference gradients and (n_q,) weights of the rule.
+    lam, mu : float
+        Lame's constants [Pa].
+    slots, data : Index, Floats
+        Slots from `sparsity`, and the blocks to add to.
+    """
+    n_q, _, k = gradients.shape
+    # rows are read eight numbers at once, beyond the last one, too
+    width = 3 * k + LANES
+    G, W, S = np.zeros((n_q, width)), np.empty((n_q, 3 * k)), np.empty((3, width))
+    flat = G.reshape(-1), W.reshape(-1), S.reshape(-1), data.reshape(-1)
+    _add_elements(points, cells, chosen, gradients, weights, lam, mu, slots, *flat)
+
+
+@njit(cache=True, fastmath=True, nogil=True)
+def _add_elements(
+    points: Floats,
+    cells: Index,
+    chosen: NDArray[np.int64],
+    gradients: Floats,
+    weights: Floats,
+    lam: float,
+    mu: float,
+    slots: Index,
+    G: Floats,
+    W: Floats,
+    S: Floats,
+    data: Floats,
+) -> None:
+    """With room for gradients, those times their weight, and integrals of their products."""
+    k, n_q = cells.shape[1], len(weights)
+    rows, width = 3 * k, 3 * k + LANES
+    J, A = np.empty((3, 3)), np.empty((3, 3))
+    for e in chosen:
+        for a in range(k):  # blocks come while gradients are multiplied
+            for b in range(k):
+                fetch(data, 9 * slots[e, a, b])
+                fetch(data, 9 * slots[e, a, b] + 8)
+        for q in range(n_q):
+            J[:] = 0.0
+            for a in range(k):
+                for i in range(3):
+                    x = points[cells[e, a], i]
+                    for p in range(3):
+                        J[i, p] += x * gradients[q, p, a]
+            size = abs(inverse_transposed(J, A)) * weights[q]
+            for a in range(k):
+                for i in range(3):
+                    g = 0.0
+                    for p in range(3):
+                        g += A[i, p] * gradients[q, p, a]
+                    G[q * width + 3 * a + i] = g
+                    W[q * rows + 3 * a + i] = size * g
+        for a in range(k):
+            for c in range(3 * a, rows, LANES):
+                v = load(G, c)
+                f, g, h = times(W[3 * a], v), times(W[3 * a + 1], v), times(W[3 * a + 2], v)
+                for q in range(1, n_q):
+                    v = load(G, q * width + c)
+                    r = q * rows + 3 * a
+                    f, g, h = plus(f, W[r], v), plus(g, W[r + 1], v), plus(h, W[r + 2], v)
+                store(f, S, c)
+                store(g, S, width + c)
+                store(h, S, 2 * width + c)
+            for b in range(a, k):
+                _add_pair(S, b, width, lam, mu, data, slots[e, a, b], slots[e, b, a])

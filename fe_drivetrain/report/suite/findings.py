@@ -1,0 +1,268 @@
+"""What a case or a study finds, apart from how it is shown: answer, numbers, checks, cautions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from fe_drivetrain.report.results import (
+    AssumptionRow,
+    Cell,
+    DrivetrainRecord,
+    Figure,
+    Limit,
+    Verdict,
+)
+from fe_drivetrain.report.suite.checks import Checks
+from fe_drivetrain.report.suite.records import as_json
+from fe_drivetrain.report.suite.targets import split_unit
+
+if TYPE_CHECKING:
+    from fe_drivetrain.report.seal import Described
+
+
+OF_NONE = "none"
+"""Stands for the hash of a drivetrain where a check is of a model that no file describes."""
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Found:
+    """What was found, complete.
+
+    Attributes
+    ----------
+    answer : tuple of str
+        The answer, in sentences.
+    figures : tuple of Figure
+        Values that answer what was asked, with unit and band.
+    checks : tuple of Verdict
+        Checks that were made.
+    notes, unsettled, skipped : tuple of str
+        What must be known before any figure; answers that have not converged; checks that were not
+        made. In sentences.
+    tables : mapping of str to object
+        All numbers, by name: most are lists of records, with units in their keys.
+    limits : tuple of Limit
+        Where methods fail.
+    assumptions : tuple of AssumptionRow
+        Values that nobody stated, and where they come from.
+    drivetrains : tuple of DrivetrainRecord
+        What it is of.
+    options : mapping of str to object
+        What was asked for, as plain data.
+    scene : str
+        The scene as a file; empty where there is none.
+    seed : int or None
+        Seed of random numbers; None where there are none.
+    times : mapping of str to float
+        Wall time of each step [s].
+    """
+
+    answer: tuple[str, ...]
+    figures: tuple[Figure, ...]
+    checks: tuple[Verdict, ...]
+    notes: tuple[str, ...]
+    unsettled: tuple[str, ...]
+    skipped: tuple[str, ...]
+    tables: Mapping[str, Any]
+    limits: tuple[Limit, ...]
+    assumptions: tuple[AssumptionRow, ...]
+    drivetrains: tuple[DrivetrainRecord, ...]
+    options: Mapping[str, Any]
+    scene: str
+    seed: int | None
+    times: Mapping[str, float]
+
+    @property
+    def passed(self) -> bool:
+        """Whether every check passed."""
+        return all(check.passed for check in self.checks)
+
+
+class Findings(Checks):
+    """Collects what is found.
+
+    Attributes
+    ----------
+    notes : list of str
+        What must be known before any figure, in sentences.
+    unsettled : list of str
+        Answers that have not converged, in sentences.
+    verdicts : list of Verdict
+        Verdicts of all checks so far.
+    summary : list of str
+        The answer, in sentences.
+    answers : list of Figure
+        Values that answer what was asked.
+    limits : list of Limit
+        Where methods fail.
+    assumptions : list of AssumptionRow
+        Values that the sources do not give.
+    figures : dict
+        Named numbers for other programs.
+    scene : str
+        The scene as a file.
+    drivetrains : list of DrivetrainRecord
+        What the findings are of, by `about`.
+    skipped : list of str
+        Checks that were not made, by `skip`.
+    seed : int or None
+        Seed of random numbers; None where there are none.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.scene = ""
+        self.notes: list[str] = []
+        self.unsettled: list[str] = []
+        self.summary: list[str] = []
+        self.answers: list[Figure] = []
+        self.limits: list[Limit] = []
+        self.assumptions: list[AssumptionRow] = []
+        self.figures: dict[str, Any] = {}
+        self.drivetrains: list[DrivetrainRecord] = []
+        self.skipped: list[str] = []
+        self.seed: int | None = 0
+
+    def frozen(self, times: Mapping[str, float], **options: Any) -> dict[str, Any]:
+        """All that was found, as the fields of `Found`.
+
+        Parameters
+        ----------
+        times : mapping of str to float
+            Wall time of each step [s].
+        **options : object
+            What was asked for.
+        """
+        return {
+            "answer": tuple(self.summary),
+            "figures": tuple(self.answers),
+            "checks": tuple(self.verdicts),
+            "notes": tuple(self.notes),
+            "unsettled": tuple(self.unsettled),
+            "skipped": tuple(self.skipped),
+            "tables": MappingProxyType(dict(self.figures)),
+            "limits": tuple(self.limits),
+            "assumptions": tuple(self.assumptions),
+            "drivetrains": tuple(self.drivetrains),
+            "options": MappingProxyType(as_json(options)),
+            "scene": self.scene,
+            "seed": self.seed,
+            "times": MappingProxyType(dict(times)),
+        }
+
+    def about(self, drivetrain: Described, name: str = "") -> None:
+        """State what drivetrain the checks and answers from here on are of, by its hash.
+
+        Parameters
+        ----------
+        drivetrain : Described
+            A scene, machine or gear table, with all changes made; a scene is kept as a file, too.
+        name : str
+            As the results call it, where they are of several.
+        """
+        from fe_drivetrain.drivetrain_file.reading import scene_text
+        from fe_drivetrain.drivetrain_file.scene import Scene
+
+        self._of = self.concerns(drivetrain, name)
+        if isinstance(drivetrain, Scene):
+            self.scene = scene_text(drivetrain)
+
+    @contextmanager
+    def of(self, drivetrain: Described | None, name: str = "") -> Iterator[None]:
+        """Let checks and answers within be of another drivetrain than those around them.
+
+        Parameters
+        ----------
+        drivetrain : Described or None
+            As for `about`; None of a model that no file describes, as one that a source prints.
+        name : str
+            As the results call it, where they are of several.
+        """
+        outside = self._of
+        self._of = OF_NONE if drivetrain is None else self.concerns(drivetrain, name)
+        try:
+            yield
+        finally:
+            self._of = outside
+
+    def concerns(self, drivetrain: Described, name: str = "") -> str:
+        """State one of several drivetrains that the results compare; its hash.
+
+        Parameters
+        ----------
+        drivetrain : Described
+            A scene, machine or gear table, with all changes made.
+        name : str
+            As the results call it.
+        """
+        from fe_drivetrain.report.seal import drivetrain_record
+
+        record = drivetrain_record(drivetrain, name)
+        if record not in self.drivetrains:
+            self.drivetrains.append(record)
+        return record.hash
+
+    def answer(self, *sentences: str) -> None:
+        """The answer first: added to the summary on top of the page."""
+        self.summary.extend(sentences)
+
+    def found(
+        self,
+        quantity: str,
+        value: float,
+        band: float | None = None,
+        loads: tuple[str, ...] = (),
+    ) -> None:
+        """A value that answers what was asked, and is not judged; `band` as for `equals`.
+
+        Parameters
+        ----------
+        quantity : str
+            With its unit.
+        value, band : float
+            In that unit.
+        loads : tuple of str
+            Design loads of the catalogue that it is a value of: `validate` holds it against a limit
+            where a project names it for one of these.
+        """
+        quantity, unit = split_unit(quantity)
+        figure = Figure(quantity=quantity, unit=unit, computed=value, band=band)
+        self.answers.append(figure.model_copy(update={"of": self._of, "loads": loads}))
+
+    def skip(self, check: str, why: str) -> None:
+        """State that a check was not made; results with such a gap are no evidence of a project.
+
+        Parameters
+        ----------
+        check : str
+            Which, as its quantity.
+        why : str
+            As "NGSolve is not installed".
+        """
+        self.skipped.append(f"{check}: {why}")
+
+    def note(self, sentence: str) -> None:
+        """State, above all else, what must be known before any figure; the same sentence once."""
+        if sentence not in self.notes:
+            self.notes.append(sentence)
+
+    def data(self, name: str, value: Any) -> None:
+        """Keep numbers for other programs in results.json, under a name with its unit."""
+        self.figures[name] = as_json(value)
+
+    def limit(self, method: str, parameter: str, **more: Any) -> None:
+        """State how far a method can be trusted; `more` is the rest of `report.Limit`."""
+        self.limits.append(Limit(method=method, parameter=parameter, **more))
+
+    def assume(self, name: str, value: Cell, unit: str, source: str) -> None:
+        """State a value that the sources do not give, and where it comes from."""
+        self.assumptions.append(AssumptionRow(name=name, value=value, unit=unit, source=source))
+
+    def assume_all(self, rows: Iterable[tuple[str, Cell, str, str]]) -> None:
+        """State several such values, each as `assume` takes it."""
+        for row in rows:
+            self.assume(*row)

@@ -1,0 +1,92 @@
+"""Arrays that were solved of a scene, taken from the cache where they were solved before."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence, Set
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fe_drivetrain.common.cache import Cache, user_cache
+from fe_drivetrain.common.made_by import source_hash
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.shafts.response.cached import solved_content
+from fe_drivetrain.shafts.response.makers import solved_by
+
+
+def kept_arrays(
+    scene: Scene,
+    content: Mapping[str, Any],
+    rooms: Mapping[str, Set[str] | None],
+    solve: Callable[[], Mapping[str, NDArray[Any]]],
+    cache: Cache | None = None,
+) -> dict[str, NDArray[Any]]:
+    """What was solved of a scene before, or is now.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, with the sizes of its mesh.
+    content : Mapping[str, Any]
+        What else the arrays depend on, as plain data.
+    rooms : Mapping
+        Whose sources they depend on beside those of `solved_by`, as of `source_hash`.
+    solve : callable
+        Makes the arrays, by name.
+    cache : Cache or None
+        Where they may come from; the user's if not given.
+
+    Returns
+    -------
+    dict[str, ndarray]
+        The same to the last bit, with the same layout in memory, whether kept or solved now.
+    """
+    (arrays,) = kept_together(scene, [content], rooms, lambda: [solve()], cache)
+    return arrays
+
+
+def kept_together(
+    scene: Scene,
+    contents: Sequence[Mapping[str, Any]],
+    rooms: Mapping[str, Set[str] | None],
+    solve: Callable[[], Sequence[Mapping[str, NDArray[Any]]]],
+    cache: Cache | None = None,
+    depends: Mapping[str, Any] | None = None,
+) -> list[dict[str, NDArray[Any]]]:
+    """`kept_arrays` of several contents that are solved together, where one of them is missing.
+
+    Parameters
+    ----------
+    scene : Scene
+        As of `kept_arrays`.
+    contents : Sequence
+        What else each depends on.
+    rooms : Mapping
+        As of `kept_arrays`.
+    solve : callable
+        Makes the arrays of each, by name.
+    cache : Cache or None
+        As of `kept_arrays`.
+    depends : Mapping[str, Any] or None
+        What of the scene they depend on; `solved_content` if not given.
+
+    Returns
+    -------
+    list of dict
+        Of each content.
+    """
+    used = user_cache() if cache is None else cache
+    common = {
+        "scene": solved_content(scene) if depends is None else depends,
+        "sizes": scene.mesh.model_dump(mode="json"),
+        "made by": solved_by(),
+        "code": source_hash(rooms),
+    }
+    found = [used.load("solutions", {**content, **common}) for content in contents]
+    if all(arrays is not None for arrays in found):
+        return [arrays for arrays in found if arrays is not None]
+    solved = [{name: np.array(a, order="C") for name, a in each.items()} for each in solve()]
+    for content, arrays in zip(contents, solved, strict=True):
+        used.keep("solutions", {**content, **common}, arrays)
+    return solved

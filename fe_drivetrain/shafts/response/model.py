@@ -1,0 +1,450 @@
+"""The finite-element model of a scene: operators of its parts, constraints, springs, unit loads."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+from scipy.spatial import cKDTree
+
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.bearing_unit import BearingUnit, Springs
+from fe_drivetrain.drivetrain_file.joint_springs import as_numbers
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.elasticity.interfaces import constraints
+from fe_drivetrain.elasticity.interfaces.constraints import Constraint, ReferencePoint
+from fe_drivetrain.elasticity.interfaces.joints import (
+    SECTORS,
+    condensed_joint,
+    nose_joint,
+    roller_joint,
+    spring_joint,
+)
+from fe_drivetrain.elasticity.interfaces.mechanisms import (
+    refuse_mechanisms,
+    warn_of_weak_restraints,
+)
+from fe_drivetrain.elasticity.mesh.cached import cached_mesh
+from fe_drivetrain.elasticity.mesh.checks import refuse_unsound
+from fe_drivetrain.elasticity.mesh.facets import MEANS, face_weights, volume_weights
+from fe_drivetrain.elasticity.mesh.mesh import Mesh
+from fe_drivetrain.elasticity.mesh.side_by_side import beside, renamed
+from fe_drivetrain.elasticity.operator.incompressible import (
+    assemble_materials,
+    assemble_unlocked,
+    warn_of_averaging,
+)
+from fe_drivetrain.foreign.assembly import base_centre, bolt_springs, mesh_parts, tied
+from fe_drivetrain.foreign.further_parts import open_sides, tie_faces
+from fe_drivetrain.geometry import Band
+from fe_drivetrain.shafts.response.foot_contact import foot_holds, is_clamped
+
+#: The unit loads of every scene, the first columns of every response: hub forces [N] and moments
+#: [N m], a uniform acceleration [m/s^2] along each axis, 1 N of gearbox weight (along -z).
+LOADS = (
+    *(f"hub.{c}" for c in FORCES),
+    "gravity.x",
+    "gravity.y",
+    "gravity.z",
+    "gearbox.weight",
+)
+
+
+def scene_loads(scene: Scene) -> tuple[str, ...]:
+    """Names of all unit loads of a scene, in the order of the columns of its responses.
+
+    Those of `LOADS` come first, then forces [N] and moments [N m] at each of its load points.
+    """
+    return (*LOADS, *(f"{point.name}.{c}" for point in scene.load_points for c in FORCES))
+
+
+_N_GROUPS = 32  # near the square root of the number of nodes on a joint: least fill
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """A scene's finite-element model, before it is solved.
+
+    Attributes
+    ----------
+    scene, mesh : Scene, Mesh
+        What it was built from.
+    part_stiffness : Mapping[str, sparse.bsr_array]
+        (n_dofs, n_dofs) stiffness of each part alone [N/m].
+    part_mass : Mapping[str, Floats]
+        (n_nodes,) integrals of density times shape function of each part [kg].
+    points : Mapping[str, ReferencePoint]
+        Reference points by name: "hub", "gearbox", "NAME.seat" for each bearing, the load points by
+        their names; where there are
+        such, "NAME.base" (on a bedplate that gives), "NAME.bolt K" (bolts as beams, to ground),
+        "NAME.foot K" (patches of a clamped foot that are pressed) or
+        "NAME.ground" (of a housing that is a stiffness alone),
+        "NAME.joint" or "NAME.roller K", whose
+        motion is that of the bearing against its housing, or of the shaft against its nose; and
+        "nose.root", the nose's rear face.
+    constraints : tuple[Constraint, ...]
+        All interfaces, couplings and supports.
+    springs : tuple[tuple[ReferencePoint, Floats], ...]
+        Reference points with their (6, 6) stiffness.
+    held : Mapping[str, Sequence[int]]
+        Motions (0-2 displacements, 3-5 rotations) of reference points that are rigidly held; their
+        constraint is "NAME reaction".
+    n_dofs : int
+        Three a node, and six for each rigid reference point.
+    warnings : tuple[str, ...]
+        Sentences for the user, about motions that soft springs hardly restrain, and parts that are
+        nearly incompressible.
+    """
+
+    scene: Scene
+    mesh: Mesh
+    part_stiffness: Mapping[str, sparse.bsr_array]
+    part_mass: Mapping[str, Floats]
+    points: Mapping[str, ReferencePoint]
+    constraints: tuple[Constraint, ...]
+    springs: tuple[tuple[ReferencePoint, Floats], ...]
+    held: Mapping[str, Sequence[int]]
+    n_dofs: int
+    warnings: tuple[str, ...] = ()
+
+    def standing(self, name: str) -> list[str]:
+        """Reference points that a bearing's housing stands on: a bedplate, bolts, or a foot."""
+        given = (f"{name}.base", f"{name}.ground")
+        kinds = (f"{name}.bolt ", f"{name}.foot ")
+        return [p for p in self.points if p in given or p.startswith(kinds)]
+
+    @property
+    def loads(self) -> tuple[str, ...]:
+        """Names of its unit loads, see `scene_loads`."""
+        return scene_loads(self.scene)
+
+    @property
+    def stiffness(self) -> sparse.bsr_array:
+        """Stiffness of all parts and springs, before any constraint [N/m]."""
+        springs: sparse.bsr_array | None = None
+        for point, k in self.springs:
+            spring = (point.motion.T @ sparse.csr_array(k) @ point.motion).tobsr((3, 3))
+            springs = spring if springs is None else springs + spring
+        if isinstance(self.part_stiffness, PartStiffness):
+            return self.part_stiffness.together(springs)
+        total = sum(self.part_stiffness.values())
+        return total if springs is None else total + springs
+
+    @property
+    def mass(self) -> Floats:
+        """(n_nodes,) integrals of density times shape function over all parts [kg]."""
+        return np.asarray(np.sum(list(self.part_mass.values()), axis=0))
+
+    def unit_loads(self) -> Floats:
+        """(n_dofs, n_loads): the loads of `scene_loads`, one a column."""
+        F = np.zeros((self.n_dofs, len(self.loads)))
+        F[:, :6] = self.points["hub"].motion.T.toarray()
+        mass = self.mass
+        for axis in range(3):
+            F[axis : 3 * len(mass) : 3, 6 + axis] = mass
+        F[:, 9] = -self.points["gearbox"].motion[[2]].toarray()[0]
+        for k, point in enumerate(self.scene.load_points):
+            first = len(LOADS) + 6 * k
+            F[:, first : first + 6] = self.points[point.name].motion.T.toarray()
+        return F
+
+    def part_loads(self, part: str) -> Floats:
+        """(n_dofs, n_loads): the share of `unit_loads` that acts inside one part (its gravity)."""
+        F = np.zeros((self.n_dofs, len(self.loads)))
+        mass = self.part_mass[part]
+        for axis in range(3):
+            F[axis : 3 * len(mass) : 3, 6 + axis] = mass
+        return F
+
+
+class PartStiffness(Mapping[str, sparse.bsr_array]):
+    """Stiffness by part, assembled when it is first asked for: a kept solution needs none."""
+
+    def __init__(self, scene: Scene, mesh: Mesh, n_dofs: int) -> None:
+        self._scene, self._mesh, self._n_dofs = scene, mesh, n_dofs
+        self._known: dict[str, sparse.bsr_array] = {}
+
+    def __getitem__(self, part: str) -> sparse.bsr_array:
+        if part not in self._known:
+            mesh = self._mesh
+            cells = mesh.cells[mesh.part_cells(part)]
+            lame = self._scene.material_of(part).lame
+            self._known[part] = assemble_unlocked(mesh.points, cells, lame, self._n_dofs)
+        return self._known[part]
+
+    def together(self, springs: sparse.bsr_array | None = None) -> sparse.bsr_array:
+        """Stiffness of all parts and of springs [N/m], assembled in one: a sum takes longer."""
+        mesh = self._mesh
+        materials = [
+            (mesh.part == number, self._scene.material_of(part).lame)
+            for number, part in enumerate(mesh.part_names)
+        ]
+        return assemble_materials(mesh.points, mesh.cells, materials, self._n_dofs, springs)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._mesh.part_names)
+
+    def __len__(self) -> int:
+        return len(self._mesh.part_names)
+
+
+def mesh_scene(scene: Scene) -> Mesh:
+    """Build and mesh the parts of a scene; bonded bearings share nodes with their housings.
+
+    Housings from files have meshes of their own, and bonded bearings are tied to them.
+
+    A mesh that was generated before comes from the cache, see `fe_drivetrain.common.cache`.
+
+    Raises
+    ------
+    InputError
+        A mesh size is too large for a wall, or the file of a housing has a fault.
+    """
+    mesh = mesh_parts(scene.shaft, scene.bearing_units, scene.mesh, scene.seats)
+    if scene.nose is None:
+        return mesh
+    bands = {b.name: Band(*b.span) for b in scene.nose_bearings}
+    try:
+        nose = cached_mesh(scene.nose.body, [], {}, scene.mesh, frozenset(), bands=bands)
+    except InputError as error:
+        raise InputError(f"nose, which is meshed as a shaft: {error}") from error
+    return beside(mesh, renamed(nose, "shaft", "nose"))
+
+
+def build_model(scene: Scene, mesh: Mesh) -> Model:
+    """Assemble all parts of a scene and state its constraints.
+
+    Raises
+    ------
+    InputError
+        The mesh has a fault, see `elasticity.mesh.checks`; or the scene is a mechanism, or but for round-off;
+        the message names the part and its place or motion.
+    """
+    units = scene.bearing_units
+    apart = [u.bearing.name for u in units if u.interface != "bonded" or u.foreign is not None]
+    ties = [pair for unit in units for pair in tie_faces(unit)]
+    refuse_unsound(mesh, needed_faces(scene), [*apart, *ties, *open_sides(units)])
+    n = len(mesh.points)
+    extra: dict[str, int] = {}  # degrees of freedom beside the nodes' own
+    for name, coupling in (("hub", scene.hub.coupling), ("gearbox", scene.gearbox.coupling)):
+        if coupling == "rigid":
+            extra[name] = 6
+    for unit in scene.bearing_units:
+        name = unit.bearing.name
+        if unit.condensed is not None:
+            extra[f"{name}.ground"] = 6 * SECTORS
+        elif unit.interface == "rigid":
+            extra |= {f"{name}.outer": 6, f"{name}.housing.bore": 6}
+        elif unit.interface == "averaged":
+            extra[f"{name} joint"] = 3 * _N_GROUPS
+        elif unit.interface == "spring" and unit.condensed is None:
+            extra[f"{name}.joint"] = 6 * SECTORS
+        if unit.bedplate is not None:
+            extra[f"{name}.base"] = 6
+    extra |= {f"{bearing.name}.joint": 6 * SECTORS for bearing in scene.nose_bearings}
+    ends = 3 * n + np.cumsum([0, *extra.values()])
+    first_dof = dict(zip(extra, ends[:-1].tolist(), strict=True))
+    n_dofs = int(ends[-1])
+
+    together = tied(units, mesh)
+    mesh = together.mesh
+    conditions = together.conditions(n_dofs)
+    points: dict[str, ReferencePoint] = {}
+    springs: list[tuple[ReferencePoint, Floats]] = []
+    held: dict[str, Sequence[int]] = {}
+
+    def couple(name: str, face: str, position: Floats) -> ReferencePoint:
+        nodes = mesh.face_nodes(face)
+        if name in first_dof:
+            point = constraints.rigid_point(name, position, first_dof[name], n_dofs)
+            conditions.append(constraints.rigid_face(name, nodes, mesh.points, point))
+            return point
+        weights = face_weights(mesh.points, mesh.faces[face], n, MEANS)[nodes]
+        return constraints.averaged_point(name, nodes, weights, mesh.points, position, n_dofs)
+
+    points["hub"] = couple("hub", "shaft.front", np.array([scene.shaft.front, 0.0, 0.0]))
+    points["gearbox"] = couple("gearbox", "shaft.rear", np.array([scene.shaft.rear, 0.0, 0.0]))
+    for point in scene.load_points:
+        at = np.array([point.x, 0.0, 0.0])
+        points[point.name] = couple(point.name, f"shaft.band.{point.name}", at)
+    for unit in scene.bearing_units:
+        name = unit.bearing.name
+        centre = np.array([unit.bearing.x, 0.0, 0.0])
+        points[f"{name}.seat"] = couple(f"{name}.seat", f"shaft.seat.{name}", centre)
+        if unit.condensed is not None:
+            joint = condensed_joint(unit, mesh, first_dof[f"{name}.ground"], n_dofs)
+            conditions += joint.constraints
+            springs += joint.springs
+            points |= {point.name: point for point, _ in joint.springs}
+            continue
+        if unit.interface == "rigid":
+            inner, outer = (
+                couple(face, face, centre) for face in (f"{name}.outer", f"{name}.housing.bore")
+            )
+            conditions.append(constraints.equal_translations(f"{name} joint", inner, outer))
+        elif unit.interface in ("spring", "rollers"):
+            joint = (
+                roller_joint(unit, mesh, n_dofs)
+                if unit.interface == "rollers"
+                else spring_joint(unit, mesh, first_dof[f"{name}.joint"], n_dofs)
+            )
+            conditions += joint.constraints
+            springs += joint.springs
+            points |= {point.name: point for point, _ in joint.springs}
+        elif unit.interface == "averaged" or (unit.interface == "sliding" and not unit.foreign):
+            first = first_dof.get(f"{name} joint", 0)
+            conditions.append(_spherical_joint(unit, mesh, first, n_dofs))
+        base = f"{name}.housing.base"
+        if bolts := bolt_springs(unit, mesh, n_dofs):
+            springs += bolts
+            points |= {point.name: point for point, _ in bolts}
+            if is_clamped(unit):
+                pressed, holds = foot_holds(scene, unit, mesh, n_dofs)
+                conditions += holds
+                points |= {point.name: point for point in pressed}
+                held |= {point.name: (0, 1, 2) for point in pressed}
+        elif base not in mesh.faces:
+            continue  # it stands on parts of another unit
+        elif unit.bedplate is None:
+            conditions.append(constraints.fixed(base, mesh.face_nodes(base), n_dofs))
+        else:
+            points[f"{name}.base"] = couple(f"{name}.base", base, base_centre(unit, mesh))
+            _stand(points[f"{name}.base"], unit.bedplate, conditions, springs, held)
+    for bearing in scene.nose_bearings:
+        name = bearing.name
+        at = np.array([bearing.x, 0.0, 0.0])
+        points[f"{name}.seat"] = couple(f"{name}.seat", f"shaft.band.{name}", at)
+        shares, between = nose_joint(bearing, mesh, first_dof[f"{name}.joint"], n_dofs)
+        conditions.append(shares)
+        points[between.name] = between
+        _stand(between, bearing.stiffness, conditions, springs, held)
+    if scene.nose is not None:
+        root = np.array([scene.nose.body.rear, 0.0, 0.0])
+        points["nose.root"] = couple("nose.root", "nose.rear", root)
+        _stand(points["nose.root"], ("rigid",) * 6, conditions, springs, held)
+    _stand(points["gearbox"], scene.gearbox.stiffness, conditions, springs, held)
+
+    refuse_mechanisms(mesh, conditions, springs)
+    moduli = {part: scene.material_of(part).youngs_modulus for part in mesh.part_names}
+    warnings = warn_of_weak_restraints(mesh, conditions, springs, moduli)
+
+    part_mass = {}
+    for part in mesh.part_names:
+        material = scene.material_of(part)
+        cells = mesh.cells[mesh.part_cells(part)]
+        warnings += warn_of_averaging(part, material.lame)
+        part_mass[part] = material.density * volume_weights(mesh.points, cells, n)
+    return Model(
+        scene,
+        mesh,
+        PartStiffness(scene, mesh, n_dofs),
+        part_mass,
+        points,
+        tuple(conditions),
+        tuple(springs),
+        held,
+        n_dofs,
+        warnings,
+    )
+
+
+def _stand(
+    point: ReferencePoint,
+    stiffness: Springs,
+    conditions: list[Constraint],
+    springs: list[tuple[ReferencePoint, Floats]],
+    held: dict[str, Sequence[int]],
+) -> None:
+    """Put a reference point on the ground, or hold a relative motion."""
+    numbers = as_numbers(stiffness)
+    rigid = np.flatnonzero(np.isinf(numbers)).tolist()
+    if rigid:
+        conditions.append(constraints.held(f"{point.name} reaction", point, rigid))
+        held[point.name] = rigid
+    k = np.diag(np.where(np.isinf(numbers), 0.0, numbers))
+    if k.any():
+        springs.append((point, k))
+
+
+def stood_on(scene: Scene, name: str) -> list[str]:
+    """Faces of a housing that parts of another unit are tied to, on which alone it stands.
+
+    Parameters
+    ----------
+    scene, name : Scene, str
+        The scene, and which bearing of it.
+    """
+    return [
+        other
+        for unit in scene.bearing_units
+        for _, other in tie_faces(unit)
+        if other.startswith(f"{name}.housing.tie ") and unit.bearing.name != name
+    ]
+
+
+def needed_faces(scene: Scene) -> list[str]:
+    """Names of the faces of a mesh that the loads, supports and interfaces of a scene need."""
+    names = ["shaft.front", "shaft.rear", *(f"shaft.band.{name}" for name in scene.seats)]
+    if scene.nose is not None:
+        names += ["nose.rear", *(f"nose.band.{bearing.name}" for bearing in scene.nose_bearings)]
+    for unit in scene.bearing_units:
+        name = unit.bearing.name
+        names += [f"shaft.seat.{name}"]
+        if unit.condensed is not None:
+            names += [f"{name}.outer"]
+            continue
+        if name not in scene.guests:
+            names += [f"{name}.housing.base"]
+        if unit.interface != "bonded":
+            names += [f"{name}.outer", f"{name}.housing.bore"]
+    return names
+
+
+def joint_pairs(mesh: Mesh, bearing: str) -> tuple[Ints, Ints]:
+    """Nodes of the two sides of a spherical joint, pairwise at the same place.
+
+    Returns
+    -------
+    inner, outer
+        (n,) nodes on the bearing and on the housing.
+
+    Raises
+    ------
+    InputError
+        The two faces do not match.
+    """
+    inner = mesh.face_nodes(f"{bearing}.outer")
+    outer = mesh.face_nodes(f"{bearing}.housing.bore")
+    distance, partner = cKDTree(mesh.points[outer]).query(mesh.points[inner])
+    if len(inner) != len(outer) or distance.max(initial=0.0) > 1e-9:
+        raise InputError(
+            f"the joint of {bearing!r} has {len(inner)} nodes on the bearing and {len(outer)} on "
+            f"the housing, up to {distance.max(initial=0.0):.3g} m apart: mesh both sides equally"
+        )
+    return inner, outer[partner]
+
+
+def _spherical_joint(unit: BearingUnit, mesh: Mesh, first_dof: int, n_dofs: int) -> Constraint:
+    name = unit.bearing.name
+    label = f"{name} joint"
+    points = mesh.points
+    centre = np.array([unit.bearing.x, 0.0, 0.0])
+    if unit.interface == "sliding":
+        inner, outer = joint_pairs(mesh, name)
+        return constraints.sliding_sphere(label, inner, outer, points, centre, n_dofs)
+    inner, outer = (mesh.face_nodes(face) for face in (f"{name}.outer", f"{name}.housing.bore"))
+    inner_weights, outer_weights = (
+        constraints.centred_weights(
+            face_weights(points, mesh.faces[face], len(points), MEANS)[nodes], points[nodes], centre
+        )
+        for face, nodes in ((f"{name}.outer", inner), (f"{name}.housing.bore", outer))
+    )
+    # Neighbours round the shaft form a group, both sides together.
+    nodes = np.concatenate([inner, outer])
+    angle = np.arctan2(points[nodes, 2], points[nodes, 1])
+    groups = np.floor((angle + np.pi) / (2.0 * np.pi) * _N_GROUPS).astype(np.int64) % _N_GROUPS
+    return constraints.averaged_sphere(
+        label, inner, outer, inner_weights, outer_weights, groups, first_dof, n_dofs
+    )

@@ -1,0 +1,411 @@
+"""How certain a result is when the inputs are not: sensitivities, samples, shares of variance.
+
+PROTEST's step 4: how certain each input is, and the effect on the reported results. Sampling uses
+a cheap level of the ladder, which the adviser selects, see `input_study`. One
+evaluation of a scene answers every quantity.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.reading import change_scene
+from fe_drivetrain.drivetrain_file.scene import Scene, Spread, nominal_values, with_materials
+from fe_drivetrain.shafts.uncertainty.kept_rows import evaluated_rows
+
+Evaluate = Callable[[Scene], Mapping[str, float]]
+"""Numbers of a scene by name."""
+
+#: Relative step of a central difference: its error is some 1e-6 of a smooth function's.
+STEP = 1e-3
+
+#: Share of the results that a band holds.
+SHARE = 0.95
+
+_RESAMPLES = 999
+_CONSTANT = 1e-9  # relative: below it no input matters to a result
+
+
+@dataclass(frozen=True)
+class Band:
+    """Between which two values a share of the results lies, as much below as above.
+
+    Attributes
+    ----------
+    low, high : float
+        The two.
+    low_error, high_error : float
+        Standard errors, of so many samples.
+    """
+
+    low: float
+    high: float
+    low_error: float
+    high_error: float
+
+
+@dataclass(frozen=True)
+class Samples:
+    """One quantity over a Latin hypercube.
+
+    Attributes
+    ----------
+    keys : tuple[str, ...]
+        Of the d uncertain values.
+    inputs, values : Floats
+        (n, d), and (n,) the result of each sample.
+    nominal : float
+        The result without uncertainty.
+    """
+
+    keys: tuple[str, ...]
+    inputs: Floats
+    values: Floats
+    nominal: float
+
+    @property
+    def varies(self) -> bool:
+        """Whether any input matters to the quantity."""
+        return bool(np.ptp(self.values) > _CONSTANT * abs(self.nominal))
+
+    def band(self, share: float = SHARE, seed: int = 0) -> Band:
+        """The band, with its errors from resampling the samples (Efron 1979) as if independent.
+
+        Those of a Latin hypercube are about as large or smaller (Owen 1997, Ann. Statist. 25(4)).
+        Resampling takes tens of milliseconds, so that a band is kept for who asks again.
+        """
+        if (share, seed) not in self._bands:
+            self._bands[share, seed] = self._resampled(share, seed)
+        return self._bands[share, seed]
+
+    @cached_property
+    def _bands(self) -> dict[tuple[float, int], Band]:
+        """Bands so far, by share and seed."""
+        return {}
+
+    def _resampled(self, share: float, seed: int) -> Band:
+        outside = (1.0 - share) / 2
+        ends = np.quantile(self.values, [outside, 1.0 - outside])
+        errors = [0.0, 0.0]
+        if self.varies:
+            from scipy import stats
+
+            errors = [
+                float(
+                    stats.bootstrap(
+                        (self.values,),
+                        lambda x, axis, q=q: np.quantile(x, q, axis=axis),
+                        n_resamples=_RESAMPLES,
+                        vectorized=True,
+                        method="percentile",
+                        rng=seed,
+                    ).standard_error
+                )
+                for q in (outside, 1.0 - outside)
+            ]
+        return Band(float(ends[0]), float(ends[1]), errors[0], errors[1])
+
+    @property
+    def linear_share(self) -> float:
+        """Share of the variance that a plane through the samples explains, R^2."""
+        return float(1.0 - np.var(self._residual()) / np.var(self.values))
+
+    def contributions(self) -> Floats:
+        """(d,) squared standardised coefficients of that plane: shares of the variance, where it
+        holds and inputs are independent (Saltelli et al. 2008, Global Sensitivity Analysis, 1.2.5).
+        """
+        return np.asarray((self._plane() * self.inputs.std(axis=0) / self.values.std()) ** 2)
+
+    def _plane(self) -> Floats:
+        centred = self.inputs - self.inputs.mean(axis=0)
+        size = centred.std(axis=0)
+        found = np.linalg.lstsq(centred / size, self.values - self.values.mean(), rcond=None)[0]
+        return np.asarray(found / size)
+
+    def _residual(self) -> Floats:
+        centred = self.inputs - self.inputs.mean(axis=0)
+        return np.asarray(self.values - self.values.mean() - centred @ self._plane())
+
+
+@dataclass(frozen=True)
+class Shares:
+    """Sobol's shares of the variance of one quantity.
+
+    Attributes
+    ----------
+    keys : tuple[str, ...]
+        Of the d uncertain values.
+    first, total : Floats
+        (d,) what each value does alone, and with all in which it has a part.
+    first_error, total_error : Floats
+        (d,) standard errors from resampling.
+    """
+
+    keys: tuple[str, ...]
+    first: Floats
+    total: Floats
+    first_error: Floats
+    total_error: Floats
+
+
+def nominal_value(scene: Scene, key: str) -> float:
+    """The number that a dotted key leads to; a bearing unit is addressed by its bearing's name.
+
+    Raises
+    ------
+    InputError
+        There is none, or it is no number.
+    """
+    return nominal_values(scene, [key])[0]
+
+
+def with_values(scene: Scene, values: Mapping[str, float]) -> Scene:
+    """The scene with other values by dotted key, materials that come with the program included.
+
+    Where a thinner wall does not allow the scene's mesh sizes, half of these.
+    """
+    scene = with_materials(scene)
+    try:
+        return change_scene(scene, values)
+    except InputError:
+        finer = scene.model_copy(update={"mesh": scene.mesh.scaled(0.5)})
+        with suppress(InputError):
+            return change_scene(finer, values)
+        raise
+
+
+def check_spreads(scene: Scene) -> None:
+    """Refuse a scene without uncertain values; those that it has were checked as it was read.
+
+    Raises
+    ------
+    InputError
+        Nothing is uncertain.
+    """
+    if not scene.uncertainty:
+        raise InputError(
+            f"scene {scene.title!r} has no uncertain values: add some under "
+            "'uncertainty', as in shaft.sections.0.outer_diameter: {uniform: 0.01}"
+        )
+
+
+def sensitivities(
+    scene: Scene, evaluate: Evaluate, keys: Sequence[str], step: float = STEP
+) -> dict[str, dict[str, float]]:
+    """Relative change of each result for the relative change of each value: central differences.
+
+    Parameters
+    ----------
+    scene, evaluate : Scene, Evaluate
+        What is varied, and its results.
+    keys : Sequence[str]
+        Values other than zero.
+    step : float
+        Relative.
+
+    Returns
+    -------
+    By result, and by key.
+
+    Raises
+    ------
+    InputError
+        A value, or a result, is zero: it has no relative change.
+    """
+    base = evaluate(scene)
+    for name, result in base.items():
+        if result == 0.0:
+            raise InputError(f"{name} is zero, and has no relative change: ask for another")
+    found: dict[str, dict[str, float]] = {name: {} for name in base}
+    for key in keys:
+        value = nominal_value(scene, key)
+        if value == 0.0:
+            raise InputError(f"{key} is zero and has no relative change: leave it out")
+        low, high = (evaluate(with_values(scene, {key: value * (1 + s)})) for s in (-step, step))
+        for name, result in base.items():
+            found[name][key] = (high[name] - low[name]) / (2 * step * result)
+    return found
+
+
+def sample(
+    scene: Scene,
+    evaluate: Evaluate,
+    count: int = 128,
+    seed: int = 0,
+    report: Callable[[str], object] = lambda step: None,
+    content: Mapping[str, Any] | None = None,
+) -> dict[str, Samples]:
+    """Results over a Latin hypercube of the scene's uncertain values, by name.
+
+    Parameters
+    ----------
+    scene, evaluate : Scene, Evaluate
+        What is varied, and its results.
+    count : int
+        Samples.
+    seed : int
+        Of the hypercube.
+    report : callable
+        Called with what is being done.
+    content : mapping or None
+        All that `evaluate` depends on, as plain data: its results are kept as they come. None
+        keeps nothing.
+
+    Raises
+    ------
+    InputError
+        Nothing is uncertain, or a sample is no scene.
+    """
+    check_spreads(scene)
+    keys = tuple(scene.uncertainty)
+    from scipy.stats import qmc
+
+    quantiles = qmc.LatinHypercube(d=len(keys), rng=seed).random(count)
+    inputs = np.column_stack([d.ppf(q) for d, q in zip(_spreads(scene), quantiles.T, strict=True)])
+    values = evaluated_rows(
+        inputs,
+        lambda row: _evaluated(scene, evaluate, keys, row),
+        content,
+        lambda number: report(f"samples ({number} of {count})"),
+    )
+    return {
+        name: Samples(keys, inputs, values[name], nominal)
+        for name, nominal in evaluate(scene).items()
+    }
+
+
+def sobol_shares(
+    scene: Scene,
+    evaluate: Evaluate,
+    names: Sequence[str],
+    count: int = 64,
+    seed: int = 0,
+    report: Callable[[str], object] = lambda step: None,
+    content: Mapping[str, Any] | None = None,
+) -> dict[str, Shares]:
+    """First-order and total shares of the variance (Sobol 2001; Saltelli et al. 2010), by name.
+
+    Parameters
+    ----------
+    scene, evaluate : Scene, Evaluate
+        What is varied, and its results.
+    names : Sequence[str]
+        Of results that vary.
+    count : int
+        Base samples, a power of two; (d + 2) times as many evaluations of d values.
+    seed : int
+        Of the samples.
+    report : callable
+        Called with what is being done.
+    content : mapping or None
+        As of `sample`.
+    """
+    check_spreads(scene)
+    keys = tuple(scene.uncertainty)
+    total = count * (len(keys) + 2)
+    done = 0
+
+    def results(rows: Floats) -> Floats:
+        """(s, n) of (n, d) values."""
+        nonlocal done
+        before = done
+        values = evaluated_rows(
+            rows,
+            lambda row: _evaluated(scene, evaluate, keys, row),
+            content,
+            lambda number: report(f"samples of Sobol's shares ({before + number} of {total})"),
+        )
+        done += len(rows)
+        return np.array([values[name] for name in names])
+
+    found = variance_shares(results, dict(zip(keys, _spreads(scene), strict=True)), count, seed)
+    return dict(zip(names, found, strict=True))
+
+
+def variance_shares(
+    results: Callable[[Floats], Floats],
+    distributions: Mapping[str, Any],
+    count: int = 64,
+    seed: int = 0,
+) -> list[Shares]:
+    """First-order and total shares of the variance of any function of independent inputs.
+
+    Parameters
+    ----------
+    results : callable
+        Of rows (n, d) of values the s results, (s, n). It is called with the base samples, twice
+        `count` rows of independent inputs, and then with each input exchanged.
+    distributions : mapping
+        scipy's distribution of each of d values, by name.
+    count : int
+        Base samples, a power of two; (d + 2) times as many evaluations.
+    seed : int
+        Of the samples.
+
+    Returns
+    -------
+    shares : list of Shares
+        Of each of the s results (Sobol 2001; Saltelli et al. 2010).
+    """
+    keys = tuple(distributions)
+    d = len(keys)
+    from scipy import stats
+
+    quantiles = stats.qmc.Sobol(d=2 * d, rng=seed).random(count)
+    spreads = list(distributions.values())
+    A, B = (
+        np.column_stack([spread.ppf(q) for spread, q in zip(spreads, half.T, strict=True)])
+        for half in (quantiles[:, :d], quantiles[:, d:])
+    )
+    f_A, f_B = results(A), results(B)
+    f_AB = np.array([results(np.where(np.arange(d) == k, B, A)) for k in range(d)])
+
+    def shares(chosen: Ints) -> Floats:
+        """(2, s, d) first and total."""
+        known = {"f_A": f_A[:, chosen], "f_B": f_B[:, chosen], "f_AB": f_AB[..., chosen]}
+        found = stats.sobol_indices(func=known, n=count)
+        return np.reshape([found.first_order, found.total_order], (2, len(f_A), d))
+
+    draws = np.random.default_rng(seed).integers(count, size=(_RESAMPLES, count))
+    errors = np.std([shares(draw) for draw in draws], axis=0, ddof=1)
+    first, whole = shares(np.arange(count))
+    return [Shares(keys, first[k], whole[k], errors[0, k], errors[1, k]) for k in range(len(f_A))]
+
+
+def distribution(spread: Spread, nominal: float) -> Any:
+    """scipy's distribution of a value."""
+    from scipy import stats  # half a second, which what draws no samples need not wait for
+
+    if spread.uniform is not None:
+        half = spread.uniform * abs(nominal)
+        return stats.uniform(nominal - half, 2 * half)
+    if spread.normal is not None:
+        return stats.norm(nominal, spread.normal * abs(nominal))
+    # of the median: the mean of a positive value that may be wrong by a factor
+    return stats.lognorm(np.sqrt(np.log1p(float(spread.lognormal or 0.0) ** 2)), scale=nominal)
+
+
+def _spreads(scene: Scene) -> list[Any]:
+    nominal = nominal_values(scene, list(scene.uncertainty))
+    return [distribution(s, v) for s, v in zip(scene.uncertainty.values(), nominal, strict=True)]
+
+
+def _evaluated(
+    scene: Scene, evaluate: Evaluate, keys: Sequence[str], row: Floats
+) -> Mapping[str, float]:
+    values = dict(zip(keys, row.tolist(), strict=True))
+    try:
+        return evaluate(with_values(scene, values))
+    except InputError as error:
+        raise InputError(
+            f"a value within its uncertainty gives no valid scene: {error} (or make the spread of "
+            f"{', '.join(keys)} smaller)"
+        ) from error

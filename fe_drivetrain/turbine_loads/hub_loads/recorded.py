@@ -1,0 +1,429 @@
+"""Hub loads with the rotor's speed and the wind beside them, whatever a file calls its channels."""
+
+from __future__ import annotations
+
+import csv
+import os
+import re
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.csv_cells import cell_as_given
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.turbine_loads.hub_loads.channel_map import (
+    LOAD_NAMES,
+    ChannelMap,
+    to_shaft_frame,
+)
+from fe_drivetrain.turbine_loads.hub_loads.channels import (
+    ANGLE_UNITS,
+    Channel,
+    existing_file,
+    in_si,
+    not_utf8,
+    without_unit,
+)
+from fe_drivetrain.turbine_loads.hub_loads.csv_table import is_of_point, point_loads, read_csv
+from fe_drivetrain.turbine_loads.hub_loads.files import SUFFIXES, files_of_patterns
+from fe_drivetrain.turbine_loads.hub_loads.histories import (
+    MIN_SAMPLES,
+    LoadHistory,
+    require_sound,
+    require_variation,
+)
+from fe_drivetrain.turbine_loads.hub_loads.openfast import (
+    AZIMUTH,
+    LOAD_CHANNELS,
+    loads_from_channels,
+    turn_to_fixed,
+)
+from fe_drivetrain.turbine_loads.hub_loads.openfast_output import openfast_channels
+from fe_drivetrain.turbine_loads.hub_loads.point_loads import moved_moments
+
+SPEED_UNITS = {"rad/s": 1.0, "rpm": np.pi / 30.0, "deg/s": np.pi / 180.0}
+WIND_UNITS = {"m/s": 1.0}
+
+KNOWN = {
+    "rotor speed": ("rotor speed", "RotSpeed", "LSSTipVxa", "LSSTipVxs", "LSSTipV"),
+    "wind speed": ("wind speed", "RtVAvgxh", "WindHubVelX", "Wind1VelX", "HorWindV", "WindVxi"),
+}
+"""Channels beside the loads, and by which names files have them, the best first."""
+
+_NOTHING_TURNED = ", nothing turned"
+
+Files = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
+"""A file, a folder or a pattern, or several of these."""
+
+OWN_NAMES = ChannelMap()
+"""Files whose channels have the names of OpenFAST, or of the tables that are written here."""
+
+
+@dataclass(frozen=True, eq=False)
+class Recorded:
+    """A history with what was recorded beside it.
+
+    Attributes
+    ----------
+    history : LoadHistory
+        The hub loads.
+    rotor_speed : ndarray, (n,) or None
+        [rad/s].
+    wind_speed : ndarray, (n,) or None
+        [m/s].
+    others : Mapping[str, ndarray]
+        Further channels (n,), each in the file's unit, by name and unit as in "BldPitch1 [deg]".
+    """
+
+    history: LoadHistory
+    rotor_speed: Floats | None = None
+    wind_speed: Floats | None = None
+    others: Mapping[str, Floats] = field(default_factory=dict)
+
+
+def recorded_files(files: Files) -> list[Path]:
+    """Files that are named, or found by patterns, each once.
+
+    Parameters
+    ----------
+    files : str, path, or sequence of these
+        Files, folders, or patterns as ``"outputs/*.outb"``: see `files_of_patterns`.
+
+    Raises
+    ------
+    InputError
+        None is found, or a file that is named does not exist.
+    """
+    patterns = [files] if isinstance(files, str | os.PathLike) else files
+    found = files_of_patterns([os.fspath(pattern) for pattern in patterns])
+    return [existing_file(file) for file in found]
+
+
+def short_name(file: Path, files: Sequence[Path]) -> str:
+    """Name of a file in tables: its stem, or its whole path where another has the same stem.
+
+    Parameters
+    ----------
+    file : Path
+        The file.
+    files : sequence of Path
+        All files that are named beside each other.
+    """
+    return str(file) if sum(other.stem == file.stem for other in files) > 1 else file.stem
+
+
+def read_recorded(
+    path: Path, mapping: ChannelMap = OWN_NAMES, skip: float = 0.0, also: Sequence[str] = ()
+) -> Recorded:
+    """Read a history of any format, with rotor speed and wind speed where the file has them.
+
+    Parameters
+    ----------
+    path : Path
+        A .out or .outb of OpenFAST, or a .csv.
+    mapping : ChannelMap
+        How the file calls its channels, and their frame and origin.
+    skip : float
+        What is left out at the beginning [s].
+    also : sequence of str
+        Further channels, as the file calls them.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or has no channel of a name.
+    """
+    file = existing_file(path)
+    suffix = file.suffix.lower()
+    if suffix not in SUFFIXES:
+        raise InputError(
+            f"hub loads '{file}': the suffix '{file.suffix}' is not one of {', '.join(SUFFIXES)}; "
+            "convert the file or rename it"
+        )
+    is_table, loads_mapped = suffix == ".csv", mapping.loads_mapped
+    beside_loads = [n.lower() for names in KNOWN.values() for n in names]
+    wanted = {*beside_loads, *(mapping.column(name)[0].lower() for name in mapping.channels)}
+    wanted |= {name.lower() for name in also}
+    if is_table and mapping.rotating:
+        wanted |= {name.lower() for name in AZIMUTH}
+    if is_table and loads_mapped:
+        wanted |= {name.lower() for name in LOAD_NAMES} | LOAD_CHANNELS
+    channels = (
+        csv_channels(file, wanted, mapping.units, points=bool(loads_mapped))
+        if is_table
+        else openfast_channels(file, wanted | LOAD_CHANNELS)
+    )
+    for name in mapping.units:
+        _named(file, channels, name, why="the mapping states its unit")
+    units = {name.lower(): unit for name, unit in mapping.units.items()}
+    channels = {n: replace(c, unit=units.get(n, c.unit)) for n, c in channels.items()}
+    named = {name: _named(file, channels, *mapping.column(name)) for name in mapping.channels}
+    further = [_named(file, channels, name) for name in also]
+    azimuth = _azimuth(file, channels, named) if is_table and mapping.rotating else None
+    if is_table and not loads_mapped:
+        history = read_csv(file)
+        if azimuth is not None:
+            history = _turned_back(history, azimuth, mapping)
+    else:
+        history = _of_channels(file, channels, named, mapping)
+        if is_table:
+            history = _with_points(file, history, channels, mapping, azimuth)
+    history = _at_hub(history, mapping, own_names=not (is_table or loads_mapped))
+    unread = [t for t in history.unread if without_unit(t).lower() not in wanted]
+    history = replace(history, unread=tuple(unread))
+    beside = {}
+    for name, sizes in (("rotor speed", SPEED_UNITS), ("wind speed", WIND_UNITS)):
+        candidates = (channels.get(candidate.lower()) for candidate in KNOWN[name])
+        channel = named.get(name) or next((c for c in candidates if c is not None), None)
+        if channel is not None:
+            beside[name] = in_si(str(file), channel, sizes)
+            require_sound(f"hub loads '{file}'", history.time, {channel.name: beside[name]})
+    others = {f"{c.name} [{c.unit.strip('()')}]": c.values for c in further}
+    require_sound(f"hub loads '{file}'", history.time, others)
+    kept = history.time >= history.time[0] + skip
+    if kept.sum() < MIN_SAMPLES:
+        raise InputError(
+            f"hub loads '{file}': it lasts {history.seconds:g} s, so that nothing is left without "
+            f"the first {skip:g} s: skip less"
+        )
+    speed, wind = (beside.get(name) for name in KNOWN)
+    return Recorded(
+        history.between(float(history.time[0]) + skip),
+        None if speed is None else speed[kept],
+        None if wind is None else wind[kept],
+        {name: values[kept] for name, values in others.items()},
+    )
+
+
+def read_mapped(mapping: ChannelMap, path: Path, skip: float = 0.0) -> LoadHistory:
+    """Hub loads alone, as `read_recorded` reads them.
+
+    Parameters
+    ----------
+    mapping : ChannelMap
+        How the file calls its channels, and their frame and origin.
+    path : Path
+        The file.
+    skip : float
+        What is left out at the beginning [s].
+
+    Raises
+    ------
+    InputError
+        As of `read_recorded`, or the loads never vary.
+    """
+    history = read_recorded(path, mapping, skip).history
+    require_variation(f"hub loads '{path}'", history.loads)
+    return history
+
+
+def _of_channels(
+    file: Path, channels: dict[str, Channel], named: Mapping[str, Channel], mapping: ChannelMap
+) -> LoadHistory:
+    """Loads of OpenFAST's channels, or of those that are mapped in their place."""
+    if file.suffix.lower() == ".csv":  # the columns of a table, but for those that are mapped
+        shared = {name: channels.get(name.lower()) for name in LOAD_NAMES}
+        named = {name: c for name, c in shared.items() if c is not None} | dict(named)
+    channels = dict(channels)
+    for name in LOAD_NAMES:
+        if name in named:
+            channels.pop(LOAD_NAMES[name], None)  # fixed ones would be taken before rotating ones
+            channels[mapping.read_as(name)] = named[name]
+    at_gage = mapping.moments_at if "My" not in mapping.channels and mapping.moments_at else None
+    time, loads, read = loads_from_channels(
+        str(file), channels, at_gage, np.radians(mapping.azimuth_blade1_up)
+    )
+    return LoadHistory(file.stem, time, loads, {"source": file.name, "channels": read})
+
+
+def _with_points(
+    file: Path,
+    history: LoadHistory,
+    channels: Mapping[str, Channel],
+    mapping: ChannelMap,
+    azimuth: Channel | None,
+) -> LoadHistory:
+    """With the loads at load points, which have columns like brake.Fz of a table."""
+    taken = {mapping.column(name)[0].lower() for name in mapping.channels}
+    own = [c for key, c in channels.items() if key not in taken and is_of_point(c.name)]
+    read_ones = {c.name for c in own}
+    unread = (title for title in _header(file)[1] if without_unit(title) not in read_ones)
+    history = replace(history, unread=tuple(unread))
+    if not own:
+        return history
+    read = f"{_read_of(history)}; {', '.join(f'{c.name} [{c.unit}]' for c in own)}"
+    at = point_loads(str(history.attributes["source"]), own)
+    if azimuth is not None:  # those at the hub are turned already
+        angle = _angle(history, azimuth, mapping)
+        at = {point: _of_fixed_frame(loads, angle) for point, loads in at.items()}
+        read += " turned back, too"
+    return replace(history, at=at, attributes={**history.attributes, "channels": read})
+
+
+def _at_hub(history: LoadHistory, mapping: ChannelMap, own_names: bool) -> LoadHistory:
+    """Loads in the shaft's frame, about the hub; those of OpenFAST's names stand there already."""
+    loads, at, read = history.loads, history.at, _read_of(history)
+    if mapping.rotating and own_names:
+        raise InputError(
+            f"hub loads '{history.attributes['source']}': the names of OpenFAST's own channels say "
+            "which of them turn with the rotor: leave out rotating, or map the loads"
+        )
+    if mapping.tilt and own_names:
+        raise InputError(
+            f"hub loads '{history.attributes['source']}': loads of OpenFAST's own names are in the "
+            "shaft's frame: leave out tilt, or map the loads"
+        )
+    if mapping.tilt:
+        loads = to_shaft_frame(loads, mapping.tilt)
+        at = {point: to_shaft_frame(own, mapping.tilt) for point, own in at.items()}
+        read = read.removesuffix(_NOTHING_TURNED)
+        read += f"; turned from a horizontal frame by the shaft's tilt of {mapping.tilt:g} deg"
+    if mapping.moments_at and (not own_names or "My" in mapping.channels):
+        loads = moved_moments(loads, mapping.moments_at)
+        read += f"; moments carried to the hub from {mapping.moments_at:g} m downwind of it"
+    if loads is history.loads:
+        return history
+    attributes = {**history.attributes, "channels": read}
+    return replace(history, loads=loads, at=at, attributes=attributes, about=None)
+
+
+def _read_of(history: LoadHistory) -> str:
+    """What loads were read from, in words."""
+    return str(history.attributes.get("channels", "as in the file"))
+
+
+def _azimuth(file: Path, channels: Mapping[str, Channel], named: Mapping[str, Channel]) -> Channel:
+    """The azimuth of a table whose loads turn with the rotor."""
+    candidates = [named.get("azimuth"), *(channels.get(name.lower()) for name in AZIMUTH)]
+    found = next((channel for channel in candidates if channel is not None), None)
+    if found is None:
+        raise InputError(
+            f"hub loads '{file}': with rotating, Fy, Fz, My and Mz turn with the rotor, and the "
+            "file has no azimuth to turn them back: add a column 'azimuth [deg]', name that of the "
+            "file in the mapping, as in channels: {azimuth: Psi}, or leave out rotating"
+        )
+    return found
+
+
+def _angle(history: LoadHistory, azimuth: Channel, mapping: ChannelMap) -> Floats:
+    """Angle by which the rotor has turned since blade 1 pointed up [rad]."""
+    source = str(history.attributes["source"])
+    angle = in_si(source, azimuth, ANGLE_UNITS)
+    require_sound(f"hub loads '{source}'", history.time, {azimuth.name: angle})
+    return np.asarray(angle - np.radians(mapping.azimuth_blade1_up))
+
+
+def _turned_back(history: LoadHistory, azimuth: Channel, mapping: ChannelMap) -> LoadHistory:
+    """Loads of a rotating frame, at the hub and at load points, in the frame that does not turn."""
+    angle, back = _angle(history, azimuth, mapping), mapping.azimuth_blade1_up
+    read = _read_of(history).removesuffix(_NOTHING_TURNED)
+    read += f"; Fy, Fz, My, Mz turned back by {azimuth.name} [{azimuth.unit}]"
+    read += f" less {back:g} deg" if back else ""
+    return replace(
+        history,
+        loads=_of_fixed_frame(history.loads, angle),
+        at={point: _of_fixed_frame(own, angle) for point, own in history.at.items()},
+        attributes={**history.attributes, "channels": read},
+    )
+
+
+def _of_fixed_frame(loads: Floats, angle: Floats) -> Floats:
+    """Loads (n, 6) of a frame turned by an angle (n,) about +x."""
+    turned = loads.copy()
+    for y in (1, 4):
+        turned[:, y], turned[:, y + 1] = turn_to_fixed(loads[:, y], loads[:, y + 1], angle)
+    return turned
+
+
+def csv_channels(
+    file: Path, wanted: Collection[str], units: Collection[str] = (), points: bool = False
+) -> dict[str, Channel]:
+    """Columns of a table that have a unit, by their names in lower case.
+
+    Parameters
+    ----------
+    file : Path
+        A table with a header like ``time [s],thrust [kN]``; lines with # before it are left out.
+    wanted : collection of str
+        Names in lower case; other columns have no values, so that a large table is read in the
+        memory of what is used.
+    units : collection of str
+        Names of columns whose unit is known though their title has none.
+    points : bool
+        Whether columns like ``brake.Fz [kN]``, of loads at load points, are wanted, too.
+
+    Raises
+    ------
+    InputError
+        A cell of a wanted column is not a number.
+    """
+    before, titles = _header(file)
+    found: dict[str, Channel] = {}
+    places: dict[str, int] = {}
+    bare = {name.lower() for name in units}
+    for place, title in enumerate(titles):
+        match = re.fullmatch(r"\s*(.+?)\s*[\[(]\s*(.*?)\s*[\])]\s*", title)
+        if match is None and title.strip().lower() in bare:
+            match = re.fullmatch(r"\s*(.+?)()\s*", title)
+        if match is not None and match[1].lower() not in found:
+            found[match[1].lower()] = Channel(match[1], match[2], np.zeros(0))
+            if match[1].lower() in wanted or (points and is_of_point(match[1])):
+                places[match[1].lower()] = place
+    if not places:
+        return found
+    try:
+        values = np.loadtxt(
+            file,
+            delimiter=",",
+            skiprows=before,
+            usecols=list(places.values()),
+            ndmin=2,
+            encoding="utf-8-sig",
+        )
+    except UnicodeDecodeError as error:
+        raise not_utf8("table", file) from error
+    except ValueError as error:
+        raise InputError(
+            f"table '{file}': {error}, counted below the header: correct the cell, or remove "
+            "the line"
+        ) from error
+    for name, column in zip(places, values.T, strict=True):
+        found[name] = Channel(found[name].name, found[name].unit, column)
+    return found
+
+
+def _header(file: Path) -> tuple[int, list[str]]:
+    """The line of a table's header, from 1, and its titles."""
+    before, titles = 0, ""
+    try:
+        with file.open(encoding="utf-8-sig") as stream:
+            for before, line in enumerate(stream, 1):  # noqa: B007
+                if line.strip() and not line.startswith("#"):
+                    titles = line
+                    break
+    except UnicodeDecodeError as error:
+        raise not_utf8("table", file) from error
+    return before, [cell_as_given(title.strip()) for title in next(csv.reader([titles]), [])]
+
+
+def _named(
+    file: Path,
+    channels: Mapping[str, Channel],
+    column: str,
+    sign: float = 1.0,
+    why: str = "",
+) -> Channel:
+    found = channels.get(column.lower())
+    if found is None:
+        names = ", ".join(channel.name for channel in list(channels.values())[:12])
+        though = f", though {why}" if why else ""
+        raise InputError(
+            f"hub loads '{file}': there is no channel '{column}'{though}; it has {names}"
+            + (" and others" if len(channels) > 12 else "")
+        )
+    if sign > 0.0:
+        return found
+    return replace(found, name=f"-{found.name}", values=-found.values)
