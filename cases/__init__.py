@@ -44,8 +44,9 @@ def case(
 
     Notes
     -----
-    The function takes a `fe_drivetrain.report.suite.Run` and fills a `fe_drivetrain.report.suite.Page`. As a
-    script the file runs its case, with the options of ``fe-drivetrain run``.
+    The function takes a `fe_drivetrain.report.suite.Run` and fills a
+    `fe_drivetrain.report.suite.Page`. As a script the file runs its case, with the options of
+    ``fe-drivetrain run``.
     """
 
     def declared(function: _Function) -> _Function:
@@ -72,8 +73,8 @@ def cases(
 
     Notes
     -----
-    The function takes a `fe_drivetrain.report.suite.Run`, a `fe_drivetrain.report.suite.Page`, and its row. As a
-    script the file runs the cases that are named after it.
+    The function takes a `fe_drivetrain.report.suite.Run`, a `fe_drivetrain.report.suite.Page`, and
+    its row. As a script the file runs the cases that are named after it.
     """
 
     def declared(function: _Function) -> _Function:

@@ -1,15 +1,15 @@
 """The rooms of the package and what each imports, read from the code; the picture of CONTRIBUTING.
 
-``python docs/house.py`` draws the picture again. tests/house/test_house.py pins what it shows: every
-import goes to a lower floor, and none in a circle; and by `users` that the library has no module
-for one case alone.
+``python docs/house.py`` draws the picture again. tests/house/test_house.py pins what it shows:
+every import goes to a lower floor, and none in a circle; and by `users` that the library has no
+module for one case alone.
 """
 
 from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
 
@@ -142,14 +142,28 @@ def room_of(name: str) -> str:
     return name.partition(".")[0]
 
 
-def rooms() -> dict[str, set[str]]:
-    """Every room, and the rooms that it imports."""
+def folder_of(name: str) -> str:
+    """The folder of a room that a module is in: of ``shafts.beam.sections`` ``shafts.beam``."""
+    parts = name.split(".")
+    longer = (".".join(parts[:n]) for n in range(len(parts), 1, -1))
+    return next((part for part in longer if part in faces()), parts[0])
+
+
+def rooms(part_of: Callable[[str], str] = room_of) -> dict[str, set[str]]:
+    """Every room, and the rooms that it imports.
+
+    Parameters
+    ----------
+    part_of : callable
+        The part of the package that a module is of: `room_of`, or `folder_of` for what a room has
+        inside.
+    """
     found: dict[str, set[str]] = {}
     for name, path in modules().items():
         if not name:
             continue
-        taken = {room_of(target) for target in imports(path, name) if target}
-        found.setdefault(room_of(name), set()).update(taken)
+        taken = {part_of(target) for target in imports(path, name) if target}
+        found.setdefault(part_of(name), set()).update(taken)
     return {room: (taken & found.keys()) - {room} for room, taken in sorted(found.items())}
 
 

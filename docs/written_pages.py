@@ -16,6 +16,7 @@ from itertools import groupby
 from pathlib import Path
 from types import ModuleType
 
+import house
 from plotly.offline import get_plotlyjs
 from result_pages import cards_of_cases, limits_page, plain, results
 from sphinx.errors import PycodeError
@@ -164,11 +165,7 @@ def static_folder(folder: Path) -> str:
 
 def public_rooms() -> Iterator[str]:
     """Names of the rooms that have public names, in order."""
-    for info in pkgutil.iter_modules(fe_drivetrain.__path__):
-        if info.ispkg:
-            yield info.name
-    # at the top level of the repository
-    yield from ("geometry", "cases.references", "cases.performance.peers")
+    yield from sorted(name for name in house.rooms(house.folder_of) if name != "cases")
 
 
 def public_names(room: ModuleType) -> list[str]:
@@ -185,7 +182,8 @@ def api_index(rooms: Iterable[str]) -> str:
     ]
     lines += ["A first script needs no more than what ``fe_drivetrain`` itself has:", ""]
     for name in public_names(fe_drivetrain):
-        home = getattr(fe_drivetrain, name).__module__.split(".")[1]
+        full = getattr(fe_drivetrain, name).__module__.removeprefix("fe_drivetrain.")
+        home = house.folder_of(full)
         lines.append(f"- :py:obj:`~fe_drivetrain.{home}.{name}`")
     lines += ["", ".. toctree::", "   :hidden:", ""]
     lines += [f"   api/{room}" for room in rooms]
@@ -200,11 +198,13 @@ def api_of(room: str) -> str:
     """One room: what it is for, and all its public names."""
     module = importlib.import_module(f"fe_drivetrain.{room}")
     lines = [*heading(room, "="), f".. automodule:: {module.__name__}", "   :no-members:", ""]
-    names = public_names(module)
+    folders = [f"{room}.{name}" for name in public_names(module) if is_folder(room, name)]
+    lines += [f"- :doc:`{name}`" for name in folders]
+    names = [name for name in public_names(module) if not is_folder(room, name)]
     lines += [", ".join(f":py:obj:`~{module.__name__}.{name}`" for name in names), ""]
     for name in names:
         lines += entry(module, name)
-    lines += heading("Modules", "-")
+    lines += heading("Modules", "-") if modules_of(module) else []
     for full in modules_of(module):
         name = full.rpartition(".")[2]
         lines += [*heading(name, "~"), f".. automodule:: {full}", "   :no-members:"]
@@ -216,6 +216,11 @@ def api_of(room: str) -> str:
             full = f"{folder.__name__}.{info.name}"
             lines += [*heading(full, "-"), f".. automodule:: {full}", "   :members:", ""]
     return "\n".join(lines)
+
+
+def is_folder(room: str, name: str) -> bool:
+    """Whether a public name of a room is a folder of it, which has names of its own."""
+    return f"{room}.{name}" in house.faces()
 
 
 def modules_of(room: ModuleType) -> list[str]:

@@ -33,8 +33,8 @@ def build(
     """Build the assembly in the open gmsh model, with physical groups and element sizes.
 
     All parts are made conforming, joints included: the nodes of a joint that is not bonded are
-    doubled when the mesh is read (`fe_drivetrain.elasticity.mesh.generation`), so that the two sides match
-    exactly.
+    doubled when the mesh is read (`fe_drivetrain.elasticity.mesh.generation`), so that the two
+    sides match exactly.
 
     Parameters
     ----------

@@ -45,6 +45,9 @@ from fe_drivetrain.report.suite.suite import run_cases
 from fe_drivetrain.shafts.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.shafts.response.unit_loads import Response, unit_load_response
 
+# Tests of one room take helpers of others.
+sys.path[1:1] = sorted(str(folder) for folder in Path(__file__).parent.iterdir() if folder.is_dir())
+
 # The same few examples each time, or many new ones: HYPOTHESIS_PROFILE=thorough. How long an
 # example takes depends on who else works on the machine, so there is no deadline.
 hypothesis.settings.register_profile(

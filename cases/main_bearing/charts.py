@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.common import Floats
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.comparison import statistics
-from fe_drivetrain.report import rounded, trace
+from fe_drivetrain.report import trace
 from fe_drivetrain.report.suite import Page
 from fe_drivetrain.turbine_loads.hub_loads import Condition, HubLoadSet
 

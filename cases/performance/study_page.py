@@ -15,8 +15,9 @@ from fe_drivetrain.cases.references.stiffness_choices import (
     Outcome,
 )
 from fe_drivetrain.common import SafeWriter
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.comparison import pareto_front
-from fe_drivetrain.report import Chart, bars, rounded, trace
+from fe_drivetrain.report import Chart, bars, trace
 from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Errors that an engineer asks for.

@@ -1,4 +1,4 @@
-"""Frequencies of torsional systems by ways that share nothing with `fe_drivetrain.dynamics.torsion`."""
+"""Frequencies of torsional systems, independent of `fe_drivetrain.dynamics.torsion`."""
 
 from __future__ import annotations
 

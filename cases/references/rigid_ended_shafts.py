@@ -102,7 +102,7 @@ def solved(mesh: Mesh, shaft: Shaft, loads: tuple[str, ...] = tuple(LOADS)) -> S
 
 
 def exact(shaft: Shaft, size: float, layers: int) -> dict[str, float]:
-    """The same stiffnesses from the meridian, see `fe_drivetrain.elasticity.revolution.harmonics`."""
+    """The same from the meridian, see `fe_drivetrain.elasticity.revolution.harmonics`."""
     K = end_stiffness(shaft, MATERIAL, size, layers=layers)
     compliance = np.linalg.inv(K[:6, :6])
     return {load: float(1.0 / compliance[row, row]) for load, row in LOADS.items()}

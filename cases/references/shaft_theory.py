@@ -19,7 +19,8 @@ from fe_drivetrain.shafts.beam import cowper_shear_coefficient
 #: Where `flexure_field` and `flexure_stress` come from, for the source of a check.
 FLEXURE = (
     "theory: Saint-Venant's flexure, its stresses those of its displacements, in equilibrium, "
-    "free on the surface and with the given resultant (tests/cases/test_shaft_theory.py checks each)"
+    "free on the surface and with the given resultant "
+    "(tests/cases/test_shaft_theory.py checks each)"
 )
 
 

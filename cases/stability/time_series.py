@@ -284,7 +284,8 @@ def check_refusals(page: Page, wave: Floats, refused: list[Record]) -> None:
         "one sample, NaN, infinity, different shapes: refused in one sentence",
         all(row["message"] for row in refused),
         why="statistics of such histories would be NaN, or of other samples than intended",
-        source="fe_drivetrain.comparison.statistics and fe_drivetrain.turbine_loads.hub_loads.histories",
+        source="fe_drivetrain.comparison.statistics and "
+        "fe_drivetrain.turbine_loads.hub_loads.histories",
     )
 
 

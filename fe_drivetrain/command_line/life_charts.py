@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.bearing.geometry import RollerRow, Row, angles
-from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.report.charts import chart, heat_map, rounded, trace
+from fe_drivetrain.common.arrays import Floats, rounded
+from fe_drivetrain.report.charts import chart, heat_map, trace
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.studies.life_sums import row_names
 

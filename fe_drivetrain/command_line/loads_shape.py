@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.report.charts import heat_map, rounded, trace
+from fe_drivetrain.common.arrays import Floats, rounded
+from fe_drivetrain.report.charts import heat_map, trace
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.studies.load_digest import LOADS, UNITS

@@ -29,8 +29,8 @@ def source_hash(rooms: Mapping[str, Set[str] | None]) -> str:
     Parameters
     ----------
     rooms : mapping
-        Modules by the name of their package, as in {"fe_drivetrain.elasticity.mesh": {"mesh.py"}}; all of a
-        package where None.
+        Modules by the name of their package, as in {"fe_drivetrain.elasticity.mesh": {"mesh.py"}};
+        all of a package where None.
 
     Returns
     -------

@@ -1,10 +1,10 @@
 """Flexible parts of a machine: carriers, shafts and a housing that are condensed elsewhere.
 
 A carrier comes as a free body at its hub and the middles of its pins, of beams or of finite
-elements (`fe_drivetrain.shafts.fidelity.component_frames`, `component_solid`); a shaft as one at its ends
-and its bearings (`fe_drivetrain.shafts.fidelity.shafts.condensed_shaft`: beam, meridian or solid); a
-housing on its supports as the spring that it is at the axis of its ring, or as a superelement at
-its ring and bearings. The rim of a ring bends by its harmonics.
+elements (`fe_drivetrain.shafts.fidelity.component_frames`, `component_solid`); a shaft as one at
+its ends and its bearings (`fe_drivetrain.shafts.fidelity.shafts.condensed_shaft`: beam, meridian or
+solid); a housing on its supports as the spring that it is at the axis of its ring, or as a
+superelement at its ring and bearings. The rim of a ring bends by its harmonics.
 """
 
 from collections.abc import Mapping

@@ -447,7 +447,7 @@ def _heavier(body: Body, shaft: ShaftData, length: float) -> Body:
 
 
 def torsional(machine: MachineTable) -> Torsional:
-    """The machine at the torsional level, for what the room `torsion` does with one.
+    """The machine at the torsional level, for what `dynamics.torsion` does with one.
 
     Windings of meshes are along the lines of action [m/rad], so that their stiffness is in N/m;
     else these are the systems of `gear_masses` of a gear table with the planets' teeth.

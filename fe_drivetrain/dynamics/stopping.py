@@ -1,8 +1,9 @@
 """Shutdown of a torsional drivetrain: generator off, blades pitched, disc brake, standstill.
 
-The sequence of Al-Hamadani 2018, section 4.5, on the torsional systems of `fe_drivetrain.dynamics.torsion`:
-normal operation, then the aerodynamic torque falls and the generator is off at once, then a disc
-brake on the high-speed shaft until it stands, and the rotor swings against it.
+The sequence of Al-Hamadani 2018, section 4.5, on the torsional systems of
+`fe_drivetrain.dynamics.torsion`: normal operation, then the aerodynamic torque falls and the
+generator is off at once, then a disc brake on the high-speed shaft until it stands, and the rotor
+swings against it.
 """
 
 from collections.abc import Mapping

@@ -26,8 +26,8 @@ def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None
     """The free shaft of a scene, condensed.
 
     Its band is, of a beam, the difference to the meridian and the meridian's own; of the meridian
-    and of a solid see `fe_drivetrain.shafts.fidelity.shaft_bands`. A beam of more than `MOST_BANDED`
-    sections has none: its meridian is graded to each step and takes gigabytes.
+    and of a solid see `fe_drivetrain.shafts.fidelity.shaft_bands`. A beam of more than
+    `MOST_BANDED` sections has none: its meridian is graded to each step and takes gigabytes.
 
     Parameters
     ----------

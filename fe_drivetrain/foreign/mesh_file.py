@@ -19,7 +19,8 @@ from fe_drivetrain.common.errors import InputError
 MOST_NODES = 3_000_000
 _FARTHEST = 1e9  # any coordinate, in the file's unit
 _FORMATS = {".msh": "gmsh", ".vtu": "vtu", ".inp": "abaqus"}
-# as TETRAHEDRON_EDGES of `elasticity.mesh.shapes`, which would bring scikit-fem into this short process
+# as TETRAHEDRON_EDGES of `elasticity.mesh.shapes`, which would bring scikit-fem into this short
+# process
 _EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 _TRIANGLES = ("triangle", "triangle6")
 

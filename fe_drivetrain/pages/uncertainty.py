@@ -7,8 +7,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.drivetrain_file.scene import Spread
-from fe_drivetrain.report.charts import chart, rounded
+from fe_drivetrain.report.charts import chart
 from fe_drivetrain.report.results import Cell, Chart, Section, Table, Text
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.run import Run

@@ -29,8 +29,8 @@ def level_loads(scene: Scene, model: LevelModel, time: Floats, hub: Loads) -> Lo
     time : ndarray, (n,)
         Of uniform step [s].
     hub : LoadHistory, PointLoads or array_like
-        (n, 6) of the rotor on the shaft, as `shafts.response.entering` takes them [N, N m]; those at load
-        points are left out.
+        (n, 6) of the rotor on the shaft, as `shafts.response.entering` takes them [N, N m]; those
+        at load points are left out.
 
     Returns
     -------

@@ -3,7 +3,6 @@ from .charts import chart as chart
 from .charts import crosses as crosses
 from .charts import density_chart as density_chart
 from .charts import heat_map as heat_map
-from .charts import rounded as rounded
 from .charts import trace as trace
 from .environment import environment as environment
 from .history import PastRun as PastRun

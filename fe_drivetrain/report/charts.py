@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.arrays import Floats, rounded
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.results import Chart
@@ -228,11 +228,6 @@ def bars(
 def _places(values: ArrayLike | Sequence[str]) -> list[Any]:
     named = np.asarray(values).dtype.kind == "U"
     return list(np.asarray(values).tolist()) if named else rounded(np.asarray(values))
-
-
-def rounded(values: ArrayLike, digits: int = 6) -> list[float]:
-    """Plain floats of so many significant digits: keeps results.json and pages small."""
-    return [float(f"{v:.{digits}g}") for v in np.ravel(np.asarray(values, dtype=float))]
 
 
 def _shaded(traces: Sequence[Any], safe: tuple[float | None, float | None]) -> dict[str, Any]:

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
-from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.report.charts import rounded, trace
+from fe_drivetrain.common.arrays import Floats, rounded
+from fe_drivetrain.report.charts import trace
 
 LEVELS = (1.0, 5.0, 10.0)
 """Errors [%] that maps show."""

@@ -6,11 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.scene import Scene
-from fe_drivetrain.report.charts import chart, rounded
+from fe_drivetrain.report.charts import chart
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
@@ -135,8 +136,8 @@ def uncertainty(
     Raises
     ------
     InputError
-        See `fe_drivetrain.shafts.uncertainty.input_study.study`; the load has an unknown name, or there
-        are too few samples for a band.
+        See `fe_drivetrain.shafts.uncertainty.input_study.study`; the load has an unknown name, or
+        there are too few samples for a band.
     """
     if samples < MIN_SAMPLES:
         raise InputError(

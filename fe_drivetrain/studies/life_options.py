@@ -35,8 +35,8 @@ class LifeOptions:
     catalogues : Sequence[Path]
         Bearing catalogues of the user, beside the program's own.
     lubricant : str, tuple of float, or None
-        A grade of `fe_drivetrain.bearing_life.life.GRADES`, or viscosities at 40 and at 100 degC [mm2/s]; None
-        leaves modified lives out, which are then equal to the basic ones.
+        A grade of `fe_drivetrain.bearing_life.life.GRADES`, or viscosities at 40 and at 100 degC
+        [mm2/s]; None leaves modified lives out, which are then equal to the basic ones.
     temperature : float
         Temperature of the bearings in operation [degC].
     supply : {"grease", "filtered oil", "oil bath"}

@@ -127,7 +127,8 @@ def lifetime(found: LoadTotals, site: Site, events: Sequence[Event] = ()) -> Lif
     Parameters
     ----------
     found : LoadTotals
-        All files, of two winds or more: see `fe_drivetrain.turbine_loads.histories.sites.require_winds`.
+        All files, of two winds or more: see
+        `fe_drivetrain.turbine_loads.histories.sites.require_winds`.
     site : Site
         The site.
     events : sequence of Event

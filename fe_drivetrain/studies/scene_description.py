@@ -38,7 +38,8 @@ def checked_model(steps: Clock, scene: Scene) -> Model:
     Raises
     ------
     InputError
-        The scene cannot be built, or is a mechanism; see `fe_drivetrain.shafts.response.build_model`.
+        The scene cannot be built, or is a mechanism; see
+        `fe_drivetrain.shafts.response.build_model`.
     """
     with steps.step("mesh"):
         mesh = mesh_scene(scene)

@@ -176,8 +176,9 @@ def study(
     scene : Scene
         Any scene that the library solves.
     loads : StudyLoads, sequence of LoadHistory or None
-        Hub loads, of any length and step, see `fe_drivetrain.turbine_loads.hub_loads.read_hub_load_files`; those
-        of a surrogate where None.
+        Hub loads, of any length and step, see
+        `fe_drivetrain.turbine_loads.hub_loads.read_hub_load_files`; those of a surrogate where
+        None.
     slopes : sequence of float
         Slopes of S-N curves, for damage-equivalent loads.
     weight : bool

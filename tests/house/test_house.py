@@ -18,21 +18,21 @@ import house  # noqa: E402
 from fe_drivetrain.export.files import FORMATS  # noqa: E402
 
 LIBRARY = sorted(path.parent.name for path in (ROOT / "fe_drivetrain").glob("*/__init__.py"))
+FACES = sorted(house.faces().keys() - {""})
 
 #: From the ground floor up: a room imports from lower floors only.
 FLOORS = (
     {"common"},
-    {"geometry", "compare", "histories", "plots"},
-    {"bearing", "gear", "mesh", "scene", "torsion", "hub_loads"},
-    {"life", "operator", "revolution"},
-    {"interfaces"},
-    {"foreign", "solve"},
-    {"beam", "response"},
-    {"dynamics", "fidelity", "report", "rings"},
-    {"coupled", "export", "procedure", "suite", "uncertainty"},
+    {"geometry", "comparison", "plots"},
+    {"bearing", "drivetrain_file", "turbine_loads"},
+    {"elasticity", "gear"},
+    {"foreign"},
+    {"shafts"},
+    {"bearing_life", "dynamics", "report"},
+    {"export", "procedure"},
     {"studies"},
     {"pages"},
-    {"commands"},
+    {"command_line"},
     {"cases"},
 )
 
@@ -43,6 +43,13 @@ def test_every_room_has_a_floor_and_imports_from_lower_ones_only() -> None:
     assert on.keys() == graph.keys() == {*LIBRARY, "geometry", "cases"}
     upward = [(room, b) for room, below in graph.items() for b in below if on[b] >= on[room]]
     assert not upward
+
+
+def test_no_circle_among_the_folders_of_rooms() -> None:
+    graph = house.rooms(house.folder_of)
+    assert {"shafts.beam", "elasticity.mesh", "report.suite"} <= graph.keys()
+    assert graph.keys() <= {*FACES, "cases"}
+    assert max(house.floors(graph).values()) > 1
 
 
 def test_no_circle_among_modules() -> None:
@@ -69,9 +76,7 @@ def test_nothing_stands_at_the_root() -> None:
     assert files == {"__init__.py", "__init__.pyi", "py.typed"}
 
 
-@pytest.mark.parametrize(
-    "room", [*LIBRARY, "geometry", "cases.references", "cases.performance.peers"]
-)
+@pytest.mark.parametrize("room", FACES)
 def test_a_face_says_what_its_room_is_for_and_shows_only_what_is_there(room: str) -> None:
     face = importlib.import_module(f"fe_drivetrain.{room}")
     assert face.__doc__
@@ -153,7 +158,7 @@ def test_no_case_imports_a_command() -> None:
     found = {
         name
         for name, targets in of_cases().items()
-        if any(house.room_of(target) == "commands" for target in targets)
+        if any(house.room_of(target) == "command_line" for target in targets)
     }
     assert found == WITH_COMMANDS
 
@@ -218,3 +223,10 @@ def test_the_picture_of_the_floors_is_up_to_date() -> None:
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     assert house.picture() in text
     assert house.with_picture(text) == text
+
+
+def test_tests_are_in_folders_of_rooms() -> None:
+    tests = ROOT / "tests"
+    assert not list(tests.glob("test_*.py"))
+    folders = {path.parent.relative_to(tests).as_posix() for path in tests.rglob("test_*.py")}
+    assert folders - {*house.rooms(), "docs", "house"} == set()

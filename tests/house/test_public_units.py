@@ -11,7 +11,9 @@ import pytest
 from pydantic import BaseModel
 
 ROOT = Path(__file__).parents[2] / "fe_drivetrain"
-ROOMS = sorted(file.parent.name for file in ROOT.glob("*/__init__.pyi"))
+ROOMS = sorted(
+    ".".join(file.parent.relative_to(ROOT).parts) for file in ROOT.glob("*/**/__init__.pyi")
+)
 
 ENDINGS = {
     "rpm": "_rpm",
@@ -37,7 +39,7 @@ ENDINGS = {
 
 def public(room: str) -> Iterator[tuple[str, object]]:
     """What a room's face has, with the methods of its classes."""
-    tree = ast.parse((ROOT / room / "__init__.pyi").read_text(encoding="utf-8"))
+    tree = ast.parse(ROOT.joinpath(*room.split("."), "__init__.pyi").read_text(encoding="utf-8"))
     module = importlib.import_module(f"fe_drivetrain.{room}")
     for node in tree.body:
         for alias in node.names if isinstance(node, ast.ImportFrom) else ():

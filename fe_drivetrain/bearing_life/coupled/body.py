@@ -319,9 +319,9 @@ def factors_of(
     Parameters
     ----------
     hub_loads : PointLoads or array_like
-        Loads from `shafts.response.entering` of a history and a scene. An array, (n, 6) or (6,), has Fx,
-        Fy, Fz [N], Mx, My, Mz [N m] on the shaft at the hub; then, six more each, at the load
-        points of a body that has such, with their weights.
+        Loads from `shafts.response.entering` of a history and a scene. An array, (n, 6) or (6,),
+        has Fx, Fy, Fz [N], Mx, My, Mz [N m] on the shaft at the hub; then, six more each, at the
+        load points of a body that has such, with their weights.
     gearbox_weight, gravity : float
         Weight [N] and acceleration [m/s^2], both along -z.
 

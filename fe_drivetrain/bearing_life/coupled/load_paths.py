@@ -72,9 +72,9 @@ class LoadPath:
         Parameters
         ----------
         hub_loads : LoadHistory, PointLoads or array_like
-            Loads as `shafts.response.entering` takes them; an array is (n, 6) Fx, Fy, Fz [N], Mx, My, Mz
-            [N m] of the rotor on the shaft at the hub; six columns more for each load point of the
-            body.
+            Loads as `shafts.response.entering` takes them; an array is (n, 6) Fx, Fy, Fz [N], Mx,
+            My, Mz [N m] of the rotor on the shaft at the hub; six columns more for each load point
+            of the body.
 
         Returns
         -------

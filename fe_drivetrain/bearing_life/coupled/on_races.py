@@ -33,8 +33,8 @@ def body_on_races(body: LinearBody, races: Races) -> RollerAssembly:
     Returns
     -------
     assembly : RollerAssembly
-        Assembly for `fe_drivetrain.bearing_life.rings.assembly_equilibrium`; the inner ring is rigid, and
-        reference points are not in it.
+        Assembly for `fe_drivetrain.bearing_life.rings.assembly_equilibrium`; the inner ring is
+        rigid, and reference points are not in it.
 
     Raises
     ------

@@ -1,6 +1,7 @@
 """Life under loads that change: Miner's sum over steps, histories and winds.
 
-Lives at single winds become the life at a site by `fe_drivetrain.turbine_loads.histories.site_life`.
+Lives at single winds become the life at a site by
+`fe_drivetrain.turbine_loads.histories.site_life`.
 """
 
 from __future__ import annotations

@@ -330,7 +330,8 @@ def _hanging(mesh: Mesh, facets: SharedFacets) -> list[Fault]:
     corner, middle = np.zeros(n, dtype=bool), np.zeros(n, dtype=bool)
     corner[mesh.cells[:, :4]] = True
     middle[mesh.cells[:, 4:]] = True
-    fix = "refine the neighbours too, or join the two sides by a tie (fe_drivetrain.elasticity.interfaces)"
+    fix = "refine the neighbours too, or join the two sides by a tie "
+    fix += "(fe_drivetrain.elasticity.interfaces)"
     faults = _of_nodes(
         mesh,
         "hanging node",

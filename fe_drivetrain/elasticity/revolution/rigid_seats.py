@@ -36,9 +36,9 @@ def end_stiffness(
     Parameters
     ----------
     shaft, size, order, layers, per_fillet : Shaft, float or None, int or None, int, int
-        Arguments of `fe_drivetrain.elasticity.revolution.meridian`. With the default size stiffness is right
-        to some 1e-5 where diameters are equal, to 2e-4 where they differ by 2.5 to 1. For a shaft
-        with fillets 2 per fillet is many times quicker.
+        Arguments of `fe_drivetrain.elasticity.revolution.meridian`. With the default size stiffness
+        is right to some 1e-5 where diameters are equal, to 2e-4 where they differ by 2.5 to 1. For
+        a shaft with fillets 2 per fillet is many times quicker.
     material : Material
         Material of the shaft.
 

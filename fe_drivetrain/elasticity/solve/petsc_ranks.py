@@ -26,10 +26,11 @@ from scipy import linalg, sparse  # noqa: E402
 
 def _package() -> None:
     """Let modules of this package be imported, whose own `__init__` needs more than there is."""
-    root = Path(__file__).parents[1]
-    for name in ("", ".common", ".mesh", ".operator", ".solve"):
+    root = Path(__file__).parents[2]
+    wing = ".elasticity"
+    for name in ("", ".common", wing, f"{wing}.mesh", f"{wing}.operator", f"{wing}.solve"):
         package = types.ModuleType(f"fe_drivetrain{name}")
-        package.__path__ = [str(root / name.removeprefix("."))]
+        package.__path__ = [str(root.joinpath(*name.split(".")))]
         sys.modules[package.__name__] = package
 
 

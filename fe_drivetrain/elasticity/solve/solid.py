@@ -110,7 +110,8 @@ def solve_unchecked(
     if not np.isfinite(K.data).all():
         raise InputError(
             "the stiffness has entries that are no numbers: an element of the mesh has no volume; "
-            "find it with fe_drivetrain.elasticity.mesh.measures.jacobians, and mesh that part again"
+            "find it with fe_drivetrain.elasticity.mesh.measures.jacobians, and mesh that "
+            "part again"
         )
     held = list(constraints)
     if prescribed is not None:

@@ -166,7 +166,8 @@ def flexible_system(
         (3,) of the shaft, not of its supports [m/s^2].
     inertia : Mapping[str, Floats] or None
         (6, 6) mass of supports by point [kg, kg m, kg m^2], as
-        `fe_drivetrain.shafts.fidelity.unit_matrices` gives it; they have none where it is not given.
+        `fe_drivetrain.shafts.fidelity.unit_matrices` gives it; they have none where it is not
+        given.
 
     Raises
     ------

@@ -256,15 +256,15 @@ def rotor_of_scene(
     scene : Scene
         The scene; what its gearbox weighs is a load, see `Rotor.deflections`.
     bearing_stiffness : Mapping[str, Floats]
-        (6, 6) by bearing [N/m, N, N m/rad], as `fe_drivetrain.shafts.fidelity.unit_stiffness` or the
-        ``stiffness`` of `fe_drivetrain.export.unit_superelement` gives it.
+        (6, 6) by bearing [N/m, N, N m/rad], as `fe_drivetrain.shafts.fidelity.unit_stiffness` or
+        the ``stiffness`` of `fe_drivetrain.export.unit_superelement` gives it.
     rings : bool
         Whether the shaft has its rings, see `fe_drivetrain.shafts.fidelity.shafts.ringed_shaft`.
     longest, stiffer : float or None, float
         As for `ross_rotor`.
     inertia : Mapping[str, Floats] or None
-        (6, 6) by bearing [kg, kg m, kg m^2], as `fe_drivetrain.shafts.fidelity.unit_matrices` gives it;
-        supports have no mass where it is not given.
+        (6, 6) by bearing [kg, kg m, kg m^2], as `fe_drivetrain.shafts.fidelity.unit_matrices` gives
+        it; supports have no mass where it is not given.
     """
     beam = (ringed_beam if rings else beam_of_scene)(scene, bearing_stiffness)
     return ross_rotor(beam, (), longest, stiffer, inertia)

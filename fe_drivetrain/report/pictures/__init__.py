@@ -2,6 +2,8 @@
 
 `view` looks, `surfaces` are what VTK draws of a mesh, `sheet` is what they and the text over them
 are drawn on, `symbols` are loads and supports; `model` and `deformation` draw the pictures.
+
+In: models, responses, bearings. Out: pictures as files and as HTML.
 """
 
 import lazy_loader

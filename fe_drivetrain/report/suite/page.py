@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.report.charts import chart, instead_of_chart, rounded, trace
+from fe_drivetrain.common.arrays import rounded
+from fe_drivetrain.report.charts import chart, instead_of_chart, trace
 from fe_drivetrain.report.results import (
     Cell,
     Chart,

@@ -2,9 +2,9 @@
 
 Two estimates that share little. The series: the same scene on two coarser meshes, over the mean
 sizes of the elements that these really have, with the slowest order that is assumed where stress is
-singular, and with a wide band where values scatter (`fe_drivetrain.comparison.convergence`). The one
-mesh: stresses recovered from those of the elements, and what their differences do to the quantity
-(`fe_drivetrain.elasticity.solve.error_estimate`). The band is the larger of what they say.
+singular, and with a wide band where values scatter (`fe_drivetrain.comparison.convergence`). The
+one mesh: stresses recovered from those of the elements, and what their differences do to the
+quantity (`fe_drivetrain.elasticity.solve.error_estimate`). The band is the larger of what they say.
 
 Meshes that are not nested differ by their topology as well as by their sizes. Of two that are
 a ratio r apart, the limit lies difference / (r - 1) away at first order: as r nears 1, what sizes

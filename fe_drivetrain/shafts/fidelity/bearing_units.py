@@ -187,8 +187,9 @@ def unit_matrices(
     none is there in which the housing moves and the shaft does not.
 
     The mass is that of housing, further parts, and of a ring that is bonded to the housing or on
-    rollers in it: other rings belong to the shaft, see `fe_drivetrain.shafts.fidelity.ringed_shaft`. What
-    the joint leaves free the housing does not follow; springs of joint and bedplate have no mass.
+    rollers in it: other rings belong to the shaft, see
+    `fe_drivetrain.shafts.fidelity.ringed_shaft`. What the joint leaves free the housing does not
+    follow; springs of joint and bedplate have no mass.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """The fidelity ladder of a component: rigid body, frame of beams, solid.
 
-Each level answers as the levels of a drivetrain do (`fe_drivetrain.shafts.fidelity.LevelModel`), to the
-loads of `loads_of`: forces and moments at the points that loads come in by, then gravity.
+Each level answers as the levels of a drivetrain do (`fe_drivetrain.shafts.fidelity.LevelModel`), to
+the loads of `loads_of`: forces and moments at the points that loads come in by, then gravity.
 """
 
 from __future__ import annotations

@@ -166,8 +166,8 @@ def compare_designs(
     tolerance : float
         Allowed error of a change, relative to the first design's value.
     load : mapping of str to float, optional
-        That causes the reactions, by names of `fe_drivetrain.shafts.response.scene_loads`; each of the six
-        hub loads, one at a time, where left out.
+        That causes the reactions, by names of `fe_drivetrain.shafts.response.scene_loads`; each of
+        the six hub loads, one at a time, where left out.
     report : callable
         Called with what is being done.
 

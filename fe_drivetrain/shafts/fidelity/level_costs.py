@@ -1,7 +1,8 @@
 """What each level of the ladder will take for a scene: unknowns, seconds, memory.
 
 Levels without a large system are run, for they take less than a forecast could save. Of the others
-the systems are made and the solver's cost is predicted (`fe_drivetrain.elasticity.solve.cost_model`).
+the systems are made and the solver's cost is predicted
+(`fe_drivetrain.elasticity.solve.cost_model`).
 """
 
 from __future__ import annotations

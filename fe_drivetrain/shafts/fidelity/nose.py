@@ -110,7 +110,7 @@ class OnNose:
     names: tuple[str, ...]
 
     def reactions(self, motions: Floats) -> dict[str, Floats]:
-        """What the shaft puts on each bearing, (6, 6 n + 3), see `elasticity.solve.condensation.Supported`."""
+        """What the shaft puts on each bearing, (6, 6 n + 3), see `Supported`."""
         stretched = motions[self.rows]
         stretched[:, -3:] -= self.support.sag
         found = np.zeros((6 * len(self.names), motions.shape[1]))

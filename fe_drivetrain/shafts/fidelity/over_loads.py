@@ -147,8 +147,8 @@ def reaction_history(
     name : str
         Of a bearing, or "gearbox".
     hub_loads : LoadHistory, PointLoads or array_like
-        As `shafts.response.entering` takes them; an array is (..., 6) hub forces [N] and moments [N m]
-        about the front face, or (..., 6 + 6 m) with those at the m load points.
+        As `shafts.response.entering` takes them; an array is (..., 6) hub forces [N] and moments [N
+        m] about the front face, or (..., 6 + 6 m) with those at the m load points.
     gearbox_weight : float
         Weight of the gearbox [N], along -z.
     gravity : float

@@ -94,8 +94,8 @@ def named_load(scene: Scene, load: Mapping[str, float]) -> Factors:
     scene : Scene
         The scene.
     load : mapping of str to float
-        By names of `fe_drivetrain.shafts.response.scene_loads` [N, N m, m/s^2], those at the hub about the
-        point where loads enter; those left out are zero.
+        By names of `fe_drivetrain.shafts.response.scene_loads` [N, N m, m/s^2], those at the hub
+        about the point where loads enter; those left out are zero.
 
     Raises
     ------

@@ -19,7 +19,8 @@ that is slower than a crack's, and to that at half of a crack's rate at most, as
 1.25 (1 + sqrt q) times that error.
 
 The solid is compared with a coarser mesh of it, by the mean size of the elements that there are,
-and its stresses with recovered ones (`fe_drivetrain.elasticity.solve.error_estimate`); the band is the larger.
+and its stresses with recovered ones (`fe_drivetrain.elasticity.solve.error_estimate`); the band is
+the larger.
 """
 
 from __future__ import annotations

@@ -31,7 +31,8 @@ def cached_response(
     model : Model
         As `build_model` made it of its scene and mesh.
     method : str
-        Solver, see `fe_drivetrain.elasticity.solve.solve`. What "auto" chose when it was solved is kept.
+        Solver, see `fe_drivetrain.elasticity.solve.solve`. What "auto" chose when it was solved is
+        kept.
     seed : int
         As of `unit_load_response`.
     cache : Cache or None

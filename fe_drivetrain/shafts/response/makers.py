@@ -13,13 +13,13 @@ from fe_drivetrain.elasticity.mesh.mesh import Mesh
 _ROOMS = (
     "common",
     "geometry",
-    "scene",
-    "mesh",
-    "operator",
-    "interfaces",
+    "drivetrain_file",
+    "elasticity.mesh",
+    "elasticity.operator",
+    "elasticity.interfaces",
     "foreign",
-    "solve",
-    "response",
+    "elasticity.solve",
+    "shafts.response",
 )
 _PACKAGES = ("numpy", "scipy", "numba", "pyamg", "scikit-sparse", "pypardiso", "mkl", "gmsh")
 

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.drivetrain_file.scene import Spread
-from fe_drivetrain.report.charts import rounded
 from fe_drivetrain.shafts.fidelity.quantities import Number
 from fe_drivetrain.shafts.uncertainty.input_study import Study
 from fe_drivetrain.shafts.uncertainty.sampling import Samples, distribution

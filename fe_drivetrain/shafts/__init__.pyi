@@ -1,0 +1,4 @@
+from . import beam as beam
+from . import fidelity as fidelity
+from . import response as response
+from . import uncertainty as uncertainty

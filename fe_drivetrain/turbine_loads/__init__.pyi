@@ -1,0 +1,2 @@
+from . import histories as histories
+from . import hub_loads as hub_loads
