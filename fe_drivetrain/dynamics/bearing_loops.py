@@ -6,7 +6,7 @@ matrix D that stays in a step, of a time times the tangent at the beginning of i
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -33,14 +33,17 @@ class Rolling(NamedTuple):
     pack: kernels.Packed
 
 
-def rolling_of(kinds: Sequence[Bearing], seconds: Floats, row: int, drift: int) -> Rolling:
+@lru_cache(maxsize=32)
+def rolling_of(
+    kinds: tuple[Bearing, ...], seconds: tuple[float, ...], row: int, drift: int
+) -> Rolling:
     """Bearings in the form of the compiled loop.
 
     Parameters
     ----------
-    kinds : sequence of Bearing
+    kinds : tuple of Bearing
         Bearings (b,).
-    seconds : Floats
+    seconds : tuple of float
         Damping (b,) of each over its tangent stiffness [s].
     row, drift : int
         Their first row, and the first of their drifts or -1.
@@ -72,7 +75,7 @@ def rolling_of(kinds: Sequence[Bearing], seconds: Floats, row: int, drift: int) 
         whole("node_shares", 0, kernels.NODES),
         whole("tables", 0, kernels.POWERS),
     )
-    return Rolling(int(row), int(drift), np.ascontiguousarray(seconds), counts, pack)
+    return Rolling(int(row), int(drift), np.array(seconds, dtype=np.float64), counts, pack)
 
 
 @njit(cache=True, error_model="numpy")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.dynamics.equations import Loads, varying
@@ -32,12 +33,16 @@ class Brake:
 
     def size(self, t: float) -> float:
         """Maximum torque at a time [N m]."""
-        if t < self.start:
-            return 0.0
-        return self.torque * (min((t - self.start) / self.rise, 1.0) if self.rise > 0.0 else 1.0)
+        return float(self.sizes(t))
+
+    def sizes(self, times: ArrayLike) -> Floats:
+        """Maximum torques at times [N m]."""
+        since = np.asarray(times, dtype=np.float64) - self.start
+        grown = np.minimum(since / self.rise, 1.0) if self.rise > 0.0 else 1.0
+        return np.asarray(self.torque * np.where(since < 0.0, 0.0, grown))
 
     def friction(self, side: float, begin: float, end: float) -> Loads:
         """Friction of a disc that turns to one side (1 or -1), from a time to another [s]."""
         full = self.start + self.rise
         times = np.unique([begin, *([full] if begin < full < end else []), end])
-        return varying(self.row, times, [-side * self.size(t) for t in times])
+        return varying(self.row, times, -side * self.sizes(times))

@@ -47,11 +47,15 @@ PHASE_ROW, MOVED_ROW, TILTED_ROW = range(3)
 
 
 class Model(NamedTuple):
-    """Matrices, laws, and flags ``kinds`` (3, r) of the rows: 1 where they are of a kind."""
+    """Matrices, laws, and flags ``kinds`` (3, r) of the rows: 1 where they are of a kind.
+
+    ``bearing`` is the first row of the bearings.
+    """
 
     matrices: Matrices
     laws: Laws
     kinds: Floats
+    bearing: int
 
 
 class Kept(NamedTuple):

@@ -30,41 +30,42 @@ MOST_STEPS = 40
 
 
 @njit(cache=True, error_model="numpy")
-def _solve(squares: Floats, y: Floats) -> None:  # pragma: no cover - compiled
-    """A^-1 y[CHANGE] into it, A = squares[1] overwritten: Gauss with row pivots, no library."""
+def _solve(A: Floats, y: Floats) -> None:  # pragma: no cover - compiled
+    """A^-1 y[CHANGE] into it, A overwritten: Gauss with row pivots; small, without a library."""
     n = y.shape[1]
     for k in range(n):
         p = k
         for i in range(k + 1, n):
-            if abs(squares[1, i, k]) > abs(squares[1, p, k]):
+            if abs(A[i, k]) > abs(A[p, k]):
                 p = i
         if p != k:
             for j in range(k, n):
-                squares[1, k, j], squares[1, p, j] = squares[1, p, j], squares[1, k, j]
+                A[k, j], A[p, j] = A[p, j], A[k, j]
             y[CHANGE, k], y[CHANGE, p] = y[CHANGE, p], y[CHANGE, k]
         for i in range(k + 1, n):
-            f = squares[1, i, k] / squares[1, k, k]
+            f = A[i, k] / A[k, k]
             if f != 0.0:
                 for j in range(k + 1, n):
-                    squares[1, i, j] -= f * squares[1, k, j]
+                    A[i, j] -= f * A[k, j]
                 y[CHANGE, i] -= f * y[CHANGE, k]
     for k in range(n - 1, -1, -1):
         for j in range(k + 1, n):
-            y[CHANGE, k] -= squares[1, k, j] * y[CHANGE, j]
-        y[CHANGE, k] /= squares[1, k, k]
+            y[CHANGE, k] -= A[k, j] * y[CHANGE, j]
+        y[CHANGE, k] /= A[k, k]
 
 
 @njit(cache=True, error_model="numpy")
-def _forces_at(model: Model, rolling: Rolling, t: float, w: Work) -> None:  # pragma: no cover
+def _forces_at(
+    model: Model, rolling: Rolling | None, t: float, w: Work, tangent: Floats
+) -> None:  # pragma: no cover - compiled
     """Forces beyond the matrices at values of the rows at the end of a step, and their tangent."""
     b, y = model.matrices.coefficients, w.rows
     for i in range(y.shape[1]):
         y[RATE, i] = b[1] * (y[NEW, i] - y[BASE, i]) + b[4] * y[ZR, i] + b[5] * y[ZA, i]
-    tangent = w.squares[0]
     w.sums[0, STORED], w.sums[0, POWER], w.sums[0, FOLLOWED] = law_forces(
         model.laws, t, b[1], 1, y, w.laws, tangent
     )
-    if len(rolling.seconds) > 0:
+    if rolling is not None:
         bearing_forces(rolling, b[1], 1, y, tangent, w.bearings, w.resisted, w.scratch)
 
 
@@ -77,18 +78,20 @@ def _residual(share: float, S: Floats, y: Floats) -> None:  # pragma: no cover -
 
 
 @njit(cache=True, error_model="numpy")
-def _jacobian(share: float, S: Floats, squares: Floats) -> None:  # pragma: no cover - compiled
-    """I + share S tangent, from squares[0] into squares[1]."""
+def _jacobian(
+    share: float, S: Floats, tangent: Floats, A: Floats
+) -> None:  # pragma: no cover - compiled
+    """I + share S tangent, into A."""
     r = len(S)
     for i in range(r):
         for j in range(r):
-            squares[1, i, j] = 1.0 if i == j else 0.0
+            A[i, j] = 1.0 if i == j else 0.0
     for j in range(r):
         for k in range(r):
-            by = squares[0, j, k]
+            by = tangent[j, k]
             if by != 0.0:
                 for i in range(r):
-                    squares[1, i, k] += share * S[i, j] * by
+                    A[i, k] += share * S[i, j] * by
 
 
 @njit(cache=True, error_model="numpy")
@@ -118,25 +121,26 @@ def scales(kinds: Floats, y: Floats) -> None:  # pragma: no cover - compiled
 
 @njit(cache=True, error_model="numpy")
 def newton(
-    model: Model, rolling: Rolling, t: float, tolerance: float, w: Work, counts: Ints
+    model: Model, rolling: Rolling | None, t: float, tolerance: float, w: Work, counts: Ints
 ) -> None:  # pragma: no cover - compiled
     """Values of the rows at the end of a step, and the forces there.
 
     With bearings, whose rollers leave and come back, changes are as short as the residual falls.
     """
-    y, S, bearings = w.rows, model.matrices.compliance, len(rolling.seconds) > 0
+    y, S, bearings = w.rows, model.matrices.compliance, w.resisted.shape[1] > 0
     share, r = 1.0 - model.matrices.coefficients[7], len(S)
+    tangent, A = w.squares[0], w.squares[1]
     for i in range(r):
         y[NEW, i] = y[FREE, i]
-    _forces_at(model, rolling, t, w)
+    _forces_at(model, rolling, t, w, tangent)
     _residual(share, S, y)
     count, converged = 0, False
     while not converged and count < MOST_STEPS:
         before = _unbalance(model.kinds, y) if bearings else 0.0
-        _jacobian(share, S, w.squares)
+        _jacobian(share, S, tangent, A)
         for i in range(r):
             y[CHANGE, i] = y[RESIDUAL, i]
-        _solve(w.squares, y)
+        _solve(A, y)
         count += 1
         length = 1.0 if bearings or count <= MOST_STEPS // 2 else 0.5
         converged = True
@@ -145,7 +149,7 @@ def newton(
             bound = tolerance if model.kinds[PHASE_ROW, i] != 0.0 else tolerance * y[SCALE, i]
             if not abs(y[CHANGE, i]) <= bound:
                 converged = False
-        _forces_at(model, rolling, t, w)
+        _forces_at(model, rolling, t, w, tangent)
         if converged and not bearings:
             break
         _residual(share, S, y)
@@ -157,7 +161,7 @@ def newton(
             converged = False
             for i in range(r):
                 y[NEW, i] -= length * y[CHANGE, i]
-            _forces_at(model, rolling, t, w)
+            _forces_at(model, rolling, t, w, tangent)
             _residual(share, S, y)
     counts[0] += count
     counts[1] = max(counts[1], count)

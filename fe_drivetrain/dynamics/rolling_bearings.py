@@ -40,7 +40,7 @@ class RollingBearings:
     def loads(self, u: Floats, rate: Floats) -> Floats:
         """Loads (b, 5) at motions (b, 5) and their rates, with the dampers there."""
         F, K = self.rollers.carried(u)
-        return F + np.einsum("b,bij,bj->bi", self.seconds, K, rate)
+        return np.asarray(F + np.einsum("b,bij,bj->bi", self.seconds, K, rate))
 
 
 def rolling_bearings(

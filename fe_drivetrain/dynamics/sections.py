@@ -79,7 +79,7 @@ class Section:
         """Torques (k, h) that keep discs at rest, by what they would do without (k, h)."""
         if not self.standing:
             return np.zeros((len(gripped), 0))
-        return -np.linalg.solve(self._mobility, gripped.T).T
+        return np.asarray(-np.linalg.solve(self._mobility, gripped.T).T, dtype=np.float64)
 
     def holding_at(self, state: State) -> Floats:
         """(h,) the same at a state, apart from the compiled loop."""
@@ -89,7 +89,7 @@ class Section:
     def sizes(self, times: Floats) -> Floats:
         """(k, h) maximum torques of the brakes of discs that stand."""
         brakes = self.mechanism.brakes
-        return np.array([[brakes[k].size(t) for k in self.standing] for t in times])
+        return np.stack([brakes[k].sizes(times) for k in self.standing], axis=1)
 
     def margins(self, piece: Piece, before: State) -> dict[int, float]:
         """What is left at the end of a piece until an event of each brake; 1 at its beginning."""
@@ -122,7 +122,7 @@ class Section:
         found = np.zeros((len(motion.times), len(brakes)))
         held = np.zeros(found.shape, dtype=bool)
         for k, side in self.slipping.items():
-            found[:, k] = [-side * brakes[k].size(t) for t in motion.times]
+            found[:, k] = -side * brakes[k].sizes(motion.times)
         if self.standing:
             found[:, self.standing] = self.holding(gripped)
             held[:, self.standing] = True

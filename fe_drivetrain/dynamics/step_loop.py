@@ -87,17 +87,23 @@ MANY = 12
 
 
 @njit(cache=True, error_model="numpy")
+def _by_library(
+    matrices: Floats, k: int, x: Floats, i: int, y: Floats, j: int
+) -> None:  # pragma: no cover - compiled
+    np.dot(matrices[k], x[i], y[j])
+
+
+@njit(cache=True, error_model="numpy")
 def _times(
     matrices: Floats, k: int, x: Floats, i: int, y: Floats, j: int
 ) -> None:  # pragma: no cover - compiled
     """``matrices[k] x[i]`` into ``y[j]``; vectors by number, since each view takes time."""
-    rows, columns = matrices.shape[1], matrices.shape[2]
-    if columns > MANY:
-        np.dot(matrices[k], x[i], y[j])
+    if matrices.shape[2] > MANY:
+        _by_library(matrices, k, x, i, y, j)
         return
-    for row in range(rows):
+    for row in range(matrices.shape[1]):
         total = 0.0
-        for column in range(columns):
+        for column in range(matrices.shape[2]):
             total += matrices[k, row, column] * x[i, column]
         y[j, row] = total
 
@@ -201,16 +207,14 @@ def _hold(held: Floats, x: Floats, i: int) -> None:  # pragma: no cover - compil
 
 
 @njit(cache=True, error_model="numpy")
-def _powers(
-    model: Model, turning: Turning, rolling: Rolling, w: Work
-) -> None:  # pragma: no cover - compiled
+def _powers(model: Model, turning: Turning, w: Work) -> None:  # pragma: no cover - compiled
     """Power that dampers take and the clock gives, where rows turn."""
     x, y, sums, many = w.vectors, w.rows, w.sums, w.resisted.shape[1]
     lost, clock = powers_of_springs(turning, x[U], x[V], w.along[0])
     more, turned = powers_of_laws(model.laws, y, w.laws)
     lost, clock = lost + more - sums[0, FOLLOWED], clock + turned
     if many > 0:
-        loads = y[D, rolling.row : rolling.row + many]
+        loads = y[D, model.bearing : model.bearing + many]
         more, turned = powers_of_bearings(turning, x[U], x[V], loads, w.resisted[0])
         lost, clock = lost + more, clock + turned
     sums[0, LOST] = lost
@@ -247,15 +251,15 @@ def _end_step(model: Model, w: Work) -> float:  # pragma: no cover - compiled
 
 
 @njit(cache=True, error_model="numpy")
-def _end_rows(model: Model, first: int, w: Work) -> float:  # pragma: no cover - compiled
-    """Rows at the end of a step; what dampers of laws and bearings, from row `first` on, took."""
+def _end_rows(model: Model, w: Work) -> float:  # pragma: no cover - compiled
+    """Rows at the end of a step; what dampers of laws and bearings took."""
     x, y, of = w.vectors, w.rows, w.laws
     taken = 0.0
     for i in range(of.shape[1]):
         h = model.laws.numbers[ROW, i]
         taken += 0.5 * (of[DAMPER, i] + of[DAMPER1, i]) * (y[NEW, h] - y[BASE, h])
     for i in range(w.resisted.shape[1]):
-        h = first + i
+        h = model.bearing + i
         taken += 0.5 * (w.resisted[0, i] + w.resisted[1, i]) * (y[NEW, h] - y[BASE, h])
     _copy(of, DAMPER1, of, DAMPER)
     _copy(w.resisted, 1, w.resisted, 0)
@@ -269,7 +273,7 @@ def _end_rows(model: Model, first: int, w: Work) -> float:  # pragma: no cover -
 
 @njit(cache=True, error_model="numpy")
 def _begin(
-    model: Model, rolling: Rolling, turning: Turning | None, t: float, w: Work
+    model: Model, rolling: Rolling | None, turning: Turning | None, t: float, w: Work
 ) -> None:  # pragma: no cover - compiled
     """Forces and motions at the beginning of a run."""
     m, x, y, sums, tangent = model.matrices, w.vectors, w.rows, w.sums, w.squares[0]
@@ -288,21 +292,22 @@ def _begin(
     sums[0, STORED], sums[0, POWER], sums[0, FOLLOWED] = law_forces(
         model.laws, t, 0.0, int(np.int64(0)), y, w.laws, tangent
     )
-    for _ in range(2 if len(rolling.seconds) > 0 else 0):  # for the tangents of the dampers first
-        new_dampers(rolling, w.bearings)
-        bearing_forces(
-            rolling, 0.0, int(np.int64(0)), y, tangent, w.bearings, w.resisted, w.scratch
-        )
+    if rolling is not None:
+        for _ in range(2):  # for the tangents of the dampers first
+            new_dampers(rolling, w.bearings)
+            bearing_forces(
+                rolling, 0.0, int(np.int64(0)), y, tangent, w.bearings, w.resisted, w.scratch
+            )
     if turning is not None:
-        _powers(model, turning, rolling, w)
+        _powers(model, turning, w)
 
 
 @njit(cache=True, error_model="numpy")
 def _record(
-    model: Model, first: int, k: int, t: float, w: Work, kept: Kept
+    model: Model, k: int, t: float, w: Work, kept: Kept
 ) -> None:  # pragma: no cover - compiled
-    """Record k of the motion; `first`: row of the first bearing."""
-    x, y = w.vectors, w.rows
+    """Record k of the motion."""
+    x, y, first = w.vectors, w.rows, model.bearing
     kept.times[k] = t
     _times(kept.watch, 0, x, U, kept.places, k)
     _times(kept.watch, 0, x, V, kept.rates, k)
@@ -326,12 +331,10 @@ def _record(
 
 
 @njit(cache=True, error_model="numpy")
-def _turned(
-    model: Model, turning: Turning, rolling: Rolling, w: Work
-) -> None:  # pragma: no cover - compiled
+def _turned(model: Model, turning: Turning, w: Work) -> None:  # pragma: no cover - compiled
     """Losses of a step whose rows turn."""
     _times(model.matrices.squares, DRIFT, w.vectors, U, w.vectors, DU)
-    _powers(model, turning, rolling, w)
+    _powers(model, turning, w)
     w.sums[0, DISSIPATED] += 0.5 * model.matrices.dt * (w.sums[1, LOST] + w.sums[0, LOST])
 
 
@@ -351,7 +354,7 @@ def _stops(stop: Stop, x: Floats) -> bool:  # pragma: no cover - compiled
 def march(
     span: Span,
     model: Model,
-    rolling: Rolling,
+    rolling: Rolling | None,
     turning: Turning | None,
     drive: Drive,
     stop: Stop,
@@ -364,24 +367,21 @@ def march(
     Parameters
     ----------
     span, model, rolling, turning, drive, stop : NamedTuple
-        Steps, what moves and acts, loads and events, in the form of the compiled loop; no turning
-        where all rows stand.
-    w : Work
-        Memory, all zero but for displacements, velocities and accelerations, which become those
-        of the end; behind them are those before the last step, where an event may end the steps.
-    kept : Kept
-        Records, overwritten.
+        Steps, what moves and acts, loads and events; None of bearings and rows that turn where
+        there are none.
+    w, kept : Work, Kept
+        Memory, zero but for displacements, velocities and accelerations, which become those of the
+        end, with those before the last step behind them; and records, overwritten.
     counts : Ints
-        Numbers (3,) of Newton steps: in all, and the maximum in a step; and of steps that have not
-        converged.
+        Numbers (3,) of Newton steps, in all and at most in a step, and of steps not converged.
 
     Returns
     -------
     done : int
-        Number of steps that were made.
+        Number of steps that were made, up to an event.
     """
     dt, rows, none = model.matrices.dt, w.rows.shape[1] > 0, int(np.int64(0))
-    bearings, half = len(rolling.seconds) > 0, 0.5 * dt
+    half = 0.5 * dt
     place = _load(drive, span.begin, none, w, OUTSIDE0)  # a literal would be a type of its own
     _begin(model, rolling, turning, span.begin, w)
     record = none
@@ -392,26 +392,25 @@ def march(
                 _copy(w.vectors, U + k, w.vectors, U0 + k)
             place = _load(drive, t, place, w, OUTSIDE)
             touching(model.laws, t - dt, w.rows, w.laws)
-            if bearings:
+            if rolling is not None:
                 new_dampers(rolling, w.bearings)
             _free_step(model, turning, t, w)
-            for i in range(9):
-                w.sums[1, i] = w.sums[0, i]
-                if i >= STORED:
-                    w.sums[0, i] = 0.0
+            _copy(w.sums, 0, w.sums, 1)
+            for i in range(STORED, LOST + 1):
+                w.sums[0, i] = 0.0
             if rows:
                 scales(model.kinds, w.rows)
                 newton(model, rolling, t, span.tolerance, w, counts)
             taken = _end_step(model, w)
             if rows:
-                taken += _end_rows(model, rolling.row, w)
+                taken += _end_rows(model, w)
             if turning is not None:
-                _turned(model, turning, rolling, w)
+                _turned(model, turning, w)
             else:
                 w.sums[0, DISSIPATED] += taken - half * (w.sums[1, FOLLOWED] + w.sums[0, FOLLOWED])
             w.sums[0, CLOCK] += half * (w.sums[1, POWER] + w.sums[0, POWER])
         if s % span.every == 0:
-            _record(model, rolling.row, record, t, w, kept)
+            _record(model, record, t, w, kept)
             record += 1
         if s > 0 and _stops(stop, w.vectors):
             return s

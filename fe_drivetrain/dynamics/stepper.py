@@ -155,12 +155,12 @@ def prepared(
     kinds[MOVED_ROW, first + np.arange(3)] = 1.0
     kinds[TILTED_ROW, first + np.arange(3, 5)] = 1.0
     rolling = rolling_of(
-        [seat.bearing for seat in bearings.seats],
-        bearings.seconds,
+        tuple(seat.bearing for seat in bearings.seats),
+        tuple(bearings.seconds.tolist()),
         places.bearings,
         places.bearing_drift,
     )
-    model = Model(matrices, _laws(mechanism, places), kinds)
+    model = Model(matrices, _laws(mechanism, places), kinds, places.bearings)
     return Stepper(mechanism, model, rolling, _turning(mechanism, places))
 
 
@@ -308,12 +308,14 @@ def run_steps(
     state = work.vectors
     state[U], state[V], state[A] = begin.q, begin.velocity, begin.acceleration
     state[U0 : A0 + 1] = state[U : A + 1]
-    model, rolling, turning = stepper.model, stepper.rolling, stepper.turning
+    model, turning = stepper.model, stepper.turning
+    # what a run does not have is not compiled for it
+    rolling = stepper.rolling if b or turning is not None else None
     done = march(span, model, rolling, turning, drive, stop, work, kept, counts)
     dt = model.matrices.dt
     end, before = (
-        State(*state[first : first + 3].copy(), begin.time + steps * dt)
-        for first, steps in ((U, done), (U0, done - 1))
+        State(q.copy(), v.copy(), a.copy(), begin.time + steps * dt)
+        for (q, v, a), steps in ((state[U : A + 1], done), (state[U0 : A0 + 1], done - 1))
     )
     motion = _motion(stepper, kept, done // every + 1, len(seen), counts, end)
     passed = stop.signs * (stop.rows @ end.velocity)

@@ -152,7 +152,7 @@ def test_the_examples_of_the_docs_run() -> None:
     assert found["motion"].converged
     assert found["stopped"].ratio("HSS")[0] == pytest.approx(1.0, rel=1e-6)
     assert found["turned"].converged
-    radial = found["on_rollers"].radial("stage 1 pin 1 upwind")
+    radial = found["on_rollers"].bearings.radial("stage 1 pin 1 upwind")
     assert radial[-1] > radial[0] > 1e5
     # errors of some microns against teeth of a GN/m
     assert 1e2 < abs(found["answer"].forces).max() < 1e5
