@@ -17,6 +17,7 @@ from pathlib import Path
 from types import ModuleType
 
 import house
+from face_examples import examples
 from plotly.offline import get_plotlyjs
 from result_pages import cards_of_cases, limits_page, plain, results
 from sphinx.errors import PycodeError
@@ -91,7 +92,7 @@ def gallery(scenes: Mapping[str, Scene | Component], cards: Sequence[str]) -> st
         "and supports; components as a torque deforms them. Where each comes from is in "
         "[the library](../library.md); each drivetrain has a case of its name, which runs all "
         "levels. `fe-drivetrain advise`, `export` and `check` take a scene by its name, Python by "
-        "`library_scene`.",
+        "`read_drivetrain`.",
         "",
         "::::{grid} 1 2 2 3",
         ":gutter: 3",
@@ -174,17 +175,13 @@ def public_names(room: ModuleType) -> list[str]:
 
 
 def api_index(rooms: Iterable[str]) -> str:
-    """The rooms with what they are for, and what a first script needs."""
+    """What a script needs, each name with an example, and the rooms with what they are for."""
     lines = [
         *heading("API", "="),
         "Users import from a room: ``from fe_drivetrain.elasticity.mesh import Mesh``.",
         "",
     ]
-    lines += ["A first script needs no more than what ``fe_drivetrain`` itself has:", ""]
-    for name in public_names(fe_drivetrain):
-        full = getattr(fe_drivetrain, name).__module__.removeprefix("fe_drivetrain.")
-        home = house.folder_of(full)
-        lines.append(f"- :py:obj:`~fe_drivetrain.{home}.{name}`")
+    lines += face_entries()
     lines += ["", ".. toctree::", "   :hidden:", ""]
     lines += [f"   api/{room}" for room in rooms]
     lines += ["", *heading("Rooms", "-")]
@@ -192,6 +189,22 @@ def api_index(rooms: Iterable[str]) -> str:
         about = inspect.getdoc(importlib.import_module(f"fe_drivetrain.{room}")) or ""
         lines += [f":doc:`api/{room}`", f"   {' '.join(about.split(chr(10) * 2)[0].split())}"]
     return "\n".join([*lines, ""])
+
+
+def face_entries() -> list[str]:
+    """Public names of the package itself, each with a line on it and the example that uses it."""
+    lines = ["A script needs no more than what ``fe_drivetrain`` itself has. The examples run in "]
+    lines[-1] += "order, as :doc:`/python` has them."
+    for names, block in examples():
+        lines += [""]
+        for name in names:
+            value = getattr(fe_drivetrain, name)
+            home = house.folder_of(value.__module__.removeprefix("fe_drivetrain."))
+            about = (inspect.getdoc(value) or "").partition("\n\n")[0].replace("\n", " ")
+            lines.append(f"- :py:obj:`~fe_drivetrain.{home}.{name}`: {about}")
+        lines += ["", ".. code-block:: python", ""]
+        lines += [f"   {line}".rstrip() for line in block.splitlines()]
+    return lines
 
 
 def api_of(room: str) -> str:

@@ -3,13 +3,14 @@
 import numpy as np
 
 from fe_drivetrain.bearing import (
+    BallRow,
     Bearing,
     ball_row,
     catalogue_bearing,
     effective_centre,
     equilibrium,
     ratings,
-    read_catalogue,
+    read_bearing_catalogue,
 )
 from fe_drivetrain.cases import case
 from fe_drivetrain.report import rolling_elements
@@ -25,50 +26,61 @@ BALL = (
 )
 TESTS = "MASTA, in the tests of a public implementation of ISO/TS 16281 (minzhun/ISO16281)"
 STUDY = "MASTA, in a public study of a 26 MW drivetrain"
+QUANTITIES = "axial [µm]", "radial [µm]", "tilt [mrad]"
 STIFFNESS = 333375.6  # N/mm^1.5, of that implementation
 
 
-@case(
-    "Ball and tapered bearings against MASTA",
-    source="MASTA, in the tests of minzhun/ISO16281 and in a public study of a 26 MW drivetrain",
-)
-def run(run: Run, page: Page) -> None:
-    """A deep-groove bearing with changing contact angles; ratings and centres of a tapered pair."""
-    rows: list[Record] = []
+def side_by_side(what: str, quantity: str, own: float, theirs: float) -> Record:
+    """A row of the table: ours beside MASTA's."""
+    return {
+        "case": what,
+        "quantity": quantity,
+        "ours": own,
+        "MASTA": theirs,
+        "difference [%]": 100.0 * (own / theirs - 1.0),
+    }
+
+
+def displaced(row: BallRow, axial: float, radial: float) -> tuple[float, float, float]:
+    """Axial and radial displacement [µm] and tilt [mrad] of the inner ring under forces [N]."""
+    bearing = Bearing("ball", (row,))
+    u = equilibrium(bearing, [axial, -radial, 0, 0, 0], tolerance=1e-12).displacements[0]
+    return 1e6 * u[0], -1e6 * u[1], 1e3 * abs(u[4])
+
+
+def check_balls(run: Run, page: Page) -> list[Record]:
+    """Displacements of a deep-groove bearing with changing contact angles."""
+    rows = []
     for clearance, axial, radial, *masta in BALL:
         row = ball_row(7, 0.0115, 0.0435, radial_clearance=clearance, youngs_modulus=210e9)
-        with run.step("balls"):
-            found = equilibrium(Bearing("ball", (row,)), [axial, -radial, 0, 0, 0], tolerance=1e-12)
-        u = found.displacements[0]
-        ours = (1e6 * u[0], -1e6 * u[1], 1e3 * abs(u[4]))
-        names = ("axial [µm]", "radial [µm]", "tilt [mrad]")
+        ours = run.timed("balls", displaced, row, axial, radial)
         what = f"F_a {axial / 1e3:g}, F_r {radial / 1e3:g} kN, clearance {1e6 * clearance:g} µm"
-        for name, own, theirs in zip(names, ours, masta, strict=True):
-            if theirs is None:
-                continue
-            rows.append(
-                {
-                    "case": what,
-                    "quantity": name,
-                    "ours": own,
-                    "MASTA": theirs,
-                    "difference [%]": 100.0 * (own / theirs - 1.0),
-                }
-            )
-            tilt = name.startswith("tilt")
-            page.equals(
-                f"{what}: {name.partition(' [')[0]}" + (" times groove arm" if tilt else ""),
-                own * row.groove_centre[1] / row.radius if tilt else own,
-                theirs,
-                within=1e-4,
-                why="MASTA's tilt fits the pitch radius as arm; ours is that of the inner groove's "
-                "centres, as in ISO/TS 16281, 1 % more: compared is tilt times arm"
-                if tilt
-                else "both solve the same equations; the reference has six digits",
-                source=TESTS,
-                unit=name.partition(" [")[2].rstrip("]"),
-                measure="rotation" if tilt else "deflection",
-            )
+        for name, own, theirs in zip(QUANTITIES, ours, masta, strict=True):
+            if theirs is not None:
+                rows.append(side_by_side(what, name, own, theirs))
+                check_displacement(page, f"{what}: {name}", own, theirs, row)
+    return rows
+
+
+def check_displacement(page: Page, quantity: str, own: float, theirs: float, row: BallRow) -> None:
+    """One displacement, or a tilt times the arm of the grooves over the pitch radius."""
+    tilt = quantity.endswith("[mrad]")
+    page.equals(
+        quantity.replace(" [", " times groove arm [") if tilt else quantity,
+        own * row.groove_centre[1] / row.radius if tilt else own,
+        theirs,
+        within=1e-4,
+        why="MASTA's tilt fits the pitch radius as arm; ours is that of the inner groove's "
+        "centres, as in ISO/TS 16281, 1 % more: compared is tilt times arm"
+        if tilt
+        else "both solve the same equations; the reference has six digits",
+        source=TESTS,
+        measure="rotation" if tilt else "deflection",
+    )
+
+
+def check_stiffness(page: Page) -> None:
+    """Hertz's constant of a ball."""
     law = ball_row(7, 0.0115, 0.0435, youngs_modulus=210e9).law
     page.equals(
         "contact stiffness of a ball",
@@ -80,38 +92,53 @@ def run(run: Run, page: Page) -> None:
         unit="N/mm^1.5",
         measure="stiffness",
     )
-    with run.step("tapered pair"):
-        entry = read_catalogue()["masta_single"]
-        found_ratings = ratings(entry.bearing("masta_single"))
-        upwind, downwind = catalogue_bearing("masta_pair").rows
-        span = effective_centre(downwind) - effective_centre(upwind)
-    assert entry.ratings is not None
-    for name, own, theirs, within in (
-        ("fatigue load limit C_u", found_ratings.fatigue, entry.ratings.Cu, 1e-6),
-        ("dynamic load rating C", found_ratings.dynamic, entry.ratings.C, 1e-3),
+
+
+def check_ratings(page: Page) -> list[Record]:
+    """Fatigue load limit and dynamic rating of a tapered bearing."""
+    entry = read_bearing_catalogue()["masta_single"]
+    found, printed = ratings(entry.bearing("masta_single")), entry.ratings
+    assert printed is not None
+    assert printed.Cu is not None
+    assert printed.C is not None
+    rows = []
+    for name, own, theirs, within, why in (
+        ("fatigue load limit C_u", found.fatigue, printed.Cu, 1e-6, "the same formula"),
+        (
+            "dynamic load rating C",
+            found.dynamic,
+            printed.C,
+            1e-3,
+            "f_c from the formula behind the table of ISO 281, which is rounded",
+        ),
     ):
-        assert theirs is not None
+        own, theirs = own / 1e3, theirs / 1e3
         page.equals(
             name,
-            own / 1e3,
-            theirs / 1e3,
+            own,
+            theirs,
             within=within,
-            why="the same formula"
-            if within < 1e-5
-            else "f_c from the formula behind the table of ISO 281, which is rounded",
+            why=why,
             source=STUDY,
             unit="kN",
             measure="reaction",
         )
-        rows.append(
-            {
-                "case": "tapered bearing, 3055 mm bore",
-                "quantity": f"{name} [kN]",
-                "ours": own / 1e3,
-                "MASTA": theirs / 1e3,
-                "difference [%]": 100.0 * (own / theirs - 1.0),
-            }
-        )
+        rows.append(side_by_side("tapered bearing, 3055 mm bore", f"{name} [kN]", own, theirs))
+    return rows
+
+
+@case(
+    "Ball and tapered bearings against MASTA",
+    source="MASTA, in the tests of minzhun/ISO16281 and in a public study of a 26 MW drivetrain",
+)
+def run(run: Run, page: Page) -> None:
+    """A deep-groove bearing with changing contact angles; ratings and centres of a tapered pair."""
+    rows = check_balls(run, page)
+    check_stiffness(page)
+    with run.step("tapered pair"):
+        rows += check_ratings(page)
+        upwind, downwind = catalogue_bearing("masta_pair").rows
+        span = effective_centre(downwind) - effective_centre(upwind)
     page.equals(
         "distance of the effective centres of the pair",
         span,
@@ -133,6 +160,7 @@ def run(run: Run, page: Page) -> None:
     page.table("As they are, nothing fitted", rows)
     page.data("worst difference [%]", worst)
     check_statics(page, span)
+    row = ball_row(7, 0.0115, 0.0435, radial_clearance=BALL[-1][0], youngs_modulus=210e9)
     page.image(
         "The balls of the deep-groove bearing",
         run.sketch(*rolling_elements(Bearing("ball", (row,)))),

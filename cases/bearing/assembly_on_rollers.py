@@ -47,42 +47,12 @@ def run(run: Run, page: Page) -> None:
             coupled_equilibrium(scene_body(scene, level=1, housings=h), {NAME: bearing}, factors)
             for h in ({}, housing)
         )
-    page.holds(
-        "every load case has converged to 1e-8",
-        bool(whole.converged.all() and few.converged.all()),
-        why="any start leads to the minimum of a convex function",
-        source="convex energy",
-    )
-    page.vanishes(
-        "forces of rollers and gearbox less those on the hub, over the largest",
-        float(np.abs(_left(whole, scene.gearbox.stiffness)).max() / np.abs(factors[:, :3]).max()),
-        within=1e-6,
-        why="the tolerance of the equilibrium, and of the solid's solution",
-        source="balance of the shaft",
-    )
-    page.vanishes(
-        "peak rollers with the softest shapes less those with all, relative, the worst",
-        float(np.abs(few.rollers.max(axis=1) / whole.rollers.max(axis=1) - 1.0).max()),
-        within=SOFTEST_LEFT_OUT,
-        why="shapes left out add at most that share of its own softness to a contact",
-        source="all shapes",
-        measure="reaction",
-    )
-    rows: list[Record] = []
-    for k, name in enumerate(LOADS):
-        peaks = [found[k].max() for found in (rigid.rollers(NAME), series.rollers(NAME))]
-        rows.append(
-            {
-                "load": name,
-                "beam, rigid rings [kN]": peaks[0] / 1e3,
-                "beam, housing in series [kN]": peaks[1] / 1e3,
-                "solids [kN]": whole.rollers[k].max() / 1e3,
-                "solids over housing in series [%]": 100.0
-                * (whole.rollers[k].max() / peaks[1] - 1),
-                "loaded rollers, housing in series": int((series.rollers(NAME)[k] > 0.0).sum()),
-                "loaded rollers, solids": int((whole.rollers[k] > 0.0).sum()),
-            }
-        )
+    check(page, whole, few, scene.gearbox.stiffness)
+    solids = whole.rollers
+    rows = [
+        peaks_of(name, solids[k], rigid.rollers(NAME)[k], series.rollers(NAME)[k])
+        for k, name in enumerate(LOADS)
+    ]
     changes = [row[CHANGE] for row in rows]
     page.found("largest change of the peak roller [%]", max(changes, key=abs))
     page.answer(
@@ -99,6 +69,49 @@ def run(run: Run, page: Page) -> None:
         "shaft, and the bore of the housing."
     )
     page.image("The rollers of bearing S", run.sketch(*rolling_elements(bearing)))
+
+
+def check(
+    page: Page,
+    whole: AssemblyEquilibrium,
+    few: AssemblyEquilibrium,
+    gearbox: tuple[float | str, ...],
+) -> None:
+    """All converge and balance, and the softest shapes are enough."""
+    page.holds(
+        "every load case has converged to 1e-8",
+        bool(whole.converged.all() and few.converged.all()),
+        why="any start leads to the minimum of a convex function",
+        source="convex energy",
+    )
+    page.vanishes(
+        "forces of rollers and gearbox less those on the hub, over the largest",
+        float(np.abs(_left(whole, gearbox)).max() / np.abs(whole.factors[:, :3]).max()),
+        within=1e-6,
+        why="the tolerance of the equilibrium, and of the solid's solution",
+        source="balance of the shaft",
+    )
+    page.vanishes(
+        "peak rollers with the softest shapes less those with all, relative, the worst",
+        float(np.abs(few.rollers.max(axis=1) / whole.rollers.max(axis=1) - 1.0).max()),
+        within=SOFTEST_LEFT_OUT,
+        why="shapes left out add at most that share of its own softness to a contact",
+        source="all shapes",
+        measure="reaction",
+    )
+
+
+def peaks_of(name: str, solids: Floats, rigid: Floats, series: Floats) -> Record:
+    """Peak and loaded rollers [N] of solids, and of a beam without and with its housing."""
+    return {
+        "load": name,
+        "beam, rigid rings [kN]": rigid.max() / 1e3,
+        "beam, housing in series [kN]": series.max() / 1e3,
+        "solids [kN]": solids.max() / 1e3,
+        CHANGE: 100.0 * (solids.max() / series.max() - 1),
+        "loaded rollers, housing in series": int((series > 0.0).sum()),
+        "loaded rollers, solids": int((solids > 0.0).sum()),
+    }
 
 
 def _left(found: AssemblyEquilibrium, gearbox: tuple[float | str, ...]) -> Floats:

@@ -18,7 +18,7 @@ from fe_drivetrain.common import Bools, Floats
 from fe_drivetrain.report import rolling_elements, trace
 from fe_drivetrain.report.suite import Page, Record, Run
 
-#: Of a bearing S with the moment of the rotor's weight alone [N m].
+#: Moment of the rotor's weight alone on a bearing S [N m].
 MOMENT = 8e5
 
 
@@ -52,33 +52,7 @@ def run(run: Run, page: Page) -> None:
     )
     page.section("Drivers")
     page.table("Correlation of the axial displacement, and steps in which it is upwind", rows)
-    page.table(
-        "Statements of the thesis, and ours for X, 38 deg, housing left out",
-        [
-            [
-                "no correlation with thrust",
-                f"{first['with thrust']:.2f}",
-            ],
-            ["clear negative correlation with radial force", f"{first['with radial force']:.2f}"],
-            [
-                "weak negative correlation with the moment's size where negative",
-                f"{first['with moment, upwind steps']:.2f}",
-            ],
-            [
-                "weak positive correlation with it where positive",
-                f"{first['with moment, downwind steps']:.2f}",
-            ],
-            [
-                "all negative displacements with the overhanging moment",
-                f"{first['of these with overhanging moment [%]']:.0f} %",
-            ],
-            [
-                "positive ones with it too",
-                f"{first['downwind all the same [%]']:.0f} % of steps with the overhanging moment",
-            ],
-        ],
-        ("thesis", "ours"),
-    )
+    show_statements(page, first)
     page.data("drivers", rows)
     page.text(
         "A moment loads one row above and the other below; a radial force adds to one of the two "
@@ -89,6 +63,35 @@ def run(run: Run, page: Page) -> None:
         "sign of the displacement the moment has mostly one direction."
     )
     page.image("The rollers of bearing S", run.sketch(*rolling_elements(bearing_s())))
+
+
+def show_statements(page: Page, found: Record) -> None:
+    """What the thesis says of the drivers, beside ours."""
+    overhanging = "of these with overhanging moment [%]"
+    page.table(
+        "Statements of the thesis, and ours for X, 38 deg, housing left out",
+        [
+            ("no correlation with thrust", f"{found['with thrust']:.2f}"),
+            ("clear negative correlation with radial force", f"{found['with radial force']:.2f}"),
+            (
+                "weak negative correlation with the moment's size where negative",
+                f"{found['with moment, upwind steps']:.2f}",
+            ),
+            (
+                "weak positive correlation with it where positive",
+                f"{found['with moment, downwind steps']:.2f}",
+            ),
+            (
+                "all negative displacements with the overhanging moment",
+                f"{found[overhanging]:.0f} %",
+            ),
+            (
+                "positive ones with it too",
+                f"{found['downwind all the same [%]']:.0f} % of steps with the overhanging moment",
+            ),
+        ],
+        ("thesis", "ours"),
+    )
 
 
 def correlation(a: Floats, b: Floats) -> float:

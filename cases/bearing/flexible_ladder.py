@@ -1,13 +1,11 @@
 """Error against time on a flexible housing: rigid rings, few shapes, all shapes, gap springs."""
 
 import time
-from collections.abc import Callable
 
 import numpy as np
 
 from fe_drivetrain.bearing import (
     SOFTEST_LEFT_OUT,
-    Bearing,
     Races,
     catalogue_bearing,
     equilibrium_on_races,
@@ -19,9 +17,13 @@ from fe_drivetrain.cases.bearing.peak_rollers import (
     CROWN,
     FIVE,
     LOADS,
+    Rung,
+    Solve,
     closed_form,
     error_against_time,
+    peak_row,
     peaks,
+    timed_rungs,
 )
 from fe_drivetrain.cases.references.housed_bearing import (
     ASSUMED_HOUSING,
@@ -43,7 +45,7 @@ FEW = "40 shapes"
 SPRINGS = "gap springs in CalculiX, rollers without length"
 
 
-def on_races(compliance: Floats, shapes: int) -> Callable[[Bearing, Floats], Floats]:
+def on_races(compliance: Floats, shapes: int) -> Solve:
     """A rung of the ladder: peaks on races with so many shapes."""
     return peaks(
         lambda bearing, loads: (
@@ -54,9 +56,7 @@ def on_races(compliance: Floats, shapes: int) -> Callable[[Bearing, Floats], Flo
     )
 
 
-def rungs(
-    compliance: Floats,
-) -> tuple[tuple[str, dict[str, float], Callable[[Bearing, Floats], Floats]], ...]:
+def rungs(compliance: Floats) -> tuple[Rung, ...]:
     """Name, changes of the bearing, and how its peak roller is found, cheap to expensive."""
     profile = {"laminae": 30, "crown": CROWN}
     return (
@@ -91,15 +91,29 @@ def run(run: Run, page: Page) -> None:
         loads = np.array([load] * n, dtype=float)
         with run.step(kind):
             exact = float(on_races(C, ALL)(finest, loads[:1])[0])
-            for name, changes, solve in rungs(C):
-                bearing = catalogue_bearing("bearing_s_o20", **changes)
-                solve(bearing, loads[:1])  # compiles, and fills caches
-                begin = time.perf_counter()
-                found = float(solve(bearing, loads)[0])
-                seconds = (time.perf_counter() - begin) / n
-                rows.append(_row(kind, name, seconds, found, exact))
+            rows += timed_rungs(kind, rungs(C), "bearing_s_o20", loads, exact)
             rows += _springs(run, kind, C, size, exact)
     at = {(r["load"], r["model"]): r["error [%]"] for r in rows}
+    check(page, at)
+    combined = "combined, in one plane"
+    page.answer(
+        f"Rigid rings miss the peak roller by up to {max(at[k, RIGID] for k in LOADS):.0f} % with "
+        f"straight rollers, by up to {max(at[k, PROFILED] for k in LOADS):.0f} % with their "
+        f"profile. Under the load in one plane 40 shapes of the race miss it with straight "
+        f"rollers by {at[combined, FEW]:.1f} %, most of it the profile. The housing is condensed "
+        f"once, in {condensed:.0f} s.",
+    )
+    error_against_time(page, rows)
+    page.assume_all(ASSUMED_HOUSING)
+    page.text(
+        "Gap springs have rollers without length, and their time is that of CalculiX for one load "
+        "case with the motion of the inner ring given, which has to be found besides."
+    )
+    page.image("The rollers of bearing S", run.sketch(*rolling_elements(finest)))
+
+
+def check(page: Page, at: dict[tuple[str, str], float]) -> None:
+    """Errors [%] by load and model: of the finest rung, and of shapes that are left out."""
     for kind in LOADS:
         page.at_most(
             f"{kind}: error of all shapes and 30 laminae with profile",
@@ -122,21 +136,6 @@ def run(run: Run, page: Page) -> None:
             unit="%",
             basis="self-consistency",
         )
-    combined = "combined, in one plane"
-    page.answer(
-        f"Rigid rings miss the peak roller by up to {max(at[k, RIGID] for k in LOADS):.0f} % with "
-        f"straight rollers, by up to {max(at[k, PROFILED] for k in LOADS):.0f} % with their "
-        f"profile. Under the load in one plane 40 shapes of the race miss it with straight "
-        f"rollers by {at[combined, FEW]:.1f} %, most of it the profile. The housing is condensed "
-        f"once, in {condensed:.0f} s.",
-    )
-    error_against_time(page, rows)
-    page.assume_all(ASSUMED_HOUSING)
-    page.text(
-        "Gap springs have rollers without length, and their time is that of CalculiX for one load "
-        "case with the motion of the inner ring given, which has to be found besides."
-    )
-    page.image("The rollers of bearing S", run.sketch(*rolling_elements(finest)))
 
 
 def _springs(
@@ -156,14 +155,5 @@ def _springs(
     begin = time.perf_counter()
     deck = run.folder / f"{kind.replace(' ', '_').replace(',', '')}.inp"
     rollers = calculix_rollers(deck, solid, bearing, scene.material_of(PART), u)
-    return [_row(kind, SPRINGS, time.perf_counter() - begin, float(rollers.max()), exact)]
-
-
-def _row(kind: str, name: str, seconds: float, found: float, exact: float) -> Record:
-    return {
-        "load": kind,
-        "model": name,
-        "time per load case [µs]": 1e6 * seconds,
-        "peak roller [kN]": found / 1e3,
-        "error [%]": 100.0 * abs(found / exact - 1.0),
-    }
+    seconds = time.perf_counter() - begin
+    return [peak_row(kind, SPRINGS, seconds, float(rollers.max()), exact)]

@@ -198,8 +198,8 @@ def percent(one: Floats, other: Floats) -> tuple[float, float]:
     return float(change.mean()), float(change.std())
 
 
-def differences(page: Page, files: dict[str, list[Answer]], answers: dict[str, Answer]) -> None:
-    """Loads on the bearing: each model against another, by wind file."""
+def difference_rows(files: dict[str, list[Answer]]) -> list[Record]:
+    """Differences of force and moment, each model against another, by wind file."""
     pairs = (
         (CONSTANT, LOOP, "force 1, moment 3; with deviation 2 and 8"),
         (LOOP, NEWTON, "not given"),
@@ -225,6 +225,12 @@ def differences(page: Page, files: dict[str, list[Answer]], answers: dict[str, A
                     "thesis, mean [%]": words,
                 }
             )
+    return rows
+
+
+def differences(page: Page, files: dict[str, list[Answer]], answers: dict[str, Answer]) -> None:
+    """Loads on the bearing: each model against another, by wind file."""
+    rows = difference_rows(files)
     page.section("Loads on the bearing")
     page.table(
         "Differences of radial force and moment, step by step, of their sizes; steps below "
@@ -248,25 +254,17 @@ def differences(page: Page, files: dict[str, list[Answer]], answers: dict[str, A
         "step",
         "moment [kN m]",
     )
-
-    def mean(one: str, other: str) -> float:
-        return float(
-            np.mean(
-                [
-                    row["moment, mean [%]"]
-                    for row in rows
-                    if (row["model"], row["against"]) == (one, other)
-                ]
-            )
-        )
-
-    page.found("mean moment, constant K_R against the loop [%]", mean(CONSTANT, LOOP))
+    to_loop, to_newton, to_housed = (
+        float(np.mean([r["moment, mean [%]"] for r in rows if (r["model"], r["against"]) == pair]))
+        for pair in ((CONSTANT, LOOP), (LOOP, NEWTON), (NEWTON, HOUSED))
+    )
+    page.found("mean moment, constant K_R against the loop [%]", to_loop)
     page.answer(
-        f"The moment on the bearing differs by {mean(CONSTANT, LOOP):.1f} % between a constant K_R "
-        f"and the thesis's loop (the thesis: about 3 %), by {mean(LOOP, NEWTON):.1f} % between the "
+        f"The moment on the bearing differs by {to_loop:.1f} % between a constant K_R "
+        f"and the thesis's loop (the thesis: about 3 %), by {to_newton:.1f} % between the "
         "loop and Newton on beam and bearing together.",
         "Without the housing in series, which the thesis leaves out when it goes from 145 to 1272 "
-        f"MN m/rad, the moment is wrong by {mean(NEWTON, HOUSED):.0f} % of what it is with it.",
+        f"MN m/rad, the moment is wrong by {to_housed:.0f} % of what it is with it.",
     )
 
 
@@ -305,53 +303,31 @@ def for_design(page: Page, files: dict[str, list[Answer]], step: float) -> None:
 
 def roller_table(page: Page, files: dict[str, list[Answer]]) -> None:
     """Mean and peak of rollers by model and wind file, and of roller 1."""
-    rows: list[Record] = []
-    for name, parts in files.items():
-        for speed, part in zip(WIND_SPEEDS, parts, strict=True):
-            half = part.rollers.shape[1] // 2
-            upwind, downwind = part.rollers[:, :half], part.rollers[:, half:]
-            rows.append(
-                {
-                    "model": name,
-                    "wind [m/s]": speed,
-                    "upwind row: mean [kN]": 1e-3 * upwind.mean(),
-                    "peak [kN]": 1e-3 * upwind.max(),
-                    "downwind row: mean [kN]": 1e-3 * downwind.mean(),
-                    "its peak [kN]": 1e-3 * downwind.max(),
-                    "roller 1, peaks [kN]": (
-                        f"{1e-3 * upwind[:, 0].max():.0f}, {1e-3 * downwind[:, 0].max():.0f}"
-                    ),
-                }
-            )
+    rows = [
+        roller_row(name, speed, part.rollers)
+        for name, parts in files.items()
+        for speed, part in zip(WIND_SPEEDS, parts, strict=True)
+    ]
+    page.section("Rollers")
+    page.table("Loads of rollers over each wind file", rows)
+    page.data("loads of rollers", rows)
     half = files[LOOP][0].rollers.shape[1] // 2
     ratios = peak_ratios(files, CONSTANT, slice(None))
     ones = peak_ratios(files, CONSTANT, 0) + peak_ratios(files, CONSTANT, half)
     soft = peak_ratios(files, SOFT, 0) + peak_ratios(files, SOFT, half)
-    page.section("Rollers")
-    page.table("Loads of rollers over each wind file", rows)
-    page.data("loads of rollers", rows)
     page.table(
         "Peak rollers of the loop over those of a constant K_R",
         [
-            {
-                "quantity": "largest roller",
-                "ours, least": min(ratios),
-                "largest": max(ratios),
-                "thesis": "not given",
-            },
-            {
-                "quantity": "roller 1 of either row",
-                "ours, least": min(ones),
-                "largest": max(ones),
-                "thesis": "more than 2 (12 m/s)",
-            },
-            {
-                "quantity": "roller 1 of either row, K_R = 145 MN m/rad in place of 1272",
-                "ours, least": min(soft),
-                "largest": max(soft),
-                "thesis": "not given",
-            },
+            ("largest roller", min(ratios), max(ratios), "not given"),
+            ("roller 1 of either row", min(ones), max(ones), "more than 2 (12 m/s)"),
+            (
+                "roller 1 of either row, K_R = 145 MN m/rad in place of 1272",
+                min(soft),
+                max(soft),
+                "not given",
+            ),
         ],
+        ("quantity", "ours, least", "largest", "thesis"),
     )
     page.text(
         "Roller loads are homogeneous of degree one in the loads: where these change by 8 %, "
@@ -366,6 +342,23 @@ def roller_table(page: Page, files: dict[str, list[Answer]]) -> None:
         f"% at most, roller 1 by {largest_change(ones):.0f} %; the thesis's factor of more than 2 "
         f"is not an effect of the loop, but of 145 MN m/rad: {min(soft):.1f} to {max(soft):.1f}."
     )
+
+
+def roller_row(name: str, speed: float, rollers: Floats) -> Record:
+    """Mean and peak of each row of rollers (n, total) [N] over one wind file."""
+    half = rollers.shape[1] // 2
+    upwind, downwind = rollers[:, :half], rollers[:, half:]
+    return {
+        "model": name,
+        "wind [m/s]": speed,
+        "upwind row: mean [kN]": 1e-3 * upwind.mean(),
+        "peak [kN]": 1e-3 * upwind.max(),
+        "downwind row: mean [kN]": 1e-3 * downwind.mean(),
+        "its peak [kN]": 1e-3 * downwind.max(),
+        "roller 1, peaks [kN]": (
+            f"{1e-3 * upwind[:, 0].max():.0f}, {1e-3 * downwind[:, 0].max():.0f}"
+        ),
+    }
 
 
 def peak_ratios(files: dict[str, list[Answer]], constant: str, rollers: int | slice) -> list[float]:

@@ -1,35 +1,29 @@
 """Error against time: closed form, three and five degrees of freedom, laminae, profiles."""
 
-import time
-from collections.abc import Callable
-
 import numpy as np
 
-from fe_drivetrain.bearing import Bearing, catalogue_bearing, three_degrees
+from fe_drivetrain.bearing import catalogue_bearing, three_degrees
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.bearing.peak_rollers import (
     CROWN,
     FIVE,
     LOADS,
+    Rung,
     closed_form,
     error_against_time,
     peaks,
+    timed_rungs,
 )
-from fe_drivetrain.common import Floats
 from fe_drivetrain.report import rolling_elements
 from fe_drivetrain.report.suite import Page, Record, Run
 
 REFERENCE_LAMINAE = 400
+THREE = "three degrees, 30 laminae"
 
-
-#: Name, bearing's changes, and how the peak roller comes from it, cheap to expensive.
-RUNGS: tuple[tuple[str, dict[str, float], Callable[[Bearing, Floats], Floats]], ...] = (
+#: Rungs from cheap to expensive.
+RUNGS: tuple[Rung, ...] = (
     ("closed form, loads added", {}, closed_form),
-    (
-        "three degrees, 30 laminae",
-        {},
-        peaks(lambda bearing, loads: three_degrees(bearing, loads).rollers),
-    ),
+    (THREE, {}, peaks(lambda bearing, loads: three_degrees(bearing, loads).rollers)),
     ("five degrees, rollers without length", {"laminae": 1}, FIVE),
     ("five degrees, 8 laminae", {"laminae": 8}, FIVE),
     ("five degrees, 30 laminae", {"laminae": 30}, FIVE),
@@ -54,22 +48,27 @@ def run(run: Run, page: Page) -> None:
         loads = np.array([load] * n, dtype=float)
         with run.step(kind):
             exact = float(FIVE(finest, loads[:1])[0])
-            for name, changes, solve in RUNGS:
-                bearing = catalogue_bearing("bearing_s", **changes)
-                solve(bearing, loads[:1])  # compiles, and fills caches
-                begin = time.perf_counter()
-                found = float(solve(bearing, loads)[0])
-                seconds = (time.perf_counter() - begin) / n
-                rows.append(
-                    {
-                        "load": kind,
-                        "model": name,
-                        "time per load case [µs]": 1e6 * seconds,
-                        "peak roller [kN]": found / 1e3,
-                        "error [%]": 100.0 * abs(found / exact - 1.0),
-                    }
-                )
+            rows += timed_rungs(kind, RUNGS, "bearing_s", loads, exact)
     at = {(r["load"], r["model"]): r for r in rows}
+    check(page, at)
+    out = at["combined, 45 deg out of plane", THREE]["error [%]"]
+    rough = at["combined, in one plane", RUNGS[0][0]]["error [%]"]
+    page.found("closed forms added up: error of the peak roller [%]", rough)
+    page.answer(
+        f"Closed forms added up miss the peak roller of a combined load by {rough:.0f} %; three "
+        f"degrees miss it by {out:.0f} % with the moment 45 deg out of plane; five degrees with "
+        "straight rollers are left with what the profile changes.",
+    )
+    error_against_time(page, rows)
+    page.text(
+        "Rings are rigid here: `flexible_ladder` goes on with races that give way, up to the "
+        "contact of the whole solid."
+    )
+    page.image("The rollers of bearing S", run.sketch(*rolling_elements(finest)))
+
+
+def check(page: Page, at: dict[tuple[str, str], Record]) -> None:
+    """Laminae converge, and three degrees of freedom are enough in one plane."""
     straight = "five degrees, straight rollers in closed form"
     for kind in LOADS:
         thirty = at[kind, "five degrees, 30 laminae"]["peak roller [kN]"]
@@ -92,10 +91,9 @@ def run(run: Run, page: Page) -> None:
             unit="%",
             basis="self-consistency",
         )
-    three = "three degrees, 30 laminae"
     page.equals(
         "combined, in one plane: three degrees against five",
-        at["combined, in one plane", three]["peak roller [kN]"],
+        at["combined, in one plane", THREE]["peak roller [kN]"],
         at["combined, in one plane", "five degrees, 30 laminae"]["peak roller [kN]"],
         within=1e-6,
         why="exact in one plane but for the solver's residual",
@@ -103,17 +101,3 @@ def run(run: Run, page: Page) -> None:
         unit="kN",
         measure="reaction",
     )
-    out = at["combined, 45 deg out of plane", three]["error [%]"]
-    rough = at["combined, in one plane", RUNGS[0][0]]["error [%]"]
-    page.found("closed forms added up: error of the peak roller [%]", rough)
-    page.answer(
-        f"Closed forms added up miss the peak roller of a combined load by {rough:.0f} %; three "
-        f"degrees miss it by {out:.0f} % with the moment 45 deg out of plane; five degrees with "
-        "straight rollers are left with what the profile changes.",
-    )
-    error_against_time(page, rows)
-    page.text(
-        "Rings are rigid here: `flexible_ladder` goes on with races that give way, up to the "
-        "contact of the whole solid."
-    )
-    page.image("The rollers of bearing S", run.sketch(*rolling_elements(finest)))

@@ -1,10 +1,11 @@
 """Peak rollers by models from cheap to expensive: loads, closed form, error against time."""
 
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from fe_drivetrain.bearing import Bearing, equilibrium, superposed_peak
+from fe_drivetrain.bearing import Bearing, catalogue_bearing, equilibrium, superposed_peak
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report.suite import Page, Record
 
@@ -17,6 +18,10 @@ LOADS = {
 }
 CROWN = 0.00045
 
+Solve = Callable[[Bearing, Floats], Floats]
+#: Name, changes of the bearing, and how its peak roller is found.
+Rung = tuple[str, dict[str, float], Solve]
+
 
 def closed_form(bearing: Bearing, loads: Floats) -> Floats:
     """Peak rollers from closed forms, each load alone, added."""
@@ -24,12 +29,37 @@ def closed_form(bearing: Bearing, loads: Floats) -> Floats:
     return np.full(len(loads), max(peak))
 
 
-def peaks(solve: Callable[[Bearing, Floats], Floats]) -> Callable[[Bearing, Floats], Floats]:
+def peaks(solve: Solve) -> Solve:
     """A rung whose answer has all rollers: their peaks."""
     return lambda bearing, loads: solve(bearing, loads).max(axis=1)
 
 
 FIVE = peaks(lambda bearing, loads: equilibrium(bearing, loads, warm=False).rollers)
+
+
+def peak_row(kind: str, name: str, seconds: float, found: float, exact: float) -> Record:
+    """The peak roller [N] of one rung under a kind of load, and the time [s] that it takes."""
+    return {
+        "load": kind,
+        "model": name,
+        "time per load case [µs]": 1e6 * seconds,
+        "peak roller [kN]": found / 1e3,
+        "error [%]": 100.0 * abs(found / exact - 1.0),
+    }
+
+
+def timed_rungs(
+    kind: str, rungs: Iterable[Rung], entry: str, loads: Floats, exact: float
+) -> list[Record]:
+    """Each rung on a bearing of the catalogue, over many equal loads of a kind."""
+    rows = []
+    for name, changes, solve in rungs:
+        bearing = catalogue_bearing(entry, **changes)
+        solve(bearing, loads[:1])  # compiles, and fills caches
+        begin = time.perf_counter()
+        found = float(solve(bearing, loads)[0])
+        rows.append(peak_row(kind, name, (time.perf_counter() - begin) / len(loads), found, exact))
+    return rows
 
 
 def error_against_time(page: Page, rows: list[Record]) -> None:

@@ -1,6 +1,6 @@
 """Every bearing of the catalogue: what is assumed, and whether its insides fit its load ratings."""
 
-from fe_drivetrain.bearing import read_catalogue
+from fe_drivetrain.bearing import read_bearing_catalogue
 from fe_drivetrain.bearing_life.life import rated_bearing
 from fe_drivetrain.cases import case
 from fe_drivetrain.report.suite import Page, Record, Run
@@ -19,7 +19,7 @@ def run(run: Run, page: Page) -> None:
     """Ratings from rollers, beside those printed; all values that are assumed."""
     rows: list[Record] = []
     with run.step("catalogue"):
-        entries = read_catalogue()
+        entries = read_bearing_catalogue()
     for name, entry in entries.items():
         bearing = entry.bearing(name)
         own = rated_bearing(bearing, b_m=1.15 if entry.kind == "spherical_roller" else 1.1)

@@ -11,7 +11,7 @@ from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.cases.references.independent_torsion import certified
 from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.dynamics.torsion import (
-    Drivetrain,
+    GearTable,
     Modes,
     Torsional,
     changed,
@@ -52,7 +52,7 @@ class ByTables(NamedTuple):
 
     letter: str
     name: str
-    table: Drivetrain
+    table: GearTable
     system: Torsional
     modes: Modes
     seen: Ints
@@ -74,7 +74,7 @@ class Restored(NamedTuple):
     """A drivetrain with one entry changed: the entry [kg m^2], the table, frequencies [Hz]."""
 
     value: float
-    table: Drivetrain
+    table: GearTable
     f: Floats
 
 
@@ -131,7 +131,7 @@ def run(run: Run, page: Page) -> None:
     )
 
 
-def free(table: Drivetrain) -> Torsional:
+def free(table: GearTable) -> Torsional:
     """A mass for each gear, generator free."""
     return gear_masses(table, "free")
 

@@ -22,7 +22,7 @@ from fe_drivetrain.comparison import digit, round_off
 from fe_drivetrain.dynamics.torsion import (
     GENERATOR,
     ROTOR,
-    Drivetrain,
+    GearTable,
     GeneratorState,
     Modes,
     changed,
@@ -58,12 +58,12 @@ class Restored(NamedTuple):
     Attributes
     ----------
     carrier, planet : float
-        [kg m^2].
+        Inertias [kg m^2].
     spread : float
         Half width of the carrier and its three planets, by the last digits of what they are solved
         for [kg m^2].
     frequencies : Floats
-        Of the table's nine modes [Hz].
+        Frequencies of the table's nine modes [Hz].
     """
 
     carrier: float
@@ -108,8 +108,6 @@ def run(run: Run, page: Page) -> None:
     with run.step("mesh stiffness"):
         factors = np.geomspace(0.01, 1e4, QUICK_FACTORS if run.quick else FACTORS)
         swept = np.array([with_meshes(float(x)) for x in factors])
-    on_rotor = (s**2 * shaft.stiffness for shaft, s in zip(TABLE.shafts, TABLE.speeds, strict=True))
-    by_meshes = float(1 - stiffness * sum(1 / k for k in on_rotor))
     relative = float(np.abs(other.frequencies / TARGETS - 1).max())
     fixed = f["fixed"]
     page.answer(
@@ -123,11 +121,30 @@ def run(run: Run, page: Page) -> None:
         f"{other.planet:.2f} instead of {PLANETARY.planet:g} give all nine within "
         f"{100 * relative:.2f} %. The same carrier, with its planets and the sun, makes "
         f"{other.stage:.1f} kg m^2: the {fitted:.1f} that Table 6.1's five masses need.",
-        f"Gear meshes make {100 * by_meshes:.1f} % of the drivetrain's torsional compliance.",
+        f"Gear meshes make {100 * share_of_meshes(stiffness):.1f} % of the drivetrain's torsional "
+        "compliance.",
     )
     show_frequencies(page, rows, found, shown)
     show_readings(page, axes)
     show_restored(page, fixed[shown["fixed"]], other)
+    show_meshes(page, factors, swept, fixed)
+    show_axes(page)
+    page.data("fixed", fixed)
+    page.data("free", f["free"])
+    page.data("restored", other.frequencies)
+    page.data("restored_carrier", other.carrier)
+    page.data("restored_planet", other.planet)
+    page.data("static_stiffness", stiffness)
+
+
+def share_of_meshes(stiffness: float) -> float:
+    """Share of the gear meshes in the compliance, by the stiffness of it all [N m/rad]."""
+    on_rotor = (s**2 * shaft.stiffness for shaft, s in zip(TABLE.shafts, TABLE.speeds, strict=True))
+    return float(1 - stiffness * sum(1 / k for k in on_rotor))
+
+
+def show_meshes(page: Page, factors: Floats, swept: Floats, fixed: Floats) -> None:
+    """Frequencies over a factor on all mesh stiffnesses."""
     rise = float((swept[-1, :2] / fixed[:2]).max() - 1)
     page.section("Mesh stiffness")
     page.chart(
@@ -139,6 +156,10 @@ def run(run: Run, page: Page) -> None:
         "frequency [Hz]",
         "xy",
     )
+
+
+def show_axes(page: Page) -> None:
+    """The axes that mesh stiffnesses are taken about."""
     page.assume(
         "axis of planetary mesh stiffnesses",
         "the planet's",
@@ -151,12 +172,6 @@ def run(run: Run, page: Page) -> None:
         "",
         "Eq 4.6 has the driving gear's radius; gives Table 6.1",
     )
-    page.data("fixed", fixed)
-    page.data("free", f["free"])
-    page.data("restored", other.frequencies)
-    page.data("restored_carrier", other.carrier)
-    page.data("restored_planet", other.planet)
-    page.data("static_stiffness", stiffness)
 
 
 def against_table_6_1(page: Page, state: GeneratorState, modes: Modes, seen: Ints) -> list[Record]:
@@ -292,13 +307,13 @@ def readings() -> list[Record]:
     return sorted(rows, key=lambda row: float(row["largest difference [%]"]))
 
 
-def seen_of(table: Drivetrain) -> Floats:
+def seen_of(table: GearTable) -> Floats:
     """Frequencies of the table's nine modes [Hz], generator fixed."""
     modes = natural_modes(gear_masses(table))
     return modes.frequencies[published.observable(modes)]
 
 
-def with_parts(carrier: float, planet: float) -> Drivetrain:
+def with_parts(carrier: float, planet: float) -> GearTable:
     """The table with another carrier and planet [kg m^2]."""
     return published.with_values(TABLE, {CARRIER: carrier, PLANET: planet})
 

@@ -13,7 +13,7 @@ from fe_drivetrain.cases.references.implied_shafts import SHEAR_MODULUS, implied
 from fe_drivetrain.cases.references.torsion_meridian import torsion_bounds
 from fe_drivetrain.comparison import GridConvergence, digit, grid_convergence
 from fe_drivetrain.dynamics.torsion import (
-    Drivetrain,
+    GearTable,
     GeneratorState,
     Torsional,
     frequency_bands,
@@ -38,7 +38,7 @@ TABLED = TABLE.shafts[0].stiffness
 HALF_DIGIT = digit("3.69e7") / 2
 IMPLIED = implied(TABLED, TABLE.shafts[0].damping)
 
-MAKERS: dict[str, Callable[[Drivetrain, GeneratorState], Torsional]] = {
+MAKERS: dict[str, Callable[[GearTable, GeneratorState], Torsional]] = {
     "2 masses": two_masses,
     "5 masses": stage_masses,
     "11 masses": gear_masses,
@@ -202,7 +202,7 @@ def taken_over(meridian: Stiffness, solid: Solid) -> Stiffness:
     return Stiffness((low + high) / 2, (high - low) / 2)
 
 
-def with_shaft(K: float) -> Drivetrain:
+def with_shaft(K: float) -> GearTable:
     """The table with a low-speed shaft of another stiffness [N m/rad]."""
     return published.with_values(TABLE, {"shafts.0.stiffness": K})
 

@@ -1,7 +1,6 @@
 """A mass for each gear stage, meshes rigid: the NREL 750 kW drivetrain with five masses."""
 
 from collections.abc import Mapping
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -25,7 +24,7 @@ from fe_drivetrain.comparison import round_off
 from fe_drivetrain.dynamics.torsion import (
     GENERATOR,
     ROTOR,
-    Drivetrain,
+    GearTable,
     GeneratorState,
     Modes,
     Torsional,
@@ -65,10 +64,7 @@ def run(run: Run, page: Page) -> None:
     page.about(TABLE)
     with run.step("frequencies of Table 4.2"):
         found = {state: natural_modes(system) for state, system in SYSTEMS.items()}
-        bands = {
-            state: published.rounding_band(NAME, partial(stage_masses, generator=state))
-            for state in published.STATES
-        }
+        bands = published.rounding_bands(NAME, stage_masses)
         for state, modes in found.items():
             check_printed(
                 page,
@@ -192,7 +188,7 @@ def fitted_stage(mode: int, target: float) -> float:
 def check_table_6_1(page: Page, restored: float, frequencies: Floats) -> None:
     """One inertia for two modes."""
 
-    def model(table: Drivetrain) -> Torsional:
+    def model(table: GearTable) -> Torsional:
         return changed(stage_masses(table), {"stage 1": restored})
 
     check_printed(

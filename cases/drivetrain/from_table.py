@@ -10,17 +10,19 @@ from fe_drivetrain.comparison import round_off
 from fe_drivetrain.dynamics.torsion import (
     GENERATOR,
     ROTOR,
-    Drivetrain,
+    GearTable,
     GeneratorRow,
+    Modes,
     ParallelStage,
     PlanetaryStage,
     ShaftRow,
+    Torsional,
     damped_modes,
     gear_masses,
     gear_speeds,
     modal_damping,
     natural_modes,
-    read_drivetrain,
+    read_gear_table,
     stage_masses,
     static_stiffness,
     two_masses,
@@ -31,6 +33,21 @@ GEARS = "a mass for each gear"
 MAKERS = {"two masses": two_masses, "a mass for each stage": stage_masses, GEARS: gear_masses}
 
 
+def frequency_rows(model: str, system: Torsional, modes: Modes, state: str) -> list[Record]:
+    """Frequencies and damping ratios of one model."""
+    ratios = modal_damping(system)
+    return [
+        {
+            "model": model,
+            "generator": state,
+            "mode": m,
+            "frequency [Hz]": float(f),
+            "damping ratio": float(z) if np.isfinite(z) else None,
+        }
+        for m, (f, z) in enumerate(zip(modes.frequencies, ratios, strict=True), start=1)
+    ]
+
+
 @case(
     "Torsional frequencies of any drivetrain from its table",
     source="Al-Hamadani 2018, Eq 4.8-4.38; the default is drivetrain D of Table 4.2",
@@ -39,7 +56,7 @@ MAKERS = {"two masses": two_masses, "a mass for each stage": stage_masses, GEARS
 def run(run: Run, page: Page) -> None:
     """Frequencies, shapes, shares of energy and damping at three levels of detail."""
     given = run.settings.get("table")
-    table = published.table("nrel_750kw") if given is None else read_drivetrain(str(given))
+    table = published.table("nrel_750kw") if given is None else read_gear_table(str(given))
     page.about(table)
     states = [s for s in published.STATES if s == "free" or table.generator.stiffness > 0]
     rows: list[Record] = []
@@ -49,18 +66,7 @@ def run(run: Run, page: Page) -> None:
             system = make(table, state)
             modes = found[name, state] = natural_modes(system)
             check_count(page, f"{name}, generator {state}", certified(system, modes.frequencies))
-            rows += [
-                {
-                    "model": name,
-                    "generator": state,
-                    "mode": m + 1,
-                    "frequency [Hz]": float(f),
-                    "damping ratio": float(z) if np.isfinite(z) else None,
-                }
-                for m, (f, z) in enumerate(
-                    zip(modes.frequencies, modal_damping(system), strict=True)
-                )
-            ]
+            rows += frequency_rows(name, system, modes, state)
     whole, rigid = check_gears_and_stages(page, table)
     first = [found[name, "free"].frequencies[1] for name in MAKERS]
     page.answer(
@@ -99,7 +105,7 @@ def run(run: Run, page: Page) -> None:
     page.data("damping_ratios", damped_modes(gears).ratios)
 
 
-def check_gears_and_stages(page: Page, table: Drivetrain) -> tuple[float, float]:
+def check_gears_and_stages(page: Page, table: GearTable) -> tuple[float, float]:
     """Angular momentum and stiffness, generator free.
 
     Returns
@@ -129,7 +135,7 @@ def check_gears_and_stages(page: Page, table: Drivetrain) -> tuple[float, float]
     return static_stiffness(gears, ROTOR, GENERATOR), rigid
 
 
-def show_keys(page: Page, table: Drivetrain) -> None:
+def show_keys(page: Page, table: GearTable) -> None:
     """How a drivetrain is described."""
     page.section("The table")
     page.text(
@@ -147,7 +153,7 @@ def show_keys(page: Page, table: Drivetrain) -> None:
                 "needed": field.is_required() or key == "kind",
             }
             for owner, model in (
-                ("drivetrain", Drivetrain),
+                ("drivetrain", GearTable),
                 ("each of shafts", ShaftRow),
                 ("stage of kind planetary", PlanetaryStage),
                 ("stage of kind parallel", ParallelStage),

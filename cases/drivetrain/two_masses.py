@@ -1,6 +1,5 @@
 """Rotor and generator on one spring: the NREL 750 kW drivetrain as aeroelastic codes have it."""
 
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -62,22 +61,10 @@ def run(run: Run, page: Page) -> None:
     page.about(TABLE)
     with run.step("frequencies"):
         found = {state: natural_modes(system) for state, system in SYSTEMS.items()}
-        bands = {
-            state: published.rounding_band(NAME, partial(two_masses, generator=state))
-            for state in published.STATES
-        }
+        bands = published.rounding_bands(NAME, two_masses)
     for state, modes in found.items():
         check_frequencies(page, state, modes, bands[state])
-    # two free masses: no net angular momentum
-    shape = found["free"].shapes[:, 1]
-    page.equals(
-        "2 masses, generator free: rotor's angle over the generator's in mode 2",
-        float(shape[0] / shape[1]),
-        float(-J[1] / J[0]),
-        **round_off(100, "the eigenvector of two angles, whose eigenvalues are far apart"),
-        source="angular momentum, none of it in a mode that swings",
-        measure="rotation",
-    )
+    check_momentum(page, found["free"])
     f = {state: modes.frequencies for state, modes in found.items()}
     other = restored()
     with page.of(None):
@@ -97,17 +84,7 @@ def run(run: Run, page: Page) -> None:
         f"Measured were 0.806 and 2.32 Hz: both need the same shafts, {shafts[0]:.3f} and "
         f"{shafts[1]:.3f} times as stiff as those of Table 4.2.",
     )
-    page.section("Frequencies")
-    page.table(
-        "Two masses of Eq 4.28-4.34 with the inputs of Table 4.2 "
-        f"(J {J[0]:,.0f} and {J[1]:,.0f} kg m^2, shafts {K[0]:.5g} and generator's "
-        f"spring {K[1]:.5g} N m/rad, on the rotor's side)",
-        [
-            row
-            for state in published.STATES
-            for row in frequency_rows(state, f[state], bands[state], published.TWO[state])
-        ],
-    )
+    show_frequencies(page, f, bands)
     show_stiffness(page)
     page.table("Against the measured frequencies", measured)
     one = {ROTOR: 1.0, GENERATOR: 1.0}
@@ -125,6 +102,36 @@ def run(run: Run, page: Page) -> None:
     page.data("free", f["free"])
     page.data("restored_rotor", other.rotor)
     page.data("restored_low_speed_shaft", other.low_speed_shaft)
+
+
+def check_momentum(page: Page, free: Modes) -> None:
+    """Two free masses have no net angular momentum."""
+    shape = free.shapes[:, 1]
+    page.equals(
+        "2 masses, generator free: rotor's angle over the generator's in mode 2",
+        float(shape[0] / shape[1]),
+        float(-J[1] / J[0]),
+        **round_off(100, "the eigenvector of two angles, whose eigenvalues are far apart"),
+        source="angular momentum, none of it in a mode that swings",
+        measure="rotation",
+    )
+
+
+def show_frequencies(
+    page: Page, f: dict[GeneratorState, Floats], bands: dict[GeneratorState, Floats]
+) -> None:
+    """Frequencies by the inputs of Table 4.2, beside those of Table 6.1."""
+    page.section("Frequencies")
+    page.table(
+        "Two masses of Eq 4.28-4.34 with the inputs of Table 4.2 "
+        f"(J {J[0]:,.0f} and {J[1]:,.0f} kg m^2, shafts {K[0]:.5g} and generator's "
+        f"spring {K[1]:.5g} N m/rad, on the rotor's side)",
+        [
+            row
+            for state in published.STATES
+            for row in frequency_rows(state, f[state], bands[state], published.TWO[state])
+        ],
+    )
 
 
 def check_frequencies(page: Page, state: GeneratorState, modes: Modes, band: Floats) -> None:

@@ -64,8 +64,9 @@ def run(run: Run, page: Page) -> None:
         measure="reaction",
     )
     check_steps(page, runs)
+    per_mesh = 4 if run.quick else 18
     with run.step("elastic ring"):
-        lines = ring_lines(machine, 4 if run.quick else 18)
+        lines = ring_lines(machine, per_mesh)
     beside = lines[[RING - 3, RING + 3]]
     page.vanishes(
         "third harmonic of the ring: line of the mesh over those beside it, of planets passing",
@@ -82,6 +83,12 @@ def run(run: Run, page: Page) -> None:
         "A place of the ring does not feel the mesh frequency of planets in phase in its third "
         f"harmonic, but the lines {RING - 3} and {RING + 3} times a turn beside it.",
     )
+    show_turn(page, moving, still, count)
+    show_ring(page, lines, per_mesh)
+
+
+def show_turn(page: Page, moving: Turn, still: Turn, count: int) -> None:
+    """Show the load of a bearing over a turn, in time and at rest."""
     page.section("Over a turn")
     angles = np.degrees(azimuths(count))
     page.chart(
@@ -93,8 +100,11 @@ def run(run: Run, page: Page) -> None:
         "azimuth of the carrier [deg]",
         "radial load [kN]",
     )
+
+
+def show_ring(page: Page, lines: Floats, per_mesh: int) -> None:
+    """Show the lines of the elastic ring, computed with `per_mesh` steps in a mesh period."""
     page.section("An elastic ring")
-    per_mesh = 4 if run.quick else 18
     page.unsettled.append(
         f"Not converged: amplitudes of the elastic ring, by {per_mesh} steps in a period of the "
         f"mesh and {max(1, per_mesh // 6)} of its harmonics; which lines there are is symmetry."

@@ -39,22 +39,10 @@ def run(run: Run, page: Page) -> None:
     count = 12 if run.quick else 36
     angles = azimuths(count)
 
-    def at(azimuth: float) -> System:
-        return machine_system(machine, Level.RIGID, azimuth, held_generator=True)
-
-    def turn(torque: float, moment: float, gravity: bool = True) -> Turn:
-        def loads(system: System) -> Floats:
-            hub = np.array([0.0, 0.0, 0.0, 0.0, moment, 0.0])
-            if gravity:
-                return steady_load(machine, system, torque, hub)
-            return system.load_on("rotor", hub + torque * np.eye(6)[3])
-
-        return over_a_turn(at, loads, angles)
-
     with run.step("turns"):
-        found = {name: turn(*given) for name, given in MOMENTS.items()}
-        still = turn(TORQUE, 0.0, gravity=False)
-        alone = turn(0.0, 0.0)
+        found = {name: turned(machine, angles, *given) for name, given in MOMENTS.items()}
+        still = turned(machine, angles, TORQUE, 0.0, gravity=False)
+        alone = turned(machine, angles, 0.0, 0.0)
     check(page, found["torque and gravity"], still, alone, count)
     rows: list[Record] = []
     for name, one in found.items():
@@ -65,6 +53,40 @@ def run(run: Run, page: Page) -> None:
         rows += five_megawatt(five, count)
     means = [float(str(row["mean [kN]"])) for row in rows]
     ratios = [up / down for up, down in zip(means[::2], means[1::2], strict=True)]
+    show(page, found, angles, rows)
+    page.answer(
+        "Loads of the planet bearings vary once a turn, shifted by a third from planet to planet: "
+        "by gravity, by moments of the hub, and, with torque alone, by "
+        f"{100 * not_round(still):.0f} % from least to largest, since the gears of the next stage "
+        "push the sun's shaft to one side.",
+        f"Upwind over downwind is {ratios[0]:.3f} with a rigid carrier, of means over the turn, "
+        f"and {ratios[2]:.3f} for the 5 MW gearbox with a carrier of beams, whose upwind cheek "
+        "leads. The thesis has 1.41 to 1.47, and about 1.6 with a moment: of a softer carrier and "
+        "bearings with clearance, whose data are not public. It is not reached here.",
+    )
+    for text in machine.assumed:
+        page.assume(text.partition(":")[0][:60], "", "", text)
+
+
+def turned(
+    machine: Machine, angles: Floats, torque: float, moment: float, gravity: bool = True
+) -> Turn:
+    """Statics at each azimuth under a torque and a moment about y of the hub [N m]."""
+
+    def at(azimuth: float) -> System:
+        return machine_system(machine, Level.RIGID, azimuth, held_generator=True)
+
+    def loads(system: System) -> Floats:
+        hub = np.array([0.0, 0.0, 0.0, 0.0, moment, 0.0])
+        if gravity:
+            return steady_load(machine, system, torque, hub)
+        return system.load_on("rotor", hub + torque * np.eye(6)[3])
+
+    return over_a_turn(at, loads, angles)
+
+
+def show(page: Page, found: dict[str, Turn], angles: Floats, rows: list[Record]) -> None:
+    """Show the loads over a turn, for each moment of the hub."""
     page.section("Over a turn")
     for name, one in found.items():
         page.chart(
@@ -78,18 +100,6 @@ def run(run: Run, page: Page) -> None:
         )
     page.table("Loads of the planets' bearings", rows)
     page.data("loads", rows)
-    page.answer(
-        "Loads of the planet bearings vary once a turn, shifted by a third from planet to planet: "
-        "by gravity, by moments of the hub, and, with torque alone, by "
-        f"{100 * not_round(still):.0f} % from least to largest, since the gears of the next stage "
-        "push the sun's shaft to one side.",
-        f"Upwind over downwind is {ratios[0]:.3f} with a rigid carrier, of means over the turn, "
-        f"and {ratios[2]:.3f} for the 5 MW gearbox with a carrier of beams, whose upwind cheek "
-        "leads. The thesis has 1.41 to 1.47, and about 1.6 with a moment: of a softer carrier and "
-        "bearings with clearance, whose data are not public. It is not reached here.",
-    )
-    for text in machine.assumed:
-        page.assume(text.partition(":")[0][:60], "", "", text)
 
 
 def rows_of(name: str, one: Turn) -> list[Record]:

@@ -26,8 +26,8 @@ from fe_drivetrain.dynamics import (
     torsional,
     turning_modes,
 )
-from fe_drivetrain.dynamics.torsion import Drivetrain, gear_masses, natural_modes, static_stiffness
-from fe_drivetrain.report import trace
+from fe_drivetrain.dynamics.torsion import GearTable, gear_masses, natural_modes, static_stiffness
+from fe_drivetrain.report import marked
 from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Machines with torque of the rotor and tilting moment of the hub [N m], and where it is from.
@@ -60,31 +60,7 @@ def run(run: Run, page: Page) -> None:
         rungs = [*RUNGS, *more_rungs(run, name)]
         with run.step(f"ladder of {name}"):
             answers = ladder(machine, operation, rungs)
-        page.section(machine.title)
-        rows: list[Record] = []
-        finest = answers[-1].values
-        for answer in answers:
-            row: Record = {
-                "level": answer.name,
-                "degrees of freedom": answer.degrees,
-                "time [s]": round(answer.seconds, 2),
-            }
-            for question, value in answer.values.items():
-                row[question] = value
-                best = finest[question]
-                row[f"error of {question.partition(' [')[0]} [%]"] = (
-                    None if value is None or best is None else 100 * (value / best - 1)
-                )
-            rows.append(row)
-        page.table("Answers, and their differences from the finest level", rows)
-        page.data(f"ladder_{name}", rows)
-        page.chart(
-            "Difference from the finest level against the time that a level takes",
-            error_curves(answers),
-            "time [s]",
-            "difference [%]",
-            ("x", "y"),
-        )
+        show_ladder(page, name, machine, answers)
         for question in (q for q in QUESTIONS if answers[-1].values[q] is not None):
             level = needed_level(answers, question, TOLERANCE)
             needed.append({"drivetrain": name, "question": question, "level": level})
@@ -99,23 +75,8 @@ def run(run: Run, page: Page) -> None:
         show_turning(page, name, machine, RPM.get(name) or run.positive("speed"))
         if name == "nrel_5mw":
             stiffness_of_5mw(page)
-        if name == "synthetic_2mw":
-            page.assume(
-                f"{name}: carrier",
-                "",
-                "",
-                "that of the 5 MW gearbox with all lengths in proportion to the circle of its pins",
-            )
-        for text in machine.assumed:
-            page.assume(f"{name}: {text.partition(':')[0]}", "", "", text)
-        page.assume_all(row._replace(name=f"{name}: {row.name}") for row in machine.assumptions())
-    page.section("Which level a question needs")
-    page.table(f"The simplest level within {100 * TOLERANCE:g} % of the finest", needed)
-    page.text(
-        "Torsional frequencies need a torsional model, and loads of bearings, of planets and along "
-        "the face rigid bodies at least: a torsional one has no answer. It has one for contact "
-        "stress, but of planets and slices that share equally. Times are of this run."
-    )
+        assume(page, name, machine)
+    show_needed(page, needed)
     page.answer(
         "All levels are one assembly: the torsional tables come back to round-off from it.",
         f"{needed[0]['drivetrain']}, within 5 % of the finest level: "
@@ -125,6 +86,60 @@ def run(run: Run, page: Page) -> None:
             if row["drivetrain"] == needed[0]["drivetrain"]
         )
         + ".",
+    )
+
+
+def show_ladder(page: Page, name: str, machine: Machine, answers: Sequence[Answer]) -> None:
+    """Show the answers of each level, and their differences from the finest against time."""
+    page.section(machine.title)
+    rows: list[Record] = []
+    finest = answers[-1].values
+    for answer in answers:
+        row: Record = {
+            "level": answer.name,
+            "degrees of freedom": answer.degrees,
+            "time [s]": round(answer.seconds, 2),
+        }
+        for question, value in answer.values.items():
+            row[question] = value
+            best = finest[question]
+            row[f"error of {question.partition(' [')[0]} [%]"] = (
+                None if value is None or best is None else 100 * (value / best - 1)
+            )
+        rows.append(row)
+    page.table("Answers, and their differences from the finest level", rows)
+    page.data(f"ladder_{name}", rows)
+    page.chart(
+        "Difference from the finest level against the time that a level takes",
+        error_curves(answers),
+        "time [s]",
+        "difference [%]",
+        ("x", "y"),
+    )
+
+
+def assume(page: Page, name: str, machine: Machine) -> None:
+    """State the values that the sources of a machine do not give."""
+    if name == "synthetic_2mw":
+        page.assume(
+            f"{name}: carrier",
+            "",
+            "",
+            "that of the 5 MW gearbox with all lengths in proportion to the circle of its pins",
+        )
+    for text in machine.assumed:
+        page.assume(f"{name}: {text.partition(':')[0]}", "", "", text)
+    page.assume_all(row._replace(name=f"{name}: {row.name}") for row in machine.assumptions())
+
+
+def show_needed(page: Page, needed: list[Record]) -> None:
+    """Show which level each question needs."""
+    page.section("Which level a question needs")
+    page.table(f"The simplest level within {100 * TOLERANCE:g} % of the finest", needed)
+    page.text(
+        "Torsional frequencies need a torsional model, and loads of bearings, of planets and along "
+        "the face rigid bodies at least: a torsional one has no answer. It has one for contact "
+        "stress, but of planets and slices that share equally. Times are of this run."
     )
 
 
@@ -153,12 +168,7 @@ def error_curves(answers: Sequence[Answer]) -> list[dict[str, Any]]:
         ]
         shown = [(t, e) for t, e in points if e > 1e-6]
         curves.append(
-            trace(
-                question.partition(" [")[0],
-                [t for t, _ in shown],
-                [e for _, e in shown],
-                mode="lines+markers",
-            )
+            marked(question.partition(" [")[0], [t for t, _ in shown], [e for _, e in shown])
         )
     return curves
 
@@ -203,13 +213,13 @@ def stiffness_of_5mw(page: Page) -> None:
     page.data("nrel_5mw_stiffness_MN_m_per_rad", stiffness)
 
 
-def with_teeth(table: Drivetrain) -> Drivetrain:
+def with_teeth(table: GearTable) -> GearTable:
     """Table 4.2 with the teeth that its ratios are rounded from."""
     data = table.model_dump(exclude_none=True)
     for stage, teeth in zip(data["stages"], ((99, 21), (82, 23), (88, 22)), strict=True):
         del stage["ratio"]
         stage["teeth"] = teeth
-    return Drivetrain.model_validate(data)
+    return GearTable.model_validate(data)
 
 
 RPM = {"nrel_5mw": 12.1, "nrel_750kw": 22.1, "synthetic_2mw": 18.1}

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_drivetrain.cases.references import published_drivetrains as published
-from fe_drivetrain.dynamics.torsion import Drivetrain
+from fe_drivetrain.dynamics.torsion import GearTable
 
 #: Damping ratios of shafts and of meshes (Al-Hamadani 2018, section 4.1).
 RATIOS = (0.006, 0.1)
@@ -20,7 +20,7 @@ class Rated(NamedTuple):
     """
 
     letter: str
-    table: Drivetrain
+    table: GearTable
     power: float
     per_minute: float
     ratios: tuple[float, float] | None

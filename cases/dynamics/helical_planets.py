@@ -2,7 +2,7 @@
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.published_planetary import helical_system
-from fe_drivetrain.dynamics import distinct, planetary_kinds, system_modes
+from fe_drivetrain.dynamics import System, SystemModes, distinct, planetary_kinds, system_modes
 from fe_drivetrain.report.suite import Page, Record, Run
 
 CENTRAL = ("carrier", "ring", "sun")
@@ -28,23 +28,7 @@ def run(run: Run, page: Page) -> None:
             why="else the assembly would not have the symmetry of equal planets",
             source="Eritenel and Parker 2009, section 4",
         )
-        start = 0
-        for frequency, times in distinct(modes.frequencies, 1e-7):
-            energy = modes.kinetic_shares[:, start]
-            most = int(energy.argmax())
-            rows.append(
-                {
-                    "planets": planets,
-                    "kind": kinds[start],
-                    "times": times,
-                    "frequency [Hz]": round(frequency, 2),
-                    "most kinetic energy in": system.bodies[most].rpartition(" ")[0]
-                    if "planet" in system.bodies[most]
-                    else system.bodies[most],
-                    "share": round(float(energy[most]), 3),
-                }
-            )
-            start += times
+        rows += rows_of(planets, system, modes, kinds)
     middle = helical_system(3, offset=0.0)
     kinds = planetary_kinds(middle, system_modes(middle), CENTRAL)
     page.holds(
@@ -70,3 +54,25 @@ def run(run: Run, page: Page) -> None:
         "depend on them",
     )
     page.data("frequencies", rows)
+
+
+def rows_of(planets: int, system: System, modes: SystemModes, kinds: list[str]) -> list[Record]:
+    """Frequencies with kind, multiplicity and the body that has most of the kinetic energy."""
+    rows: list[Record] = []
+    start = 0
+    for frequency, times in distinct(modes.frequencies, 1e-7):
+        energy = modes.kinetic_shares[:, start]
+        most = int(energy.argmax())
+        body = system.bodies[most]
+        rows.append(
+            {
+                "planets": planets,
+                "kind": kinds[start],
+                "times": times,
+                "frequency [Hz]": round(frequency, 2),
+                "most kinetic energy in": body.rpartition(" ")[0] if "planet" in body else body,
+                "share": round(float(energy[most]), 3),
+            }
+        )
+        start += times
+    return rows

@@ -6,7 +6,6 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import (
     decades,
-    fitted_exponent,
     round_off,
 )
 from fe_drivetrain.dynamics import (
@@ -27,7 +26,7 @@ from fe_drivetrain.dynamics import (
     steady,
     varying,
 )
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked
 from fe_drivetrain.report.suite import Page, Record, Run
 
 SCHEMES = (AVERAGE, LINEAR, generalised_alpha(0.8), generalised_alpha(0.0))
@@ -130,16 +129,15 @@ def check_order(run: Run, page: Page) -> list[float]:
     slopes = []
     for scheme in SCHEMES:
         errors = [error_of(equations, loads, scheme, 2.0 / count, exact) for count in counts]
-        slope, spread = fitted_exponent(2.0 / counts, errors, (1e-11, 1e-3))
-        page.equals(
+        slope = page.exponent(
             f"{scheme.name}: error over the step, exponent",
-            slope,
+            2.0 / counts,
+            errors,
             2.0,
             within=0.05,
+            between=(1e-11, 1e-3),
             why="the next term, of the third order where a method damps, is a few percent here",
             source="Newmark 1959; Chung and Hulbert 1993",
-            measure="order",
-            band=spread,
         )
         slopes.append(slope)
         rows += [
@@ -199,8 +197,8 @@ def check_period(page: Page) -> None:
             z = growth(one, scheme, float(dt), start)
             longer.append(dt / abs(np.angle(z)) - 1.0)
             ratio.append(-np.log(abs(z)) / abs(np.angle(z)))
-        traces.append(trace(scheme.name, steps / (2 * np.pi), longer, mode="lines+markers"))
-        damping.append(trace(scheme.name, steps / (2 * np.pi), ratio, mode="lines+markers"))
+        traces.append(marked(scheme.name, steps / (2 * np.pi), longer))
+        damping.append(marked(scheme.name, steps / (2 * np.pi), ratio))
         if scheme is AVERAGE:
             page.vanishes(
                 "average acceleration: relative error of the printed formula of the period",
@@ -230,8 +228,10 @@ def check_angle(page: Page) -> float:
     """A mesh stiffness by the angle of its gear, with and without the force on the angle."""
     lost = {}
     wave = fourier_wave([0.3], [0.1])
-    springs = spring_laws(
-        [[1, -1], [0, 1]], [1e3, 50.0], turns=[[2, 0], [0, 0]], wave=[0, -1], waves=[wave]
+    springs = (
+        spring_laws([[1, -1], [0, 1]], [1e3, 50.0])
+        .in_phase(turns=[[2, 0], [0, 0]])
+        .with_waves([wave], [0, -1])
     )
     equations = equations_of_motion([1.0, 2.0], springs)
     start = State(np.array([0.2, 0.0]), np.array([5.0, 0.0]), np.zeros(2))

@@ -1,7 +1,7 @@
 """Sidebands of a mesh line: a torque step that rings, and an eccentric gear."""
 
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -56,6 +56,12 @@ class Spectrum(NamedTuple):
         near = (self.frequencies > begin) & (self.frequencies < end)
         return float(self.frequencies[near][self.size[near].argmax()])
 
+    def beside_line(self, name: str) -> Any:
+        """Curve of the sizes beside the mesh line, over that of the line."""
+        near = np.abs(self.frequencies - LINE) < 6.0
+        size = self.size / self.size[near].max()
+        return trace(name, self.frequencies[near], np.maximum(size[near], 1e-5))
+
 
 @case(
     "Park et al. 2021: sidebands of a mesh line, torsional and in three dimensions",
@@ -68,61 +74,81 @@ def run(run: Run, page: Page) -> None:
     page.about(machine)
     rows: list[Record] = []
     traces = []
-    apart = {}
     for name, level in (("torsional", Level.TORSIONAL), ("three dimensions", Level.RIGID)):
         system = machine_system(machine, level)
-        with run.step(f"torque step, {name}"):
-            force, shaft = stepped(system, dt, duration)
-        spectrum = spectrum_of(force, dt)
-        line = spectrum.peak(LINE - 0.5, LINE + 0.5)
-        ringing = spectrum_of(shaft, dt).peak(0.75, 4.0)
-        below, above = sidebands(spectrum, 0.75, 4.0)
-        apart[name] = (above - below) / 2.0
-        for side, distance in (("below", LINE - below), ("above", above - LINE)):
-            page.equals(
-                f"{name}, torque step: sideband {side} the mesh line, distance from it [Hz]",
-                distance,
-                ringing,
-                within=spectrum.resolution,
-                relative=False,
-                why="one over the time of the signal",
-                source="force k(t) times an elongation that rings as the low-speed shaft does",
-                measure="frequency",
-                basis="self-consistency",
-            )
-        rows.append(
-            {
-                "model": name,
-                "mesh line [Hz]": line,
-                "sideband below [Hz]": below,
-                "sideband above [Hz]": above,
-                "ringing of the low-speed shaft [Hz]": ringing,
-                "first mode with mean meshes [Hz]": first_mode(system),
-            }
-        )
-        near = np.abs(spectrum.frequencies - LINE) < 6.0
-        size = spectrum.size / spectrum.size[near].max()
-        traces.append(trace(name, spectrum.frequencies[near], np.maximum(size[near], 1e-5)))
-        series = converge_in_time(partial(ringing_of, system, 3.0), dt / 4.0, 4)
-        # a line of the padded spectrum of three seconds is more than a hundredth of it
-        within = dict.fromkeys(series.finest.values, 0.03)
-        check_in_time(
-            page,
-            f"torque step, {name}",
-            series,
-            within,
-            energy=1e-2,
-            why="a hundredth of the energy is half a hundredth of the forces",
-            open_for=within,
-        )
+        row, spectrum = after_step(run, page, name, system, dt, duration)
+        rows.append(row)
+        traces.append(spectrum.beside_line(name))
     page.section("After a torque step (Figure 9)")
     page.table("Mesh of gears 2 and 3", rows)
     page.chart("Spectra beside the mesh line", traces, "frequency [Hz]", "over the line", "y")
     with run.step("eccentric gear 3"):
         eccentric(page, machine_system(machine, Level.RIGID), dt, duration)
-    flat, space = apart["torsional"], apart["three dimensions"]
-    lines = [float(str(row["mesh line [Hz]"])) for row in rows]
-    resolved = 1.0 / duration
+    flat, space = ((row["sideband above [Hz]"] - row["sideband below [Hz]"]) / 2.0 for row in rows)
+    lines = [row["mesh line [Hz]"] for row in rows]
+    show_words(page, lines, flat, space, 1.0 / duration)
+    page.answer(
+        f"After a torque step the mesh line of {LINE:.2f} Hz has sidebands as far from it as the "
+        f"low-speed shaft rings: {flat:.3f} Hz in the torsional model, {space:.3f} Hz in three "
+        "dimensions. The source has them farther apart in three dimensions; bearings and bending "
+        "lower the first mode here, and with it the distance.",
+        f"An eccentric gear 3 adds sidebands at its own {TURNING:.3f} Hz from the line: defects "
+        "of gears stand at the speed of their shafts, and what rings at its own frequency.",
+    )
+    for name, value, unit in (
+        ("contact ratio of all meshes", CONTACT_RATIO, "-"),
+        ("damping over stiffness", DAMPING, "s"),
+        ("harmonics of the meshes", HARMONICS, "-"),
+    ):
+        page.assume(name, value, unit, "not printed")
+
+
+def after_step(
+    run: Run, page: Page, name: str, system: System, dt: float, duration: float
+) -> tuple[Record, Spectrum]:
+    """Check the sidebands of the mesh line after a torque step; return them and the spectrum."""
+    with run.step(f"torque step, {name}"):
+        force, shaft = stepped(system, dt, duration)
+    spectrum = spectrum_of(force, dt)
+    ringing = spectrum_of(shaft, dt).peak(0.75, 4.0)
+    below, above = sidebands(spectrum, 0.75, 4.0)
+    for side, distance in (("below", LINE - below), ("above", above - LINE)):
+        page.equals(
+            f"{name}, torque step: sideband {side} the mesh line, distance from it [Hz]",
+            distance,
+            ringing,
+            within=spectrum.resolution,
+            relative=False,
+            why="one over the time of the signal",
+            source="force k(t) times an elongation that rings as the low-speed shaft does",
+            measure="frequency",
+            basis="self-consistency",
+        )
+    series = converge_in_time(partial(ringing_of, system, 3.0), dt / 4.0, 4)
+    # a line of the padded spectrum of three seconds is more than a hundredth of it
+    within = dict.fromkeys(series.finest.values, 0.03)
+    check_in_time(
+        page,
+        f"torque step, {name}",
+        series,
+        within,
+        energy=1e-2,
+        why="a hundredth of the energy is half a hundredth of the forces",
+        open_for=within,
+    )
+    row = {
+        "model": name,
+        "mesh line [Hz]": spectrum.peak(LINE - 0.5, LINE + 0.5),
+        "sideband below [Hz]": below,
+        "sideband above [Hz]": above,
+        "ringing of the low-speed shaft [Hz]": ringing,
+        "first mode with mean meshes [Hz]": first_mode(system),
+    }
+    return row, spectrum
+
+
+def show_words(page: Page, lines: list[float], flat: float, space: float, resolved: float) -> None:
+    """Show the printed statements beside lines and sidebands of either model."""
     page.section("Printed, ours, verdict")
     page.table(
         "Words of section 4",
@@ -148,20 +174,6 @@ def run(run: Run, page: Page) -> None:
         ],
         ["statement", "printed", "ours", "verdict"],
     )
-    page.answer(
-        f"After a torque step the mesh line of {LINE:.2f} Hz has sidebands as far from it as the "
-        f"low-speed shaft rings: {flat:.3f} Hz in the torsional model, {space:.3f} Hz in three "
-        "dimensions. The source has them farther apart in three dimensions; bearings and bending "
-        "lower the first mode here, and with it the distance.",
-        f"An eccentric gear 3 adds sidebands at its own {TURNING:.3f} Hz from the line: defects "
-        "of gears stand at the speed of their shafts, and what rings at its own frequency.",
-    )
-    for name, value, unit in (
-        ("contact ratio of all meshes", CONTACT_RATIO, "-"),
-        ("damping over stiffness", DAMPING, "s"),
-        ("harmonics of the meshes", HARMONICS, "-"),
-    ):
-        page.assume(name, value, unit, "not printed")
 
 
 def first_mode(system: System) -> float:

@@ -22,7 +22,7 @@ from fe_drivetrain.dynamics import (
     steady_load,
 )
 from fe_drivetrain.geometry.planet_carrier import PlanetCarrier
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked, trace
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.fidelity.component_frames import carrier_frame
 
@@ -98,6 +98,20 @@ def run(run: Run, page: Page) -> None:
         + ", ".join(f"{ratio:.2f}" for ratio in softer[1:])
         + ".",
     )
+    show(page, found, angles, rows, softer)
+    page.table("Printed, ours, verdict", verdicts(loose, worst, ratios, largest))
+    state_share(page)
+    assumptions(page, machine)
+
+
+def show(
+    page: Page,
+    found: dict[tuple[str, str], Turned],
+    angles: Floats,
+    rows: list[Record],
+    softer: list[float],
+) -> None:
+    """Show the ratios over a turn and over the carrier's compliance, and all loads."""
     page.section("Over a turn")
     for case_name in MOMENTS:
         page.chart(
@@ -114,12 +128,15 @@ def run(run: Run, page: Page) -> None:
     page.data("loads", rows)
     page.chart(
         "Upwind over downwind against the compliance of the carrier, torque and gravity",
-        [trace("0.1 mm of clearance", SOFTER, softer, mode="lines+markers")],
+        [marked("0.1 mm of clearance", SOFTER, softer)],
         "compliance over that of the carrier assumed",
         "upwind over downwind, of means",
         ("x",),
     )
-    page.table("Printed, ours, verdict", verdicts(loose, worst, ratios, largest))
+
+
+def state_share(page: Page) -> None:
+    """State what a printed ratio asks of the carrier, and where the thesis contradicts itself."""
     printed = 1.42
     share = printed / (1.0 + printed)
     page.text(
@@ -134,7 +151,6 @@ def run(run: Run, page: Page) -> None:
         "The thesis's own pressures contradict each other: the upwind bearing of drivetrain B has "
         "1.51 GPa in its section 7.5, and 7 % above 1.5 GPa, 1.605, in its conclusions."
     )
-    assumptions(page, machine)
 
 
 def own_carrier() -> Flexible:

@@ -69,6 +69,15 @@ def run(run: Run, page: Page) -> None:
         f"{swings[3]['spectrum [Hz]']:.2f} Hz, the first mode of each; printed are 9.1, 4.664, "
         "2.503 and 2.61 Hz.",
     )
+    assume(page)
+    show_shutdown(page, losses, rows, instants)
+    for each in stopped:
+        show(page, each)
+    show_others(page, dips, knocks, swings)
+
+
+def assume(page: Page) -> None:
+    """State the values that the thesis does not print."""
     page.assume("sequence", "generator off at 1 s, brake at 3 s", "", "not printed")
     page.assume("aerodynamic torque", "from rated to 0 in 2 s, evenly", "", "not printed")
     page.assume("brake", f"so large that LSS reaches {PEAK} of rated", "", "by trial in the thesis")
@@ -79,6 +88,12 @@ def run(run: Run, page: Page) -> None:
         "-",
         "section 4.1; D has the dampers of Table 4.2",
     )
+
+
+def show_shutdown(
+    page: Page, losses: list[Record], rows: list[Record], instants: list[Record]
+) -> None:
+    """Show losses of the generator and shutdowns in numbers."""
     page.section("Loss of the generator's torque, in numbers")
     page.table("Least torque over rated; below zero it is reversed", losses)
     page.section("Shutdown, in numbers")
@@ -96,8 +111,10 @@ def run(run: Run, page: Page) -> None:
         "critical damping, so that the swing of the generator's loss is still there when the "
         "brake comes."
     )
-    for each in stopped:
-        show(page, each)
+
+
+def show_others(page: Page, dips: list[Record], knocks: list[Record], swings: list[Record]) -> None:
+    """Show dips, backlash and frequencies in numbers."""
     page.section("Dips of the grid, in numbers")
     page.table(
         "Generator off and on again, rotor's torque held: torque of the high-speed shaft over "

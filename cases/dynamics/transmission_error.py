@@ -27,7 +27,7 @@ from fe_drivetrain.gear import (
     transmission_error,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.report.suite import Page, Run, check_in_time
+from fe_drivetrain.report.suite import Page, Record, Run, check_in_time, column, grouped
 
 MASS, ZETA, TORQUE = 3.0, 0.08, 2000.0  # kg on the line of action, of critical, N m
 RELIEFS = (0.0, 30e-6)  # at the tips, over all of the double contact
@@ -45,38 +45,13 @@ def run(run: Run, page: Page) -> None:
     """One mass against the exact solution; ripple of the dynamic error over the mesh frequency."""
     check_one_mass(page)
     at = np.array([0.1, 0.3, 0.6, 0.9, 1.2, 1.5] if run.quick else np.linspace(0.1, 1.5, 36))
-    rows, curves = [], []
+    rows: list[Record] = []
     for relief in RELIEFS:
         name = f"tip relief {1e6 * relief:g} µm"
         found = error_of_teeth(relief)
         with run.step(name):
             series = converged_ripples(found, at)
-            ripple = np.array(list(series.finest.values.values()))
-        check_in_time(
-            page,
-            f"{name}, in time",
-            series,
-            dict.fromkeys(series.finest.values, 0.05),
-            energy=1e-2,
-            why="generalised alpha takes energy out of what the jumps of stiffness excite",
-        )
-        linear = linear_ripple(found, at)
-        exact = np.array([balanced_ripple(found, float(r)) for r in at])
-        page.vanishes(
-            f"{name}: largest difference of the ripple in time from that of balanced harmonics",
-            float(np.abs(ripple / exact - 1).max()),
-            within=0.02,
-            why=f"{STEPS} steps in a period damp and delay the harmonics of the jumps of stiffness",
-            source="harmonic balance of the same equation, 60 harmonics",
-            measure="deflection",
-        )
-        curves += [
-            trace(f"{name}, in time", at, 1e6 * ripple, True),
-            trace(f"{name}, linear", at, 1e6 * linear, line={"dash": "dot"}),
-        ]
-        for r, one, other in zip(at, ripple, linear, strict=True):
-            row = {"teeth": name, "mesh over natural frequency": float(r)}
-            rows.append(row | {"in time [µm]": 1e6 * one, "linear [µm]": 1e6 * other})
+            rows += check_ripples(page, name, found, at, series)
     bare, relieved = (error_of_teeth(r).ripple for r in RELIEFS)
     page.holds(
         "tip relief lowers the ripple of the static error at this load",
@@ -97,6 +72,13 @@ def run(run: Run, page: Page) -> None:
         f"The mean deflection is {1e6 * deep.force / deep.stiffness.mean:.0f} µm: where the error "
         "swings further, teeth part, which this mesh, linear about its load, leaves out."
     )
+    curves = []
+    for name, of in grouped(rows, "teeth"):
+        x = column(of, "mesh over natural frequency")
+        curves += [
+            trace(f"{name}, in time", x, column(of, "in time [µm]"), True),
+            trace(f"{name}, linear", x, column(of, "linear [µm]"), line={"dash": "dot"}),
+        ]
     page.chart(
         "Dynamic transmission error from peak to peak",
         curves,
@@ -106,13 +88,47 @@ def run(run: Run, page: Page) -> None:
     page.table("Dynamic transmission error from peak to peak", rows)
 
 
+def check_ripples(
+    page: Page, name: str, found: TransmissionError, at: Floats, series: ConvergenceInTime
+) -> list[Record]:
+    """Check the ripple in time against balanced harmonics; return it beside the linear one."""
+    ripple = np.array(list(series.finest.values.values()))
+    check_in_time(
+        page,
+        f"{name}, in time",
+        series,
+        dict.fromkeys(series.finest.values, 0.05),
+        energy=1e-2,
+        why="generalised alpha takes energy out of what the jumps of stiffness excite",
+    )
+    linear = linear_ripple(found, at)
+    exact = np.array([balanced_ripple(found, float(r)) for r in at])
+    page.vanishes(
+        f"{name}: largest difference of the ripple in time from that of balanced harmonics",
+        float(np.abs(ripple / exact - 1).max()),
+        within=0.02,
+        why=f"{STEPS} steps in a period damp and delay the harmonics of the jumps of stiffness",
+        source="harmonic balance of the same equation, 60 harmonics",
+        measure="deflection",
+    )
+    return [
+        {
+            "teeth": name,
+            "mesh over natural frequency": float(r),
+            "in time [µm]": 1e6 * one,
+            "linear [µm]": 1e6 * other,
+        }
+        for r, one, other in zip(at, ripple, linear, strict=True)
+    ]
+
+
 def check_one_mass(page: Page) -> None:
     """A steady vibration of one mass whose spring and damper are moved by a cosine."""
     k, c, f, size = 800.0, 4.0, 2.2, 1e-3
     w = 2 * np.pi * f
     exact = (k + 1j * w * c) / (k - 2.0 * w**2 + 1j * w * c) * size
     error = harmonic_error([size], [0.0]).table[None]
-    springs = spring_laws([[1.0]], k, c, frequency=f, error=0, errors=error)
+    springs = spring_laws([[1.0]], k, c).in_phase(frequency=f).with_errors(error)
     begin = State(np.array([exact.real]), np.array([-w * exact.imag]), np.zeros(1))
     motion = integrate(
         equations_of_motion([2.0], springs), steady([0.0]), 1 / f, 1 / f / 400, start=begin
@@ -161,15 +177,11 @@ def steady_mesh(found: TransmissionError, ratio: float, steps: int) -> Motion:
     k = found.stiffness.mean
     own = np.sqrt(k / MASS) / (2 * np.pi)
     f = ratio * own
-    springs = spring_laws(
-        [[1.0]],
-        k,
-        2 * ZETA * np.sqrt(k * MASS),
-        wave=0,
-        waves=wave_of(found.stiffness)[None],
-        frequency=f,
-        error=0,
-        errors=error_of_slices(found, loaded=False).table[None],
+    springs = (
+        spring_laws([[1.0]], k, 2 * ZETA * np.sqrt(k * MASS))
+        .in_phase(frequency=f)
+        .with_waves(wave_of(found.stiffness)[None])
+        .with_errors(error_of_slices(found, loaded=False).table[None])
     )
     still = State(np.array([found.force / k]), np.zeros(1), np.zeros(1))
     periods = max(3, int(np.ceil(ratio * 12.0 / (2 * np.pi * ZETA))))

@@ -3,7 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.dynamics.drivetrains import drivetrains
+from fe_drivetrain.cases.dynamics.drivetrains import Rated, drivetrains
 from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import InTime, converge_in_time, peak_between
 from fe_drivetrain.dynamics import (
@@ -163,9 +163,27 @@ def show(page: Page) -> None:
         energy=1e-9,
         why="average acceleration conserves the energy of a linear system, and events end steps",
     )
-    found = motion = braked(2e-3)
-    torque = motion.braking.torque[:, 0]
-    slipping = (motion.times > 0.5) & (motion.times < found.braking.events[0][0])
+    motion = braked(2e-3)
+    check_brake(page, motion, J, k, one)
+    page.chart(
+        "Drivetrain D as two masses: "
+        + ", ".join(f"{what} at {when:.3f} s" for when, what in motion.braking.events),
+        [
+            trace("shaft", motion.times, motion.forces[:, 0] / one.torque),
+            trace("brake", motion.times, motion.braking.torque[:, 0] / one.torque),
+            trace(
+                "generator's speed over its first", motion.times, motion.velocity[:, 1] / one.speed
+            ),
+        ],
+        "time [s]",
+        "torque over rated; speed",
+    )
+
+
+def check_brake(page: Page, motion: Motion, J: Floats, k: float, one: Rated) -> None:
+    """Check torques while the brake slips and holds, and the frequency at standstill."""
+    torque, held = motion.braking.torque[:, 0], motion.braking.held[:, 0]
+    slipping = (motion.times > 0.5) & (motion.times < motion.braking.events[0][0])
     page.equals(
         "drivetrain D, brake of 1.2 rated: largest torque of the shaft over rated",
         float(motion.forces[slipping].max() / one.torque),
@@ -176,7 +194,7 @@ def show(page: Page) -> None:
     )
     page.vanishes(
         "drivetrain D: torque of the brake that holds less that of the shaft, over rated",
-        float(np.abs(torque + motion.forces[:, 0])[motion.braking.held[:, 0]].max() / one.torque),
+        float(np.abs(torque + motion.forces[:, 0])[held].max() / one.torque),
         within=1e-7,
         why="round-off of a step in which the disc stops",
         source="equilibrium of a disc that stands",
@@ -190,7 +208,7 @@ def show(page: Page) -> None:
         measure="identity",
     )
     held = np.sqrt(k / J[0]) / (2.0 * np.pi)
-    after = motion.times > found.braking.events[-1][0]
+    after = motion.times > motion.braking.events[-1][0]
     turned = motion.times[after][1:][np.diff(np.sign(motion.velocity[after, 0])) != 0]
     page.equals(
         "drivetrain D, disc held: frequency of the rotor [Hz]",
@@ -199,17 +217,4 @@ def show(page: Page) -> None:
         within=1e-3,
         why="crossings are found to a step",
         source="sqrt(k / J1) / 2 pi",
-    )
-    page.chart(
-        "Drivetrain D as two masses: "
-        + ", ".join(f"{what} at {when:.3f} s" for when, what in found.braking.events),
-        [
-            trace("shaft", motion.times, motion.forces[:, 0] / one.torque),
-            trace("brake", motion.times, torque / one.torque),
-            trace(
-                "generator's speed over its first", motion.times, motion.velocity[:, 1] / one.speed
-            ),
-        ],
-        "time [s]",
-        "torque over rated; speed",
     )

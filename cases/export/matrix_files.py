@@ -35,7 +35,7 @@ def run(run: Run, page: Page) -> None:
                 if not written.keys() & set(kinds):
                     continue
                 path = folder / f"{element.name}_{format}{export.FORMATS[format].suffix}"
-                export.write(path, element, format)
+                export.write_superelement(path, element, format)
                 rows += [
                     {
                         "superelement": label,

@@ -41,8 +41,8 @@ def run(run: Run, page: Page) -> None:
         for format, (tolerance, digits) in DIGITS.items():
             with run.step("write and read"), scratch_folder() as folder:
                 path = folder / f"{element.name}{export.FORMATS[format].suffix}"
-                export.write(path, element, format)
-                size, back = path.stat().st_size, export.read(path, format)
+                export.write_superelement(path, element, format)
+                size, back = path.stat().st_size, export.read_superelement(path, format)
             name, found, written = f"{label}, {format}", matrices(back), matrices(element)
             for kind in written:
                 worst = largest_difference(found[kind], written[kind])

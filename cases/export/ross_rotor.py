@@ -29,7 +29,7 @@ PARTS, COUNT = 32, 6
 #: Natural frequencies of the free shaft.
 FREE = 4
 
-#: Of a rigid support: how many times the spring in its place is stiffer than the shaft there.
+#: How many times the spring in place of a rigid support is stiffer than the shaft there.
 STIFFER = 1e6
 
 
@@ -102,17 +102,7 @@ def check_scene(
         source=source,
     )
     errors.append(error := largest_errors(rotor, exact))
-    for what, value in zip(("deflections of all nodes", "reactions"), error, strict=True):
-        page.at_most(
-            f"{name}: {what} under 12 unit loads and gravity along 3 axes, largest difference "
-            "from level 1 over the largest of its kind",
-            value,
-            10.0 / STIFFER,
-            why=f"what the gearbox holds rigidly is a spring {STIFFER:.0e} times as stiff as an "
-            "element of the shaft",
-            source="level 1 of this project, in which rigid is rigid",
-            measure="reaction" if what == "reactions" else "deflection",
-        )
+    check_answers(page, name, error)
     page.vanishes(
         f"{name}: lowest {COUNT} natural frequencies, largest relative difference from this "
         "project's stiffness with the mass of ROSS",
@@ -139,6 +129,21 @@ def check_scene(
         }
         for mode, (theirs, ours) in enumerate(zip(found, second, strict=True), start=1)
     ]
+
+
+def check_answers(page: Page, name: str, error: Floats) -> None:
+    """Deflections and reactions of level 1."""
+    for what, value in zip(("deflections of all nodes", "reactions"), error, strict=True):
+        page.at_most(
+            f"{name}: {what} under 12 unit loads and gravity along 3 axes, largest difference "
+            "from level 1 over the largest of its kind",
+            value,
+            10.0 / STIFFER,
+            why=f"what the gearbox holds rigidly is a spring {STIFFER:.0e} times as stiff as an "
+            "element of the shaft",
+            source="level 1 of this project, in which rigid is rigid",
+            measure="reaction" if what == "reactions" else "deflection",
+        )
 
 
 def assembled(beam: Beam, rotor: ross_rotor.Rotor) -> Floats:

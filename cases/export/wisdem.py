@@ -1,7 +1,10 @@
 """WISDEM's drivetrain with spring and damper of a finite-element shaft, from its turbine file."""
 
 import warnings
+from collections.abc import Callable
+from copy import deepcopy
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,7 +12,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.export.samples import show
 from fe_drivetrain.common import MissingToolError, scratch_folder
-from fe_drivetrain.drivetrain_file import change_scene, library_scene
+from fe_drivetrain.drivetrain_file import Material, Scene, change_scene, library_scene
 from fe_drivetrain.export import Torsion, shaft_superelement, torsional_damping, torsional_stiffness
 from fe_drivetrain.export.formats import windio
 from fe_drivetrain.report.suite import Page, Run
@@ -18,6 +21,78 @@ RATIO = 0.05
 #: Main shaft: outer and inner diameter [m].
 OUTER, INNER = 3.0, 2.4
 DENSITY = 7850.0
+
+#: Its bearings fit a shaft of 3 m.
+MAIN_SHAFT = "iea_15mw_main_shaft"
+
+#: Options of WISDEM: a direct drive of one material.
+OPTIONS = {
+    "WISDEM": {
+        "n_dlc": 1,
+        "DriveSE": {
+            "direct": True,
+            "gearbox_torque_density": 0.0,
+            "hub": {"hub_gamma": 2.0, "spinner_gamma": 1.5},
+            "gamma_f": 1.35,
+            "gamma_m": 1.3,
+            "gamma_n": 1.0,
+        },
+        "RotorSE": {"n_pc": 20},
+    },
+    "materials": {"n_mat": 1},
+    "flags": {"generator": False},
+}
+
+#: Inputs of WISDEM: a made-up turbine.
+VALUES: dict[str, Any] = {
+    "n_blades": 3,
+    "rotor_diameter": 120.0,
+    "machine_rating": 5e3,
+    "D_top": 6.5,
+    "rated_torque": 4e6,
+    "damping_ratio": RATIO,
+    "F_aero_hub": np.array([[1e6], [0.0], [0.0]]),
+    "M_aero_hub": np.array([[0.0], [2e6], [2e6]]),
+    "blade_mass": 1.7e4,
+    "blades_mass": 5.1e4,
+    "blades_cm": 2.0,
+    "pitch_system.BRFM": 1e6,
+    "pitch_system_scaling_factor": 0.54,
+    "blade_root_diameter": 3.0,
+    "flange_t2shell_t": 4.0,
+    "flange_OD2hub_D": 0.5,
+    "flange_ID2flange_OD": 0.8,
+    "hub_rho": 7200.0,
+    "hub_Xy": 2e8,
+    "hub_stress_concentration": 2.5,
+    "n_front_brackets": 3,
+    "n_rear_brackets": 3,
+    "clearance_hub_spinner": 0.5,
+    "spin_hole_incr": 1.2,
+    "spinner_gust_ws": 70.0,
+    "hub_diameter": 5.0,
+    "minimum_rpm": 4.0,
+    "rated_rpm": 12.0,
+    "blades_I": np.array([3.5e7, 1.8e7, 1.8e7, 0.0, 0.0, 0.0]),
+    "bear1.bearing_type": "CARB",
+    "bear2.bearing_type": "SRB",
+    "bear1.D_shaft": 2.2,
+    "bear2.D_shaft": 2.2,
+    "upwind": True,
+    "L_12": 2.0,
+    "L_h1": 1.0,
+    "L_generator": 3.25,
+    "overhang": 6.25,
+    "drive_height": 4.875,
+    "tilt": 4.0,
+    "access_diameter": 0.9,
+    "lss_diameter": OUTER * np.ones(2),
+    "lss_wall_thickness": 0.5 * (OUTER - INNER) * np.ones(2),
+    "nose_diameter": 2.2 * np.ones(2),
+    "nose_wall_thickness": 0.1 * np.ones(2),
+    "bedplate_wall_thickness": 0.06 * np.ones(4),
+    "generator_efficiency_user": np.zeros((20, 2)),
+}
 
 TURBINE = """\
 components:
@@ -31,48 +106,51 @@ components:
 """
 
 
-@case(
-    "WISDEM's drivetrain with the torsion of a finite-element shaft",
-    source="WISDEM and windIO, run here",
-)
-def run(run: Run, page: Page) -> None:
-    """Run WISDEM's drivetrain with its own torsion, then with ours from a turbine file."""
-    scene = library_scene("iea_15mw_main_shaft")  # its bearings fit a shaft of 3 m
-    material = scene.material_of("shaft")
-    with run.step("WISDEM with its own torsion"):
-        try:
-            problem = drivetrain(material.youngs_modulus, material.shear_modulus)
-            load_yaml = import_module("windIO").load_yaml
-        except ImportError as error:
-            raise MissingToolError(
-                f"WISDEM cannot be loaded ({error}): install it with pip install "
-                '"fe-drivetrain[wisdem]"'
-            ) from error
-        problem.run_model()
-    own, length = torsion_of(problem), float(problem.get_val("L_lss", units="m")[0])
+def started(material: Material) -> tuple[Any, Callable[[Path], Any]]:
+    """WISDEM's drivetrain, and what reads windIO's files.
+
+    Raises
+    ------
+    MissingToolError
+        WISDEM is not installed.
+    """
+    try:
+        problem = drivetrain(material.youngs_modulus, material.shear_modulus)
+        return problem, import_module("windIO").load_yaml
+    except ImportError as error:
+        raise MissingToolError(
+            f"WISDEM cannot be loaded ({error}): install it with pip install "
+            '"fe-drivetrain[wisdem]"'
+        ) from error
+
+
+def uniform_shaft(length: float) -> Scene:
+    """The library's main shaft as a tube of one length [m]."""
+    return change_scene(
+        library_scene(MAIN_SHAFT),
+        {
+            # no ring that stiffens the shaft: WISDEM knows of none
+            "bearing_units.1.bearing.kind": "ring",
+            "bearing_units.1.interface": "bonded",
+            "shaft.sections.0.length": length,
+            "shaft.sections.0.outer_diameter": OUTER,
+            "shaft.sections.0.inner_diameter": INNER,
+        },
+    )
+
+
+def drivetrain_torsion(spring: float, problem: Any) -> Torsion:
+    """Spring and damper of a drivetrain whose main shaft has a spring [N m/rad]."""
     rotor = float(problem["blades_I"][0] + problem["hub_system_I"][0])
     generator = float(problem["generator_I"][0])
-
-    with run.step("finite-element shaft"):
-        scene = change_scene(
-            scene,
-            {
-                # no ring that stiffens the shaft: WISDEM knows of none
-                "bearing_units.1.bearing.kind": "ring",
-                "bearing_units.1.interface": "bonded",
-                "shaft.sections.0.length": length,
-                "shaft.sections.0.outer_diameter": OUTER,
-                "shaft.sections.0.inner_diameter": INNER,
-            },
-        )
-        page.about(scene)
-        shaft = shaft_superelement(scene, 2, ["hub", "gearbox"])
-    spring = torsional_stiffness(shaft, "hub", "gearbox")
     # beside the main shaft, a hub as stiff as five of them and a generator rotor as three
     softer = 1.0 / (1.0 / spring + 1.0 / (5 * spring) + 1.0 / (3 * spring))
-    ours = Torsion(softer, torsional_damping(RATIO, softer, rotor, generator))
+    return Torsion(softer, torsional_damping(RATIO, softer, rotor, generator))
 
-    with run.step("WISDEM with ours"), scratch_folder() as name:
+
+def run_with(problem: Any, ours: Torsion, load_yaml: Callable[[Path], Any]) -> Any:
+    """Let WISDEM take a torsion from its turbine file; what windIO's file states of it."""
+    with scratch_folder() as name:
         path = name / "turbine.yaml"
         path.write_text(TURBINE)
         windio.write_torsion(path, path, ours, "wisdem", overwrite=True)
@@ -80,17 +158,12 @@ def run(run: Run, page: Page) -> None:
         for key in ("spring_constant_user", "damping_coefficient_user"):
             problem[f"drivetrain_{key}"] = given[key]
         problem.run_model()
-        used = torsion_of(problem)
         windio.write_torsion(path, path, ours, "windio", overwrite=True)
-        stated = load_yaml(path)["components"]["drivetrain"]["elastic_properties"]
-    page.equals(
-        "main shaft: stiffness of the finite-element model [N m/rad]",
-        spring,
-        own.spring,
-        within=1e-9,
-        why="the elements contain the exact solution: round-off of the condensation",
-        source="WISDEM's drivetrain, G J / L of its uniform shaft",
-    )
+        return load_yaml(path)["components"]["drivetrain"]["elastic_properties"]
+
+
+def check_files(page: Page, used: Torsion, stated: Any, ours: Torsion) -> None:
+    """What programs read is what was written."""
     for quantity, found, expected, unit in (
         ("spring that WISDEM continues with", used.spring, ours.spring, "N m/rad"),
         ("damper that WISDEM continues with", used.damper, ours.damper, "N m s/rad"),
@@ -107,6 +180,35 @@ def run(run: Run, page: Page) -> None:
             unit=unit,
             measure="identity",
         )
+
+
+@case(
+    "WISDEM's drivetrain with the torsion of a finite-element shaft",
+    source="WISDEM and windIO, run here",
+)
+def run(run: Run, page: Page) -> None:
+    """Run WISDEM's drivetrain with its own torsion, then with ours from a turbine file."""
+    with run.step("WISDEM with its own torsion"):
+        problem, load_yaml = started(library_scene(MAIN_SHAFT).material_of("shaft"))
+        problem.run_model()
+    own = torsion_of(problem)
+    with run.step("finite-element shaft"):
+        scene = uniform_shaft(float(problem.get_val("L_lss", units="m")[0]))
+        page.about(scene)
+        shaft = shaft_superelement(scene, 2, ["hub", "gearbox"])
+    spring = torsional_stiffness(shaft, "hub", "gearbox")
+    ours = drivetrain_torsion(spring, problem)
+    stated = run.timed("WISDEM with ours", run_with, problem, ours, load_yaml)
+    used = torsion_of(problem)
+    page.equals(
+        "main shaft: stiffness of the finite-element model [N m/rad]",
+        spring,
+        own.spring,
+        within=1e-9,
+        why="the elements contain the exact solution: round-off of the condensation",
+        source="WISDEM's drivetrain, G J / L of its uniform shaft",
+    )
+    check_files(page, used, stated, ours)
     page.answer(
         f"WISDEM's drivetrain takes {used.spring:.4g} N m/rad from the turbine file in place of "
         f"its own {own.spring:.4g} N m/rad, and the damper with it.",
@@ -138,89 +240,30 @@ def drivetrain(young: float, shear: float) -> Any:
         warnings.simplefilter("ignore")
         om = import_module("openmdao.api")
         model = import_module("wisdem.drivetrainse.drivetrain").DrivetrainSE
-
-    options = {
-        "WISDEM": {
-            "n_dlc": 1,
-            "DriveSE": {
-                "direct": True,
-                "gearbox_torque_density": 0.0,
-                "hub": {"hub_gamma": 2.0, "spinner_gamma": 1.5},
-                "gamma_f": 1.35,
-                "gamma_m": 1.3,
-                "gamma_n": 1.0,
-            },
-            "RotorSE": {"n_pc": 20},
-        },
-        "materials": {"n_mat": 1},
-        "flags": {"generator": False},
-    }
     problem = om.Problem(reports=False)
-    problem.model = model(modeling_options=options)
+    problem.model = model(modeling_options=deepcopy(OPTIONS))
     problem.setup()
-    one, pair = np.ones(1), np.ones(2)
-    values = {
-        "n_blades": 3,
-        "rotor_diameter": 120.0,
-        "machine_rating": 5e3,
-        "D_top": 6.5,
-        "rated_torque": 4e6,
-        "damping_ratio": RATIO,
-        "F_aero_hub": np.array([[1e6], [0.0], [0.0]]),
-        "M_aero_hub": np.array([[0.0], [2e6], [2e6]]),
-        "E_mat": young * np.ones((1, 3)),
-        "G_mat": shear * np.ones((1, 3)),
-        "Xt_mat": 4.5e8 * np.ones((1, 3)),
+    for name, value in (VALUES | steel_values(young, shear)).items():
+        problem[name] = value
+    return problem
+
+
+def steel_values(young: float, shear: float) -> dict[str, Any]:
+    """WISDEM's inputs of a material, by its moduli [Pa]."""
+    one, row = np.ones(1), np.ones((1, 3))
+    parts = ("lss", "hss", "hub", "spinner", "bedplate")
+    return {
+        "E_mat": young * row,
+        "G_mat": shear * row,
+        "Xt_mat": 4.5e8 * row,
         "wohler_exp_mat": 10.0 * one,
         "wohler_A_mat": 10.0 * one,
         "rho_mat": DENSITY * one,
         "Xy_mat": 3.5e8 * one,
         "unit_cost_mat": 3.0 * one,
         "material_names": ["steel"],
-        **{f"{part}_material": "steel" for part in ("lss", "hss", "hub", "spinner", "bedplate")},
-        "blade_mass": 1.7e4,
-        "blades_mass": 5.1e4,
-        "blades_cm": 2.0,
-        "pitch_system.BRFM": 1e6,
-        "pitch_system_scaling_factor": 0.54,
-        "blade_root_diameter": 3.0,
-        "flange_t2shell_t": 4.0,
-        "flange_OD2hub_D": 0.5,
-        "flange_ID2flange_OD": 0.8,
-        "hub_rho": 7200.0,
-        "hub_Xy": 2e8,
-        "hub_stress_concentration": 2.5,
-        "n_front_brackets": 3,
-        "n_rear_brackets": 3,
-        "clearance_hub_spinner": 0.5,
-        "spin_hole_incr": 1.2,
-        "spinner_gust_ws": 70.0,
-        "hub_diameter": 5.0,
-        "minimum_rpm": 4.0,
-        "rated_rpm": 12.0,
-        "blades_I": np.array([3.5e7, 1.8e7, 1.8e7, 0.0, 0.0, 0.0]),
-        "bear1.bearing_type": "CARB",
-        "bear2.bearing_type": "SRB",
-        "bear1.D_shaft": 2.2,
-        "bear2.D_shaft": 2.2,
-        "upwind": True,
-        "L_12": 2.0,
-        "L_h1": 1.0,
-        "L_generator": 3.25,
-        "overhang": 6.25,
-        "drive_height": 4.875,
-        "tilt": 4.0,
-        "access_diameter": 0.9,
-        "lss_diameter": OUTER * pair,
-        "lss_wall_thickness": 0.5 * (OUTER - INNER) * pair,
-        "nose_diameter": 2.2 * pair,
-        "nose_wall_thickness": 0.1 * pair,
-        "bedplate_wall_thickness": 0.06 * np.ones(4),
-        "generator_efficiency_user": np.zeros((20, 2)),
+        **{f"{part}_material": "steel" for part in parts},
     }
-    for name, value in values.items():
-        problem[name] = value
-    return problem
 
 
 def torsion_of(problem: Any) -> Torsion:

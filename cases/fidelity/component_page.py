@@ -146,6 +146,77 @@ class Quantity:
     of: Callable[[LevelModel], float]
 
 
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """Levels of a component compared by several quantities, the first of which decides.
+
+    Attributes
+    ----------
+    ladder : Ladder
+        The levels.
+    quantities : sequence of Quantity
+        What they are compared by.
+    bands : sequence of GridConvergence
+        What the solids say of each quantity.
+    errors : sequence of sequence of float
+        By quantity and level: error against the solid.
+    """
+
+    ladder: Ladder
+    quantities: Sequence[Quantity]
+    bands: Sequence[GridConvergence]
+    errors: Sequence[Sequence[float]]
+
+    @classmethod
+    def of(cls, ladder: Ladder, quantities: Sequence[Quantity]) -> Compared:
+        """Compare all levels with the solid."""
+        errors = [
+            [abs(q.of(model) / q.of(ladder.top) - 1.0) for model in ladder.models]
+            for q in quantities
+        ]
+        return cls(ladder, quantities, [ladder.band(q.of) for q in quantities], errors)
+
+    @property
+    def first(self) -> Quantity:
+        """The quantity that decides."""
+        return self.quantities[0]
+
+    @property
+    def own(self) -> float:
+        """Band of the solid in that quantity, relative."""
+        return self.bands[0].relative_uncertainty
+
+    @property
+    def known_errors(self) -> list[float]:
+        """Error of each level in that quantity and band of the solid."""
+        return [
+            self.own if model is self.ladder.top else error + self.own
+            for model, error in zip(self.ladder.models, self.errors[0], strict=True)
+        ]
+
+    @property
+    def chosen(self) -> int:
+        """Place of the cheapest level within `TOLERANCE`; the solid where there is none."""
+        enough = [k for k, error in enumerate(self.known_errors) if error <= TOLERANCE]
+        return enough[0] if enough else len(self.ladder.models) - 1
+
+    def sentence(self) -> str:
+        """The level that is enough, and how far it is from the solid."""
+        chosen, times = self.chosen, self.ladder.seconds
+        model = self.ladder.models[chosen]
+        share = f"{100 * TOLERANCE:g} %"
+        if model is self.ladder.top:
+            return (
+                f"{self.first.name} within {share} needs level {model.level}, {model.title}: "
+                f"band ± {100 * self.own:.2g} %"
+            )
+        return (
+            f"{self.first.name} within {share}: level {model.level}, {model.title}, is enough: "
+            f"{100 * self.errors[0][chosen]:.2g} % from the solid (± {100 * self.own:.2g} %), and "
+            f"{times[-1] / times[chosen]:.3g} times faster"
+        )
+
+
 def show_ladder(run: Run, page: Page, ladder: Ladder, quantities: Sequence[Quantity]) -> None:
     """Levels compared: value, error against the solid, its band, time, what is neglected.
 
@@ -161,46 +232,36 @@ def show_ladder(run: Run, page: Page, ladder: Ladder, quantities: Sequence[Quant
     quantities : sequence of Quantity
         What they are compared by; the first decides.
     """
-    bands = [ladder.band(quantity.of) for quantity in quantities]
-    times = ladder.seconds
-    errors_of = [
-        [abs(quantity.of(model) / quantity.of(ladder.top) - 1.0) for model in ladder.models]
-        for quantity in quantities
-    ]
-    first, own = quantities[0], bands[0].relative_uncertainty
-    known_errors = [
-        own if model is ladder.top else error + own
-        for model, error in zip(ladder.models, errors_of[0], strict=True)
-    ]
-    enough = [k for k, error in enumerate(known_errors) if error <= TOLERANCE]
-    chosen = enough[0] if enough else len(ladder.models) - 1
-    model = ladder.models[chosen]
-    share = f"{100 * TOLERANCE:g} %"
-    if model is ladder.top:
-        sentence = (
-            f"{first.name} within {share} needs level {model.level}, {model.title}: "
-            f"band ± {100 * own:.2g} %"
-        )
-    else:
-        sentence = (
-            f"{first.name} within {share}: level {model.level}, {model.title}, is enough: "
-            f"{100 * errors_of[0][chosen]:.2g} % from the solid (± {100 * own:.2g} %), and "
-            f"{times[-1] / times[chosen]:.3g} times faster"
-        )
-    page.answer(f"{_capital(sentence)}.")
+    found = Compared.of(ladder, quantities)
+    page.answer(f"{_capital(found.sentence())}.")
     if run.quick:
         page.answer(QUICK_BAND)
     else:
+        model = ladder.models[found.chosen]
         page.at_most(
-            f"{first.name}: error of level {model.level}, {model.title}, and band of the solid",
-            known_errors[chosen],
+            f"{found.first.name}: error of level {model.level}, {model.title}, and band of the "
+            "solid",
+            found.known_errors[found.chosen],
             TOLERANCE,
             why="the tolerance that was requested",
             source="the solid and its grid convergence",
         )
     page.section("The ladder")
-    page.text(_capital(sentence))
-    page.add(_against_time(ladder, first.name, errors_of[0], own))
+    page.text(_capital(found.sentence()))
+    page.add(_against_time(ladder, found.first.name, found.errors[0], found.own))
+    _level_table(page, found)
+    _quantity_tables(page, found)
+    page.text(
+        f"Band: three meshes, sizes times {COARSER[0]:g}, {COARSER[1]:g} and 1. Stress is "
+        "singular at inner edges, energy converges there as h^1.09 at best (Williams 1952), and "
+        f"coarse meshes are not there yet: no better order than {LEAST_ORDER:g} is relied upon."
+    )
+
+
+def _level_table(page: Page, found: Compared) -> None:
+    """The deciding quantity at each level: error, band, time, what is neglected."""
+    ladder, first = found.ladder, found.first
+    times = ladder.seconds
     page.table(
         _capital(f"{first.name} at each level"),
         [
@@ -208,33 +269,34 @@ def show_ladder(run: Run, page: Page, ladder: Ladder, quantities: Sequence[Quant
                 "level": f"{model.level} {model.title}",
                 f"value [{first.unit}]": _cell(first.of(model)),
                 "error against the solid [%]": _cell(100 * error),
-                "band ± [%]": 100 * own if model is ladder.top else None,
+                "band ± [%]": 100 * found.own if model is ladder.top else None,
                 "time [s]": seconds,
                 "times faster than the solid": times[-1] / seconds,
                 "neglects": "; ".join(model.neglects) or "nothing that the component has",
             }
-            for model, seconds, error in zip(ladder.models, times, errors_of[0], strict=True)
+            for model, seconds, error in zip(ladder.models, times, found.errors[0], strict=True)
         ],
     )
+
+
+def _quantity_tables(page: Page, found: Compared) -> None:
+    """All quantities at each level, and on each mesh of the solid."""
+    below = found.ladder.models[:-1]
     page.table(
         "All quantities: the solid, its band, and the error of the levels below it",
         [
             [
                 quantity.name,
                 quantity.unit,
-                quantity.of(ladder.top),
+                quantity.of(found.ladder.top),
                 100 * band.relative_uncertainty,
                 *(_cell(100 * error) for error in errors[:-1]),
             ]
-            for quantity, band, errors in zip(quantities, bands, errors_of, strict=True)
+            for quantity, band, errors in zip(
+                found.quantities, found.bands, found.errors, strict=True
+            )
         ],
-        [
-            "quantity",
-            "unit",
-            "solid",
-            "band ± [%]",
-            *(f"{model.title} [%]" for model in ladder.models[:-1]),
-        ],
+        ["quantity", "unit", "solid", "band ± [%]", *(f"{model.title} [%]" for model in below)],
     )
     page.table(
         "The solid's series of meshes",
@@ -248,13 +310,8 @@ def show_ladder(run: Run, page: Page, ladder: Ladder, quantities: Sequence[Quant
                 "extrapolated": band.extrapolated,
                 "band": band.uncertainty,
             }
-            for quantity, band in zip(quantities, bands, strict=True)
+            for quantity, band in zip(found.quantities, found.bands, strict=True)
         ],
-    )
-    page.text(
-        f"Band: three meshes, sizes times {COARSER[0]:g}, {COARSER[1]:g} and 1. Stress is "
-        "singular at inner edges, energy converges there as h^1.09 at best (Williams 1952), and "
-        f"coarse meshes are not there yet: no better order than {LEAST_ORDER:g} is relied upon."
     )
 
 
@@ -300,8 +357,8 @@ def show_files(run: Run, page: Page, element: Superelement) -> None:
             if form.extra or not hasattr(module, "read") or name == "mtx-mass":
                 continue
             path = run.folder / f"{element.name}_{name}{form.suffix}"
-            export.write(path, element, name)
-            back = export.read(path, name)
+            export.write_superelement(path, element, name)
+            back = export.read_superelement(path, name)
             rows.append(
                 {
                     "format": name,

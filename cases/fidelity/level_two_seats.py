@@ -1,27 +1,28 @@
 """Level 2 between seats: the meridian in harmonics against solids whose seats are rigid."""
 
 import time
+from dataclasses import dataclass
 
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.references.shaft_ends import SHAFTS, STEEL
+from fe_drivetrain.cases.references.shaft_ends import SHAFTS, STEEL, limit_of
 from fe_drivetrain.common import (
     Floats,
     rigid_motions,
 )
-from fe_drivetrain.comparison import grid_convergence, richardson
 from fe_drivetrain.elasticity.mesh import shaft_hexahedra
 from fe_drivetrain.elasticity.revolution import seat_stiffness
 from fe_drivetrain.elasticity.solve import solve_solid
 from fe_drivetrain.geometry import Shaft
-from fe_drivetrain.report import Cell, trace
-from fe_drivetrain.report.suite import Page, Run
+from fe_drivetrain.report import trace
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: A seat on each of the shafts [m].
 SEATS = {"bored": (0.6, 0.85), "stepped": (1.0, 1.2)}
 CUTS, QUICK_CUTS = (1, 2, 3), (1, 2)
 SIZE, TURN = 0.3, 8
+LIMIT, MERIDIAN = "its limit", "meridian"
 
 #: Of the 18 x 18 of front, seat and rear: rows and columns, names and units.
 ENTRIES = (
@@ -60,21 +61,6 @@ def solid(shaft: Shaft, seat: tuple[float, float], cut: int) -> tuple[Floats, in
     return found.u.T @ (found.K @ found.u), mesh.points.size
 
 
-def limit_of(cuts: tuple[int, ...], values: list[float]) -> tuple[float, float, str]:
-    """Limit of a solid's entry on ever finer meshes, its band, and how that was found."""
-    sizes = [1 / cut for cut in cuts]
-    if len(cuts) == 2:
-        limit = richardson(sizes, values, 1.0)
-        return (
-            limit,
-            abs(values[-1] - values[-2]),
-            "what the finer of two meshes of the solid changed",
-        )
-    grid = grid_convergence(sizes, values, least_order=1.0)
-    band = max(grid.extrapolated_uncertainty, abs(values[-1] - grid.extrapolated))
-    return grid.extrapolated, band, f"the band of three meshes of the solid ({grid.behaviour})"
-
-
 def rigid_motion_error(K: Floats, where: list[tuple[float, float]]) -> float:
     """Largest force of a stiffness (18, 18) under a rigid motion, over the terms of its sum."""
     rigid = np.zeros((18, 6))
@@ -85,6 +71,114 @@ def rigid_motion_error(K: Floats, where: list[tuple[float, float]]) -> float:
     return float((np.abs(K @ rigid) / np.where(terms > 0, terms, 1.0)).max())
 
 
+@dataclass(frozen=True, eq=False)
+class Seated:
+    """A shaft with a rigid seat between its rigid ends, by the meridian and by solids.
+
+    Attributes
+    ----------
+    name : str
+        The shaft.
+    where : list of tuple
+        From where to where front, seat and rear are rigid [m].
+    flat, rough : Floats
+        (18, 18) of the meridian, and of one with an order and a layer less.
+    milliseconds : float
+        Time that the meridian takes.
+    solids : list[Floats]
+        (18, 18) of the solid, by cut.
+    unknowns : list[int]
+        Unknowns of the solid, by cut.
+    """
+
+    name: str
+    where: list[tuple[float, float]]
+    flat: Floats
+    rough: Floats
+    milliseconds: float
+    solids: list[Floats]
+    unknowns: list[int]
+
+    @property
+    def unit(self) -> Floats:
+        """(18, 18) roots of both diagonal terms."""
+        scale = np.sqrt(self.flat.diagonal())
+        return np.outer(scale, scale)
+
+    @property
+    def differences(self) -> list[float]:
+        """Largest difference of each solid from the meridian, of the roots of diagonals."""
+        return [float(np.abs((K - self.flat) / self.unit).max()) for K in self.solids]
+
+
+def seated(run: Run, name: str, cuts: tuple[int, ...]) -> Seated:
+    """Solve a shaft with its seat by the meridian and as solids."""
+    shaft, seat = SHAFTS[name], SEATS[name]
+    where = [(shaft.front, shaft.front), seat, (shaft.rear, shaft.rear)]
+    with run.step(f"{name}: meridian"):
+        rough = seat_stiffness(shaft, STEEL, where, order=5, layers=3)
+        seat_stiffness(shaft, STEEL, where)  # what is done once for all is done
+        start = time.perf_counter()
+        flat = seat_stiffness(shaft, STEEL, where)
+        milliseconds = 1e3 * (time.perf_counter() - start)
+    solids, unknowns = [], []
+    for cut in cuts:
+        with run.step(f"{name}: solid"):
+            K, size = solid(shaft, seat, cut)
+            solids.append(K)
+            unknowns.append(size)
+    return Seated(name, where, flat, rough, milliseconds, solids, unknowns)
+
+
+def judge(page: Page, one: Seated, cuts: tuple[int, ...]) -> list[Record]:
+    """Entries of the meridian against the limit of the solids, and its equilibrium."""
+    rows: list[Record] = []
+    for entry, i, j, of in ENTRIES:
+        values = [float(K[i, j]) for K in one.solids]
+        limit, band, words = limit_of(cuts, values)
+        flat, own = float(one.flat[i, j]), abs(float(one.flat[i, j] - one.rough[i, j]))
+        page.equals(
+            f"{one.name}: {entry}",
+            flat,
+            limit,
+            within=band / abs(limit),
+            why=words,
+            source=f"hexahedra of 27 nodes, {one.unknowns[-1]:,} unknowns",
+            unit=of,
+            measure="stiffness",
+            band=own,
+        )
+        rows.append(
+            {
+                "shaft": one.name,
+                "entry": entry,
+                "unit": of,
+                **{f"solid, cut {cut}": value for cut, value in zip(cuts, values, strict=True)},
+                LIMIT: limit,
+                "its band": band,
+                MERIDIAN: flat,
+                "band of the meridian": own,
+            }
+        )
+    page.vanishes(
+        f"{one.name}: force under a rigid motion of the 18 x 18, over its terms",
+        rigid_motion_error(one.flat, one.where),
+        within=1e-9,
+        why="round-off of a direct solve: 1e-16 times a condition number of 1e6 or so",
+        source="equilibrium of the free body",
+    )
+    return rows
+
+
+def largest_error(one: Seated, rows: list[Record]) -> float:
+    """Largest error of an entry against its limit, of the root of both diagonal terms."""
+    errors = [
+        abs(row[MERIDIAN] - row[LIMIT]) / float(one.unit[i, j])
+        for row, (_, i, j, _) in zip(rows, ENTRIES, strict=True)
+    ]
+    return float(max(errors))
+
+
 @case(
     "Level 2 between seats, against solids",
     source="Solids of 27-node hexahedra; equilibrium",
@@ -92,83 +186,29 @@ def rigid_motion_error(K: Floats, where: list[tuple[float, float]]) -> float:
 def run(run: Run, page: Page) -> None:
     """Two shafts, each with a rigid seat between its rigid ends."""
     cuts = QUICK_CUTS if run.quick else CUTS
-    rows: list[list[Cell]] = []
-    traces, milliseconds, errors = [], [], []
-    for name, seat in SEATS.items():
-        shaft = SHAFTS[name]
-        where = [(shaft.front, shaft.front), seat, (shaft.rear, shaft.rear)]
-        with run.step(f"{name}: meridian"):
-            rough = seat_stiffness(shaft, STEEL, where, order=5, layers=3)
-            seat_stiffness(shaft, STEEL, where)  # what is done once for all is done
-            start = time.perf_counter()
-            flat = seat_stiffness(shaft, STEEL, where)
-            milliseconds.append(1e3 * (time.perf_counter() - start))
-        solids = []
-        for cut in cuts:
-            with run.step(f"{name}: solid"):
-                solids.append(solid(shaft, seat, cut))
-        unknowns = [size for _, size in solids]
-        scale = np.sqrt(flat.diagonal())
-        unit = np.outer(scale, scale)
-        traces.append(
-            trace(name, unknowns, [float(np.abs((K - flat) / unit).max()) for K, _ in solids])
-        )
-        for entry, i, j, of in ENTRIES:
-            values = [float(K[i, j]) for K, _ in solids]
-            limit, band, words = limit_of(cuts, values)
-            own = abs(float(flat[i, j] - rough[i, j]))
-            page.equals(
-                f"{name}: {entry}",
-                float(flat[i, j]),
-                limit,
-                within=band / abs(limit),
-                why=words,
-                source=f"hexahedra of 27 nodes, {unknowns[-1]:,} unknowns",
-                unit=of,
-                measure="stiffness",
-                band=own,
-            )
-            rows.append([name, entry, of, *values, limit, band, float(flat[i, j]), own])
-            errors.append(abs(float(flat[i, j]) - limit) / float(unit[i, j]))
-        page.vanishes(
-            f"{name}: force under a rigid motion of the 18 x 18, over its terms",
-            rigid_motion_error(flat, where),
-            within=1e-9,
-            why="round-off of a direct solve: 1e-16 times a condition number of 1e6 or so",
-            source="equilibrium of the free body",
-        )
+    shafts = [seated(run, name, cuts) for name in SEATS]
+    rows = {one.name: judge(page, one, cuts) for one in shafts}
+    largest = max(largest_error(one, rows[one.name]) for one in shafts)
+    milliseconds = [one.milliseconds for one in shafts]
     page.answer(
         f"Between rigid ends and a rigid seat the meridian has every stiffness of the solids "
-        f"within their bands, at most {100 * max(errors):.2g} % from their limit (of the root of "
+        f"within their bands, at most {100 * largest:.2g} % from their limit (of the root of "
         f"both diagonal terms), in {max(milliseconds):.0f} ms."
     )
     page.section("Result")
     page.chart(
         "Largest difference of the 18 x 18 from the meridian's, scaled to 1 on the diagonal",
-        traces,
+        [trace(one.name, one.unknowns, one.differences) for one in shafts],
         "unknowns of the solid",
         "difference [-]",
         "xy",
     )
-    page.table(
-        "Stiffness of front, seat and rear",
-        rows,
-        [
-            "shaft",
-            "entry",
-            "unit",
-            *(f"solid, cut {cut}" for cut in cuts),
-            "its limit",
-            "its band",
-            "meridian",
-            "band of the meridian",
-        ],
-    )
+    page.table("Stiffness of front, seat and rear", [row for of in rows.values() for row in of])
     page.text(
         "The seat is the outer surface between two stations, rigid as the two end faces are. "
         "Stress is singular at its ends, so that the solid converges slowly; the meridian has four "
         "layers of ever smaller elements there, and its band is what one order and one layer "
         "changed."
     )
-    page.data("largest", max(errors))
+    page.data("largest", largest)
     page.data("milliseconds", milliseconds)

@@ -22,86 +22,95 @@ SIZES = (0.05, 0.025, 0.0125)
 HALVINGS = 24
 CLAIM = 1e-8
 
+STEEL = MATERIALS["steel"]
+ORDER, WIDTH = "order", "width, relative"
 STIFFNESS, ERROR = "stiffness [N m/rad]", "from the bounds' middle, relative"
 
 
-@case(
-    "Level 2 in torsion of a stepped shaft, to 1e-8",
-    source="Two bounds of the stiffness from scalar problems in the meridian (Michell 1899)",
-)
-def run(run: Run, page: Page) -> None:
-    """The bounds closed in on, and the meridian's 12 x 12 between them."""
-    steel = MATERIALS["steel"]
-    rows: list[Record] = []
-    widths: list[Record] = []
-    for name, bore in BORES.items():
-        sections = tuple(
+def stepped(bore: float) -> Shaft:
+    """The shaft with one step."""
+    return Shaft(
+        front=0.0,
+        sections=tuple(
             Section(length=LENGTH, outer_diameter=outer, inner_diameter=bore)
             for outer in (LARGE, SMALL)
-        )
-        shaft = Shaft(front=0.0, sections=sections)
-        with run.step(f"{name}: bounds"):
-            for size in SIZES[:1] if run.quick else SIZES:
-                bounds = torsion_bounds(shaft, steel.shear_modulus, size, HALVINGS)
-                widths.append(
-                    {
-                        "shaft": name,
-                        "element size [mm]": 1e3 * size,
-                        "lower [N m/rad]": bounds.lower,
-                        "upper [N m/rad]": bounds.upper,
-                        "width, relative": 2 * bounds.half_width / bounds.middle,
-                    }
-                )
-        for order, layers in QUICK_SETTINGS if run.quick else SETTINGS:
-            with run.step(f"{name}: meridian"):
-                mesh = meridian(shaft, order=order, layers=layers)
-                found = float(stiffness_between_ends(mesh, steel)[3, 3])
+        ),
+    )
+
+
+def bounded(run: Run, name: str) -> tuple[float, list[Record]]:
+    """Middle of the closest bounds [N m/rad], and records of all."""
+    shaft, rows = stepped(BORES[name]), list[Record]()
+    with run.step(f"{name}: bounds"):
+        for size in SIZES[:1] if run.quick else SIZES:
+            bounds = torsion_bounds(shaft, STEEL.shear_modulus, size, HALVINGS)
             rows.append(
                 {
                     "shaft": name,
-                    "order": order,
-                    "layers at corners": layers,
-                    "nodes": len(mesh.nodes),
-                    STIFFNESS: found,
-                    ERROR: found / bounds.middle - 1,
+                    "element size [mm]": 1e3 * size,
+                    "lower [N m/rad]": bounds.lower,
+                    "upper [N m/rad]": bounds.upper,
+                    WIDTH: 2 * bounds.half_width / bounds.middle,
                 }
             )
-        series = [row[STIFFNESS] for row in rows if row["shaft"] == name]
-        width = widths[-1]["width, relative"]
-        page.equals(
-            f"{name}: torsional stiffness, order {order} [N m/rad]",
-            series[-1],
-            bounds.middle,
-            within=width / 2,
-            why="half the distance of the bounds",
-            source="between two bounds, by displacements and by the torsion function (Michell "
-            "1899), in triangles of scikit-fem",
-            band=abs(series[-1] - series[-2]),
+    return bounds.middle, rows
+
+
+def between(run: Run, name: str, middle: float) -> list[Record]:
+    """The meridian's stiffness between rigid ends, from coarse to fine."""
+    shaft, rows = stepped(BORES[name]), list[Record]()
+    for order, layers in QUICK_SETTINGS if run.quick else SETTINGS:
+        with run.step(f"{name}: meridian"):
+            mesh = meridian(shaft, order=order, layers=layers)
+            found = float(stiffness_between_ends(mesh, STEEL)[3, 3])
+        rows.append(
+            {
+                "shaft": name,
+                ORDER: order,
+                "layers at corners": layers,
+                "nodes": len(mesh.nodes),
+                STIFFNESS: found,
+                ERROR: found / middle - 1,
+            }
         )
-        page.at_most(
-            f"{name}: width of the bounds, relative",
-            width,
-            1e-6 if run.quick else CLAIM,
-            why="coarse bounds of a quick run"
-            if run.quick
-            else "a comparison to 1e-8 needs bounds that are no farther apart",
-            source="exact stiffness lies between them",
-            measure="identity",
-        )
-        page.at_most(
-            f"{name}: largest growth of stiffness as elements gain degrees of freedom, relative",
-            max(b / a - 1 for a, b in pairwise(series)),
-            1e-10,
-            why="round-off; the meshes are nested but for the middle of the corners",
-            source="displacements of the coarser mesh make no less energy",
-            measure="identity",
-        )
-    finest = {name: of[-1] for name, of in grouped(rows, "shaft")}
-    page.answer(
-        "The torsional stiffness of a stepped shaft between rigid ends is that of two bounds to "
-        f"{max(abs(row[ERROR]) for row in finest.values()):.1g}; the bounds are "
-        f"{max(of[-1]['width, relative'] for _, of in grouped(widths, 'shaft')):.1g} apart."
+    return rows
+
+
+def judge(run: Run, page: Page, name: str, middle: float, width: float, of: list[Record]) -> None:
+    """The meridian between its bounds, their width, and what finer elements change."""
+    series = column(of, STIFFNESS)
+    page.equals(
+        f"{name}: torsional stiffness, order {of[-1][ORDER]} [N m/rad]",
+        series[-1],
+        middle,
+        within=width / 2,
+        why="half the distance of the bounds",
+        source="between two bounds, by displacements and by the torsion function (Michell "
+        "1899), in triangles of scikit-fem",
+        band=abs(series[-1] - series[-2]),
     )
+    page.at_most(
+        f"{name}: width of the bounds, relative",
+        width,
+        1e-6 if run.quick else CLAIM,
+        why="coarse bounds of a quick run"
+        if run.quick
+        else "a comparison to 1e-8 needs bounds that are no farther apart",
+        source="exact stiffness lies between them",
+        measure="identity",
+    )
+    page.at_most(
+        f"{name}: largest growth of stiffness as elements gain degrees of freedom, relative",
+        max(b / a - 1 for a, b in pairwise(series)),
+        1e-10,
+        why="round-off; the meshes are nested but for the middle of the corners",
+        source="displacements of the coarser mesh make no less energy",
+        measure="identity",
+    )
+
+
+def show(page: Page, rows: list[Record], widths: list[Record]) -> None:
+    """Distance of the meridian from the bounds' middle, and the bounds."""
     page.section("Torsion")
     page.chart(
         "Difference of the meridian's stiffness from the bounds' middle",
@@ -122,11 +131,34 @@ def run(run: Run, page: Page) -> None:
         "meridian's program but the outline. Of the solid shaft the lower bound takes the torsion "
         "function on the step's face by interpolation, and is a bound but for that."
     )
+
+
+@case(
+    "Level 2 in torsion of a stepped shaft, to 1e-8",
+    source="Two bounds of the stiffness from scalar problems in the meridian (Michell 1899)",
+)
+def run(run: Run, page: Page) -> None:
+    """The bounds closed in on, and the meridian's 12 x 12 between them."""
+    rows: list[Record] = []
+    widths: list[Record] = []
+    for name in BORES:
+        middle, bounds = bounded(run, name)
+        own = between(run, name, middle)
+        judge(run, page, name, middle, bounds[-1][WIDTH], own)
+        rows += own
+        widths += bounds
+    finest = {name: of[-1] for name, of in grouped(rows, "shaft")}
+    page.answer(
+        "The torsional stiffness of a stepped shaft between rigid ends is that of two bounds to "
+        f"{max(abs(row[ERROR]) for row in finest.values()):.1g}; the bounds are "
+        f"{max(of[-1][WIDTH] for _, of in grouped(widths, 'shaft')):.1g} apart."
+    )
+    show(page, rows, widths)
     page.data("errors", {name: abs(row[ERROR]) for name, row in finest.items()})
     page.assume("large diameter", LARGE, "m", "chosen")
     page.assume("small diameter", SMALL, "m", "chosen")
     page.assume("bore of the bored shaft", BORES["bored"], "m", "chosen")
     page.assume("length of each part", LENGTH, "m", "chosen")
-    page.assume("E", steel.youngs_modulus / 1e9, "GPa", "steel, assumed")
-    page.assume("nu", steel.poisson_ratio, "-", "steel, assumed")
-    page.assume("G = E / (2 (1 + nu))", steel.shear_modulus / 1e9, "GPa", "of these")
+    page.assume("E", STEEL.youngs_modulus / 1e9, "GPa", "steel, assumed")
+    page.assume("nu", STEEL.poisson_ratio, "-", "steel, assumed")
+    page.assume("G = E / (2 (1 + nu))", STEEL.shear_modulus / 1e9, "GPa", "of these")

@@ -3,7 +3,7 @@
 from dataclasses import asdict
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.fidelity.side_by_side import FORCE, QUANTITIES, compared, show
+from fe_drivetrain.cases.fidelity.side_by_side import FORCE, QUANTITIES, Compared, compared, show
 from fe_drivetrain.drivetrain_file import library_scene
 from fe_drivetrain.report.suite import Page, Run
 
@@ -28,37 +28,38 @@ MERIDIAN = 1e-4
 BEARABLE = 0.05
 
 
-@case(
-    "For which shafts is the beam enough?",
-    source="the scenes of the library; sources stand in each",
-)
-def run(run: Run, page: Page) -> None:
-    """Levels 1 and 2 of every scene, housings rigid and as springs."""
-    found = []
-    for name in SCENES[::3] if run.quick else SCENES:
-        with run.step(name):
-            scene = library_scene(name)
-            mesh = scene.mesh.scaled(QUICK if run.quick else COARSER)
-            scene = scene.model_copy(update={"mesh": mesh})
-            page.about(scene, name)
-            one = compared(name, scene)
-        found.append(one)
-        page.at_most(
-            f"{name}: hub stiffer on softer supports, relative",
-            one.stiffer_on_softer,
-            1e-6,
-            why="housings are solved to 1e-9, and their inverses cost three digits",
-            source="a support that gives more lets the hub give more (Rayleigh)",
-            measure="identity",
-        )
-        page.at_most(
-            f"{name}: free meridian stiffer in torsion than the beam, no fillets, relative",
-            one.stiffer_than_beam,
-            MERIDIAN,
-            why="the error that the meridian itself may have",
-            source="a beam keeps its sections plane and round (least potential energy)",
-            measure="identity",
-        )
+def compared_scene(run: Run, page: Page, name: str) -> Compared:
+    """A scene at levels 1 and 2; what is checked from now on is of it."""
+    with run.step(name):
+        scene = library_scene(name)
+        mesh = scene.mesh.scaled(QUICK if run.quick else COARSER)
+        scene = scene.model_copy(update={"mesh": mesh})
+        page.about(scene, name)
+        return compared(name, scene)
+
+
+def check(page: Page, one: Compared) -> None:
+    """What energy principles say of a scene."""
+    page.at_most(
+        f"{one.scene}: hub stiffer on softer supports, relative",
+        one.stiffer_on_softer,
+        1e-6,
+        why="housings are solved to 1e-9, and their inverses cost three digits",
+        source="a support that gives more lets the hub give more (Rayleigh)",
+        measure="identity",
+    )
+    page.at_most(
+        f"{one.scene}: free meridian stiffer in torsion than the beam, no fillets, relative",
+        one.stiffer_than_beam,
+        MERIDIAN,
+        why="the error that the meridian itself may have",
+        source="a beam keeps its sections plane and round (least potential energy)",
+        measure="identity",
+    )
+
+
+def answer(page: Page, found: list[Compared]) -> None:
+    """In how many scenes the beam is enough, and what else counts."""
     bending, torsion, _ = QUANTITIES
     enough = {
         key: [one.scene for one in found if one.changes[key].beam <= BEARABLE] for key in QUANTITIES
@@ -88,6 +89,19 @@ def run(run: Run, page: Page) -> None:
         f"The force of the first bearing depends on that by more than {share} in "
         f"{', '.join(uncertain) or 'no scene'}.",
     )
+
+
+@case(
+    "For which shafts is the beam enough?",
+    source="the scenes of the library; sources stand in each",
+)
+def run(run: Run, page: Page) -> None:
+    """Levels 1 and 2 of every scene, housings rigid and as springs."""
+    found = []
+    for name in SCENES[::3] if run.quick else SCENES:
+        found.append(compared_scene(run, page, name))
+        check(page, found[-1])
+    answer(page, found)
     page.section("What is compared")
     page.text(
         "Changes are relative to the meridian on housings as springs whose faces keep in "

@@ -112,18 +112,7 @@ def run(run: Run, page: Page) -> None:
             },
         }
         _check_rigid_rings(page, compliances[f"{OUTSIDE:g}"], pressed)
-    feet = [one for name, one in pressed.items() if "feet" in name]
-    page.answer(
-        f"On a ring that stands on two feet at {np.degrees(FEET):.0f} degrees the most loaded "
-        f"roller carries {feet[0].factor:.2f} times the mean of the load over all "
-        f"{ROLLERS} (rigid: {pressed['rigid ring'].factor:.2f}; with {HOUSINGS[-1] - OUTSIDE:.2f} "
-        f"m of housing around it {feet[-1].factor:.2f}): the ring gives way between "
-        "its feet, and the rollers above these take over.",
-        f"The influence functions agree with a solid within its band "
-        f"({100 * abs(flat[0] / free.solids[-1][0] - 1):.2g} % under two opposite pushes, "
-        f"{100 * abs(flat[1] / free.solids[-1][1] - 1):.2g} % across them); {count} harmonics "
-        f"leave {100 * free.tail / free.own:.2g} % of a patch's own compliance.",
-    )
+    _answer(page, free, pressed, count)
     _show_rollers(page, pressed)
     _show_influence(page, free, count, levels)
     for name, value, unit, source in (
@@ -141,6 +130,23 @@ def run(run: Run, page: Page) -> None:
     page.data("forces", {name: one.forces for name, one in pressed.items()})
     page.data("factors", {name: one.factor for name, one in pressed.items()})
     page.data("tail", free.tail / free.own)
+
+
+def _answer(page: Page, free: FreeRing, pressed: dict[str, Pressed], count: int) -> None:
+    """What a ring that gives way does to the rollers, and how good its influence functions are."""
+    flat = free.flat
+    feet = [one for name, one in pressed.items() if "feet" in name]
+    page.answer(
+        f"On a ring that stands on two feet at {np.degrees(FEET):.0f} degrees the most loaded "
+        f"roller carries {feet[0].factor:.2f} times the mean of the load over all "
+        f"{ROLLERS} (rigid: {pressed['rigid ring'].factor:.2f}; with {HOUSINGS[-1] - OUTSIDE:.2f} "
+        f"m of housing around it {feet[-1].factor:.2f}): the ring gives way between "
+        "its feet, and the rollers above these take over.",
+        f"The influence functions agree with a solid within its band "
+        f"({100 * abs(flat[0] / free.solids[-1][0] - 1):.2g} % under two opposite pushes, "
+        f"{100 * abs(flat[1] / free.solids[-1][1] - 1):.2g} % across them); {count} harmonics "
+        f"leave {100 * free.tail / free.own:.2g} % of a patch's own compliance.",
+    )
 
 
 def _check_plane_strain(page: Page, count: int, orders: tuple[int, int]) -> None:

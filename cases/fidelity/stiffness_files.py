@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -54,41 +55,19 @@ def stiffness_files(page: Page, folder: Path, scene: Scene, quantity: Quantity) 
         The quantity that a model made of the files must give as the level itself does.
     """
     kinds = (SHAFT, SEATS) if scene.bearing_units else (SHAFT,)
-    written = {what: superelement_of(scene, what) for what in kinds}
-    rows, read = [], {}
-    for what, element in written.items():
-        names = []
-        worst = 0.0
-        for format in FORMATS:
-            path = folder / f"{element.name}{export.FORMATS[format].suffix}"
-            export.write(path, element, format)
-            names.append(path.name)
-            again = read[what] = export.read(path, format)
-            worst = max(worst, largest_difference(again.stiffness, element.stiffness))
-        rows.append(_row(names, element))
-        page.vanishes(
-            f"{what}: stiffness read less stiffness written, of a unit diagonal",
-            worst,
-            within=1e-15,
-            why="seventeen digits name every double",
-            source="the matrix before it was written",
-        )
-        page.vanishes(
-            f"{what}: asymmetry of what is read, of a unit diagonal",
-            symmetry_error(again.stiffness),
-            within=_ROUND_OFF,
-            why="round-off of small matrices",
-            source="Betti",
-        )
+    written = [_Written.read_again(folder, what, superelement_of(scene, what)) for what in kinds]
+    for one in written:
+        _check(page, one)
+    shaft, seats = written[0].again, written[1].again if len(written) > 1 else None
     page.vanishes(
         "shaft: force against a rigid motion, of the forces that it is a sum of",
-        read[SHAFT].rigid_error(),
+        shaft.rigid_error(),
         within=_ROUND_OFF,
         why="round-off of small matrices",
         source="a free body",
     )
-    (level_two,) = [level for level in page.figures["levels"] if level["level"] == LEVEL]
-    found = _rebuilt(scene, quantity, read[SHAFT], read.get(SEATS))
+    (level_two,) = [level for level in page.tables["levels"] if level["level"] == LEVEL]
+    found = _rebuilt(scene, quantity, shaft, seats)
     page.vanishes(
         f"{quantity.name} of a model made of the files, less that of level {LEVEL}, relative",
         float(np.linalg.norm(found - level_two["values"]) / np.linalg.norm(level_two["values"])),
@@ -111,13 +90,66 @@ def stiffness_files(page: Page, folder: Path, scene: Scene, quantity: Quantity) 
         "continued as at a crack or at half the rate that is seen; of bearings, the difference "
         "between a face held in shape and one that moves on average, and what recovered stresses "
         "say of the mesh",
-        rows,
+        [_row(one.files, one.element) for one in written],
         ["files", "points", "level", "mesh", "band ±", "mass [kg]"],
     )
     page.table(
         "Some of its numbers; other motions of the same bearing held",
-        _numbers(read[SHAFT], read.get(SEATS)),
+        _numbers(shaft, seats),
         ["stiffness", "value", "unit"],
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Written:
+    """A superelement in files, and read again.
+
+    Attributes
+    ----------
+    what : str
+        Part of the scene.
+    element, again : Superelement
+        As it was written, and as the last of its files has it.
+    files : list[str]
+        Names of the files.
+    change : float
+        Largest change of the stiffness by any of them, of a unit diagonal.
+    """
+
+    what: str
+    element: Superelement
+    again: Superelement
+    files: list[str]
+    change: float
+
+    @classmethod
+    def read_again(cls, folder: Path, what: str, element: Superelement) -> _Written:
+        """Write a superelement in every format, and read it."""
+        names, worst = [], 0.0
+        for format in FORMATS:
+            path = folder / f"{element.name}{export.FORMATS[format].suffix}"
+            export.write_superelement(path, element, format)
+            names.append(path.name)
+            again = export.read_superelement(path, format)
+            worst = max(worst, largest_difference(again.stiffness, element.stiffness))
+        return cls(what, element, again, names, worst)
+
+
+def _check(page: Page, one: _Written) -> None:
+    """What is read is what was written, and symmetric."""
+    page.vanishes(
+        f"{one.what}: stiffness read less stiffness written, of a unit diagonal",
+        one.change,
+        within=1e-15,
+        why="seventeen digits name every double",
+        source="the matrix before it was written",
+    )
+    page.vanishes(
+        f"{one.what}: asymmetry of what is read, of a unit diagonal",
+        symmetry_error(one.again.stiffness),
+        within=_ROUND_OFF,
+        why="round-off of small matrices",
+        source="Betti",
     )
 
 

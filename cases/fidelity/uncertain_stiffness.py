@@ -42,6 +42,7 @@ from fe_drivetrain.shafts.uncertainty import (
     study,
     with_values,
 )
+from fe_drivetrain.studies.input_effects import input_effects
 
 SCENE = "main_bearing_bonded_uncertain"
 BEARING, LOAD = "main_bearing", "hub.My"
@@ -107,7 +108,7 @@ def run(run: Run, page: Page) -> None:
         with run.step("K_R of the assembly"):
             tilt = _tilt(scene)
         _show_tilt(page, found, tilt)
-    page.sections.append(bands(found))
+    page.sections.append(bands(input_effects(found)))
     page.data("cheap", {q: dict(found.slopes[q]) for q in (*HUB, MOMENT)})
     page.data("assembly", top)
     page.data("assembly, coarser", coarse)

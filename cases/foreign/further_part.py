@@ -4,11 +4,15 @@ import gmsh
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.foreign.seats import (
+    check_compliance,
+    compliance_rows,
+    picture_under_hub_load,
+)
 from fe_drivetrain.common import Floats, stiffness_transport
 from fe_drivetrain.drivetrain_file import MATERIALS, Scene, change_scene, library_scene
 from fe_drivetrain.foreign import bolt_stiffness
 from fe_drivetrain.geometry import bedplate, gmsh_session, write_sample, write_step
-from fe_drivetrain.report import NoPictureError, picture_of_deformation
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.fidelity import unit_stiffness
 from fe_drivetrain.shafts.response import build_model, mesh_scene, unit_load_response
@@ -17,7 +21,6 @@ NAME, UNIT = "main_bearing", "bearing_units.main_bearing"
 SIZES, QUICK_SIZES = (0.2, 0.1), (0.3, 0.25)  # m, the finer last
 STIFF = (5e12, 1e13)  # Pa: moduli of bedplates that hardly give
 BAR, ROOT, END = 0.2, np.array([0.0, 0.41, -0.15]), np.array([0.0, 1.61, -0.15])  # m: a round arm
-MOTIONS = ("along x", "along y", "along z", "about x", "about y", "about z")
 FOOT, GROUND = ({"point": [0, 0, z], "normal": [0, 0, 1]} for z in (-420, -800))  # mm
 
 
@@ -28,7 +31,7 @@ def with_part(scene: Scene, file: str, tied: Record, held: Record, material: str
     return change_scene(scene, {f"{UNIT}.stands_on": "parts", f"{UNIT}.parts": [part | ties]})
 
 
-def of_modulus(scene: Scene, key: str, modulus: float) -> Scene:
+def with_modulus(scene: Scene, key: str, modulus: float) -> Scene:
     """The scene with another modulus of its housing or part."""
     given = {"youngs_modulus": modulus, "poisson_ratio": 0.3, "density": 7100}
     return change_scene(scene, {"materials.stiff": given, f"{UNIT}.{key}.material": "stiff"})
@@ -51,27 +54,20 @@ def beyond(one: Floats, other: Floats) -> float:
 def run(run: Run, page: Page) -> None:
     """Stand the library's housing on a bedplate and on an arm, and compare with what is known."""
     coarse, fine = QUICK_SIZES if run.quick else SIZES
-    sizes = {"housing": fine, "bearing": 0.2, "bearing_edge": 0.2, "shaft": 0.3}
-    sizes |= {"elements_per_turn": 8 if run.quick else 12}
-    ground = library_scene("main_bearing_bonded")
-    ground = change_scene(ground, {f"mesh.{key}": size for key, size in sizes.items()})
-    unit, files = ground.bearing_units[0], {n: str(run.folder / f"{n}.step") for n in "pob"}
-    write_sample("bedplate", files["p"])
-    with gmsh_session():
-        write_step(files["o"], [unit.block.build(unit.bearing).volume, bedplate()])
-    on_plate = with_part(ground, files["p"], FOOT, GROUND, "ductile_iron")
-    one = {"step": files["o"], "seat": {"radius": 300}, "held": [GROUND]}
+    ground = on_ground(fine, run.quick)
+    files = {n: str(run.folder / f"{n}.step") for n in "pob"}
+    on_plate, glued = on_bedplate(ground, files["p"], files["o"])
     with run.step("bedplate, tied and glued"):
-        glued = change_scene(ground, {f"{UNIT}.housing": one})
         K, whole = give(on_plate), give(glued)
-        by_mesh = (
-            np.diag(give(change_scene(glued, {"mesh.housing": coarse}))) / np.diag(whole) - 1.0
-        )
+        coarser = np.diag(give(change_scene(glued, {"mesh.housing": coarse})))
+        by_mesh = coarser / np.diag(whole) - 1.0
     for k in (2, 4, 5):
-        page.equals(
-            f"on the bedplate, tied: compliance {MOTIONS[k]} [{'mm/MN' if k < 3 else 'mrad/MN m'}]",
-            float(K[k, k]) * 1e9,
-            float(whole[k, k]) * 1e9,
+        check_compliance(
+            page,
+            "on the bedplate, tied",
+            k,
+            np.diag(K),
+            np.diag(whole),
             within=abs(float(by_mesh[k])),
             why=f"what a mesh of {coarse:g} m in place of {fine:g} m changes of the reference: "
             "nodes of the joint that both sides have are a change of mesh, too",
@@ -79,7 +75,47 @@ def run(run: Run, page: Page) -> None:
         )
     with run.step("stiff bedplates"):
         fixed = give(ground)
-        stiff = [give(of_modulus(on_plate, "parts.0", E)) for E in STIFF]
+        stiff = [give(with_modulus(on_plate, "parts.0", E)) for E in STIFF]
+    check_stiff(page, fixed, K, stiff)
+    found = {"fixed foot": fixed, "bedplate": K}
+    if not run.quick:
+        found["arm, stiff housing"] = check_arm(run, page, ground, files["b"])
+        model = build_model(on_plate, mesh_scene(on_plate))
+        picture_under_hub_load(run, page, model, unit_load_response(model))
+    else:
+        page.image("The housing on its bedplate, as meshed", run.sketch(mesh_scene(on_plate)))
+    rows = compliance_rows("stands on", {name: np.diag(c) for name, c in found.items()})
+    page.section("Compliance at the seat")
+    page.table("Seat held in shape [mm/MN, mrad/MN m]", rows)
+    page.text("Tied faces are glued all over: no joint opens or slides.")
+    page.answer(
+        f"On its bedplate the seat tilts {K[4, 4] / fixed[4, 4]:.2g} times as much as on a fixed "
+        f"foot. Tied to it, the housing is as stiff as glued to it within "
+        f"{100 * beyond(K, whole):.2g} %; a coarser mesh changes {100 * abs(by_mesh).max():.2g} %."
+    )
+
+
+def on_ground(size: float, quick: bool) -> Scene:
+    """The library's housing on the ground, on a mesh of a size [m]."""
+    sizes = {"housing": size, "bearing": 0.2, "bearing_edge": 0.2, "shaft": 0.3}
+    sizes |= {"elements_per_turn": 8 if quick else 12}
+    scene = library_scene("main_bearing_bonded")
+    return change_scene(scene, {f"mesh.{key}": value for key, value in sizes.items()})
+
+
+def on_bedplate(ground: Scene, plate: str, both: str) -> tuple[Scene, Scene]:
+    """The housing tied to a bedplate from a file, and both glued as one solid from another."""
+    unit = ground.bearing_units[0]
+    write_sample("bedplate", plate)
+    with gmsh_session():
+        write_step(both, [unit.block.build(unit.bearing).volume, bedplate()])
+    one = {"step": both, "seat": {"radius": 300}, "held": [GROUND]}
+    tied = with_part(ground, plate, FOOT, GROUND, "ductile_iron")
+    return tied, change_scene(ground, {f"{UNIT}.housing": one})
+
+
+def check_stiff(page: Page, fixed: Floats, K: Floats, stiff: list[Floats]) -> None:
+    """A bedplate that does not give is a fixed foot."""
     away = [beyond(found, fixed) for found in (K, *stiff)]
     page.holds(
         "the stiffer the bedplate, the nearer to the fixed foot",
@@ -95,24 +131,6 @@ def run(run: Run, page: Page) -> None:
         "of the order of the product of what is left at each",
         source="the same housing, held at its foot",
     )
-    found = {"fixed foot": fixed, "bedplate": K}
-    if not run.quick:
-        found["arm, stiff housing"] = check_arm(run, page, ground, files["b"])
-        picture(run, page, on_plate)
-    else:
-        page.image("The housing on its bedplate, as meshed", run.sketch(mesh_scene(on_plate)))
-    rows: list[Record] = [
-        {"stands on": name} | dict(zip(MOTIONS, (np.diag(c) * 1e9).tolist(), strict=True))
-        for name, c in found.items()
-    ]
-    page.section("Compliance at the seat")
-    page.table("Seat held in shape [mm/MN, mrad/MN m]", rows)
-    page.text("Tied faces are glued all over: no joint opens or slides.")
-    page.answer(
-        f"On its bedplate the seat tilts {K[4, 4] / fixed[4, 4]:.2g} times as much as on a fixed "
-        f"foot. Tied to it, the housing is as stiff as glued to it within "
-        f"{100 * beyond(K, whole):.2g} %; a coarser mesh changes {100 * abs(by_mesh).max():.2g} %."
-    )
 
 
 def check_arm(run: Run, page: Page, ground: Scene, file: str) -> Floats:
@@ -121,31 +139,21 @@ def check_arm(run: Run, page: Page, ground: Scene, file: str) -> Floats:
         write_step(file, [gmsh.model.occ.addCylinder(*ROOT, *(END - ROOT), BAR / 2)])
     ends = [{"point": (1000 * x).tolist(), "normal": [0, 1, 0]} for x in (ROOT, END)]
     with run.step("torque arm"):
-        arm = with_part(of_modulus(ground, "housing", STIFF[1]), file, ends[0], ends[1], "steel")
+        arm = with_part(with_modulus(ground, "housing", STIFF[1]), file, ends[0], ends[1], "steel")
         found = give(arm)
     root = bolt_stiffness(BAR, ROOT, END, MATERIALS["steel"])
     exact, length = np.linalg.inv(stiffness_transport(root, ROOT)), float((END - ROOT)[1])
     bending = length**3 / (3 * MATERIALS["steel"].youngs_modulus * np.pi * BAR**4 / 64)
     for k in (2, 3):
-        unit = "mm/MN" if k < 3 else "mrad/MN m"
-        page.equals(
-            f"stiff housing on an arm: compliance {MOTIONS[k]} [{unit}]",
-            float(found[k, k]) * 1e9,
-            float(exact[k, k]) * 1e9,
+        check_compliance(
+            page,
+            "stiff housing on an arm",
+            k,
+            np.diag(found),
+            np.diag(exact),
             within=float(1.0 - bending / np.linalg.inv(root)[2, 2]),
             why="the share of shear in the beam's deflection, by which a beam knows its clamped "
             "ends at best",
             source="a round cantilever with Cowper's shear coefficient",
         )
     return found
-
-
-def picture(run: Run, page: Page, scene: Scene) -> None:
-    """The housing on its bedplate under a force at the hub, exaggerated."""
-    model, file = build_model(scene, mesh_scene(scene)), run.folder / "deformed.png"
-    down = -np.eye(len(model.loads))[model.loads.index("hub.Fz")]
-    try:
-        factor = picture_of_deformation(model, unit_load_response(model), down, file, "1 N down")
-        page.image(f"1 N down at the hub, displacements times {factor:.3g}", "deformed.png")
-    except NoPictureError as error:
-        page.note(f"no picture: {error}")

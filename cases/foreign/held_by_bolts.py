@@ -54,35 +54,9 @@ def minutes(tilt: float) -> float:
 def run(run: Run, page: Page) -> None:
     """Condense two housings from STEP files, each held in three ways, and compare their tilt."""
     names = list(HOUSINGS)[: 1 if run.quick else 2]
-    rows: list[Record] = []
-    for name in names:
-        write_sample(name, run.folder / f"{name}.step")
-        for way in WAYS:
-            with run.step(f"{HOUSINGS[name]}, {way}"):
-                found = [
-                    stiffness(held(run.folder, name, way, size)).diagonal()
-                    for size in (QUICK_SIZES if run.quick else SIZES)
-                ]
-            rows.append(
-                {
-                    "housing": HOUSINGS[name],
-                    "held by": way,
-                    "tilt [arcmin]": minutes(found[-1][4]),
-                    "coarser mesh [arcmin]": minutes(found[0][4]) if len(found) > 1 else "-",
-                    "K about y [MN m/rad]": found[-1][4] / 1e6,
-                    "K about z [MN m/rad]": found[-1][5] / 1e6,
-                    "K along z [GN/m]": found[-1][2] / 1e9,
-                }
-            )
+    rows = [row for name in names for row in tilts_of(run, name)]
     tilts = {(row["housing"], row["held by"]): float(row["tilt [arcmin]"]) for row in rows}
-    for name in (HOUSINGS[name] for name in names):
-        foot, washers, beams = (tilts[name, way] for way in WAYS)
-        page.holds(
-            f"{name}: washers give way more than the whole foot, and bolts alone more than washers",
-            foot < washers < beams,
-            why="each holds less of the foot than the one before",
-            source="minimum of the potential energy: a constraint taken away softens",
-        )
+    check_order(page, tilts)
     check_rigid_housing(run, page)
     page.section("Tilt by how it is held")
     page.table("Seat held in shape; tilt about y under 1 MN m", rows)
@@ -98,6 +72,56 @@ def run(run: Run, page: Page) -> None:
     else:
         shown = mesh_scene(held(run.folder, names[0], "bolts as beams", QUICK_SIZES[-1]))
         page.image("The first of the housings, as meshed", run.sketch(shown))
+    show_published(page)
+    foot, washers, beams = (tilts[HOUSINGS[names[0]], way] for way in WAYS)
+    page.found(f"{HOUSINGS[names[0]]}: tilt under 1 MN m, washers held [arcmin]", washers)
+    page.answer(
+        f"How it is held moves the tilt of the {HOUSINGS[names[0]]} from {foot:.3g} minutes of arc "
+        f"(whole foot) to {washers:.3g} (washers, {washers / foot:.1f} times) and {beams:.3g} "
+        f"(bolts as beams, {beams / foot:.0f} times).",
+        "A stiffness of a housing says little without how its bolts are held.",
+    )
+    page.data("rows", rows)
+
+
+def tilts_of(run: Run, name: str) -> list[Record]:
+    """Tilt and stiffness of one housing, held in each of the ways."""
+    write_sample(name, run.folder / f"{name}.step")
+    rows = []
+    for way in WAYS:
+        with run.step(f"{HOUSINGS[name]}, {way}"):
+            found = [
+                stiffness(held(run.folder, name, way, size)).diagonal()
+                for size in (QUICK_SIZES if run.quick else SIZES)
+            ]
+        rows.append(
+            {
+                "housing": HOUSINGS[name],
+                "held by": way,
+                "tilt [arcmin]": minutes(found[-1][4]),
+                "coarser mesh [arcmin]": minutes(found[0][4]) if len(found) > 1 else "-",
+                "K about y [MN m/rad]": found[-1][4] / 1e6,
+                "K about z [MN m/rad]": found[-1][5] / 1e6,
+                "K along z [GN/m]": found[-1][2] / 1e9,
+            }
+        )
+    return rows
+
+
+def check_order(page: Page, tilts: dict[tuple[str, str], float]) -> None:
+    """The less of the foot is held, the more each housing tilts."""
+    for name in dict.fromkeys(housing for housing, _ in tilts):
+        foot, washers, beams = (tilts[name, way] for way in WAYS)
+        page.holds(
+            f"{name}: washers give way more than the whole foot, and bolts alone more than washers",
+            foot < washers < beams,
+            why="each holds less of the foot than the one before",
+            source="minimum of the potential energy: a constraint taken away softens",
+        )
+
+
+def show_published(page: Page) -> None:
+    """What the ways stand for, and a published housing beside."""
     page.text(
         "Fixed washers stand for bolts whose preload keeps the joint closed under the washers. "
         "Bolts as beams carry alone: each is a steel beam of 48 mm from the annulus round the "
@@ -109,15 +133,6 @@ def run(run: Run, page: Page) -> None:
         "It is more here than there: this foot is bolted beside the body alone, and where it is "
         "not held it bends freely, for neither way lets the ground press on it between the bolts."
     )
-    foot, washers, beams = (tilts[HOUSINGS[names[0]], way] for way in WAYS)
-    page.found(f"{HOUSINGS[names[0]]}: tilt under 1 MN m, washers held [arcmin]", washers)
-    page.answer(
-        f"How it is held moves the tilt of the {HOUSINGS[names[0]]} from {foot:.3g} minutes of arc "
-        f"(whole foot) to {washers:.3g} (washers, {washers / foot:.1f} times) and {beams:.3g} "
-        f"(bolts as beams, {beams / foot:.0f} times).",
-        "A stiffness of a housing says little without how its bolts are held.",
-    )
-    page.data("rows", rows)
 
 
 def check_rigid_housing(run: Run, page: Page) -> None:

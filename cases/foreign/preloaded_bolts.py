@@ -4,6 +4,7 @@ import math
 import time
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.foreign.bolted_housing import in_scene
 from fe_drivetrain.common import Cache, stiffness_transport
 from fe_drivetrain.drivetrain_file import Scene, change_scene
-from fe_drivetrain.foreign import ClampedFoot
+from fe_drivetrain.foreign import ClampedFoot, FootState
 from fe_drivetrain.geometry import Bearing, Housing, gmsh_session, write_step
 from fe_drivetrain.report import chart, trace
 from fe_drivetrain.report.suite import Page, Record, Run
@@ -60,6 +61,34 @@ def where_pulled(foot: ClampedFoot) -> float:
     return math.inf
 
 
+def condensed(
+    run: Run, scene: Scene, sides: tuple[float, ...], seconds: list[Record]
+) -> dict[float, ClampedFoot]:
+    """The foot by the side of its patches [m]; adds to the times."""
+    feet = {}
+    for side in sides:
+        with run.step(f"condensed to patches of {side:g} m"):
+            start = time.perf_counter()
+            feet[side] = clamped_foot(scene, NAME, size=side, cache=Cache(None))
+            seconds.append({"what": f"condense, patches of {side:g} m", "s": _since(start)})
+    return feet
+
+
+def linear_ways(run: Run, size: float, seconds: list[Record]) -> list[Any]:
+    """Tilt over the moment where washers are fixed or bolts are alone; adds to the times."""
+    traces = []
+    for way, bolts in (("bolts alone", BEAMS), ("washers fixed", WASHERS)):
+        with run.step(way):
+            start = time.perf_counter()
+            held = unit_stiffness(
+                block(run.folder, size, bolts), NAME, "rigid", ring=False, cache=Cache(None)
+            )
+            seconds.append({"what": f"stiffness for the levels, {way}", "s": _since(start)})
+        tilt = minutes(np.linalg.inv(held)[4, 4] * 1e6)
+        traces.append(trace(way, LOADS, tilt * LOADS))
+    return traces
+
+
 @case(
     "Preloaded bolts: when a foot opens, and what the linear answer misses",
     source="rigid body on an elastic ground and on bolts; terms of VDI 2230 Part 1 (2003): "
@@ -71,12 +100,7 @@ def run(run: Run, page: Page) -> None:
     sides = QUICK_PATCHES if run.quick else PATCHES
     scene = block(run.folder, size)
     seconds: list[Record] = []
-    feet = {}
-    for side in sides:
-        with run.step(f"condensed to patches of {side:g} m"):
-            start = time.perf_counter()
-            feet[side] = clamped_foot(scene, NAME, size=side, cache=Cache(None))
-            seconds.append({"what": f"condense, patches of {side:g} m", "s": _since(start)})
+    feet = condensed(run, scene, sides, seconds)
     foot = feet[sides[-1]]
     with run.step("contact under all loads"):
         start = time.perf_counter()
@@ -92,35 +116,11 @@ def run(run: Run, page: Page) -> None:
         for name, states in lengths.items()
     ]
     if not run.quick:
-        for way, bolts in (("bolts alone", BEAMS), ("washers fixed", WASHERS)):
-            with run.step(way):
-                start = time.perf_counter()
-                held = unit_stiffness(
-                    block(run.folder, size, bolts), NAME, "rigid", ring=False, cache=Cache(None)
-                )
-                seconds.append({"what": f"stiffness for the levels, {way}", "s": _since(start)})
-            tilt = minutes(np.linalg.inv(held)[4, 4] * 1e6)
-            traces.append(trace(way, LOADS, tilt * LOADS))
+        traces += linear_ways(run, size, seconds)
     page.add(chart("Tilt over moment about y", traces, "moment [MN m]", "tilt [arcmin]"))
-    page.section("Forces of the bolts")
-    traces = [
-        trace(f"most pulled, {name}", LOADS, [s.tension.max() / 1e3 for s in states])
-        for name, states in lengths.items()
-    ]
-    traces.append(trace("least pulled", LOADS, [s.tension.min() / 1e3 for s in opened]))
-    page.add(chart("Bolt force over moment about y", traces, "moment [MN m]", "force [kN]"))
+    show_forces(page, lengths)
     page.table("The same loads", table(foot))
-    page.section("Preload and patches")
-    page.table(
-        f"Moments about y; pulled: a bolt carries {100 * MORE:g} % over preload", limits(feet)
-    )
-    page.text(
-        "All states grow with preload and load together, so that one condensed foot answers for "
-        "every preload. The foot slides while it is tightened, and lifts between its bolts where "
-        "it is thin. Linear is what the levels solve: patches that are pressed after tightening "
-        "stay so. Those pressed least open first, at small loads, and that depends on the size of "
-        "patches; what the open foot does depends on it much less."
-    )
+    show_preload(page, feet)
     page.image("The block and the shaft in it, as meshed", run.sketch(mesh_scene(scene)))
     page.table("Time on this machine, with others at work", seconds)
     pulled = where_pulled(foot)
@@ -131,6 +131,33 @@ def run(run: Run, page: Page) -> None:
         f"preload from {1e3 * pulled:.3g} kN m on; at {1e3 * LOADS[-1]:.3g} kN m it carries "
         f"{opened[-1].tension.max() / 1e3:.3g} kN, where the linear answer has "
         f"{linear[-1].tension.max() / 1e3:.3g} kN, and the seat tilts {ratio:.2g} times as far.",
+    )
+
+
+def show_forces(page: Page, lengths: dict[str, list[FootState]]) -> None:
+    """Forces of the bolts over the moment."""
+    page.section("Forces of the bolts")
+    traces = [
+        trace(f"most pulled, {name}", LOADS, [s.tension.max() / 1e3 for s in states])
+        for name, states in lengths.items()
+    ]
+    opened = lengths["with opening"]
+    traces.append(trace("least pulled", LOADS, [s.tension.min() / 1e3 for s in opened]))
+    page.add(chart("Bolt force over moment about y", traces, "moment [MN m]", "force [kN]"))
+
+
+def show_preload(page: Page, feet: dict[float, ClampedFoot]) -> None:
+    """Moments at which the foot opens and bolts are pulled, over preload and patches."""
+    page.section("Preload and patches")
+    page.table(
+        f"Moments about y; pulled: a bolt carries {100 * MORE:g} % over preload", limits(feet)
+    )
+    page.text(
+        "All states grow with preload and load together, so that one condensed foot answers for "
+        "every preload. The foot slides while it is tightened, and lifts between its bolts where "
+        "it is thin. Linear is what the levels solve: patches that are pressed after tightening "
+        "stay so. Those pressed least open first, at small loads, and that depends on the size of "
+        "patches; what the open foot does depends on it much less."
     )
 
 

@@ -8,9 +8,9 @@ from fe_drivetrain.common import Floats, largest_difference
 from fe_drivetrain.drivetrain_file import Scene, change_scene, library_scene
 from fe_drivetrain.elasticity.mesh import write
 from fe_drivetrain.foreign import mesh_parts, placed_housing
-from fe_drivetrain.geometry import gmsh_session, unit_solids, write_step
+from fe_drivetrain.geometry import Bearing, gmsh_session, unit_solids, write_step
 from fe_drivetrain.report.suite import Page, Record, Run
-from fe_drivetrain.shafts.fidelity import unit_bounds, unit_stiffness
+from fe_drivetrain.shafts.fidelity import UnitBounds, unit_bounds, unit_stiffness
 
 NAME = "main_bearing"
 COARSER, QUICK_COARSER = 1.0, 2.5
@@ -35,16 +35,8 @@ PICKS = {
 }
 
 
-@case(
-    "A housing read back from STEP and mesh files, against the parametric one",
-    source="the parametric housing itself, meshed by the program",
-)
-def run(run: Run, page: Page) -> None:
-    """Write the library's block to files, read them back, and compare stiffness."""
-    scene = sized(library_scene("main_bearing_bonded"), QUICK_COARSER if run.quick else COARSER)
-    joint = change_scene(
-        scene, {"bearing_units.0.interface": "spring", "bearing_units.0.stiffness": SPRING}
-    )
+def write_files(run: Run, joint: Scene) -> None:
+    """The block as STEP file, with all its faces as splines besides, and as meshes."""
     unit = joint.bearing_units[0]
     with run.step("files"), gmsh_session():
         write_step(run.folder / "block.step", [unit.block.build(unit.bearing).volume])
@@ -52,14 +44,15 @@ def run(run: Run, page: Page) -> None:
         solid = unit.block.build(unit.bearing).volume
         gmsh.model.occ.convertToNURBS([(3, solid)])
         write_step(run.folder / "splines.step", [solid])
-    bearing = unit.bearing.model_copy(update={"bore_diameter": 0.4})
+    bearing = with_bore(unit.bearing)
     mesh = mesh_parts(None, [unit.model_copy(update={"bearing": bearing})], joint.mesh)
     for name in PICKS:
         write(mesh, run.folder / name)
-    rows: list[Record] = []
 
-    with run.step("parametric"):
-        own, bounds = unit_stiffness(joint, NAME), unit_bounds(scene, NAME)
+
+def check_meshes(run: Run, page: Page, joint: Scene, own: Floats) -> list[Record]:
+    """Meshes read back have the stiffness of what was written."""
+    rows = []
     for name, picks in PICKS.items():
         with run.step(name):
             data = {"mesh": str(run.folder / name), "unit": "m", **picks}
@@ -72,26 +65,13 @@ def run(run: Run, page: Page) -> None:
             why="the same nodes and elements, so that round-off of the solver is all that differs",
             source="the mesh that was written",
         )
-    with run.step("STEP"):
-        foreign = with_housing(scene, FROM_STEP | {"step": str(run.folder / "block.step")})
-        step = unit_bounds(foreign, NAME)
-        housing = foreign.bearing_units[0].foreign
-        assert housing is not None
-        placed = placed_housing(housing, bearing, scene.mesh)
-    rows.append(row("block.step", "bonded: tied", bounds.stiff, step.stiff))
-    with run.step("STEP, all faces splines"):
-        data = FROM_STEP | {"step": str(run.folder / "splines.step")}
-        splines = unit_stiffness(with_housing(joint, data), NAME)
-    rows.append(row("splines.step", "6x6 spring", own, splines))
-    exact = unit_solids(bearing, unit.block, 0.4)[1].volume
-    page.equals(
-        "block.step: volume of the solid [m^3]",
-        placed.facts["volume after healing [m^3]"],
-        exact,
-        within=1e-9,
-        why="STEP keeps 15 digits",
-        source="the solid that was written",
-    )
+    return rows
+
+
+def check_stiffness(
+    page: Page, bounds: UnitBounds, own: Floats, step: UnitBounds, splines: Floats
+) -> None:
+    """Solids read back have the stiffness of the one that was written, within both meshes."""
     for k, motion in ((2, "along z [GN/m]"), (4, "about y [GN m/rad]")):
         page.equals(
             f"block.step, bonded: K {motion}",
@@ -112,6 +92,45 @@ def run(run: Run, page: Page) -> None:
             "splines, which are the same surface",
             source="the same solid, meshed by the program",
         )
+
+
+@case(
+    "A housing read back from STEP and mesh files, against the parametric one",
+    source="the parametric housing itself, meshed by the program",
+)
+def run(run: Run, page: Page) -> None:
+    """Write the library's block to files, read them back, and compare stiffness."""
+    scene = sized(library_scene("main_bearing_bonded"), QUICK_COARSER if run.quick else COARSER)
+    joint = change_scene(
+        scene, {"bearing_units.0.interface": "spring", "bearing_units.0.stiffness": SPRING}
+    )
+    unit = joint.bearing_units[0]
+    bearing = with_bore(unit.bearing)
+    write_files(run, joint)
+    with run.step("parametric"):
+        own, bounds = unit_stiffness(joint, NAME), unit_bounds(scene, NAME)
+    rows = check_meshes(run, page, joint, own)
+    with run.step("STEP"):
+        foreign = with_housing(scene, FROM_STEP | {"step": str(run.folder / "block.step")})
+        step = unit_bounds(foreign, NAME)
+        housing = foreign.bearing_units[0].foreign
+        assert housing is not None
+        placed = placed_housing(housing, bearing, scene.mesh)
+    rows.append(row("block.step", "bonded: tied", bounds.stiff, step.stiff))
+    with run.step("STEP, all faces splines"):
+        data = FROM_STEP | {"step": str(run.folder / "splines.step")}
+        splines = unit_stiffness(with_housing(joint, data), NAME)
+    rows.append(row("splines.step", "6x6 spring", own, splines))
+    exact = unit_solids(bearing, unit.block, 0.4)[1].volume
+    page.equals(
+        "block.step: volume of the solid [m^3]",
+        placed.facts["volume after healing [m^3]"],
+        exact,
+        within=1e-9,
+        why="STEP keeps 15 digits",
+        source="the solid that was written",
+    )
+    check_stiffness(page, bounds, own, step, splines)
     page.section("Differences")
     page.table("Stiffness read back over that of the parametric housing, less one", rows)
     off, by_splines = (
@@ -124,6 +143,11 @@ def run(run: Run, page: Page) -> None:
         f"{100 * (bounds.mesh + step.mesh).bending:.2g} %."
     )
     page.image("The block as read from STEP, with its own mesh", run.sketch(placed.mesh))
+
+
+def with_bore(bearing: Bearing) -> Bearing:
+    """The bearing on a bore of 0.4 m."""
+    return bearing.model_copy(update={"bore_diameter": 0.4})
 
 
 def sized(scene: Scene, coarser: float) -> Scene:

@@ -6,14 +6,13 @@ import gmsh
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.foreign.seats import picture_under_hub_load
 from fe_drivetrain.common import Floats
 from fe_drivetrain.drivetrain_file import Scene, change_scene, parse_scene
 from fe_drivetrain.geometry import gmsh_session, write_step
-from fe_drivetrain.report import NoPictureError, picture_of_deformation
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.fidelity import LevelModel, housing_springs, shaft_level, unit_stiffness
 from fe_drivetrain.shafts.response import (
-    Model,
     Response,
     build_model,
     mesh_scene,
@@ -54,33 +53,26 @@ def alone(coupled: dict[str, Floats]) -> dict[str, Floats]:
     return {n: np.asarray(np.linalg.inv(C[b, b])) for n, b in zip(UNITS, blocks, strict=True)}
 
 
-@case(
-    "Two housings on one bedplate: supports that are coupled",
-    source="equilibrium; the assembly of solids; the bearing units on the ground",
-)
-def run(run: Run, page: Page) -> None:
-    """Share the hub loads between two bearings on a bedplate: coupled, apart, and as solids."""
-    file, size = str(run.folder / "bedplate.step"), 0.3 if run.quick else 0.15
-    with gmsh_session():
-        write_step(file, [gmsh.model.occ.addBox(-0.4, -0.8, -0.72, 2.3, 1.6, 0.3)])
-    ground = change_scene(parse_scene(SCENE), {"mesh.housing": size})
-    scene = on_bedplate(ground, file)
-    with run.step("assembly of solids"):
-        model = build_model(scene, mesh_scene(scene))
-        solid = unit_load_response(model)
-    found: dict[str, LevelModel] = {}
-    with run.step("bearing units, solved together and apart"):
-        stiff, soft = (housing_springs(scene, way)[0] for way in ("rigid", "averaged"))
-        found["coupled, faces in shape"] = shaft_level(scene, 2, stiff)
-        found["coupled, faces on average"] = shaft_level(scene, 2, soft)
-        found["each by itself"] = shaft_level(ground, 2, alone(stiff))
-        fixed = {name: unit_stiffness(ground, name, "rigid") for name in UNITS}
-        found["on the ground"] = shaft_level(ground, 2, fixed)
+def share(reactions: Mapping[str, Floats], load: str) -> float:
+    """Force on the rear bearing for a load at the hub, along it, or across a moment."""
+    row = LOADS[load] if load[0] == "F" else {"My": 2, "Mz": 1}[load]
+    return float(reactions["rear"][row, LOADS[load]])
 
-    def share(of: Mapping[str, Floats], load: str) -> float:
-        row = LOADS[load] if load[0] == "F" else {"My": 2, "Mz": 1}[load]
-        return float(of["rear"][row, LOADS[load]])
 
+def levels(scene: Scene, ground: Scene) -> dict[str, LevelModel]:
+    """Shafts on bearing units that are coupled by the bedplate, apart, or on the ground."""
+    stiff, soft = (housing_springs(scene, way)[0] for way in ("rigid", "averaged"))
+    fixed = {name: unit_stiffness(ground, name, "rigid") for name in UNITS}
+    return {
+        "coupled, faces in shape": shaft_level(scene, 2, stiff),
+        "coupled, faces on average": shaft_level(scene, 2, soft),
+        "each by itself": shaft_level(ground, 2, alone(stiff)),
+        "on the ground": shaft_level(ground, 2, fixed),
+    }
+
+
+def check(page: Page, found: dict[str, LevelModel], solid: Response) -> None:
+    """The assembly of solids lies between both ways to couple, and is in balance."""
     for load in LOADS:
         unit = "-" if load[0] == "F" else "1/m"
         low, high = sorted(share(found[f"coupled, faces {w}"].reaction_matrices, load)
@@ -101,6 +93,24 @@ def run(run: Run, page: Page) -> None:
         why="of a solution in balance round-off is left",
         source="equilibrium",
     )
+
+
+@case(
+    "Two housings on one bedplate: supports that are coupled",
+    source="equilibrium; the assembly of solids; the bearing units on the ground",
+)
+def run(run: Run, page: Page) -> None:
+    """Share the hub loads between two bearings on a bedplate: coupled, apart, and as solids."""
+    file, size = str(run.folder / "bedplate.step"), 0.3 if run.quick else 0.15
+    with gmsh_session():
+        write_step(file, [gmsh.model.occ.addBox(-0.4, -0.8, -0.72, 2.3, 1.6, 0.3)])
+    ground = change_scene(parse_scene(SCENE), {"mesh.housing": size})
+    scene = on_bedplate(ground, file)
+    with run.step("assembly of solids"):
+        model = build_model(scene, mesh_scene(scene))
+        solid = unit_load_response(model)
+    found = run.timed("bearing units, solved together and apart", levels, scene, ground)
+    check(page, found, solid)
     answers = {name: model_.reaction_matrices for name, model_ in found.items()}
     answers["assembly of solids"] = dict(solid.reactions)
     rows: list[Record] = [
@@ -110,7 +120,7 @@ def run(run: Run, page: Page) -> None:
     page.section("Force on the rear bearing")
     page.table("Of 1 N [-] and of 1 N m [1/m], along z for Fz and My, y for Fy and Mz", rows)
     page.text("Tied faces are glued all over: no joint opens or slides.")
-    picture(run, page, model, solid)
+    picture_under_hub_load(run, page, model, solid)
     solids, apart, base = (
         share(answers[n], "My") for n in ("assembly of solids", "each by itself", "on the ground")
     )
@@ -119,13 +129,3 @@ def run(run: Run, page: Page) -> None:
         f"Coupled supports say so within their band; supports that each know their own share of "
         f"the bedplate alone say {abs(apart):.3g} N, and housings on the ground {abs(base):.3g} N."
     )
-
-
-def picture(run: Run, page: Page, model: Model, response: Response) -> None:
-    """The housings on their bedplate under a force at the hub, exaggerated."""
-    down, file = -np.eye(len(model.loads))[model.loads.index("hub.Fz")], run.folder / "deformed.png"
-    try:
-        factor = picture_of_deformation(model, response, down, file, "1 N down")
-        page.image(f"1 N down at the hub, displacements times {factor:.3g}", "deformed.png")
-    except NoPictureError as error:
-        page.note(f"no picture: {error}")

@@ -2,7 +2,7 @@
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.published_gears import ISO_EXAMPLE_1, iso_example_1
-from fe_drivetrain.gear import iso_stiffness
+from fe_drivetrain.gear import iso_gear_stiffness
 from fe_drivetrain.report import gear_pair
 from fe_drivetrain.report.suite import Page, Run
 
@@ -19,7 +19,7 @@ def run(run: Run, page: Page) -> None:
     pair = iso_example_1()
     force = pair.tangential_force(TORQUE)
     with run.step("stiffness"):
-        found = iso_stiffness(pair, specific_load=force / pair.face_width)
+        found = iso_gear_stiffness(pair, specific_load=force / pair.face_width)
     computed = {
         "virtual teeth of the pinion": pair.first.virtual_teeth,
         "virtual teeth of the wheel": pair.second.virtual_teeth,

@@ -7,7 +7,7 @@ from fe_drivetrain.cases.gear.rows import mesh_row, stiffness_row
 from fe_drivetrain.cases.references.published_gears import NREL_5MW_PRINTED, nrel_5mw
 from fe_drivetrain.gear import (
     constant_law,
-    iso_stiffness,
+    iso_gear_stiffness,
     mesh_stiffness,
     ring_after_sun,
     sequence,
@@ -31,7 +31,7 @@ def run(run: Run, page: Page) -> None:
     rows: list[Record] = []
     for name, pair in pairs.items():
         printed = NREL_5MW_PRINTED[name]
-        found = run.timed(name, iso_stiffness, pair, blank=printed.blank)
+        found = run.timed(name, iso_gear_stiffness, pair, blank=printed.blank)
         backlash = {"backlash [µm]": 1e6 * pair.backlash}
         rows.append(mesh_row(name, pair) | backlash | stiffness_row(found))
         for quantity, value, expected in (

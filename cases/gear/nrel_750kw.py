@@ -4,7 +4,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.gear.rows import mesh_row, stiffness_row
 from fe_drivetrain.cases.references import published_gears as published
 from fe_drivetrain.dynamics import library_machine
-from fe_drivetrain.gear import iso_stiffness, parabolic_mean, rack_factor
+from fe_drivetrain.gear import iso_gear_stiffness, parabolic_mean, rack_factor
 from fe_drivetrain.report import gear_pair
 from fe_drivetrain.report.suite import Page, Record, Run, Target
 
@@ -34,7 +34,7 @@ def run(run: Run, page: Page) -> None:
     rows: list[Record] = []
     stiffness = {}
     for name, pair in pairs.items():
-        found = run.timed(name, iso_stiffness, pair)
+        found = run.timed(name, iso_gear_stiffness, pair)
         stiffness[name] = found.mesh * pair.face_width
         rows.append(
             {

@@ -81,7 +81,7 @@ def mesh_teeth(
     hub : float
         Radius where the gear is held [m].
     size : float
-        Of elements in the teeth, in modules.
+        Size of elements in the teeth, in modules.
     fine : tuple of two floats, optional
         A place on tooth 0 and the size of elements there [m].
 
@@ -96,44 +96,9 @@ def mesh_teeth(
     pitch = 2.0 * pi / gear.teeth
     last = _turned(right[-1:], -TEETH[-1] * pitch)
     outline = np.concatenate([*(_turned(one, -k * pitch) for k in TEETH), last])
-    inside = size * gear.normal_module
     with gmsh_session("teeth"):
-        geo = gmsh.model.geo
-        points = [geo.addPoint(x, y, 0.0) for x, y in outline]
-        centre = geo.addPoint(0.0, 0.0, 0.0)
-        # the rest of the root circle closes the outline, clockwise, in arcs below half a turn
-        start, end = (np.arctan2(outline[n, 0], outline[n, 1]) for n in (-1, 0))
-        angles = np.linspace(start, end + 2.0 * pi, 5)[1:-1]
-        arc = [
-            geo.addPoint(gear.root_radius * np.sin(a), gear.root_radius * np.cos(a), 0.0)
-            for a in angles
-        ]
-        way = [points[-1], *arc, points[0]]
-        lines = [geo.addLine(a, b) for a, b in pairwise(points)]
-        lines += [geo.addCircleArc(a, centre, b) for a, b in pairwise(way)]
-        quarter = [
-            geo.addPoint(hub * np.cos(a), hub * np.sin(a), 0.0) for a in 0.5 * pi * np.arange(4)
-        ]
-        bore = [geo.addCircleArc(quarter[n], centre, quarter[(n + 1) % 4]) for n in range(4)]
-        geo.addPlaneSurface([geo.addCurveLoop(lines), geo.addCurveLoop(bore)])
-        geo.synchronize()
-        near = [_turned(np.array([(0.0, gear.reference_radius)]), -k * pitch)[0] for k in (0, 1)]
-        grow = [
-            f"{inside} + 0.3 * max(0, sqrt((x-{x})^2 + (y-{y})^2) - {1.6 * gear.normal_module})"
-            for x, y in near
-        ]
-        if fine is not None:
-            x, y = flank_points(gear, np.array([fine[0]]))[0]
-            grow.append(f"{fine[1]} + 0.15 * sqrt((x-{x})^2 + (y-{y})^2)")
-        field = gmsh.model.mesh.field
-        found = [field.add("MathEval") for _ in grow]
-        for number, text in zip(found, grow, strict=True):
-            field.setString(number, "F", text)
-        least = field.add("Min")
-        field.setNumbers(least, "FieldsList", found)
-        field.setAsBackgroundMesh(least)
-        for option in ("ExtendFromBoundary", "FromPoints", "FromCurvature"):
-            gmsh.option.setNumber(f"Mesh.MeshSize{option}", 0)
+        _add_outline(gear, outline, hub)
+        _set_sizes(_grown_sizes(gear, size * gear.normal_module, fine))
         gmsh.model.mesh.generate(2)
         tags, nodes, _ = gmsh.model.mesh.getNodes()
         cells = gmsh.model.mesh.getElementsByType(2)[1]
@@ -146,17 +111,65 @@ def mesh_teeth(
     return ToothSection(gear, flank, mesh, hub)
 
 
+def _add_outline(gear: Gear, outline: Floats, hub: float) -> None:
+    """The surface between the hub and an outline of teeth, closed along the root circle."""
+    geo = gmsh.model.geo
+    points = [geo.addPoint(x, y, 0.0) for x, y in outline]
+    centre = geo.addPoint(0.0, 0.0, 0.0)
+    # the rest of the root circle closes the outline, clockwise, in arcs below half a turn
+    start, end = (np.arctan2(outline[n, 0], outline[n, 1]) for n in (-1, 0))
+    angles = np.linspace(start, end + 2.0 * pi, 5)[1:-1]
+    arc = [
+        geo.addPoint(gear.root_radius * np.sin(a), gear.root_radius * np.cos(a), 0.0)
+        for a in angles
+    ]
+    way = [points[-1], *arc, points[0]]
+    lines = [geo.addLine(a, b) for a, b in pairwise(points)]
+    lines += [geo.addCircleArc(a, centre, b) for a, b in pairwise(way)]
+    quarter = [geo.addPoint(hub * np.cos(a), hub * np.sin(a), 0.0) for a in 0.5 * pi * np.arange(4)]
+    bore = [geo.addCircleArc(quarter[n], centre, quarter[(n + 1) % 4]) for n in range(4)]
+    geo.addPlaneSurface([geo.addCurveLoop(lines), geo.addCurveLoop(bore)])
+    geo.synchronize()
+
+
+def _grown_sizes(gear: Gear, inside: float, fine: tuple[float, float] | None) -> list[str]:
+    """Sizes of elements over x and y [m], of which the smallest counts."""
+    pitch = 2.0 * pi / gear.teeth
+    near = [_turned(np.array([(0.0, gear.reference_radius)]), -k * pitch)[0] for k in (0, 1)]
+    grow = [
+        f"{inside} + 0.3 * max(0, sqrt((x-{x})^2 + (y-{y})^2) - {1.6 * gear.normal_module})"
+        for x, y in near
+    ]
+    if fine is not None:
+        x, y = flank_points(gear, np.array([fine[0]]))[0]
+        grow.append(f"{fine[1]} + 0.15 * sqrt((x-{x})^2 + (y-{y})^2)")
+    return grow
+
+
+def _set_sizes(formulas: list[str]) -> None:
+    """Sizes of elements from the smallest of several formulas, and from nothing else."""
+    field = gmsh.model.mesh.field
+    found = [field.add("MathEval") for _ in formulas]
+    for number, text in zip(found, formulas, strict=True):
+        field.setString(number, "F", text)
+    least = field.add("Min")
+    field.setNumbers(least, "FieldsList", found)
+    field.setAsBackgroundMesh(least)
+    for option in ("ExtendFromBoundary", "FromPoints", "FromCurvature"):
+        gmsh.option.setNumber(f"Mesh.MeshSize{option}", 0)
+
+
 def compliances(section: ToothSection, plane: Plane, depth: float = DEPTH) -> Floats:
     """Influence of unit line loads along the line of action on both teeth.
 
     Parameters
     ----------
     section : ToothSection
-        Of `mesh_teeth`.
+        Meshed gear.
     plane : Plane
         Elastic constants, of plane stress or plane strain.
     depth : float
-        Of the points whose motion it is, as a share of the way to the tooth's centre line.
+        Depth of the points whose motion it is, as a share of the way to the tooth's centre line.
 
     Returns
     -------
@@ -203,7 +216,7 @@ def pressed_surface(
     hub : float
         Radius where the gear is held [m].
     half_width : float
-        Of the contact [m].
+        Half width of the contact [m].
     plane : Plane
         Elastic constants.
 
@@ -256,7 +269,7 @@ class MeshedPair:
     places : (n,) array
         Places of contact from T1, from the start of the path of contact in equal steps [m].
     steps : int
-        In a base pitch.
+        Number of places in a base pitch.
     first, second : (2, n, 2, n) arrays
         `compliances` of the gears; tooth 1 is in contact a base pitch further on the path, on both
         gears, and places of the second are in the order of those of the first.
@@ -277,7 +290,7 @@ class MeshedPair:
         Parameters
         ----------
         load : float
-            On a length of face, for the contact [N/m].
+            Load on a length of face, for the contact [N/m].
 
         Returns
         -------
@@ -294,7 +307,7 @@ class MeshedPair:
         Parameters
         ----------
         load : float
-            On a length of face, for the contact [N/m].
+            Load on a length of face, for the contact [N/m].
         coupled : bool
             Whether a pair feels what the other does to both gear bodies; if not, stiffnesses of
             single pairs add up.
@@ -355,11 +368,11 @@ def meshed_pair(
     plane : Plane
         Elastic constants of the teeth.
     steel : Steel
-        Of the contact, which is in plane strain.
+        Elastic constants of the contact, which is in plane strain.
     steps : int
         Places in a base pitch.
     size : float
-        Of elements in the teeth, in modules.
+        Size of elements in the teeth, in modules.
 
     Returns
     -------

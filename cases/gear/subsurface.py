@@ -47,13 +47,8 @@ def meshes() -> dict[str, tuple[Pair, float, float, float]]:
     }
 
 
-@case(
-    "Stress below the flanks of gears: NREL 750 kW at 325 kN m",
-    source="Al-Hamadani 2018, Eq 5.13 to 5.22; Johnson 1985, Contact mechanics, ch. 4",
-)
-def run(run: Run, page: Page) -> None:
-    """Constants of the field, pressures and depths of four meshes, ratios of the thesis."""
-    unit = LineContact(1e6, 0.02, STEEL)
+def check_constants(page: Page, unit: LineContact) -> None:
+    """Stress below a line contact, over its pressure and half width."""
     shear, depth = unit.largest_shear
     mises, deep = unit.largest_von_mises()
     for name, ours, exact in (
@@ -70,10 +65,10 @@ def run(run: Run, page: Page) -> None:
             why="the digits of the constant",
             source=HERTZ,
         )
-    found = {
-        name: tooth_contact(mesh, mesh.path.pitch, load, STEEL)
-        for name, (mesh, load, _, _) in meshes().items()
-    }
+
+
+def contact_rows(page: Page, found: dict[str, LineContact]) -> list[Record]:
+    """Contact at the pitch point of each mesh, as recomputed from the publication."""
     rows: list[Record] = []
     for name, (mesh, load, pressure, at) in meshes().items():
         contact = found[name]
@@ -106,22 +101,39 @@ def run(run: Run, page: Page) -> None:
             why="half of the last of the two digits that are printed",
             source=SOURCE,
         )
+    return rows
+
+
+def ratio_rows(found: dict[str, LineContact]) -> list[Record]:
+    """Pressures of the fast meshes over the slow ones, beside those that the thesis prints."""
     highest = found["high speed"].pressure
-    ratios = [
+    return [
         {
             "ratio": f"high speed over {name}",
             "ours, GRC": highest / found[name].pressure,
             "Al-Hamadani 2018, 2 MW": printed,
         }
-        for name, printed in (("ring and planet", 2.32), ("sun and planet", 1.32))
+        for name, printed in (
+            ("ring and planet", 2.32),
+            ("sun and planet", 1.32),
+            ("intermediate", 1.22),
+        )
     ]
-    ratios.append(
-        {
-            "ratio": "high speed over intermediate",
-            "ours, GRC": highest / found["intermediate"].pressure,
-            "Al-Hamadani 2018, 2 MW": 1.22,
-        }
-    )
+
+
+@case(
+    "Stress below the flanks of gears: NREL 750 kW at 325 kN m",
+    source="Al-Hamadani 2018, Eq 5.13 to 5.22; Johnson 1985, Contact mechanics, ch. 4",
+)
+def run(run: Run, page: Page) -> None:
+    """Constants of the field, pressures and depths of four meshes, ratios of the thesis."""
+    unit = LineContact(1e6, 0.02, STEEL)
+    check_constants(page, unit)
+    found = {
+        name: tooth_contact(mesh, mesh.path.pitch, load, STEEL)
+        for name, (mesh, load, _, _) in meshes().items()
+    }
+    rows = contact_rows(page, found)
     page.answer(
         "At 325 kN m the flanks see "
         + ", ".join(f"{r['pressure [MPa]']:.0f} MPa ({r['mesh']})" for r in rows)
@@ -130,7 +142,8 @@ def run(run: Run, page: Page) -> None:
     page.section("Four meshes")
     page.table("Contact at the pitch point", rows)
     page.table(
-        "Ratios of pressures, beside those that the thesis prints of its 2 MW gearbox", ratios
+        "Ratios of pressures, beside those that the thesis prints of its 2 MW gearbox",
+        ratio_rows(found),
     )
     page.text(
         f"The thesis's 2.32 and 1.32 make sun over ring {2.32 / 1.32:.3f}. For its teeth (29, 58, "
@@ -140,6 +153,12 @@ def run(run: Run, page: Page) -> None:
         "half width of Eq 5.14 needs the radius 1 / (1/R1 + 1/R2). Its 0.57 for von Mises' stress "
         "belongs to a Poisson ratio of 0.28 rather than 0.3, where it is 0.5575."
     )
+    show_field(page, unit)
+    page.image("Sun and planet", run.sketch(*gear_pair(nrel_750kw()["sun"])))
+
+
+def show_field(page: Page, unit: LineContact) -> None:
+    """Stress below the surface, over the pressure."""
     page.section("Below the surface")
     z = np.linspace(0.01, 3.0, 120)
     field = unit.stresses(0.0, z * unit.half_width) / unit.pressure
@@ -154,4 +173,3 @@ def run(run: Run, page: Page) -> None:
         "depth over half width",
         "stress over pressure",
     )
-    page.image("Sun and planet", run.sketch(*gear_pair(nrel_750kw()["sun"])))

@@ -4,13 +4,14 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.gear import published_hours as printed
+from fe_drivetrain.common import Floats
 from fe_drivetrain.gear import ParallelStage, PlanetaryStage, loads_per_turn
-from fe_drivetrain.report.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.turbine_loads.histories import Site, time_factors
 
 STAGES = (PlanetaryStage(29, 58, 145), ParallelStage(108, 27), ParallelStage(111, 29))
 LASTING = 20.0
-"""Of a history [s]."""
+"""Duration of a history [s]."""
 
 
 @case(
@@ -22,6 +23,40 @@ def run(run: Run, page: Page) -> None:
     edges = np.arange(3.0, 26.0)
     hours = Site(mean_wind=10.0, years=20.0).hours(edges)
     factors = time_factors(hours, LASTING)
+    check_tables(page, edges, hours, factors)
+    rows = counted_loads()
+    worst = max(rows, key=lambda row: float(str(row["counted over printed"])))
+    page.section("Hours in 20 years and time factors")
+    winds = zip(printed.WINDS, hours, printed.HOURS, factors, printed.FACTORS, strict=True)
+    page.table(
+        "Table 7.1",
+        [
+            (wind, round(float(mine)), hour, round(float(factor)), given)
+            for wind, mine, hour, factor, given in winds
+        ],
+        ("wind [m/s]", "hours", "printed hours", "time factor", "printed factor"),
+    )
+    page.section("Time factors of gears")
+    page.table("Loads of a tooth's flank over those of the ring's, drivetrain C", rows)
+    page.text(
+        "Table 7.2 divides by teeth and by ratios of speed, so that teeth of faster shafts count "
+        "less. A tooth of a faster shaft meshes more often: a tooth of the ring three times in a "
+        "turn of the carrier, of the sun once for each planet that passes, of a pinion once in "
+        "each of its own turns. The last column is what damage by Table 7.2 has to be multiplied "
+        "by, beside that of the ring."
+    )
+    page.answer(
+        "Tables 7.1 and 7.2 come out to the digit: hours of bins that end at the wind named, "
+        f"{hours.sum() / 1752.0:.1f} % of 20 years in all, and their factors over teeth and "
+        "ratios.",
+        "Table 7.2 divides by ratios of speed that have to multiply: beside the ring, a tooth of "
+        f"the {worst['tooth']} is loaded {float(str(worst['counted over printed'])):.0f} times as "
+        "often as printed.",
+    )
+
+
+def check_tables(page: Page, edges: Floats, hours: Floats, factors: Floats) -> None:
+    """Both tables come out to the digit."""
     for name, ours, table in (
         ("hours", hours, printed.HOURS),
         ("time factors", factors, printed.FACTORS),
@@ -42,9 +77,13 @@ def run(run: Run, page: Page) -> None:
         why="half of the last digit",
         source="time factors over teeth of the planet, of the ring, and of the planet times ratios",
     )
+
+
+def counted_loads() -> list[Record]:
+    """Loads of each tooth over those of the ring's, as printed and as counted."""
     turns = loads_per_turn(STAGES)
     ring = printed.DIVISORS["stage 1 ring"]
-    rows = [
+    return [
         {
             "tooth": name,
             "printed: over the ring's": ring / divisor,
@@ -53,37 +92,3 @@ def run(run: Run, page: Page) -> None:
         }
         for name, divisor in printed.DIVISORS.items()
     ]
-    worst = max(rows, key=lambda row: float(str(row["counted over printed"])))
-    page.section("Hours in 20 years and time factors")
-    page.table(
-        "Table 7.1",
-        [
-            {
-                "wind [m/s]": wind,
-                "hours": round(float(mine)),
-                "printed hours": hour,
-                "time factor": round(float(factor)),
-                "printed factor": given,
-            }
-            for wind, mine, hour, factor, given in zip(
-                printed.WINDS, hours, printed.HOURS, factors, printed.FACTORS, strict=True
-            )
-        ],
-    )
-    page.section("Time factors of gears")
-    page.table("Loads of a tooth's flank over those of the ring's, drivetrain C", rows)
-    page.text(
-        "Table 7.2 divides by teeth and by ratios of speed, so that teeth of faster shafts count "
-        "less. A tooth of a faster shaft meshes more often: a tooth of the ring three times in a "
-        "turn of the carrier, of the sun once for each planet that passes, of a pinion once in "
-        "each of its own turns. The last column is what damage by Table 7.2 has to be multiplied "
-        "by, beside that of the ring."
-    )
-    page.answer(
-        "Tables 7.1 and 7.2 come out to the digit: hours of bins that end at the wind named, "
-        f"{hours.sum() / 1752.0:.1f} % of 20 years in all, and their factors over teeth and "
-        "ratios.",
-        "Table 7.2 divides by ratios of speed that have to multiply: beside the ring, a tooth of "
-        f"the {worst['tooth']} is loaded {float(str(worst['counted over printed'])):.0f} times as "
-        "often as printed.",
-    )

@@ -21,6 +21,7 @@ from fe_drivetrain.cases.references.published_gears import nrel_5mw
 from fe_drivetrain.common import Floats
 from fe_drivetrain.gear import (
     Gear,
+    IsoStiffness,
     Pair,
     Steel,
     cai_law,
@@ -28,7 +29,7 @@ from fe_drivetrain.gear import (
     contact_depths,
     contact_half_width,
     energy_law,
-    iso_stiffness,
+    iso_gear_stiffness,
     kuang_yang_law,
     meshing_without_backlash,
     parabolic_law,
@@ -55,6 +56,7 @@ PAIRS: dict[str, tuple[Callable[[], Pair], tuple[float, float]]] = {
     ),
     "sun and planet of stage 2, NREL 5 MW": (lambda: nrel_5mw()["sun 2"], (0.08, 0.2)),
 }
+COUPLED, PLANE_STRESS = "elements, coupled", "elements, plane stress"
 ELEMENTS = "plane finite elements of the true tooth shape"
 
 
@@ -91,40 +93,50 @@ def run(run: Run, page: Page) -> None:
     page.image("The first of the pairs", run.sketch(*gear_pair(next(iter(PAIRS.values()))[0]())))
 
 
-def one_pair(
-    run: Run, page: Page, name: str, pair: Pair, hubs: tuple[float, float], steps: int
-) -> str:
-    """All methods on one pair: checks, charts, and the answer in a sentence."""
-    iso = iso_stiffness(pair)
-    with run.step(f"{name}: fine elements"):
-        fine = meshed_pair(pair, hubs, STRAIN, STEEL, steps, QUICK_FINE if run.quick else FINE)
-    exact, single, places = fine.mesh(LOAD), fine.single(LOAD), fine.places
-    weights = shares_of_time(pair, len(places), steps)
-    mean = float(weights @ exact)
+def summed(stiffness: Floats, steps: int) -> Floats:
+    """Stiffness of single pairs at all places, added up over the phases of a period."""
+    total = stiffness[:steps].copy()
+    total[: len(stiffness) - steps] += stiffness[steps:]
+    return total
 
-    def summed(law: Callable[[Floats], Floats]) -> Floats:
-        values = law(places)
-        total = values[:steps].copy()
-        total[: len(values) - steps] += values[steps:]
-        return total
+
+def methods_of(
+    pair: Pair, hubs: tuple[float, float], places: Floats, steps: int
+) -> dict[str, Callable[[], Floats]]:
+    """Mesh stiffness over the phases by each method, cheap to expensive."""
+    iso = iso_gear_stiffness(pair)
 
     def elements(plane: Plane, coupled: bool) -> Floats:
         return meshed_pair(pair, hubs, plane, STEEL, steps, COARSE).mesh(LOAD, coupled)
 
-    methods: dict[str, Callable[[], Floats]] = {
+    return {
         "ISO 6336-1, mean c_gamma": lambda: np.full(steps, iso.mesh),
-        "ISO 6336-1, c' of each pair": lambda: summed(constant_law(iso.single)),
-        "parabola, 14 N/(mm µm)": lambda: summed(parabolic_law(pair, STIFFNESS_RATIO)),
-        "Cai, c' of ISO": lambda: summed(cai_law(pair, iso.single)),
-        "Kuang and Yang": lambda: summed(kuang_yang_law(pair)),
-        "energy, contact of Yang and Sun": lambda: summed(energy_law(pair, hubs)),
-        "energy, line contact": lambda: summed(energy_law(pair, hubs, LOAD)),
+        "ISO 6336-1, c' of each pair": lambda: summed(constant_law(iso.single)(places), steps),
+        "parabola, 14 N/(mm µm)": lambda: summed(
+            parabolic_law(pair, STIFFNESS_RATIO)(places), steps
+        ),
+        "Cai, c' of ISO": lambda: summed(cai_law(pair, iso.single)(places), steps),
+        "Kuang and Yang": lambda: summed(kuang_yang_law(pair)(places), steps),
+        "energy, contact of Yang and Sun": lambda: summed(energy_law(pair, hubs)(places), steps),
+        "energy, line contact": lambda: summed(energy_law(pair, hubs, LOAD)(places), steps),
         "elements, pairs apart": lambda: elements(STRAIN, False),
-        "elements, plane stress": lambda: elements(STRESS, True),
-        "elements, coupled": lambda: elements(STRAIN, True),
+        PLANE_STRESS: lambda: elements(STRESS, True),
+        COUPLED: lambda: elements(STRAIN, True),
     }
+
+
+def one_pair(
+    run: Run, page: Page, name: str, pair: Pair, hubs: tuple[float, float], steps: int
+) -> str:
+    """All methods on one pair: checks, charts, and the answer in a sentence."""
+    with run.step(f"{name}: fine elements"):
+        fine = meshed_pair(pair, hubs, STRAIN, STEEL, steps, QUICK_FINE if run.quick else FINE)
+    exact = fine.mesh(LOAD)
+    weights = shares_of_time(pair, len(fine.places), steps)
+    mean = float(weights @ exact)
+    methods = methods_of(pair, hubs, fine.places, steps)
     if run.quick:
-        methods.pop("elements, plane stress")
+        methods.pop(PLANE_STRESS)
     rows: list[Record] = []
     waves = {}
     for method, work in methods.items():
@@ -144,34 +156,8 @@ def one_pair(
         )
     split = checks(run, page, name, fine, hubs, waves)
     page.section(name[0].upper() + name[1:])
-    at = np.append(np.arange(steps) / steps, 1.0)
-    page.chart(
-        f"{name}: mesh stiffness over the phase, {LOAD / 1e3:g} N/mm",
-        [
-            trace("elements, fine, coupled", at, np.append(exact, exact[0]) / 1e9),
-            *(
-                trace(m, at, np.append(w, w[0]) / 1e9, line={"dash": "dot"})
-                for m, w in waves.items()
-                if m not in ("elements, coupled", "elements, plane stress")
-            ),
-        ],
-        "phase [periods]",
-        "stiffness [N/(mm µm)]",
-    )
-    along = (places - pair.path.pitch) / pair.first.base_pitch
-    page.chart(
-        f"{name}: stiffness of one pair along the path of contact",
-        [
-            trace("elements, fine", along, single / 1e9),
-            trace("ISO 6336-1, c'", along[[0, -1]], np.full(2, iso.single) / 1e9),
-            trace("parabola", along, parabolic_law(pair, STIFFNESS_RATIO)(places) / 1e9),
-            trace("Cai", along, cai_law(pair, iso.single)(places) / 1e9),
-            trace("Kuang and Yang", along, kuang_yang_law(pair)(places) / 1e9),
-            trace("energy, line contact", along, energy_law(pair, hubs, LOAD)(places) / 1e9),
-        ],
-        "place from the pitch point [base pitches]",
-        "stiffness [N/(mm µm)]",
-    )
+    show_phase(page, name, exact, waves)
+    show_path(page, name, fine, hubs)
     page.sweep(
         f"{name}: error against fine coupled elements, and time",
         rows,
@@ -191,6 +177,44 @@ def one_pair(
     )
 
 
+def show_phase(page: Page, name: str, exact: Floats, waves: dict[str, Floats]) -> None:
+    """Mesh stiffness over the phase, by all methods."""
+    at = np.append(np.arange(len(exact)) / len(exact), 1.0)
+    page.chart(
+        f"{name}: mesh stiffness over the phase, {LOAD / 1e3:g} N/mm",
+        [
+            trace("elements, fine, coupled", at, np.append(exact, exact[0]) / 1e9),
+            *(
+                trace(m, at, np.append(w, w[0]) / 1e9, line={"dash": "dot"})
+                for m, w in waves.items()
+                if m not in (COUPLED, PLANE_STRESS)
+            ),
+        ],
+        "phase [periods]",
+        "stiffness [N/(mm µm)]",
+    )
+
+
+def show_path(page: Page, name: str, fine: MeshedPair, hubs: tuple[float, float]) -> None:
+    """Stiffness of one pair along the path of contact."""
+    pair, places = fine.pair, fine.places
+    iso = iso_gear_stiffness(pair)
+    along = (places - pair.path.pitch) / pair.first.base_pitch
+    page.chart(
+        f"{name}: stiffness of one pair along the path of contact",
+        [
+            trace("elements, fine", along, fine.single(LOAD) / 1e9),
+            trace("ISO 6336-1, c'", along[[0, -1]], np.full(2, iso.single) / 1e9),
+            trace("parabola", along, parabolic_law(pair, STIFFNESS_RATIO)(places) / 1e9),
+            trace("Cai", along, cai_law(pair, iso.single)(places) / 1e9),
+            trace("Kuang and Yang", along, kuang_yang_law(pair)(places) / 1e9),
+            trace("energy, line contact", along, energy_law(pair, hubs, LOAD)(places) / 1e9),
+        ],
+        "place from the pitch point [base pitches]",
+        "stiffness [N/(mm µm)]",
+    )
+
+
 def shares_of_time(pair: Pair, places: int, steps: int) -> Floats:
     """Weights of the phases in means: two pairs are in contact for epsilon - 1 of a period."""
     two = np.arange(steps) + steps < places
@@ -207,57 +231,83 @@ def checks(
     waves: dict[str, Floats],
 ) -> list[Record]:
     """Judge elements by themselves, then formulas by elements; the split of contact by depth."""
-    pair = fine.pair
-    exact, single = fine.mesh(LOAD), fine.single(LOAD)
     page.vanishes(
         f"{name}: coarse elements against fine ones, largest",
-        float(np.abs(waves["elements, coupled"] / exact - 1.0).max()),
+        float(np.abs(waves[COUPLED] / fine.mesh(LOAD) - 1.0).max()),
         within=0.01,
         why="quadratic triangles of a fifth of a module",
         source="the finest elements",
     )
-    rows: list[Record] = []
     with run.step(f"{name}: pressure on the surface"):
-        curvatures = pair.curvatures(np.array([pair.path.pitch]))
-        width = float(contact_half_width(LOAD, curvatures)[0])
-        sides = list(
-            zip(("first", "second"), (pair.first, pair.second), hubs, curvatures, strict=True)
-        )
-        for which, gear, hub, at in sides[: 1 if run.quick else None]:
-            direct = pressed_surface(gear, float(at[0]), hub, width, STRAIN)
-            mesh = mesh_teeth(gear, at, hub, QUICK_FINE)
-            for share in DEPTHS:
-                body = float(compliances(mesh, STRAIN, share)[0, 0, 0, 0])
-                depth = share * float(contact_depths(gear, at)[0])
-                near = (2.0 * np.log(2.0 * depth / width) - STRAIN.nu) / (np.pi * STRAIN.E)
-                rows.append(
-                    {
-                        "tooth": which,
-                        "depth over that of the centre line": share,
-                        "compliance [m^2/N]": body + near,
-                        "error [%]": 100.0 * ((body + near) / direct - 1.0),
-                    }
-                )
-                if share == DEPTH:
-                    page.equals(
-                        f"{name}: {which} tooth at the pitch point, contact apart [m^2/N]",
-                        body + near,
-                        direct,
-                        within=0.015,
-                        why="a tooth is a half plane near its surface only: the error goes with "
-                        "the depth, and is some 3 % from the centre line",
-                        source="Hertz's pressure on elements of an eighth of the half width",
-                        measure="deflection",
-                    )
-    iso = iso_stiffness(pair)
+        rows = check_split(page, name, fine.pair, hubs, run.quick)
     with run.step(f"{name}: hubs and loads"):
-        ends = []
-        for share, load in (SOFTEST, STIFFEST):
-            held = (share * pair.first.root_radius, share * pair.second.root_radius)
-            gears = meshed_pair(pair, held, STRAIN, STEEL, 6, COARSE)
-            weights = shares_of_time(pair, len(gears.places), gears.steps)
-            mean = float(weights @ gears.mesh(load))
-            ends.append((float(gears.single(load).max()) / 1e9, mean / 1e9))
+        ends = stiffness_of_ends(fine.pair)
+    check_standard(page, name, iso_gear_stiffness(fine.pair), ends)
+    energy = energy_law(fine.pair, hubs, LOAD)(fine.places)
+    middle = np.abs(fine.places - fine.places.mean()) < 0.3 * np.ptp(fine.places)
+    page.vanishes(
+        f"{name}: energy with line contact, one pair, largest error in the middle of the path",
+        float(np.abs(energy / fine.single(LOAD) - 1.0)[middle].max()),
+        within=0.15,
+        why="plane stress instead of plane strain, a tenth, and a short cantilever as a beam",
+        source=ELEMENTS,
+    )
+    return rows
+
+
+def check_split(
+    page: Page, name: str, pair: Pair, hubs: tuple[float, float], quick: bool
+) -> list[Record]:
+    """Compliance at the pitch point, contact apart at several depths, and under a pressure."""
+    curvatures = pair.curvatures(np.array([pair.path.pitch]))
+    width = float(contact_half_width(LOAD, curvatures)[0])
+    sides = list(zip(("first", "second"), (pair.first, pair.second), hubs, curvatures, strict=True))
+    rows = []
+    for which, gear, hub, at in sides[: 1 if quick else None]:
+        direct = pressed_surface(gear, float(at[0]), hub, width, STRAIN)
+        mesh = mesh_teeth(gear, at, hub, QUICK_FINE)
+        for share in DEPTHS:
+            body = float(compliances(mesh, STRAIN, share)[0, 0, 0, 0])
+            depth = share * float(contact_depths(gear, at)[0])
+            near = (2.0 * np.log(2.0 * depth / width) - STRAIN.nu) / (np.pi * STRAIN.E)
+            rows.append(
+                {
+                    "tooth": which,
+                    "depth over that of the centre line": share,
+                    "compliance [m^2/N]": body + near,
+                    "error [%]": 100.0 * ((body + near) / direct - 1.0),
+                }
+            )
+            if share == DEPTH:
+                page.equals(
+                    f"{name}: {which} tooth at the pitch point, contact apart [m^2/N]",
+                    body + near,
+                    direct,
+                    within=0.015,
+                    why="a tooth is a half plane near its surface only: the error goes with the "
+                    "depth, and is some 3 % from the centre line",
+                    source="Hertz's pressure on elements of an eighth of the half width",
+                    measure="deflection",
+                )
+    return rows
+
+
+def stiffness_of_ends(pair: Pair) -> list[tuple[float, float]]:
+    """One pair and mean mesh stiffness [N/(mm µm)] of the softest and the stiffest gears."""
+    ends = []
+    for share, load in (SOFTEST, STIFFEST):
+        held = (share * pair.first.root_radius, share * pair.second.root_radius)
+        gears = meshed_pair(pair, held, STRAIN, STEEL, 6, COARSE)
+        weights = shares_of_time(pair, len(gears.places), gears.steps)
+        mean = float(weights @ gears.mesh(load))
+        ends.append((float(gears.single(load).max()) / 1e9, mean / 1e9))
+    return ends
+
+
+def check_standard(
+    page: Page, name: str, iso: IsoStiffness, ends: list[tuple[float, float]]
+) -> None:
+    """The standard's stiffness is between those of the softest and the stiffest gears."""
     for quantity, value, low, high in (
         ("one pair by ISO 6336-1, c'", iso.single, ends[0][0], ends[1][0]),
         ("mean by ISO 6336-1, c_gamma", iso.mesh, ends[0][1], ends[1][1]),
@@ -274,13 +324,3 @@ def checks(
             unit="N/(mm µm)",
             measure="stiffness",
         )
-    energy = energy_law(pair, hubs, LOAD)(fine.places)
-    middle = np.abs(fine.places - fine.places.mean()) < 0.3 * np.ptp(fine.places)
-    page.vanishes(
-        f"{name}: energy with line contact, one pair, largest error in the middle of the path",
-        float(np.abs(energy / single - 1.0)[middle].max()),
-        within=0.15,
-        why="plane stress instead of plane strain, a tenth, and a short cantilever as a beam",
-        source=ELEMENTS,
-    )
-    return rows

@@ -218,68 +218,21 @@ def measures(made: TurbineHistory, loads: Floats) -> Record:
 
 def compare(page: Page, found: dict[str, list[Record]]) -> None:
     """Means by wind, differences of the same winds, and the thesis's statements."""
-    slow, tuned = found["slow"], found["tuned"]
-    names = [name for name in slow[0] if name not in ("wind [m/s]", "seed")]
-    rows: list[Record] = []
-    for wind in dict.fromkeys(row["wind [m/s]"] for row in slow):
-        for label, of in found.items():
-            own = [row for row in of if row["wind [m/s]"] == wind]
-            rows.append(
-                {"wind [m/s]": wind, "controller": label}
-                | {name: mean([row[name] for row in own]) for name in names}
-            )
     page.section("The same winds, two tunings")
+    rows = means_by_wind(found)
     page.table("Means over seeds", rows)
     page.data("means", rows)
-    changes: list[Record] = []
-    for name in names:
-        pairs = zip(slow, tuned, strict=True)
-        change = np.array([float(t[name]) - float(s[name]) for s, t in pairs])  # type: ignore[arg-type]
-        error = change.std(ddof=1) / np.sqrt(len(change)) if len(change) > 1 else np.nan
-        changes.append(
-            {
-                "quantity": name,
-                "slow, mean": mean([s[name] for s in slow]),
-                "tuned less slow": float(change.mean()),
-                "its standard error": float(error),
-                "histories in which it falls": f"{int((change < 0).sum())} of {len(change)}",
-            }
-        )
+    changes = changes_by_tuning(found)
     page.table("Differences of histories of one wind and seed", changes)
     page.data("changes", changes)
-    by_name = {row["quantity"]: row for row in changes}
-
-    def statement(words: str, name: str, falls: bool) -> list[str]:
-        row = by_name[name]
-        change, error = float(row["tuned less slow"]), float(row["its standard error"])
-        agrees = "yes" if (change < 0.0) == falls else "no"
-        clear = "" if abs(change) > 2.0 * error else ", within what seeds scatter"
-        unit = name[name.index("[") + 1 : -1]
-        shown = f"{float(row['slow, mean']):.3g} {unit}, {change:+.2g} {unit}"
-        return [words, shown, agrees + clear]
-
-    said = [
-        statement(
-            "variation of the radial force is slightly reduced",
-            "radial force, standard deviation [kN]",
-            True,
-        ),
-        statement(
-            "variation of the moment is slightly reduced", "moment, standard deviation [kN m]", True
-        ),
-        statement(
-            "the moment shifts to the left (overturning)",
-            "moment, mean component to the left [kN m]",
-            False,
-        ),
-        statement("it is more focused about 180 deg", FOCUS, False),
-    ]
+    by_name = {str(row["quantity"]): row for row in changes}
+    said = statements(by_name)
     page.table(
         "Statements of appendix A, and ours for tuned against slow",
         said,
         ["thesis", "slow, and what tuning adds", "agrees"],
     )
-    speed = by_name[names[0]]
+    speed = changes[0]
     page.answer(
         f"Twice as fast a controller lowers the rotor speed's standard deviation from "
         f"{float(speed['slow, mean']):.1f} % to "
@@ -295,6 +248,76 @@ def compare(page: Page, found: dict[str, list[Record]]) -> None:
         "alone, in the same wind. A controller that turned each blade by itself, or one that held "
         "another mean pitch, would do more; the thesis says neither."
     )
+
+
+def quantities_of(found: dict[str, list[Record]]) -> list[str]:
+    """Names of what each history was measured by."""
+    return [name for name in found["slow"][0] if name not in ("wind [m/s]", "seed")]
+
+
+def means_by_wind(found: dict[str, list[Record]]) -> list[Record]:
+    """Each quantity by wind speed and controller, means over seeds."""
+    rows: list[Record] = []
+    for wind in dict.fromkeys(row["wind [m/s]"] for row in found["slow"]):
+        for label, of in found.items():
+            own = [row for row in of if row["wind [m/s]"] == wind]
+            rows.append(
+                {"wind [m/s]": wind, "controller": label}
+                | {name: mean([row[name] for row in own]) for name in quantities_of(found)}
+            )
+    return rows
+
+
+def changes_by_tuning(found: dict[str, list[Record]]) -> list[Record]:
+    """What tuning changes of each quantity, over histories of one wind and seed."""
+    slow, tuned = found["slow"], found["tuned"]
+    rows: list[Record] = []
+    for name in quantities_of(found):
+        pairs = zip(slow, tuned, strict=True)
+        change = np.array([float(t[name]) - float(s[name]) for s, t in pairs])  # type: ignore[arg-type]
+        error = change.std(ddof=1) / np.sqrt(len(change)) if len(change) > 1 else np.nan
+        rows.append(
+            {
+                "quantity": name,
+                "slow, mean": mean([s[name] for s in slow]),
+                "tuned less slow": float(change.mean()),
+                "its standard error": float(error),
+                "histories in which it falls": f"{int((change < 0).sum())} of {len(change)}",
+            }
+        )
+    return rows
+
+
+def statements(by_name: dict[str, Record]) -> list[list[str]]:
+    """Sentences of appendix A, what stands here, and whether it agrees."""
+    kinds = (
+        (
+            "variation of the radial force is slightly reduced",
+            "radial force, standard deviation [kN]",
+            True,
+        ),
+        (
+            "variation of the moment is slightly reduced",
+            "moment, standard deviation [kN m]",
+            True,
+        ),
+        (
+            "the moment shifts to the left (overturning)",
+            "moment, mean component to the left [kN m]",
+            False,
+        ),
+        ("it is more focused about 180 deg", FOCUS, False),
+    )
+    rows = []
+    for words, name, falls in kinds:
+        row = by_name[name]
+        change, error = float(row["tuned less slow"]), float(row["its standard error"])
+        agrees = "yes" if (change < 0.0) == falls else "no"
+        clear = "" if abs(change) > 2.0 * error else ", within what seeds scatter"
+        unit = name[name.index("[") + 1 : -1]
+        shown = f"{float(row['slow, mean']):.3g} {unit}, {change:+.2g} {unit}"
+        rows.append([words, shown, agrees + clear])
+    return rows
 
 
 def mean(values: Sequence[object]) -> float:

@@ -14,7 +14,7 @@ from fe_drivetrain.turbine_loads.histories import (
     rainflow_cycles,
     spectrum,
 )
-from fe_drivetrain.turbine_loads.hub_loads import LoadHistory, read_recorded, write_csv
+from fe_drivetrain.turbine_loads.hub_loads import LoadHistory, read_recorded, write_hub_loads
 
 HERTZ = 0.2  # of the rotor
 SIX = 6.0 * HERTZ
@@ -117,25 +117,7 @@ def short(run: Run, page: Page) -> float:
     steps = int(600 / 0.1)
     noise = generator.standard_normal((4 if run.quick else 16, steps)).cumsum(axis=1) * 0.02
     load = noise + wave(np.arange(steps, dtype=np.float64) * 0.1)
-    rows: list[Record] = []
-    for seconds in (10, 30, 60, 120, 300, 600):
-        part = load[:, : seconds * 10]
-        for residue in RESIDUES:
-            found = [
-                damage_equivalent_load(
-                    [rainflow_cycles(row, residue)],  # type: ignore[arg-type]
-                    float(seconds),
-                    10.0,
-                )
-                for row in part
-            ]
-            rows.append(
-                {
-                    "length [s]": seconds,
-                    "residue": residue,
-                    "DEL of m = 10 [-]": float(np.mean(found)),
-                }
-            )
+    rows = by_residue(load)
     page.section("Short histories")
     page.sweep(
         "Equivalent load of m = 10 at 1 Hz by the rule for the residue: 3P, 6P and a drift, which "
@@ -172,6 +154,30 @@ def short(run: Run, page: Page) -> float:
         remedy="count longer histories, or several together; compare --residue closed",
     )
     return 100.0 * float(by[600, "closed"] / by[600, "half"] - 1.0)
+
+
+def by_residue(load: Floats) -> list[Record]:
+    """Equivalent load of m = 10 of histories (n, steps), by length and rule for the residue."""
+    rows: list[Record] = []
+    for seconds in (10, 30, 60, 120, 300, 600):
+        part = load[:, : seconds * 10]
+        for residue in RESIDUES:
+            found = [
+                damage_equivalent_load(
+                    [rainflow_cycles(row, residue)],  # type: ignore[arg-type]
+                    float(seconds),
+                    10.0,
+                )
+                for row in part
+            ]
+            rows.append(
+                {
+                    "length [s]": seconds,
+                    "residue": residue,
+                    "DEL of m = 10 [-]": float(np.mean(found)),
+                }
+            )
+    return rows
 
 
 def _apart(histories: list[Floats], seconds: float) -> float:
@@ -261,7 +267,7 @@ def refused(page: Page) -> None:
     )
     with scratch_folder() as folder:
         file = folder / "constant.csv"
-        write_csv(LoadHistory("constant", time, np.full((len(time), 6), 3.0)), file)
+        write_hub_loads(LoadHistory("constant", time, np.full((len(time), 6), 3.0)), file)
         read = read_recorded(file).history
     page.holds(
         "a file of constant loads is read, and counts nothing",

@@ -1,6 +1,7 @@
 """Loads on a main bearing over the operating range: 330 histories with a controller."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -59,6 +60,13 @@ def run(run: Run, page: Page) -> None:
         source="azimuth and speed of one motion, both in every history",
     )
     means = averaged(rows)
+    show(page, means)
+    page.data("histories", rows)
+    statements(page, means)
+
+
+def show(page: Page, means: Sequence[Record]) -> None:
+    """Loads, rotor speed and pitch by wind speed and set."""
     for name in LOADS:
         page.section(name.partition(" [")[0].capitalize())
         page.sweep(
@@ -90,8 +98,6 @@ def run(run: Run, page: Page) -> None:
         by="set",
         table=("wind [m/s]", "set", "rotor speed [rad/s]", "pitch [deg]"),
     )
-    page.data("histories", rows)
-    statements(page, means)
 
 
 def gap(history: TurbineHistory) -> float:
@@ -132,93 +138,74 @@ def averaged(rows: Sequence[Record]) -> list[Record]:
     return result
 
 
-def statements(page: Page, means: Sequence[Record]) -> None:
-    """What section 5.2.1 says of min, mean and max, and what stands here."""
-    sets = {str(name): list(own) for name, own in grouped(means, "set")}
-    winds = [float(row["wind [m/s]"]) for row in sets[BASE]]  # type: ignore[arg-type]
-    above, far = np.array(winds) >= 12.0, np.array(winds) >= 14.0
-    rated = winds.index(12.0)
+@dataclass(frozen=True, eq=False)
+class BySet:
+    """Loads by set of winds.
 
-    def of(what: str, own: str = BASE) -> Floats:
-        return np.array([float(row[what]) for row in sets[own]])  # type: ignore[arg-type]
+    Attributes
+    ----------
+    sets : dict[str, list[Record]]
+        Means over seeds at each wind speed, by set.
+    """
 
-    def ratio(what: str, own: str, other: str, at: Bools = above) -> str:
-        share = (of(what, own) / of(what, other))[at]
+    sets: dict[str, list[Record]]
+
+    @property
+    def winds(self) -> Floats:
+        """Wind speeds [m/s]."""
+        return self.of("wind [m/s]")
+
+    @property
+    def above(self) -> Bools:
+        """Whether each wind is rated wind or more."""
+        return self.winds >= 12.0
+
+    @property
+    def far(self) -> Bools:
+        """Whether each wind is well above rated wind."""
+        return self.winds >= 14.0
+
+    @property
+    def rated(self) -> int:
+        """Place of rated wind."""
+        return int(np.flatnonzero(self.winds == 12.0)[0])
+
+    def of(self, what: str, own: str = BASE) -> Floats:
+        """A quantity of a set at each wind speed."""
+        return np.array([float(row[what]) for row in self.sets[own]])  # type: ignore[arg-type]
+
+    def ratio(self, what: str, own: str, other: str, at: Bools | None = None) -> str:
+        """A quantity of one set over that of another, in words."""
+        share = (self.of(what, own) / self.of(what, other))[self.above if at is None else at]
         return f"{share.min():.2f} to {share.max():.2f} times"
 
-    def near(what: str, own: str, other: str, at: Bools = above) -> bool:
-        return bool(np.abs(of(what, own) / of(what, other) - 1.0)[at].max() < 0.05)
+    def near(self, what: str, own: str, other: str, at: Bools | None = None) -> bool:
+        """Whether both sets have nearly the same."""
+        change = np.abs(self.of(what, own) / self.of(what, other) - 1.0)
+        return bool(change[self.above if at is None else at].max() < 0.05)
 
-    axial, radial, moment = LOADS
-    low, high = "low, shear 0.2", "high, shear 0.2"
-    flat, steep = "medium, shear 0.1", "medium, shear 0.4"
-    peak = winds[int(np.argmax(of(f"mean {axial}")))]
-    growth = {own: of(f"mean {moment}", own)[-1] / of(f"mean {moment}", own)[0] for own in sets}
-    largest = {
-        own: of(f"largest {moment}", own)[-1] / of(f"largest {moment}", own)[0] for own in sets
-    }
-    first, last = of(f"mean {radial}")[[0, -1]]
-    radial_max = of(f"largest {radial}")[[0, -1]]
-    rows: list[tuple[str, str, bool]] = [
-        ("axial: the mean peaks near rated wind (11 m/s)", f"at {peak:g} m/s", 8.0 < peak < 14.0),
-        (
-            "axial: its mean is nearly the same for all turbulence, away from rated wind",
-            "high " + ratio(f"mean {axial}", high, low, far) + " low, from 14 m/s",
-            near(f"mean {axial}", high, low, far),
-        ),
-        (
-            "axial: near rated wind it is slightly higher at lower turbulence",
-            f"low {of(f'mean {axial}', low)[rated] / of(f'mean {axial}', high)[rated]:.2f} times "
-            "high, at 12 m/s",
-            bool(of(f"mean {axial}", low)[rated] > of(f"mean {axial}", high)[rated]),
-        ),
-        (
-            "axial: its largest grows with turbulence",
-            "high " + ratio(f"largest {axial}", high, low) + " low",
-            bool((of(f"largest {axial}", high) > of(f"largest {axial}", low))[above].all()),
-        ),
-        ("radial: its mean falls with wind", f"{first:.0f} to {last:.0f} kN", bool(last < first)),
-        (
-            "radial: its largest grows with wind",
-            f"{radial_max[0]:.0f} to {radial_max[1]:.0f} kN",
-            bool(radial_max[1] > radial_max[0]),
-        ),
-        (
-            "radial: turbulence hardly changes its mean",
-            "high " + ratio(f"mean {radial}", high, low) + " low",
-            near(f"mean {radial}", high, low),
-        ),
-        (
-            "radial: the steepest shear has the least mean",
-            "shear 0.4 " + ratio(f"mean {radial}", steep, flat) + " shear 0.1",
-            bool((of(f"mean {radial}", steep) < of(f"mean {radial}", flat))[above].all()),
-        ),
-        (
-            "radial: it has the least maximum, too",
-            "shear 0.4 " + ratio(f"largest {radial}", steep, flat) + " shear 0.1",
-            bool((of(f"largest {radial}", steep) < of(f"largest {radial}", flat))[above].all()),
-        ),
-        (
-            "moment: its mean more than doubles from cut-in to cut-out",
-            f"{growth[BASE]:.2f} times",
-            bool(growth[BASE] > 2.0),
-        ),
-        (
-            "moment: it does so the more the higher turbulence is",
-            f"high {growth[high]:.2f}, low {growth[low]:.2f} times",
-            bool(growth[high] > growth[low]),
-        ),
-        (
-            "moment: its largest grows fourfold at high turbulence",
-            f"{largest[high]:.2f} times",
-            bool(largest[high] > 3.5),
-        ),
-        (
-            "moment: shear raises mean and largest strongly",
-            "mean, shear 0.4 " + ratio(f"mean {moment}", steep, flat) + " shear 0.1",
-            bool((of(f"mean {moment}", steep) > 1.2 * of(f"mean {moment}", flat))[above].all()),
-        ),
-    ]
+    def exceeds(self, what: str, own: str, other: str, times: float = 1.0) -> bool:
+        """Whether one set has more than another, or so many times that, from rated wind on."""
+        return bool((self.of(what, own) > times * self.of(what, other))[self.above].all())
+
+    def growth(self, what: str, own: str = BASE) -> float:
+        """A quantity at cut-out over that at cut-in."""
+        values = self.of(what, own)
+        return float(values[-1] / values[0])
+
+
+AXIAL, RADIAL, MOMENT = LOADS
+LOW_SET, HIGH_SET = "low, shear 0.2", "high, shear 0.2"
+FLAT, STEEP = "medium, shear 0.1", "medium, shear 0.4"
+
+Statement = tuple[str, str, bool]
+"""Sentence of the thesis, what stands here, and whether it agrees."""
+
+
+def statements(page: Page, means: Sequence[Record]) -> None:
+    """What section 5.2.1 says of min, mean and max, and what stands here."""
+    one = BySet({str(name): list(own) for name, own in grouped(means, "set")})
+    rows = [*of_axial(one), *of_radial(one), *of_moment(one)]
     page.section("Statements of section 5.2.1")
     page.table(
         "The thesis, of a 1.5 MW turbine, and ours, of 2 MW; means over seeds",
@@ -236,3 +223,88 @@ def statements(page: Page, means: Sequence[Record]) -> None:
         "under hub loads of the 2 MW turbine with its controller; the thesis's 1.5 MW turbine and "
         "its histories are private, so that directions are compared and no numbers."
     )
+
+
+def of_axial(one: BySet) -> list[Statement]:
+    """Statements on the axial force."""
+    axial, low, high = AXIAL, LOW_SET, HIGH_SET
+    at_low, at_high = (float(one.of(f"mean {axial}", own)[one.rated]) for own in (low, high))
+    peak = float(one.winds[int(np.argmax(one.of(f"mean {axial}")))])
+    return [
+        ("axial: the mean peaks near rated wind (11 m/s)", f"at {peak:g} m/s", 8.0 < peak < 14.0),
+        (
+            "axial: its mean is nearly the same for all turbulence, away from rated wind",
+            "high " + one.ratio(f"mean {axial}", high, low, one.far) + " low, from 14 m/s",
+            one.near(f"mean {axial}", high, low, one.far),
+        ),
+        (
+            "axial: near rated wind it is slightly higher at lower turbulence",
+            f"low {at_low / at_high:.2f} times high, at 12 m/s",
+            bool(at_low > at_high),
+        ),
+        (
+            "axial: its largest grows with turbulence",
+            "high " + one.ratio(f"largest {axial}", high, low) + " low",
+            one.exceeds(f"largest {axial}", high, low),
+        ),
+    ]
+
+
+def of_radial(one: BySet) -> list[Statement]:
+    """Statements on the radial force."""
+    radial, low, high = RADIAL, LOW_SET, HIGH_SET
+    flat, steep = FLAT, STEEP
+    first, last = one.of(f"mean {radial}")[[0, -1]]
+    radial_max = one.of(f"largest {radial}")[[0, -1]]
+    return [
+        ("radial: its mean falls with wind", f"{first:.0f} to {last:.0f} kN", bool(last < first)),
+        (
+            "radial: its largest grows with wind",
+            f"{radial_max[0]:.0f} to {radial_max[1]:.0f} kN",
+            bool(radial_max[1] > radial_max[0]),
+        ),
+        (
+            "radial: turbulence hardly changes its mean",
+            "high " + one.ratio(f"mean {radial}", high, low) + " low",
+            one.near(f"mean {radial}", high, low),
+        ),
+        (
+            "radial: the steepest shear has the least mean",
+            "shear 0.4 " + one.ratio(f"mean {radial}", steep, flat) + " shear 0.1",
+            one.exceeds(f"mean {radial}", flat, steep),
+        ),
+        (
+            "radial: it has the least maximum, too",
+            "shear 0.4 " + one.ratio(f"largest {radial}", steep, flat) + " shear 0.1",
+            one.exceeds(f"largest {radial}", flat, steep),
+        ),
+    ]
+
+
+def of_moment(one: BySet) -> list[Statement]:
+    """Statements on the moment."""
+    moment, flat, steep = MOMENT, FLAT, STEEP
+    own, low, high = (one.growth(f"mean {moment}", of) for of in (BASE, LOW_SET, HIGH_SET))
+    largest = one.growth(f"largest {moment}", HIGH_SET)
+    return [
+        (
+            "moment: its mean more than doubles from cut-in to cut-out",
+            f"{own:.2f} times",
+            bool(own > 2.0),
+        ),
+        (
+            "moment: it does so the more the higher turbulence is",
+            f"high {high:.2f}, low {low:.2f} times",
+            bool(high > low),
+        ),
+        (
+            "moment: its largest grows fourfold at high turbulence",
+            f"{largest:.2f} times",
+            bool(largest > 3.5),
+        ),
+        (
+            "moment: shear raises mean and largest strongly",
+            "mean, shear 0.4 " + one.ratio(f"mean {moment}", steep, flat) + " shear 0.1",
+            one.exceeds(f"mean {moment}", steep, flat, 1.2),
+        ),
+    ]

@@ -7,6 +7,7 @@ import time
 import tracemalloc
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +27,7 @@ from fe_drivetrain.turbine_loads.histories import (
     time_at_level,
     window_statistics,
 )
-from fe_drivetrain.turbine_loads.hub_loads import LoadHistory, Recorded, find_loops, write_csv
+from fe_drivetrain.turbine_loads.hub_loads import LoadHistory, Recorded, find_loops, write_hub_loads
 
 STEP = 0.05
 SIZES = (12_000, 120_000, 1_200_000)
@@ -160,26 +161,49 @@ def peers(load: Floats) -> dict[str, Callable[[], Any]]:
     return found
 
 
-def stream(run: Run, page: Page, samples: int, repeats: int) -> None:
-    """Count a history that would not fit into memory; what that takes."""
-    low, high = np.inf, -np.inf
+@dataclass
+class Pieces:
+    """Noise in pieces, as a history that would not fit into memory, and its extremes.
 
-    def pieces() -> Iterator[Floats]:
-        nonlocal low, high
+    Attributes
+    ----------
+    run : Run
+        Is told how far it is.
+    samples : int
+        Number of samples.
+    low, high : float
+        Extremes of all that was made.
+    """
+
+    run: Run
+    samples: int
+    low: float = np.inf
+    high: float = -np.inf
+
+    def each(self) -> Iterator[Floats]:
+        """Every piece, the same each time."""
         generator = np.random.default_rng(3)
         piece = generator.standard_normal(PIECE)
-        for start in range(0, samples, PIECE):
-            part = piece[: samples - start] + generator.standard_normal()
-            low, high = min(low, float(part.min())), max(high, float(part.max()))
+        for start in range(0, self.samples, PIECE):
+            part = piece[: self.samples - start] + generator.standard_normal()
+            self.low, self.high = (
+                min(self.low, float(part.min())),
+                max(self.high, float(part.max())),
+            )
             if start // PIECE % 16 == 0:
-                run.report(f"streamed ({start // 1_000_000:,} of {samples // 1_000_000:,} million)")
+                done, of = start // 1_000_000, self.samples // 1_000_000
+                self.run.report(f"streamed ({done:,} of {of:,} million)")
             yield part
 
+
+def stream(run: Run, page: Page, samples: int, repeats: int) -> None:
+    """Count a history that would not fit into memory; what that takes."""
     rainflow_cycles(noise(1000, 0))  # compiled code is loaded
+    made = Pieces(run, samples)
 
     def counted() -> tuple[float, float, float]:
         damage, cycles, largest = 0.0, 0.0, 0.0
-        for block in streamed_cycles(pieces()):
+        for block in streamed_cycles(made.each()):
             damage += float(block.counts @ block.ranges**4)
             cycles += float(block.counts.sum())
             largest = max(largest, float(block.ranges.max()))
@@ -210,7 +234,7 @@ def stream(run: Run, page: Page, samples: int, repeats: int) -> None:
     page.equals(
         "streamed: largest range less the range of all samples",
         largest,
-        high - low,
+        made.high - made.low,
         within=0.0,
         why="the largest and the least value make one cycle or half of one, whatever lies between",
         source="ASTM E1049-85, 5.4.4",
@@ -276,7 +300,7 @@ def many_files(run: Run, page: Page) -> None:
     size, few, many = (FILE // 20, 4, 8) if run.quick else (FILE // 10, 4, 40)
     with tempfile.TemporaryDirectory() as folder, run.step("few files and many"):
         file = Path(folder, "made.csv")
-        write_csv(made_history(0, size), file)
+        write_hub_loads(made_history(0, size), file)
         with run.side_by_side(2) as jobs:
             started = [jobs.start(peak_over_files, file, count) for count in (few, many)]
             peaks = [job.result() for job in started]

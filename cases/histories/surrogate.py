@@ -62,36 +62,17 @@ def run(run: Run, page: Page) -> None:
     names = list(real)[: 1 if run.quick else None]
     seeds = range(1, 4 if run.quick else 7)
     chosen = (DEFAULT, ALL) if run.quick else tuple(MODELS)
-    counts: list[Record] = []
-    of_model: dict[tuple[str, str], list[dict[str, float]]] = {}
+    of_model = {}
     for name in names:
-        row = given["histories"][name]
         for model in chosen:
             with run.step(f"{name}: {model}"):
-                made = surrogates(given, row, MODELS[model], seeds)
-            found = differences([real[name]], made)
-            counts.append(
-                {
-                    "history": name,
-                    "model": model,
-                    **{family: beyond(found, starts) for family, starts in FAMILIES.items()},
-                    "all": beyond(found, ("",)),
-                    "of": len(found),
-                }
-            )
-            of_model[name, model] = made
-    for name in names:
-        before, after = (
-            next(c for c in counts if (c["history"], c["model"]) == (name, model))
-            for model in (DEFAULT, ALL)
-        )
-        most = max(FAMILIES, key=lambda family: int(after[family]))
-        page.answer(
-            f"{name}: {before['all']} of {before['of']} quantities of OpenFAST are beyond what "
-            f"{len(seeds)} seeds of the default surrogate scatter, and {after['all']} with "
-            "controller, blade and tower modes, torsion and tower shadow, most of them "
-            f"({after[most]}) of {most}."
-        )
+                row = given["histories"][name]
+                of_model[name, model] = surrogates(given, row, MODELS[model], seeds)
+    counts = [
+        counted(name, model, differences([real[name]], made))
+        for (name, model), made in of_model.items()
+    ]
+    answer(page, names, counts, len(seeds))
     page.section("What each part of the turbine adds")
     page.table(
         f"Quantities of OpenFAST beyond what {len(seeds)} seeds of a model scatter, by load; each "
@@ -133,6 +114,33 @@ FAMILIES = {
 }
 
 
+def counted(name: str, model: str, found: Sequence[Difference]) -> Record:
+    """How many quantities of a history a model does not have, by load."""
+    return {
+        "history": name,
+        "model": model,
+        **{family: beyond(found, starts) for family, starts in FAMILIES.items()},
+        "all": beyond(found, ("",)),
+        "of": len(found),
+    }
+
+
+def answer(page: Page, names: Sequence[str], counts: Sequence[Record], seeds: int) -> None:
+    """What each history has beyond the default surrogate, and beyond the fullest one."""
+    for name in names:
+        before, after = (
+            next(c for c in counts if (c["history"], c["model"]) == (name, model))
+            for model in (DEFAULT, ALL)
+        )
+        most = max(FAMILIES, key=lambda family: int(after[family]))
+        page.answer(
+            f"{name}: {before['all']} of {before['of']} quantities of OpenFAST are beyond what "
+            f"{seeds} seeds of the default surrogate scatter, and {after['all']} with "
+            "controller, blade and tower modes, torsion and tower shadow, most of them "
+            f"({after[most]}) of {most}."
+        )
+
+
 def beyond(found: Sequence[Difference], starts: tuple[str, ...]) -> int:
     """How many of a family differ."""
     return sum(d.beyond and d.quantity.startswith(starts) for d in found)
@@ -153,7 +161,13 @@ def surrogates(
         controller = designed_controller(turbine, Tuning(constant_power=False))
         moves = replace(physics, tower=physics.tower and row["rotor"] not in given["stands"])
         recorded = [h.recorded for h in turbine_histories(conditions, turbine, controller, moves)]
-    return [features(digest(one, OPTIONS), OPTIONS.slopes) for one in recorded]
+    return [quantities(one) for one in recorded]
+
+
+def quantities(found: Recorded) -> dict[str, float]:
+    """Quantities of a history, by the names that the table has."""
+    every = features(digest(found, OPTIONS), OPTIONS.slopes)
+    return {str(feature): value for feature, value in every.items()}
 
 
 def beside(
@@ -182,7 +196,7 @@ def beside(
         "My, standard",
         "My, DEL of m = 4",
         "My, 3P",
-        "My, largest",
+        "My, max",
         "Mx, standard",
         "Mx, DEL of m = 4",
         "Fx, mean",
@@ -228,7 +242,7 @@ def read_again(run: Run, page: Page, given: Mapping[str, Any]) -> dict[str, dict
     with run.step("files"):
         for file in recorded_files([str(run.settings["loads"])]):
             if file.stem in known:
-                found[file.stem] = features(digest(read_recorded(file), OPTIONS), OPTIONS.slopes)
+                found[file.stem] = quantities(read_recorded(file))
     for name, values in found.items():
         page.vanishes(
             f"{name}: the file's quantities less those of the table, the worst, as a share",

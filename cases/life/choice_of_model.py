@@ -7,23 +7,17 @@ import numpy as np
 
 from fe_drivetrain.bearing import (
     Races,
-    equilibrium,
-    equilibrium_on_races,
-    rigid_races,
-    roller_motions,
-    three_degrees,
 )
-from fe_drivetrain.bearing_life.coupled import body_on_races, on_springs, scene_body
-from fe_drivetrain.bearing_life.life import miner_load
+from fe_drivetrain.bearing_life.coupled import scene_body
 from fe_drivetrain.bearing_life.rings import (
     RollerAssembly,
-    assembly_equilibrium,
     housing_races,
     roller_assembly,
 )
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.life import models
 from fe_drivetrain.cases.life.operating import state_assumptions, state_meaning
+from fe_drivetrain.cases.life.second_ways import second_ways
 from fe_drivetrain.cases.references.housed_bearing import ASSUMED_HOUSING, NAME, Size, housed_scene
 from fe_drivetrain.cases.references.studied_lives import (
     SPEEDS,
@@ -32,16 +26,12 @@ from fe_drivetrain.cases.references.studied_lives import (
     at_site,
     bearing_s,
     by_wind,
-    on_rigid_rings,
     scatter_of_seeds,
     shares,
 )
-from fe_drivetrain.cases.references.thesis_beam import BEAM, beam_body
 from fe_drivetrain.common import Floats
-from fe_drivetrain.comparison import round_off
 from fe_drivetrain.report import Chart, trace
 from fe_drivetrain.report.suite import Page, Record, Run
-from fe_drivetrain.shafts.beam import pinned_model
 
 MEAN_WIND = 8.0
 
@@ -231,100 +221,6 @@ def band(page: Page, coarse: models.World, hub: Floats, ground: str, rows: list[
         source=f"meshes {SIZES[0][0]:g} and {SIZES[1][0]:g} times the size of the scene's",
         measure="identity",
     )
-
-
-def second_ways(page: Page, world: models.World, hub: Floats, ground: str) -> None:
-    """Lives of each model by other functions, at some load steps."""
-    setup, bearing = world.setup, world.setup.bearing
-    name = setup.body.bearings[0]
-    A = np.vstack(roller_motions(bearing))
-    f = models.factors(hub)
-    free = np.array([np.inf, np.inf, np.inf, 0.0, 0.0])
-    held = np.array([np.inf, np.inf, np.inf, *models.fitted(world, hub)])
-    of_housing = np.array([np.inf, np.inf, np.inf, *(1.0 / np.diag(world.housing)[3:])])
-    three = three_degrees(bearing, models.spring_loads(held[3:], hub)[:, models.FIVE])
-    again = equilibrium(bearing, three.loads - three.unbalanced)
-    flexible = Races(bearing, world.races.compliance + A @ world.ground @ A.T)
-    every = 2 * sum(bearing.counts)
-    whole = assembly_equilibrium(
-        body_on_races(world.body(world.ground), world.races), f, shapes=every
-    )
-    straight = bearing.with_rows(crown=0.0)
-    held_ring = Races(bearing, A @ world.housing @ A.T)
-    others = {
-        models.PINNED: (
-            models.of_loads(bearing, _six(on_springs(setup.body, f, free).forces[:, 0])),
-            "finite-element beam on a hinge",
-        ),
-        models.SPRING: (
-            models.of_loads(bearing, _six(on_springs(beam_body(), f, of_housing).forces[:, 0])),
-            "finite-element beam on springs",
-        ),
-        models.SERIES: (
-            models.of_loads(bearing, _six(on_springs(beam_body(), f, held).forces[:, 0])),
-            "finite-element beam on springs",
-        ),
-        models.THREE: (
-            on_rigid_rings(bearing, again.displacements),
-            "five degrees under the loads that three of them balance",
-        ),
-        models.RIGID: (
-            models.on_contacts(bearing, body_on_races(setup.body, rigid_races(bearing)), hub),
-            "beam on races that do not give way",
-        ),
-        models.STRAIGHT: (
-            models.on_contacts(
-                straight, body_on_races(setup.body, replace(held_ring, bearing=straight)), hub
-            ),
-            "beam on races that move as a rigid body",
-        ),
-        models.FIVE_DEGREES: (
-            models.on_contacts(bearing, body_on_races(setup.body, held_ring), hub),
-            "beam on races that move as a rigid body",
-        ),
-        models.FLEXIBLE: (
-            of_races(flexible, whole.bearing_loads(name)),
-            "races by themselves under the loads that the beam puts on them",
-        ),
-    }
-    same = {
-        models.SERIES: models.of_loads(bearing, models.spring_loads(held[3:], hub)),
-        models.THREE: on_rigid_rings(bearing, three.displacements),
-        models.FLEXIBLE: models.of_contacts(bearing, whole.deflections),
-    }
-    for model, (laminae, words) in others.items():
-        one = same[model] if model in same else models.MODELS[model](world, hub)
-        first, second = (models.lives(setup, len(hub), each) for each in (one, laminae))
-        page.vanishes(
-            f"{ground}: {model}, life by a second way, relative difference, the worst step",
-            float(np.abs(second / first - 1.0).max()),
-            within=1e-4,
-            why="residuals of 1e-8 of the load, and 1e-6 of a contact's softness that rigid races "
-            "are given; both count fourfold in life",
-            source=words,
-        )
-    P = setup.rated.equivalent_load(pinned_model(hub, BEAM)[:, models.FIVE])
-    life = (setup.capacity / miner_load(P, np.ones(len(P)))) ** (10.0 / 3.0)
-    mean = 1.0 / np.mean(1.0 / models.catalogue_lives(setup, hub))
-    page.vanishes(
-        f"{ground}: {models.CATALOGUE}, life by Miner's load, relative difference",
-        float(abs(life / mean - 1.0)),
-        **round_off(1e3, "sums of powers of 10/3 over all load steps, and their root"),
-        source="Miner's rule in loads and in lives",
-        basis="self-consistency",
-    )
-
-
-def of_races(races: Races, loads: Floats) -> models.Laminae:
-    """Rollers on races that give way, under loads (n, 5) on the inner ring."""
-    found = equilibrium_on_races(races, loads, shapes=len(races.compliance))
-    A = np.vstack(roller_motions(races.bearing))
-    return models.of_contacts(races.bearing, found.displacements @ A.T - found.recession)
-
-
-def _six(forces: Floats) -> Floats:
-    """Loads (n, 6) with no torque."""
-    return np.insert(forces, 3, 0.0, axis=1)
 
 
 def by_wind_speed(page: Page, found: Found, ground: str, best: str) -> None:

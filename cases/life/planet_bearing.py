@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from fe_drivetrain.bearing import catalogue_bearing, equilibrium, pressures
+from fe_drivetrain.bearing import Bearing, catalogue_bearing, equilibrium, pressures
 from fe_drivetrain.bearing_life.life import (
     LifeRules,
     damage_of_steps,
@@ -22,6 +22,41 @@ PLANET = (
     (150.0, "59.1", "1609"),
     (200.0, "62.5", "1655"),
 )
+#: Load on the inner ring [N, N m].
+LOAD = [0.0, 0.0, -178e3, 0.0, 0.0]
+
+
+def check_pressures(page: Page, clearance: float, peak: str, pressure: str) -> None:
+    """Largest roller and pressure of straight rollers against stated ones."""
+    straight = catalogue_bearing("planet_nj2232", laminae=0)
+    gap = 0.5e-6 * clearance  # along the contact, of a diametral clearance
+    found = equilibrium(straight.with_rows(clearance=gap), LOAD)
+    largest = pressures(straight.with_rows(clearance=gap, laminae=1), found.displacements)
+    for name, own, value in (
+        ("largest roller [kN]", found.rollers.max() / 1e3, peak),
+        ("pressure on the inner race [MPa]", largest[0][0].max() / 1e6, pressure),
+    ):
+        page.equals(
+            f"planet bearing, 178 kN, clearance {clearance:g} um: {name}",
+            float(own),
+            **as_printed(value),
+            source="an independent computation for the same straight rollers",
+            basis="second-hand",
+        )
+
+
+def lives_of(bearing: Bearing, clearance: float) -> Record:
+    """Lives with either ring turning, and the inner ring's share of damage."""
+    rated, gap = rated_bearing(bearing), 0.5e-6 * clearance
+    steps = next(steps_of(rigid_rings(bearing.with_rows(clearance=gap)), LOAD, 30.0, 1.0))
+    row: Record = {"clearance [um]": clearance, "L10 [Mrev]": 0.0}
+    for turning in ("outer", "inner"):
+        damage = damage_of_steps(steps, rated, LifeRules(turning=turning))
+        parts = damage.of_rows()[0]
+        row["L10 [Mrev]"] = damage.lives("Mrev")["L10"]
+        row[f"L10r, {turning} ring turns [Mrev]"] = damage.lives("Mrev")["L10r"]
+        row[f"inner ring's share, {turning} ring turns [%]"] = 100 * parts[0] / parts.sum()
+    return row
 
 
 @case(
@@ -30,35 +65,10 @@ PLANET = (
 )
 def run(run: Run, page: Page) -> None:
     """Loads and pressures against stated ones; lives with either ring turning."""
-    straight = catalogue_bearing("planet_nj2232", laminae=0)
-    profiled = catalogue_bearing("planet_nj2232", crown=0.00035)
-    rated = rated_bearing(profiled)
-    rows: list[Record] = []
     for clearance, peak, pressure in PLANET:
-        gap = 0.5e-6 * clearance  # along the contact, of a diametral clearance
-        load = [0, 0, -178e3, 0, 0]
-        found = equilibrium(straight.with_rows(clearance=gap), load)
-        largest = pressures(straight.with_rows(clearance=gap, laminae=1), found.displacements)
-        for name, own, value in (
-            ("largest roller [kN]", found.rollers.max() / 1e3, peak),
-            ("pressure on the inner race [MPa]", largest[0][0].max() / 1e6, pressure),
-        ):
-            page.equals(
-                f"planet bearing, 178 kN, clearance {clearance:g} um: {name}",
-                float(own),
-                **as_printed(value),
-                source="an independent computation for the same straight rollers",
-                basis="second-hand",
-            )
-        steps = next(steps_of(rigid_rings(profiled.with_rows(clearance=gap)), load, 30.0, 1.0))
-        row: Record = {"clearance [um]": clearance, "L10 [Mrev]": 0.0}
-        for turning in ("outer", "inner"):
-            damage = damage_of_steps(steps, rated, LifeRules(turning=turning))
-            parts = damage.of_rows()[0]
-            row["L10 [Mrev]"] = damage.lives("Mrev")["L10"]
-            row[f"L10r, {turning} ring turns [Mrev]"] = damage.lives("Mrev")["L10r"]
-            row[f"inner ring's share, {turning} ring turns [%]"] = 100 * parts[0] / parts.sum()
-        rows.append(row)
+        check_pressures(page, clearance, peak, pressure)
+    profiled = catalogue_bearing("planet_nj2232", crown=0.00035)
+    rows = [lives_of(profiled, clearance) for clearance, *_ in PLANET]
     page.table(
         "Cylindrical bearing of the outline NJ 2232 (its rollers are assumed) under 178 kN; "
         "profiled rollers, lives in turns of one ring against the other",

@@ -200,88 +200,101 @@ def span(lives: Lives, change: str, from_change: str = BASE) -> str:
     return f"{low:.0f} %" if round(low) == round(high) else f"{low:.0f} to {high:.0f} %"
 
 
+def ratio(lives: Lives, one: tuple[str, str], other: tuple[str, str]) -> float:
+    """Life of one condition over that of another."""
+    return lives[one] / lives[other]
+
+
+def least(lives: Lives, change: str) -> float:
+    """Smallest fall of life over all contaminations [%]."""
+    return max(fall(lives, change, grease=grease) for grease in GREASES)
+
+
+def most(lives: Lives, change: str) -> float:
+    """Largest fall of life over all contaminations [%]."""
+    return min(fall(lives, change, grease=grease) for grease in GREASES)
+
+
+CLEAN_200, SEVERE_460 = ("viscosity 200", "G1"), (BASE, "G3")
+CLEAN_80, WORST_200 = ("viscosity 80", "G1"), ("viscosity 200", "G4")
+HOT = ("100 degC", "G1"), ("100 degC", "G4")
+
+Statement = tuple[str, Callable[[Lives], str], Callable[[Lives], bool]]
+"""Sentence of the thesis, what lives say of it in words, and whether they agree."""
+
+OF_GREASE: tuple[Statement, ...] = (
+    (
+        "very severe contamination reduces life drastically",
+        lambda L: f"{100 * (ratio(L, (BASE, 'G4'), (BASE, 'G1')) - 1):.0f} % from G1 to G4",
+        lambda L: ratio(L, (BASE, "G4"), (BASE, "G1")) < 0.5,
+    ),
+    (
+        "viscosity 460 to 200 to 80: less life",
+        lambda L: f"{span(L, 'viscosity 200')}, {span(L, 'viscosity 80')}",
+        lambda L: most(L, "viscosity 80") < least(L, "viscosity 200") < 0.0,
+    ),
+    (
+        "clean 200 is worse than severely contaminated 460",
+        lambda L: f"{ratio(L, CLEAN_200, SEVERE_460):.2f} of it",
+        lambda L: ratio(L, CLEAN_200, SEVERE_460) < 1.0,
+    ),
+    (
+        "clean 80 is about as very severely contaminated 200",
+        lambda L: f"{ratio(L, CLEAN_80, WORST_200):.2f} of it",
+        lambda L: 0.5 < ratio(L, CLEAN_80, WORST_200) < 2.0,
+    ),
+    (
+        "40 to 60 to 100 degC: significantly less life",
+        lambda L: f"{span(L, '60 degC')}, {span(L, '100 degC')}",
+        lambda L: least(L, "100 degC") < least(L, "60 degC") < 0.0,
+    ),
+    (
+        "at 100 degC contamination has no visible effect",
+        lambda L: f"G4 has {ratio(L, HOT[1], HOT[0]):.2f} of G1",
+        lambda L: ratio(L, HOT[1], HOT[0]) > 0.5,
+    ),
+)
+OF_WIND: tuple[Statement, ...] = (
+    (
+        "lower turbulence: more life",
+        lambda L: f"low {span(L, 'low turbulence')}, high {span(L, 'high turbulence')}",
+        lambda L: most(L, "low turbulence") > 0.0 > least(L, "high turbulence"),
+    ),
+    (
+        "shear 0.1 to 0.2: about -50 %, all contaminations",
+        lambda L: span(L, BASE, "shear 0.1"),
+        lambda L: all(-60.0 < fall(L, BASE, "shear 0.1", g) < -40.0 for g in GREASES),
+    ),
+    (
+        "shear 0.2 to 0.4: more than -50 %",
+        lambda L: span(L, "shear 0.4"),
+        lambda L: least(L, "shear 0.4") < -50.0,
+    ),
+    (
+        "shear 0.4 costs more than 60 degC",
+        lambda L: f"{span(L, 'shear 0.4')} against {span(L, '60 degC')}",
+        lambda L: all(L["shear 0.4", g] < L["60 degC", g] for g in GREASES),
+    ),
+    (
+        "shear 0.4 costs more than a site of 12 in place of 8 m/s",
+        lambda L: f"{span(L, 'shear 0.4')} against {span(L, 'site 12 m/s')}",
+        lambda L: all(L["shear 0.4", g] < L["site 12 m/s", g] for g in GREASES),
+    ),
+    (
+        "site 8 to 10 m/s costs more than 10 to 12",
+        lambda L: f"{span(L, 'site 10 m/s')}, {span(L, 'site 12 m/s', 'site 10 m/s')}",
+        lambda L: all(
+            fall(L, "site 10 m/s", grease=g) < fall(L, "site 12 m/s", "site 10 m/s", g)
+            for g in GREASES
+        ),
+    ),
+)
+
+
 def statements(page: Page, found: dict[str, Lives], spherical: dict[str, float]) -> None:
     """Each sentence of the thesis, and ours."""
-
-    def ratio(lives: Lives, one: tuple[str, str], other: tuple[str, str]) -> float:
-        return lives[one] / lives[other]
-
-    def least(lives: Lives, change: str) -> float:
-        return max(fall(lives, change, grease=grease) for grease in GREASES)
-
-    def most(lives: Lives, change: str) -> float:
-        return min(fall(lives, change, grease=grease) for grease in GREASES)
-
-    clean200, severe460 = ("viscosity 200", "G1"), (BASE, "G3")
-    clean80, worst200 = ("viscosity 80", "G1"), ("viscosity 200", "G4")
-    hot = ("100 degC", "G1"), ("100 degC", "G4")
-    kinds: tuple[tuple[str, Callable[[Lives], str], Callable[[Lives], bool]], ...] = (
-        (
-            "very severe contamination reduces life drastically",
-            lambda L: f"{100 * (ratio(L, (BASE, 'G4'), (BASE, 'G1')) - 1):.0f} % from G1 to G4",
-            lambda L: ratio(L, (BASE, "G4"), (BASE, "G1")) < 0.5,
-        ),
-        (
-            "viscosity 460 to 200 to 80: less life",
-            lambda L: f"{span(L, 'viscosity 200')}, {span(L, 'viscosity 80')}",
-            lambda L: most(L, "viscosity 80") < least(L, "viscosity 200") < 0.0,
-        ),
-        (
-            "clean 200 is worse than severely contaminated 460",
-            lambda L: f"{ratio(L, clean200, severe460):.2f} of it",
-            lambda L: ratio(L, clean200, severe460) < 1.0,
-        ),
-        (
-            "clean 80 is about as very severely contaminated 200",
-            lambda L: f"{ratio(L, clean80, worst200):.2f} of it",
-            lambda L: 0.5 < ratio(L, clean80, worst200) < 2.0,
-        ),
-        (
-            "40 to 60 to 100 degC: significantly less life",
-            lambda L: f"{span(L, '60 degC')}, {span(L, '100 degC')}",
-            lambda L: least(L, "100 degC") < least(L, "60 degC") < 0.0,
-        ),
-        (
-            "at 100 degC contamination has no visible effect",
-            lambda L: f"G4 has {ratio(L, hot[1], hot[0]):.2f} of G1",
-            lambda L: ratio(L, hot[1], hot[0]) > 0.5,
-        ),
-        (
-            "lower turbulence: more life",
-            lambda L: f"low {span(L, 'low turbulence')}, high {span(L, 'high turbulence')}",
-            lambda L: most(L, "low turbulence") > 0.0 > least(L, "high turbulence"),
-        ),
-        (
-            "shear 0.1 to 0.2: about -50 %, all contaminations",
-            lambda L: span(L, BASE, "shear 0.1"),
-            lambda L: all(-60.0 < fall(L, BASE, "shear 0.1", g) < -40.0 for g in GREASES),
-        ),
-        (
-            "shear 0.2 to 0.4: more than -50 %",
-            lambda L: span(L, "shear 0.4"),
-            lambda L: least(L, "shear 0.4") < -50.0,
-        ),
-        (
-            "shear 0.4 costs more than 60 degC",
-            lambda L: f"{span(L, 'shear 0.4')} against {span(L, '60 degC')}",
-            lambda L: all(L["shear 0.4", g] < L["60 degC", g] for g in GREASES),
-        ),
-        (
-            "shear 0.4 costs more than a site of 12 in place of 8 m/s",
-            lambda L: f"{span(L, 'shear 0.4')} against {span(L, 'site 12 m/s')}",
-            lambda L: all(L["shear 0.4", g] < L["site 12 m/s", g] for g in GREASES),
-        ),
-        (
-            "site 8 to 10 m/s costs more than 10 to 12",
-            lambda L: f"{span(L, 'site 10 m/s')}, {span(L, 'site 12 m/s', 'site 10 m/s')}",
-            lambda L: all(
-                fall(L, "site 10 m/s", grease=g) < fall(L, "site 12 m/s", "site 10 m/s", g)
-                for g in GREASES
-            ),
-        ),
-    )
     rows: list[Record] = []
-    for words, of, agrees in kinds:
+    for words, of, agrees in (*OF_GREASE, *OF_WIND):
         record: Record = {"thesis": words}
         for name, lives in found.items():
             record[f"ours, choices of {name}" if name == "thesis" else "ours, our choices"] = of(

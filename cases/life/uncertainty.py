@@ -54,6 +54,7 @@ INPUTS: dict[str, tuple[Any, str]] = {
     "seed of the wind": (stats.randint(0, SEEDS), "one ten-minute history for each wind speed"),
 }
 NOMINAL = np.array([20.0, 0.12977, 0.0, 1.0, 1.0, 50.0, 1.0, np.nan])
+NOMINAL_LIFE, LOW_LIFE, HIGH_LIFE = "nominal [years]", "2.5 % [years]", "97.5 % [years]"
 SEED = list(INPUTS).index("seed of the wind")
 
 
@@ -268,27 +269,13 @@ def show(
     of_models: dict[str, float],
 ) -> None:
     """Bands, shares, and models beside them."""
-    rows: list[Record] = []
-    bands: dict[str, tuple[float, float, float]] = {}
-    for words, sample in zip(("basic", "modified"), samples, strict=True):
-        band = sample.band()
-        bands[words] = (np.exp(band.low), np.exp(sample.nominal), np.exp(band.high))
-        low, middle, high = bands[words]
-        rows.append(
-            {
-                "life": words,
-                "nominal [years]": middle,
-                "2.5 % [years]": low,
-                "97.5 % [years]": high,
-                "high over low": high / low,
-                "standard error of low [%]": 100.0 * band.low_error,
-                "of high [%]": 100.0 * band.high_error,
-                "share that a plane explains [%]": 100.0 * sample.linear_share,
-            }
-        )
+    rows = {
+        words: band_row(words, sample)
+        for words, sample in zip(("basic", "modified"), samples, strict=True)
+    }
     page.section("Bands")
-    page.table("Life with all inputs uncertain, each seed of the wind as likely", rows)
-    page.data("bands", rows)
+    page.table("Life with all inputs uncertain, each seed of the wind as likely", [*rows.values()])
+    page.data("bands", [*rows.values()])
     page.section("Which input decides")
     for words, of in zip(("modified", "basic"), reversed(shares), strict=True):
         page.add(
@@ -301,6 +288,33 @@ def show(
                 "share [%]",
             )
         )
+    table = shares_rows(samples, shares, alone)
+    page.table("Shares of the variance, three ways", table)
+    page.data("shares of the variance", table)
+    models_section(page, rows["basic"], of_models)
+    answer(page, rows, table, of_models)
+
+
+def band_row(words: str, sample: Samples) -> Record:
+    """Nominal life, its band with all inputs uncertain, and how certain that is."""
+    band = sample.band()
+    low, high = np.exp(band.low), np.exp(band.high)
+    return {
+        "life": words,
+        NOMINAL_LIFE: np.exp(sample.nominal),
+        LOW_LIFE: low,
+        HIGH_LIFE: high,
+        "high over low": high / low,
+        "standard error of low [%]": 100.0 * band.low_error,
+        "of high [%]": 100.0 * band.high_error,
+        "share that a plane explains [%]": 100.0 * sample.linear_share,
+    }
+
+
+def shares_rows(
+    samples: list[Samples], shares: list[Shares], alone: dict[str, Floats]
+) -> list[Record]:
+    """Share of the variance of each input, three ways."""
     table: list[Record] = []
     for k, name in enumerate(INPUTS):
         spread = np.log(alone[name])
@@ -319,17 +333,18 @@ def show(
                 "one at a time [%]": 100.0 * float(spread[:, 1].var() / samples[1].values.var()),
             }
         )
-    page.table("Shares of the variance, three ways", table)
-    page.data("shares of the variance", table)
+    return table
+
+
+def models_section(page: Page, basic: Record, of_models: dict[str, float]) -> None:
+    """The band of basic life from the inputs, and lives of nominal inputs by each model."""
     page.section("Inputs beside models")
-    middle = bands["basic"][1]
-    lows = {name: middle * ratio for name, ratio in of_models.items()}
-    low, _, high = bands["basic"]
-    y = ["all inputs", *lows]
+    lows = {name: basic[NOMINAL_LIFE] * ratio for name, ratio in of_models.items()}
+    ends, y = [basic[LOW_LIFE], basic[HIGH_LIFE]], ["all inputs", *lows]
     page.chart(
         "Basic life: its band from the inputs, and of nominal inputs by each model",
         [
-            trace("band of the inputs", [low, high], [0.0, 0.0], mode="lines+markers"),
+            trace("band of the inputs", ends, [0.0, 0.0], mode="lines+markers"),
             *(
                 trace(name, [life], [-1.0 - k], True, marker={"size": 11})
                 for k, (name, life) in enumerate(lows.items())
@@ -346,23 +361,30 @@ def show(
         "automargin": True,
     }
     page.data("basic life by model over that of the housing in series", of_models)
+
+
+def answer(
+    page: Page, rows: dict[str, Record], table: list[Record], of_models: dict[str, float]
+) -> None:
+    """Which input decides, and that models do more than inputs."""
+    basic, modified = rows["basic"], rows["modified"]
     order = sorted(table, key=lambda row: -row["with all others [%]"])
     seed = table[SEED]
     span = max(of_models.values()) / min(of_models.values())
     page.answer(
-        f"Modified life is {bands['modified'][1]:.0f} years, 95 % between "
-        f"{bands['modified'][0]:.0f} and {bands['modified'][2]:.0f}: a factor of "
-        f"{rows[1]['high over low']:.0f}. Most of its "
+        f"Modified life is {modified[NOMINAL_LIFE]:.0f} years, 95 % between "
+        f"{modified[LOW_LIFE]:.0f} and {modified[HIGH_LIFE]:.0f}: a factor of "
+        f"{modified['high over low']:.0f}. Most of its "
         f"variance is from {order[0]['input']} ({order[0]['with all others [%]']:.0f} %), then "
         f"{order[1]['input']} ({order[1]['with all others [%]']:.0f} %) and {order[2]['input']} "
         f"({order[2]['with all others [%]']:.0f} %).",
-        f"Basic life, that knows no lubricant, has a factor of {rows[0]['high over low']:.1f}. One "
+        f"Basic life, that knows no lubricant, has a factor of {basic['high over low']:.1f}. One "
         f"seed of the wind makes {seed['modified: alone [%]']:.0f} % of the variance of modified "
         "life, a sixth of that if six are taken.",
         f"Of nominal inputs a pinned beam has {of_models[models.PINNED]:.1f} times the basic life "
         "of five degrees with the housing in series, a rigid housing "
         f"{of_models[models.RIGID]:.2f} times, a factor of {span:.0f} between them where all "
-        f"inputs make {rows[0]['high over low']:.1f}; flexible rings have "
+        f"inputs make {basic['high over low']:.1f}; flexible rings have "
         f"{of_models[models.FLEXIBLE]:.2f} times. "
         "A wrong model is no scatter, and more samples do not show it.",
     )

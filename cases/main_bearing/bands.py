@@ -7,11 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.cases.main_bearing import study
-from fe_drivetrain.cases.main_bearing.study import (
-    Solved,
-    Tilt,
-)
+from fe_drivetrain.cases.main_bearing import bearing_scenes
 from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.comparison import GridConvergence, grid_convergence
 from fe_drivetrain.drivetrain_file import Scene
@@ -19,6 +15,8 @@ from fe_drivetrain.elasticity.mesh import mean_size
 from fe_drivetrain.elasticity.solve import SAFETY, recovery_estimate
 from fe_drivetrain.report.suite import Jobs, Run, RunJob
 from fe_drivetrain.shafts.response import PLANES, Response, bearing_unit_stiffness
+from fe_drivetrain.studies.seat_stiffness import SeatStiffness
+from fe_drivetrain.studies.solved_assembly import Assembly, timed_mesh
 
 #: Factors on the sizes of a case's own mesh, coarse first; a third apart, as Celik et al. ask.
 FACTORS = (1.8, 1.35)
@@ -67,17 +65,17 @@ def of_response(response: Response, prefix: str = "") -> dict[str, Floats]:
     }
 
 
-def of_solved(solved: Solved) -> dict[str, Floats]:
+def of_solved(solved: Assembly) -> dict[str, Floats]:
     """Figures of a scene with its gearbox, and "stiffness" (6, 6) of a spherical bearing's unit."""
     found = of_response(solved.response)
     found["size"] = np.array(mean_size(solved.model.mesh))
-    found |= {f"{_RECOVERED}reaction {name}": error for name, error in solved.recovered.items()}
+    found |= {f"{_RECOVERED}reaction {name}": error for name, error in solved.errors.items()}
     if solved.scene.bearing_units[0].interface != "bonded":
         found["stiffness"] = bearing_unit_stiffness(solved.response, solved.bearing)
     return found
 
 
-def of_tilt(tilt: Tilt) -> dict[str, Floats]:
+def of_tilt(tilt: SeatStiffness) -> dict[str, Floats]:
     """Figures of a solution without gearbox springs."""
     k = np.array([list(values.values()) for values in tilt.by_plane.values()])
     return {
@@ -89,7 +87,7 @@ def of_tilt(tilt: Tilt) -> dict[str, Floats]:
     }
 
 
-def recovered_of_tilt(tilt: Tilt) -> Floats:
+def recovered_of_tilt(tilt: SeatStiffness) -> Floats:
     """Band of K_R in each plane, relative, from stresses recovered in bearing and housing.
 
     Under a given moment the tilt is too small by the share that the energy is.
@@ -120,14 +118,14 @@ def solve_coarser(
 ) -> dict[str, Floats] | None:
     """Figures of a coarser mesh; None where it is too coarse for the walls of the parts."""
     try:
-        meshed = study.mesh_of(run, scene, label)
+        mesh = timed_mesh(run, scene, label)
     except InputError:
         return None
     found: dict[str, Floats] = {}
     if solved:
-        found |= of_solved(study.solve_scene(run, scene, label, meshed))
+        found |= of_solved(bearing_scenes.solve(run, scene, label, mesh))
     if tilted:
-        found |= of_tilt(study.solve_tilt(run, scene, f"{label}, no gearbox", meshed))
+        found |= of_tilt(bearing_scenes.solve_seat(run, scene, f"{label}, no gearbox", mesh))
     return found
 
 

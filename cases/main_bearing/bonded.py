@@ -5,18 +5,31 @@ thesis's torsional-spring beam is put beside the solid, load by load, and what t
 is named.
 """
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import bands, shown, study
+from fe_drivetrain.cases.main_bearing import bands, bearing_scenes, shown
 from fe_drivetrain.common import (
     FORCES,
     Floats,
 )
 from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
+from fe_drivetrain.report import Image, Solid, Text
 from fe_drivetrain.report.suite import Page, Record, Run
-from fe_drivetrain.shafts.beam import beam_of_scene, closed_forms, main_bearing_beam, shaft
+from fe_drivetrain.shafts.beam import main_bearing_beam
+from fe_drivetrain.studies import Assembly, LinearModel, SeatStiffness
+from fe_drivetrain.studies.closed_forms import (
+    PINNED,
+    SIXBYSIX,
+    SPRUNG,
+    closed_form_models,
+)
+from fe_drivetrain.studies.solved_assembly import timed_mesh
 
 #: Thrust [N] and torque [N m] of a typical size, by their place among the hub loads.
 TYPICAL = {0: 200e3, 3: 1.1e6}
@@ -71,14 +84,224 @@ def couplings_of(
 
 def beam_reaction(scene: Scene, K_R: Floats, load: int) -> float:
     """Force on the bearing of the torsional-spring beam per unit of a hub force."""
-    beam = main_bearing_beam(scene, float(K_R[0]), float(K_R[1]))
-    at_rest, loaded = closed_forms.torsional_spring_model(
-        np.vstack([np.zeros(6), np.eye(6)[load]]), beam
+    return float(LinearModel.on_springs(scene, float(K_R[0]), float(K_R[1])).matrix[load, load])
+
+
+@dataclass(frozen=True, eq=False)
+class Worked:
+    """The bonded scene solved, its coarser meshes, and the beams beside it.
+
+    Attributes
+    ----------
+    solved : Assembly
+        With its gearbox.
+    tilt : SeatStiffness
+        K_R, gearbox springs removed.
+    series : bands.Series
+        Figures by mesh.
+    pictures : sequence of Image, Solid or Text
+        Pictures of the model.
+    torsional, on_matrix, pinned : Floats
+        (6, 6) reactions of three beams to unit hub loads.
+    """
+
+    solved: Assembly
+    tilt: SeatStiffness
+    series: bands.Series
+    pictures: Sequence[Image | Solid | Text]
+    torsional: Floats
+    on_matrix: Floats
+    pinned: Floats
+
+    @property
+    def reaction(self) -> Floats:
+        """(6, 10) reactions of the bearing to unit loads."""
+        return self.solved.response.reactions[self.solved.bearing]
+
+    @cached_property
+    def shares(self) -> list[Record]:
+        """Reactions in bending to unit hub loads, FE and three beams."""
+        return shares_of(
+            self.reaction,
+            self.series,
+            self.solved.bearing,
+            self.torsional,
+            self.on_matrix,
+            self.pinned,
+        )
+
+    @property
+    def forces(self) -> list[Record]:
+        """Of `shares`, the force on the bearing in each plane."""
+        return [self.shares[0], self.shares[4]]
+
+    @cached_property
+    def couplings(self) -> list[Record]:
+        """Loads in bending from thrust and torque."""
+        return couplings_of(self.reaction, self.series, self.solved.bearing, self.on_matrix)
+
+
+def solved_with_beams(run: Run, scene: Scene) -> Worked:
+    """Solve the scene with and without its gearbox, on coarser meshes, too, and three beams."""
+    main_bearing_beam(scene)  # refuses before the work what it cannot stand for
+    with run.side_by_side(4) as jobs:
+        mesh = timed_mesh(run, scene, "bonded")
+        solving = jobs.start(bearing_scenes.solve_and_write, scene, "bonded", mesh, "mesh")
+        tilting = jobs.start(bearing_scenes.solve_seat, scene, "without gearbox", mesh)
+        coarser = bands.start(jobs, scene, "bonded", tilted=True)
+        solved = solving.result()
+        load_factors = np.array([0, 0, -1e5, 0, 0, 0, 0, 0, 0, 0], dtype=float)
+        drawing = jobs.start(shown.pictures_of, solved, load_factors, "Fz = -100 kN at the hub")
+        tilt = tilting.result()
+        pictures = drawing.result()
+        series = coarser.below(bands.of_solved(solved) | bands.of_tilt(tilt))
+    beams = closed_form_models(scene, {}, tilt)
+    return Worked(
+        solved,
+        tilt,
+        series,
+        pictures,
+        torsional=beams[SPRUNG.format("averaged seat")].matrix.T,
+        on_matrix=beams[SIXBYSIX].matrix.T,
+        pinned=beams[PINNED].matrix.T,
     )
-    return float((loaded - at_rest)[load])
 
 
-OF_THESIS = "in the thesis, whose gearbox has three translational springs only, it takes all of it."
+def check(page: Page, work: Worked) -> None:
+    """Solutions in balance, load through the seat, and the torsional-spring beam against FE."""
+    shown.check_solution(page, work.solved, "bonded")
+    shown.check_solution(page, work.tilt.free, "without gearbox")
+    shown.check_series(page, work.series, "bonded")
+    reaction, scene = work.reaction, work.solved.scene
+    seat = work.solved.response.reactions[f"{work.solved.bearing}.seat"][:, :6]
+    page.vanishes(
+        "load through the seat against the reaction at the base, unit hub loads",
+        float(np.abs(seat - reaction[:, :6]).max() / np.abs(reaction[:, :6]).max()),
+        within=1e-8,
+        why="two sums over different faces of the same bodies: solver accuracy",
+        source="equilibrium of bearing and housing",
+    )
+    for row, load in zip(work.forces, (2, 1), strict=True):
+        page.equals(
+            f"{row['reaction']}: torsional-spring beam (averaged seat) against FE",
+            row["torsional-spring beam"],
+            row["FE"],
+            within=0.02,
+            why="the beam has no ring on its shaft and no radial give in its bearing",
+            source="FE of this case; Stirling 2023 states 1.61 % over load histories",
+            measure="reaction",
+            # the beam's own value rests on K_R of FE: its change between K_R's limits is its band
+            band=work.series.band(lambda f, k=load: beam_reaction(scene, f["K_R"][:, 1], k)),
+        )
+
+
+def answer(page: Page, work: Worked) -> None:
+    """What the beams give, and what they leave out."""
+    reaction, series = work.reaction, work.series
+    spring_error, matrix_error = (
+        max(abs(row[against]) for row in work.forces)
+        for against in ("torsional-spring against FE [%]", "6x6 against FE [%]")
+    )
+    page.found("force on the bearing per N at the hub [N/N]", float(reaction[2, 2]))
+    page.found("error of the torsional-spring beam [%]", spring_error)
+    page.answer(
+        f"1 N up at the hub puts {reaction[2, 2]:.4g} N and {reaction[4, 2]:.4g} N m on the "
+        f"bonded bearing; the pinned beam gives {work.pinned[2, 2]:.4g} N and no moment.",
+        f"The torsional-spring beam with K_R from the averaged seat has an error of "
+        f"{spring_error:.2g} % in these forces, a beam on the full 6x6 stiffness one of "
+        f"{matrix_error:.2g} %.",
+        f"Thrust bends the bearing: 200 kN give {abs(work.couplings[1]['FE']):.3g} kN of Fz and "
+        f"{abs(work.couplings[2]['FE']):.3g} kN m of My, which no planar beam has.",
+    )
+    if series.complete:
+        k_band = max(
+            series.percent(lambda f, p=plane: float(f["K_R"][p, 1])) or 0.0 for plane in range(2)
+        )
+        of_forces = max(100 * row["± FE"] / abs(row["FE"]) for row in work.forces)
+        page.answer(
+            "Numerical uncertainty of these forces, from two coarser meshes: "
+            f"{of_forces:.2g} %; of K_R {k_band:.2g} %."
+        )
+
+
+def reactions_section(page: Page, work: Worked) -> None:
+    """Reactions to unit loads and to thrust and torque, FE and beams."""
+    reaction = work.reaction
+    page.section("Reactions")
+    page.text(
+        "Bearing and housing are one body with the shaft and react moments, torque among them. "
+        "Here the gearbox holds the shaft's rotation about x at its end, as in the spherical case, "
+        f"and the bonded bearing takes {100 * reaction[3, 3]:.1f} % of the hub's torque; in the "
+        "thesis, whose gearbox has three translational springs only, it takes all of it."
+    )
+    page.table(
+        "Load on the main bearing per unit load at the hub [N/N, N m/N, 1/m, N m/N m]", work.shares
+    )
+    page.table(
+        "Thrust and torque load the bearing in bending too: the housing stands on its foot, below "
+        "the shaft. The planar beams have none of this",
+        work.couplings,
+    )
+    shown.reaction_table(
+        page,
+        "Load on the main bearing for unit loads, moments about its centre; "
+        + work.series.largest(f"reaction {work.solved.bearing}"),
+        reaction,
+    )
+
+
+def stiffness_section(page: Page, work: Worked) -> None:
+    """K_R, the condensed stiffness, and where strain energy is."""
+    page.section("Stiffness")
+    shown.tilt_table(page, work.tilt, work.series)
+    shown.matrix_table(
+        page,
+        "Condensed stiffness of bearing and housing at the bearing's centre; "
+        + work.series.largest("stiffness"),
+        work.tilt.matrix,
+    )
+    energy = work.solved.response.strain_energy
+    total = np.sum(list(energy.values()), axis=0)
+    page.table(
+        "Where the strain energy of a unit hub load is [%] (the rest of the work goes into the "
+        "gearbox springs)",
+        [
+            {
+                "part": part,
+                **{
+                    f"hub {c}": 100.0 * float(e[k, k]) / float(total[k, k])
+                    for k, c in enumerate(FORCES)
+                },
+                "± hub Fz": work.series.band(
+                    lambda f, part=part: (
+                        100.0
+                        * float(f[f"energy {part}"][2, 2])
+                        / sum(float(f[f"energy {p}"][2, 2]) for p in energy)
+                    )
+                ),
+            }
+            for part, e in energy.items()
+        ],
+    )
+
+
+def write_stiffness(run: Run, work: Worked) -> None:
+    """The 6x6 stiffness of bearing and housing, for other programs."""
+    solved = work.solved
+    write_stiffness_json(
+        run.folder / "stiffness.json",
+        solved.scene.title,
+        [
+            stiffness_matrix(
+                f"{solved.bearing}: bearing and housing",
+                work.tilt.matrix,
+                solved.response.positions[solved.bearing],
+                "condensed at the bearing's centre, gearbox springs removed, base fixed",
+            )
+        ],
+        solved.response.diagnostics.n_unknowns,
+        work.tilt.by_plane,
+    )
 
 
 @case(
@@ -91,150 +314,17 @@ OF_THESIS = "in the thesis, whose gearbox has three translational springs only, 
 )
 def run(run: Run, page: Page) -> None:
     """Solve the bonded scene, and compare its reactions with three beams."""
-    scene = study.scene_of(run, page, "bonded")
-    pinned_beam = main_bearing_beam(scene)  # refuses before the work what it cannot stand for
-    with run.side_by_side(4) as jobs:
-        meshed = study.mesh_of(run, scene, "bonded")
-        solving = jobs.start(study.solve_and_write, scene, "bonded", meshed, "mesh")
-        tilting = jobs.start(study.solve_tilt, scene, "without gearbox", meshed)
-        coarser = bands.start(jobs, scene, "bonded", tilted=True)
-        solved = solving.result()
-        load_factors = np.array([0, 0, -1e5, 0, 0, 0, 0, 0, 0, 0], dtype=float)
-        drawing = jobs.start(shown.pictures_of, solved, load_factors, "Fz = -100 kN at the hub")
-        tilt = tilting.result()
-        pictures = drawing.result()
-        series = coarser.below(bands.of_solved(solved) | bands.of_tilt(tilt))
-    name = solved.bearing
-    reaction = solved.response.reactions[name]
-
-    spring = main_bearing_beam(scene, *tilt.both("averaged seat"))
-    # The gearbox weight is a constant that a beam with a weight has for any load.
-    weightless = closed_forms.torsional_spring_model(np.zeros((1, 6)), spring)[0]
-    torsional = (closed_forms.torsional_spring_model(np.eye(6), spring) - weightless).T
-    pinned = closed_forms.pinned_model(np.eye(6), pinned_beam).T
-    on_matrix = shaft.unit_load_response(
-        beam_of_scene(scene, {name: tilt.matrix}, shear=False), [scene.shaft.front]
-    ).reaction_matrix(name)[:, 0, :]
-    shares = shares_of(reaction, series, name, torsional, on_matrix, pinned)
-    couplings = couplings_of(reaction, series, name, on_matrix)
-    energy = solved.response.strain_energy
-    total = np.sum(list(energy.values()), axis=0)
-
-    shown.check_solution(page, solved, "bonded")
-    shown.check_solution(page, tilt.free, "without gearbox")
-    shown.check_series(page, series, "bonded")
-    seat = solved.response.reactions[f"{name}.seat"][:, :6]
-    page.vanishes(
-        "load through the seat against the reaction at the base, unit hub loads",
-        float(np.abs(seat - reaction[:, :6]).max() / np.abs(reaction[:, :6]).max()),
-        within=1e-8,
-        why="two sums over different faces of the same bodies: solver accuracy",
-        source="equilibrium of bearing and housing",
-    )
-    forces = [shares[0], shares[4]]
-    for row, load in zip(forces, (2, 1), strict=True):
-        page.equals(
-            f"{row['reaction']}: torsional-spring beam (averaged seat) against FE",
-            row["torsional-spring beam"],
-            row["FE"],
-            within=0.02,
-            why="the beam has no ring on its shaft and no radial give in its bearing",
-            source="FE of this case; Stirling 2023 states 1.61 % over load histories",
-            measure="reaction",
-            # the beam's own value rests on K_R of FE: its change between K_R's limits is its band
-            band=series.band(lambda f, k=load: beam_reaction(scene, f["K_R"][:, 1], k)),
-        )
-    write_stiffness_json(
-        run.folder / "stiffness.json",
-        scene.title,
-        [
-            stiffness_matrix(
-                f"{name}: bearing and housing",
-                tilt.matrix,
-                solved.response.positions[name],
-                "condensed at the bearing's centre, gearbox springs removed, base fixed",
-            )
-        ],
-        solved.response.diagnostics.n_unknowns,
-        tilt.by_plane,
-    )
-    spring_error, matrix_error = (
-        max(abs(row[against]) for row in forces)
-        for against in ("torsional-spring against FE [%]", "6x6 against FE [%]")
-    )
-    page.found("force on the bearing per N at the hub [N/N]", float(reaction[2, 2]))
-    page.found("error of the torsional-spring beam [%]", spring_error)
-    page.answer(
-        f"1 N up at the hub puts {reaction[2, 2]:.4g} N and {reaction[4, 2]:.4g} N m on the "
-        f"bonded bearing; the pinned beam gives {pinned[2, 2]:.4g} N and no moment.",
-        f"The torsional-spring beam with K_R from the averaged seat has an error of "
-        f"{spring_error:.2g} % in these forces, a beam on the full 6x6 stiffness one of "
-        f"{matrix_error:.2g} %.",
-        f"Thrust bends the bearing: 200 kN give {abs(couplings[1]['FE']):.3g} kN of Fz and "
-        f"{abs(couplings[2]['FE']):.3g} kN m of My, which no planar beam has.",
-    )
-    if series.complete:
-        k_band = max(
-            series.percent(lambda f, p=plane: float(f["K_R"][p, 1])) or 0.0 for plane in range(2)
-        )
-        page.answer(
-            "Numerical uncertainty of these forces, from two coarser meshes: "
-            f"{max(100 * r['± FE'] / abs(r['FE']) for r in forces):.2g} %; of K_R {k_band:.2g} %."
-        )
+    scene = bearing_scenes.scene_of(run, page, "bonded")
+    work = solved_with_beams(run, scene)
+    check(page, work)
+    write_stiffness(run, work)
+    answer(page, work)
     page.section("Model")
-    page.add(*pictures)
-    page.section("Reactions")
-    page.text(
-        "Bearing and housing are one body with the shaft and react moments, torque among them. "
-        "Here the gearbox holds the shaft's rotation about x at its end, as in the spherical case, "
-        f"and the bonded bearing takes {100 * reaction[3, 3]:.1f} % of the hub's torque; "
-        f"{OF_THESIS}"
-    )
-    page.table(
-        "Load on the main bearing per unit load at the hub [N/N, N m/N, 1/m, N m/N m]", shares
-    )
-    page.table(
-        "Thrust and torque load the bearing in bending too: the housing stands on its foot, below "
-        "the shaft. The planar beams have none of this",
-        couplings,
-    )
-    shown.reaction_table(
-        page,
-        "Load on the main bearing for unit loads, moments about its centre; "
-        + series.largest(f"reaction {name}"),
-        reaction,
-    )
-    page.section("Stiffness")
-    shown.tilt_table(page, tilt, series)
-    shown.matrix_table(
-        page,
-        "Condensed stiffness of bearing and housing at the bearing's centre; "
-        + series.largest("stiffness"),
-        tilt.matrix,
-    )
-    page.table(
-        "Where the strain energy of a unit hub load is [%] (the rest of the work goes into the "
-        "gearbox springs)",
-        [
-            {
-                "part": part,
-                **{
-                    f"hub {c}": 100.0 * float(e[k, k]) / float(total[k, k])
-                    for k, c in enumerate(FORCES)
-                },
-                "± hub Fz": series.band(
-                    lambda f, part=part: (
-                        100.0
-                        * float(f[f"energy {part}"][2, 2])
-                        / sum(float(f[f"energy {p}"][2, 2]) for p in energy)
-                    )
-                ),
-            }
-            for part, e in energy.items()
-        ],
-    )
-    shown.mesh_section(page, {"bonded": solved, "without gearbox": tilt.free})
-    page.text(series.note())
+    page.add(*work.pictures)
+    reactions_section(page, work)
+    stiffness_section(page, work)
+    shown.mesh_section(page, {"bonded": work.solved, "without gearbox": work.tilt.free})
+    page.text(work.series.note())
     shown.assume(page, scene)
-    page.data("tilt_stiffness", tilt.by_plane)
-    page.data("stiffness", tilt.matrix)
+    page.data("tilt_stiffness", work.tilt.by_plane)
+    page.data("stiffness", work.tilt.matrix)

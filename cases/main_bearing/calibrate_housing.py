@@ -1,12 +1,13 @@
 """Which housing dimensions would give the K_R that the thesis found: families, not one answer."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import bands, shown, study
+from fe_drivetrain.cases.main_bearing import bands, bearing_scenes, shown
 from fe_drivetrain.cases.main_bearing import housing_dimensions as housings
 from fe_drivetrain.cases.main_bearing.housing_dimensions import (
     BOLTED,
@@ -127,6 +128,32 @@ def families_section(
 ) -> None:
     """The families in charts, and their members in tables."""
     page.section("The families")
+    family_charts(page, scene, families)
+    member_tables(page, scene, families, percents)
+    page.table(
+        "Which dimensions the two values determine: range over the whole family, beside the "
+        "bounds, and exponents of K_R by four nodes in the middle of the family (K_R in proportion "
+        "to the dimension to that power)",
+        [
+            {
+                "form": f.form.title,
+                "dimension": d.name,
+                "least allowed [m]": float(f.form.low[k]),
+                "largest allowed [m]": d.high,
+                "least in family [m]": float(f.cloud[:, k].min()),
+                "largest in family [m]": float(f.cloud[:, k].max()),
+                "exponent, vertical": float(f.exponents[0, k]),
+                "exponent, horizontal": float(f.exponents[1, k]),
+                "bounds": d.reason,
+            }
+            for f in families
+            for k, d in enumerate(DIMENSIONS)
+        ],
+    )
+
+
+def family_charts(page: Page, scene: Scene, families: list[Family]) -> None:
+    """Pedestal, width and mass of all that gives both values, against the centre's height."""
 
     def lines(what: Callable[[Member], float]) -> list[Any]:
         return [
@@ -172,6 +199,12 @@ def families_section(
         CENTRE_HEIGHT,
         "mass [kg]",
     )
+
+
+def member_tables(
+    page: Page, scene: Scene, families: list[Family], percents: dict[str, list[float]]
+) -> None:
+    """Dimensions and K_R of the members that were verified."""
     verified = [m for f in families for m in f.verified]
     page.table(
         "Members on the scene's own mesh. Stress: nominal, where the pedestal meets the foot, "
@@ -188,26 +221,6 @@ def families_section(
             | dict(zip(estimators, (m.K_R.ravel() / 1e6).tolist(), strict=True))
             | {"bands [%]": ", ".join(f"± {b:.2g}" for b in percents[m.form.title])}
             for m in verified
-        ],
-    )
-    page.table(
-        "Which dimensions the two values determine: range over the whole family, beside the "
-        "bounds, and exponents of K_R by four nodes in the middle of the family (K_R in proportion "
-        "to the dimension to that power)",
-        [
-            {
-                "form": f.form.title,
-                "dimension": d.name,
-                "least allowed [m]": float(f.form.low[k]),
-                "largest allowed [m]": d.high,
-                "least in family [m]": float(f.cloud[:, k].min()),
-                "largest in family [m]": float(f.cloud[:, k].max()),
-                "exponent, vertical": float(f.exponents[0, k]),
-                "exponent, horizontal": float(f.exponents[1, k]),
-                "bounds": d.reason,
-            }
-            for f in families
-            for k, d in enumerate(DIMENSIONS)
         ],
     )
 
@@ -287,19 +300,46 @@ def method_section(page: Page, families: list[Family], bands_of: dict[str, list[
     )
 
 
-@case(
-    "Which housing dimensions would give a K_R of 145 and 392 MN m/rad",
-    source="Stirling 2023, PhD thesis, section 3.3.1",
-    settings={
-        "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
-    },
-    changes="scene",
-)
-def run(run: Run, page: Page) -> None:
-    """Sample housings, trace those that give both values, and verify some on finer meshes."""
-    scene = study.scene_of(run, page, "bonded", coarsen=False)
-    if run.quick:
-        scene = scene.model_copy(update={"mesh": scene.mesh.scaled(*QUICK_MESH)})
+@dataclass(frozen=True, eq=False)
+class Worked:
+    """The families, and what is told beside them.
+
+    Attributes
+    ----------
+    scene : Scene
+        The scene whose housing is replaced.
+    families : list[Family]
+        By form, the one with a fixed underside first.
+    readings : list[tuple[str, Member]]
+        A housing for each reading of the two values; that of the thesis first.
+    wide : Member
+        The nearest housing with a wide ring.
+    series : list[bands.Series or None]
+        Meshes of the middle of each family; None in a quick run.
+    """
+
+    scene: Scene
+    families: list[Family]
+    readings: list[tuple[str, Member]]
+    wide: Member
+    series: list[bands.Series | None]
+
+    @property
+    def wide_K(self) -> Floats:
+        """(2,) K_R of the housing with a wide ring, the bias of its mesh taken off [MN m/rad]."""
+        return np.asarray(self.wide.K_R[:, 0] / self.families[0].coarse_over_fine[:, 0] / 1e6)
+
+    @property
+    def percents(self) -> dict[str, list[float]]:
+        """Band of K_R in each plane by family [%]."""
+        return {
+            f.form.title: [100 * band_of(f, s, plane) for plane in (0, 1)]
+            for f, s in zip(self.families, self.series, strict=True)
+        }
+
+
+def calibrated_families(run: Run, scene: Scene) -> Worked:
+    """Sample housings, trace those that give both values, and read the values otherwise."""
     counts = {ONE_BODY: QUICK_SAMPLES if run.quick else SAMPLES}
     if not run.quick:
         counts[BOLTED] = BOLTED_SAMPLES
@@ -309,17 +349,13 @@ def run(run: Run, page: Page) -> None:
     with run.step("other readings"):
         readings += [] if run.quick else other_readings(scene, one)
         wide = with_wide_ring(scene, one)
-        wide_K = wide.K_R[:, 0] / one.coarse_over_fine[:, 0] / 1e6
     series = [None if run.quick else assembled(run, scene, family) for family in families]
-    percents = {
-        f.form.title: [100 * band_of(f, s, plane) for plane in (0, 1)]
-        for f, s in zip(families, series, strict=True)
-    }
-    for family, of_meshes in zip(families, series, strict=True):
-        check_family(page, family, of_meshes)
-    with run.step("moduli"):
-        check_moduli(page, scene, one)
+    return Worked(scene, families, readings, wide, series)
 
+
+def answer(page: Page, work: Worked) -> None:
+    """Which housings give both values, and that they determine none."""
+    scene, one, wide_K = work.scene, work.families[0], work.wide_K
     low, high = np.quantile(one.cloud[:, CENTRE], [0, 1])
     page.answer(
         "A housing whose whole underside is fixed gives 145 and 392 MN m/rad (four nodes, as in "
@@ -332,39 +368,66 @@ def run(run: Run, page: Page) -> None:
         "With a ring and a body of at least 0.2 m and a fixed underside no housing within the "
         f"bounds gives both: the nearest found has {wide_K[0]:.0f} and {wide_K[1]:.0f} MN m/rad.",
     )
-    for two in families[1:]:
+    for two in work.families[1:]:
         page.answer(
             "Held at four washers instead, which the thesis does not do, a body of "
             f"{width_range(two)} gives both, at a nominal {stress_range(scene, two)}, for example "
             f"{listed(two.middle.x)} m."
         )
-    if not run.quick:
+    for _, turned in work.readings[1:2]:
         page.answer(
             "Read with the vertical pair turned about a midpoint that stays, so that the thesis's "
             "145 would be 290 by the slope of the line, a body of "
-            f"{readings[1][1].x[WIDTH]:.2f} m on a fixed underside gives both."
+            f"{turned.x[WIDTH]:.2f} m on a fixed underside gives both."
         )
     page.answer(
         "Two values cannot determine five dimensions: nothing here shows that the thesis's housing "
         "was one of these."
     )
-    families_section(page, scene, families, percents)
-    reach_section(page, scene, families)
+
+
+def readings_section(page: Page, work: Worked) -> None:
+    """Housings for other readings of the two values, and with a wide ring."""
     page.section("Other readings of the two values")
     page.table(
         "One housing for each reading, near the middle of the family; on the samples' mesh, its "
         "bias taken off",
         [
-            {"reading": title, **dimensions_of(scene, m), "remaining error [%]": 100 * m.miss}
-            for title, m in readings
+            {"reading": title, **dimensions_of(work.scene, m), "remaining error [%]": 100 * m.miss}
+            for title, m in work.readings
         ],
     )
     page.text(
         "The thesis takes the rotation of the vertical pair 'about the mid point': of the line "
         "between the displaced nodes, as here, or about a midpoint that stays, which doubles it. "
         "Ring and body of 0.2 m or more on a fixed underside: the nearest found is "
-        f"{listed(wide.x)} m, with {wide_K[0]:.0f} and {wide_K[1]:.0f} MN m/rad."
+        f"{listed(work.wide.x)} m, with {work.wide_K[0]:.0f} and {work.wide_K[1]:.0f} MN m/rad."
     )
+
+
+@case(
+    "Which housing dimensions would give a K_R of 145 and 392 MN m/rad",
+    source="Stirling 2023, PhD thesis, section 3.3.1",
+    settings={
+        "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
+    },
+    changes="scene",
+)
+def run(run: Run, page: Page) -> None:
+    """Sample housings, trace those that give both values, and verify some on finer meshes."""
+    scene = bearing_scenes.scene_of(run, page, "bonded", coarsen=False)
+    if run.quick:
+        scene = scene.model_copy(update={"mesh": scene.mesh.scaled(*QUICK_MESH)})
+    work = calibrated_families(run, scene)
+    families, percents = work.families, work.percents
+    for family, of_meshes in zip(families, work.series, strict=True):
+        check_family(page, family, of_meshes)
+    with run.step("moduli"):
+        check_moduli(page, scene, families[0])
+    answer(page, work)
+    families_section(page, scene, families, percents)
+    reach_section(page, scene, families)
+    readings_section(page, work)
     method_section(page, families, percents)
     shown.assume(page, scene)
     page.data(

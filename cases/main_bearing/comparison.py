@@ -3,27 +3,25 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.cases.main_bearing.study import (
-    Solved,
-    Tilt,
-)
+from fe_drivetrain.cases.main_bearing import shown
 from fe_drivetrain.common import GRAVITY, Floats
 from fe_drivetrain.comparison import compare, statistics
 from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.report.suite import Record, Run
-from fe_drivetrain.shafts.beam import (
-    MainBearingBeam,
-    beam_of_scene,
-    closed_forms,
-    main_bearing_beam,
-    shaft,
-)
 from fe_drivetrain.shafts.response import ESTIMATORS
-from fe_drivetrain.studies import LinearModel
+from fe_drivetrain.studies import Assembly, ForceErrors, LinearModel, SeatStiffness
+from fe_drivetrain.studies.closed_forms import (
+    PINNED,
+    SIXBYSIX,
+    SPRUNG,
+    closed_form_models,
+    force_errors,
+)
 from fe_drivetrain.turbine_loads.hub_loads import HubLoadSet
 
 #: Mean error [%] and correlation of the resultant force over all histories (Stirling 2023, lines
@@ -35,7 +33,7 @@ PUBLISHED = {
 }
 MEAN_ERROR = "mean error [%]"
 THESIS = ("thesis: mean error [%]", "thesis: correlation")
-SIXBYSIX = "beam on the 6x6 against bonded FE"
+ON_MATRIX = f"{SIXBYSIX} against bonded FE"
 QUANTITIES = ("Fy", "Fz", "My", "Mz")
 COMPONENT = {"Fy": 1, "Fz": 2, "My": 4, "Mz": 5}
 UNITS = {"Fy": "N", "Fz": "N", "My": "N m", "Mz": "N m"}
@@ -51,8 +49,8 @@ class Comparison:
         (m, n, 6) reactions of the main bearing [N, N m] by kind, "spherical" and "bonded".
     pairs : dict[str, tuple[str, Floats]]
         The kind of FE that each comparison is with, and the beam's (m, n, 6) reactions.
-    mean_error, correlation : dict[str, float]
-        Of the resultant radial force, by comparison [%] and [-].
+    errors : dict[str, ForceErrors]
+        Errors of the resultant radial force, by comparison.
     headline, quantities, estimators, causes : list[Record]
         Records of tables.
     with_their_stiffness : float
@@ -63,8 +61,7 @@ class Comparison:
 
     fe: dict[str, Floats]
     pairs: dict[str, tuple[str, Floats]]
-    mean_error: dict[str, float]
-    correlation: dict[str, float]
+    errors: dict[str, ForceErrors]
     headline: list[Record]
     quantities: list[Record]
     estimators: list[Record]
@@ -72,17 +69,21 @@ class Comparison:
     with_their_stiffness: float
     seconds: float
 
+    @property
+    def mean_error(self) -> dict[str, float]:
+        """Mean error of the resultant radial force, by comparison [%]."""
+        return {label: one.mean_error_percent for label, one in self.errors.items()}
+
+    @property
+    def correlation(self) -> dict[str, float]:
+        """Correlation of the resultant radial force, by comparison."""
+        return {label: one.correlation for label, one in self.errors.items()}
+
 
 def compared(
-    run: Run,
-    hub: HubLoadSet,
-    pinned_beam: MainBearingBeam,
-    spherical: Solved,
-    bonded: Solved,
-    tilt: Tilt,
+    run: Run, hub: HubLoadSet, spherical: Assembly, bonded: Assembly, tilt: SeatStiffness
 ) -> Comparison:
     """Compare four pairs of beam and FE over all histories."""
-    name, scene = bonded.bearing, bonded.scene
     solids = {
         "spherical": LinearModel.of_fe(spherical.scene, spherical.response),
         "bonded": LinearModel.of_fe(bonded.scene, bonded.response),
@@ -91,82 +92,47 @@ def compared(
     with run.step("reactions of all histories"):
         fe = {kind: solid.reaction(hub.loads) for kind, solid in solids.items()}
     seconds = time.perf_counter() - start
-
-    springs = {
-        estimator: LinearModel.of_beam(
-            closed_forms.torsional_spring_model, main_bearing_beam(scene, *tilt.both(estimator))
-        )
-        for estimator in ESTIMATORS
-    }
-    unit = shaft.unit_load_response(
-        beam_of_scene(scene, {name: tilt.matrix}, shear=False),
-        [scene.shaft.front, scene.shaft.rear],
-    )
-    down = np.array([0.0, 0.0, -scene.gearbox.weight, 0.0, 0.0, 0.0])
-    first, second, third = PUBLISHED
-    on_matrix = LinearModel(
-        unit.reaction_matrix(name)[:, 0, :].T,
-        unit.solution([np.zeros(6), down]).reaction(name),
-    )
+    beams = closed_form_models(bonded.scene, {}, tilt)
+    of_pairs = _beams_of_pairs()
     with run.step("beam models"):
-        pinned = LinearModel.of_beam(closed_forms.pinned_model, pinned_beam).reaction(hub.loads)
-        pairs = {
-            first: ("spherical", pinned),
-            second: ("bonded", pinned),
-            third: ("bonded", springs["averaged seat"].reaction(hub.loads)),
-            SIXBYSIX: ("bonded", on_matrix.reaction(hub.loads)),
-        }
-
+        reactions = {beam: beams[beam].reaction(hub.loads) for _, beam in of_pairs.values()}
+        pairs = {label: (kind, reactions[beam]) for label, (kind, beam) in of_pairs.items()}
+    histories = list(hub.loads)
     with run.step("comparison"):
-        force = {kind: _radial(reaction) for kind, reaction in fe.items()}
-        beam_force = {label: _radial(model) for label, (_, model) in pairs.items()}
-        error = {
-            label: _mean_error(force[kind], beam_force[label]) for label, (kind, _) in pairs.items()
+        errors = {
+            label: force_errors(solids[kind], beams[beam], histories)
+            for label, (kind, beam) in of_pairs.items()
         }
-        correlation = {
-            label: float(statistics.correlation(force[kind], beam_force[label]).mean())
-            for label, (kind, _) in pairs.items()
-        }
-        headline: list[Record] = [
-            {
-                "comparison": label,
-                MEAN_ERROR: error[label],
-                "mean |error| / mean |force| [%]": 100.0
-                * float(statistics.relative_error(force[kind], beam_force[label]).mean()),
-                "samples left out of the mean error [%]": 100.0
-                * float(statistics.excluded_share(force[kind]).mean()),
-                "correlation": f"{correlation[label]:.6f}",
-                **dict(zip(THESIS, PUBLISHED.get(label, (None, None)), strict=True)),
-            }
-            for label, (kind, _) in pairs.items()
-        ]
-        quantities = [
-            row
-            for label, (kind, model) in pairs.items()
-            for row in _by_quantity(label, fe[kind], model)
-        ]
-        estimators = [
-            _by_estimator(estimator, tilt, fe["bonded"], force["bonded"], model, hub.loads)
-            for estimator, model in springs.items()
-        ]
-        theirs = LinearModel.of_beam(
-            closed_forms.torsional_spring_model, main_bearing_beam(scene, 145e6, 392e6)
+        theirs = LinearModel.on_springs(bonded.scene, *(1e6 * k for k in shown.PUBLISHED.values()))
+        return Comparison(
+            fe=fe,
+            pairs=pairs,
+            errors=errors,
+            headline=[_headline(label, one) for label, one in errors.items()],
+            quantities=[
+                row
+                for label, (kind, model) in pairs.items()
+                for row in _by_quantity(label, fe[kind], model)
+            ],
+            estimators=[
+                _by_estimator(estimator, tilt, solids["bonded"], beams, histories)
+                for estimator in ESTIMATORS
+            ],
+            causes=_causes(histories, spherical, bonded, beams),
+            with_their_stiffness=force_errors(theirs, beams[PINNED], histories).mean_error_percent,
+            seconds=seconds,
         )
-        with_their_stiffness = _mean_error(theirs.radial(hub.loads), beam_force[first])
-    with run.step("causes of the difference"):
-        causes = _causes(hub.loads, spherical, bonded, springs["averaged seat"], beam_force, force)
-    return Comparison(
-        fe,
-        pairs,
-        error,
-        correlation,
-        headline,
-        quantities,
-        estimators,
-        causes,
-        with_their_stiffness,
-        seconds,
-    )
+
+
+def _beams_of_pairs() -> dict[str, tuple[str, str]]:
+    """The kind of FE and the closed form of each comparison."""
+    first, second, third = PUBLISHED
+    return {
+        first: ("spherical", PINNED),
+        second: ("bonded", PINNED),
+        third: ("bonded", SPRUNG.format("averaged seat")),
+        ON_MATRIX: ("bonded", SIXBYSIX),
+    }
 
 
 def of_one_mesh(
@@ -190,27 +156,25 @@ def of_one_mesh(
     correlation : float
         Of the torsional-spring beam.
     """
-    force = LinearModel.of_reactions(matrix, scene.gearbox.weight).radial(hub.loads)
-    spring = main_bearing_beam(scene, float(stiffness[0]), float(stiffness[1]))
-    pinned, sprung = (
-        LinearModel.of_beam(model, spring).radial(hub.loads)
-        for model in (closed_forms.pinned_model, closed_forms.torsional_spring_model)
+    solid = LinearModel.of_reactions(matrix, scene.gearbox.weight)
+    beams = (
+        closed_form_models(scene, {})[PINNED],
+        LinearModel.on_springs(scene, float(stiffness[0]), float(stiffness[1])),
     )
-    return (
-        _mean_error(force, pinned),
-        _mean_error(force, sprung),
-        float(statistics.correlation(force, sprung).mean()),
-    )
+    pinned, sprung = (force_errors(solid, beam, list(hub.loads)) for beam in beams)
+    return pinned.mean_error_percent, sprung.mean_error_percent, sprung.correlation
 
 
-def _radial(reaction: Floats) -> Floats:
-    """(m, n) resultant radial force [N] of (m, n, 6) reactions."""
-    return statistics.resultant(reaction[..., 1], reaction[..., 2])
-
-
-def _mean_error(reference: Floats, found: Floats) -> float:
-    """The thesis's metric, mean over the histories [%]."""
-    return float(statistics.mean_percentage_error(reference, found).mean())
+def _headline(label: str, errors: ForceErrors) -> Record:
+    """Errors of one comparison beside those of the thesis."""
+    return {
+        "comparison": label,
+        MEAN_ERROR: errors.mean_error_percent,
+        "mean |error| / mean |force| [%]": errors.relative_error_percent,
+        "samples left out of the mean error [%]": errors.left_out_percent,
+        "correlation": f"{errors.correlation:.6f}",
+        **dict(zip(THESIS, PUBLISHED.get(label, (None, None)), strict=True)),
+    }
 
 
 def _by_quantity(label: str, reference: Floats, model: Floats) -> list[Record]:
@@ -245,55 +209,67 @@ def _by_quantity(label: str, reference: Floats, model: Floats) -> list[Record]:
 
 
 def _by_estimator(
-    estimator: str, tilt: Tilt, reference: Floats, force: Floats, model: LinearModel, loads: Floats
+    estimator: str,
+    tilt: SeatStiffness,
+    solid: LinearModel,
+    beams: Mapping[str, LinearModel],
+    histories: Sequence[Floats],
 ) -> Record:
     """The torsional-spring beam with K_R of one estimator against bonded FE."""
-    fy, fz = (loads @ model.matrix[:, k] + model.constant[k] for k in (1, 2))
-    found = statistics.resultant(fy, fz)
+    beam = beams[SPRUNG.format(estimator)]
+    found = force_errors(solid, beam, histories)
     vertical, horizontal = tilt.both(estimator)
-    return {
+    row: Record = {
         "estimator": estimator,
         "K_R vertical [MN m/rad]": vertical / 1e6,
         "K_R horizontal [MN m/rad]": horizontal / 1e6,
-        "mean error of the resultant [%]": _mean_error(force, found),
-        "correlation": f"{float(statistics.correlation(force, found).mean()):.6f}",
-        "RMSE Fy [kN]": float(statistics.rmse(reference[..., 1], fy).mean()) / 1e3,
-        "RMSE Fz [kN]": float(statistics.rmse(reference[..., 2], fz).mean()) / 1e3,
+        "mean error of the resultant [%]": found.mean_error_percent,
+        "correlation": f"{found.correlation:.6f}",
     }
+    for quantity in ("Fy", "Fz"):
+        k = COMPONENT[quantity]
+        rmse = [
+            statistics.rmse(
+                *(h @ model.matrix[:, k] + model.constant[k] for model in (solid, beam))
+            )
+            for h in histories
+        ]
+        row[f"RMSE {quantity} [kN]"] = float(np.mean(rmse)) / 1e3
+    return row
 
 
 def _causes(
-    loads: Floats,
-    spherical: Solved,
-    bonded: Solved,
-    spring: LinearModel,
-    beam_force: dict[str, Floats],
-    force: dict[str, Floats],
+    histories: Sequence[Floats],
+    spherical: Assembly,
+    bonded: Assembly,
+    beams: Mapping[str, LinearModel],
 ) -> list[Record]:
     """Beam against FE with one load at a time taken out or put in."""
     first, _, third = PUBLISHED
     plain = "all hub loads, no self-weight"
     heavy = "self-weight of shaft, bearing and housing in FE, none in the beam"
     ahead = "FE loads 50 mm in front of the shaft"
-    of_first = [
-        (plain, force["spherical"]),
-        (heavy, LinearModel.of_fe(spherical.scene, spherical.response, GRAVITY).radial(loads)),
-        (ahead, LinearModel.of_fe(spherical.scene, spherical.response).ahead(0.05).radial(loads)),
-    ]
-    cases = [(first, what, reference, beam_force[first]) for what, reference in of_first]
-    cases.append((third, plain, force["bonded"], beam_force[third]))
+    pinned, spring = beams[PINNED], beams[SPRUNG.format("averaged seat")]
+    determinate = LinearModel.of_fe(spherical.scene, spherical.response)
     solid = LinearModel.of_fe(bonded.scene, bonded.response)
-    for what, component in (("without thrust Fx", 0), ("without torque Mx", 3)):
-        less = [model.without(component).radial(loads) for model in (solid, spring)]
-        cases.append((third, what, less[0], less[1]))
-    heavy_force = LinearModel.of_fe(bonded.scene, bonded.response, GRAVITY).radial(loads)
-    cases.append((third, heavy, heavy_force, beam_force[third]))
-    return [
-        {
-            "comparison": label,
-            "loads": what,
-            MEAN_ERROR: _mean_error(reference, found),
-            "correlation": f"{float(statistics.correlation(reference, found).mean()):.6f}",
-        }
-        for label, what, reference, found in cases
+    cases = [
+        (first, plain, determinate, pinned),
+        (first, heavy, LinearModel.of_fe(spherical.scene, spherical.response, GRAVITY), pinned),
+        (first, ahead, determinate.ahead(0.05), pinned),
+        (third, plain, solid, spring),
+        (third, "without thrust Fx", solid.without(0), spring.without(0)),
+        (third, "without torque Mx", solid.without(3), spring.without(3)),
+        (third, heavy, LinearModel.of_fe(bonded.scene, bonded.response, GRAVITY), spring),
     ]
+    rows: list[Record] = []
+    for label, what, reference, beam in cases:
+        found = force_errors(reference, beam, histories)
+        rows.append(
+            {
+                "comparison": label,
+                "loads": what,
+                MEAN_ERROR: found.mean_error_percent,
+                "correlation": f"{found.correlation:.6f}",
+            }
+        )
+    return rows

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -21,10 +21,9 @@ from fe_drivetrain.drivetrain_file import Scene, change_scene
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft, unit_solids
 from fe_drivetrain.shafts.response import (
     ESTIMATORS,
-    PLANES,
     build_model,
     mesh_scene,
-    tilt_stiffness,
+    tilt_by_plane,
     unit_load_response,
     without_gearbox,
 )
@@ -177,10 +176,7 @@ def solved(scene: Scene, mesh: MeshSizes) -> Unit:
     model = build_model(scene, mesh_scene(scene))
     response = unit_load_response(model)
     name = scene.bearing_units[0].bearing.name
-    with warnings.catch_warnings():
-        # four nodes against the averaged seat: here all estimators stand side by side
-        warnings.simplefilter("ignore")
-        by_plane = [tilt_stiffness(model, response, name, plane) for plane in PLANES]
+    by_plane = tilt_by_plane(model, response, name).values()
     K_R = np.array([[values[e] for e in ESTIMATORS] for values in by_plane])
     return Unit(K_R, len(model.mesh.points))
 
@@ -276,97 +272,128 @@ class Member:
         return np.asarray(surface(self.x) / self.K_R[:, estimator])
 
 
-def member(
-    scene: Scene,
-    form: Form,
-    surface: Surface,
-    start: Floats,
-    free: tuple[int, ...],
-    wanted: Floats,
-    estimator: int,
-    tolerance: float,
-    mesh: MeshSizes | None = None,
-    most: int = 6,
-    ratio: Floats | float = 1.0,
-) -> Member:
-    """The housing whose K_R by one estimator is what is wanted.
+@dataclass(frozen=True, eq=False)
+class Aim:
+    """What is wanted of the housings of a form, and how it is looked for.
 
-    Parameters
+    Attributes
     ----------
-    scene, form, surface, start, free, wanted, tolerance, most, ratio : see `calibrated`
-        What `calibrated` takes.
+    scene : Scene
+        Its bearing unit's housing is replaced.
+    form : Form
+        Form of the housings.
+    surface : Surface
+        Through K_R of samples by the estimator.
+    wanted : Floats
+        (2,) K_R [N m/rad].
+    tolerance : float
+        Relative, of both values.
     estimator : int
         Place in `fe_drivetrain.shafts.response.ESTIMATORS`.
     mesh : MeshSizes or None
         Sizes; those of the samples where not given.
+    most : int
+        Rounds; the best one is the answer.
+    """
+
+    scene: Scene
+    form: Form
+    surface: Surface
+    wanted: Floats
+    tolerance: float
+    estimator: int = 0
+    mesh: MeshSizes | None = None
+    most: int = 6
+
+    def solved(self, x: Floats) -> Unit:
+        """A housing with dimensions (d,) [m], solved.
+
+        Raises
+        ------
+        InputError
+            They make no housing, or its mesh is unsound.
+        """
+        housing = housed(self.scene, self.form, x)
+        return solved_coarsely(housing) if self.mesh is None else solved(housing, self.mesh)
+
+    def nearest(self, start: Floats, free: Sequence[int]) -> Floats:
+        """Dimensions (d,) [m] that the surface takes to be nearest to what is wanted."""
+        return nearest(self.surface, start, free, self.wanted, self.form.low, HIGH)
+
+    def met_by(self, x: Floats) -> bool:
+        """Whether the surface takes a housing to give what is wanted, and it can be built."""
+        if np.abs(self.surface(x) / self.wanted - 1.0).max() > 1e-6:
+            return False
+        try:
+            housed(self.scene, self.form, x)
+        except InputError:
+            return False
+        return True
+
+
+def member(aim: Aim, start: Floats, free: Sequence[int], ratio: Floats | float = 1.0) -> Member:
+    """The housing whose K_R by one estimator is what is wanted.
+
+    Parameters
+    ----------
+    aim : Aim
+        What is wanted.
+    start, free, ratio : Floats, Sequence[int], Floats or float
+        As for `calibrated`.
     """
     known: dict[bytes, Floats] = {}
 
     def evaluate(x: Floats) -> Floats:
-        housing = housed(scene, form, x)
-        unit = solved_coarsely(housing) if mesh is None else solved(housing, mesh)
-        known[x.tobytes()] = unit.K_R
-        return np.asarray(unit.K_R[:, estimator])
+        known[x.tobytes()] = aim.solved(x).K_R
+        return np.asarray(known[x.tobytes()][:, aim.estimator])
 
     found: Calibrated = calibrated(
-        evaluate, surface, start, free, wanted, form.low, HIGH, tolerance, most, ratio
+        evaluate,
+        aim.surface,
+        start,
+        free,
+        aim.wanted,
+        aim.form.low,
+        HIGH,
+        aim.tolerance,
+        aim.most,
+        ratio,
     )
-    return Member(form, found.x, known[found.x.tobytes()], found.miss, found.evaluations)
+    return Member(aim.form, found.x, known[found.x.tobytes()], found.miss, found.evaluations)
 
 
-def gives(scene: Scene, form: Form, surface: Surface, x: Floats, wanted: Floats) -> bool:
-    """Whether the surface takes a housing to give what is wanted, and it can be built."""
-    if np.abs(surface(x) / wanted - 1.0).max() > 1e-6:
-        return False
-    try:
-        housed(scene, form, x)
-    except InputError:
-        return False
-    return True
-
-
-def reach(
-    scene: Scene,
-    surface: Surface,
-    form: Form,
-    start: Floats,
-    swept: int,
-    free: tuple[int, ...],
-    wanted: Floats,
-) -> Floats | None:
+def reach(aim: Aim, start: Floats, swept: int, free: Sequence[int]) -> Floats | None:
     """Least and largest value of one dimension at which two others still give what is wanted.
 
     Parameters
     ----------
-    scene, surface, form, start, free, wanted : see `member`
-        As there.
+    aim : Aim
+        What is wanted.
+    start : Floats
+        (d,) dimensions [m]; what is neither free nor swept stays there.
     swept : int
         The dimension.
+    free : Sequence[int]
+        The two others.
     """
     possible = []
-    for value in np.linspace(form.low[swept], HIGH[swept], 49):
+    for value in np.linspace(aim.form.low[swept], HIGH[swept], 49):
         x = start.copy()
         x[swept] = value
-        found = nearest(surface, x, free, wanted, form.low, HIGH)
-        if gives(scene, form, surface, found, wanted):
+        if aim.met_by(aim.nearest(x, free)):
             possible.append(value)
     return np.array([possible[0], possible[-1]]) if possible else None
 
 
-def projected(
-    scene: Scene, surface: Surface, form: Form, wanted: Floats, count: int, seed: int = 1
-) -> Floats:
+def projected(aim: Aim, count: int, seed: int = 1) -> Floats:
     """Housings (m, d) all over the bounds that the surface takes to give what is wanted.
 
     Each of a Latin hypercube moves to a solution near it, all dimensions free; those that find none
     within the bounds, or none that can be built, are left out.
     """
     free = range(len(DIMENSIONS))
-    found = [
-        nearest(surface, x, free, wanted, form.low, HIGH)
-        for x in hypercube(form.low, HIGH, count, seed)
-    ]
-    return np.array([x for x in found if gives(scene, form, surface, x, wanted)])
+    found = [aim.nearest(x, free) for x in hypercube(aim.form.low, HIGH, count, seed)]
+    return np.array([x for x in found if aim.met_by(x)])
 
 
 def mass(scene: Scene) -> float:

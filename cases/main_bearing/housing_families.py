@@ -1,10 +1,11 @@
 """Families of housings that give the K_R that was wanted: sampled, traced and verified."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_drivetrain.cases.main_bearing import bands, study
+from fe_drivetrain.cases.main_bearing import bands, bearing_scenes
 from fe_drivetrain.cases.main_bearing import housing_dimensions as housings
 from fe_drivetrain.cases.main_bearing.housing_dimensions import (
     CENTRE,
@@ -16,6 +17,7 @@ from fe_drivetrain.cases.main_bearing.housing_dimensions import (
     WALL,
     WIDE_RING,
     WIDTH,
+    Aim,
     Form,
     Member,
     Sampled,
@@ -23,6 +25,7 @@ from fe_drivetrain.cases.main_bearing.housing_dimensions import (
 from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.report.suite import Run
+from fe_drivetrain.studies.solved_assembly import timed_mesh
 
 #: Order of the surface through the sampled housings.
 ORDER, QUICK_ORDER = 2, 1
@@ -91,91 +94,59 @@ def family_of(run: Run, scene: Scene, form: Form, count: int) -> Family:
     with run.step(f"sample housings ({form.title})"):
         order = QUICK_ORDER if run.quick else ORDER
         samples = housings.sampled(scene, form, count, order, run.report)
-    surface = samples.surfaces[0]
+    aim = Aim(scene, form, samples.surfaces[0], PUBLISHED, TOLERANCE)
+    finer = replace(aim, mesh=scene.mesh)
     with run.step("surface"):
-        many = QUICK_CLOUD if run.quick else CLOUD
-        cloud = housings.projected(scene, surface, form, PUBLISHED, many)
+        cloud = housings.projected(aim, QUICK_CLOUD if run.quick else CLOUD)
         centre = np.median(cloud, axis=0)
     # On the samples' mesh and then on the scene's own; the error of the former there.
     with run.step(f"middle of the family ({form.title})"):
-        rough = housings.member(scene, form, surface, centre, PAIR, PUBLISHED, 0, TOLERANCE)
-        middle = housings.member(
-            scene,
-            form,
-            surface,
-            rough.x,
-            PAIR,
-            PUBLISHED,
-            0,
-            TOLERANCE,
-            scene.mesh,
-            ratio=rough.over(surface, 0),
-        )
-        coarse = housings.solved_coarsely(housings.housed(scene, form, middle.x))
-    coarse_over_fine = coarse.K_R / middle.K_R
+        rough = housings.member(aim, centre, PAIR)
+        middle = housings.member(finer, rough.x, PAIR, rough.over(aim.surface, 0))
+        coarse_over_fine = aim.solved(middle.x).K_R / middle.K_R
+    on_samples = replace(aim, wanted=PUBLISHED * coarse_over_fine[:, 0])
+    ratio = middle.over(aim.surface, 0) / coarse_over_fine[:, 0]
     walls = QUICK_WALLS if run.quick else WALLS if form is ONE_BODY else (float(centre[WALL]),)
     curves = {}
     for wall in walls:
         start = centre.copy()
         start[WALL] = wall
-        ratio = middle.over(surface, 0) / coarse_over_fine[:, 0]
-        wanted = PUBLISHED * coarse_over_fine[:, 0]
-        curve = curve_of(run, scene, samples, form, start, wanted, ratio)
+        curve = curve_of(run, on_samples, start, ratio)
         if curve:
             curves[wall] = curve
-    # ends of all curves that lie farthest apart
-    drawn = sorted((m for c in curves.values() for m in c), key=lambda m: float(m.x[CENTRE]))
-    chosen = [] if run.quick else [drawn[0], drawn[-1]] if len(drawn) > 1 else drawn
     verified = [middle]
-    for rough in chosen:
+    for rough in [] if run.quick else ends_of(curves):
         with run.step(f"verify on the finer mesh ({form.title})"):
-            verified.append(
-                housings.member(
-                    scene,
-                    form,
-                    surface,
-                    rough.x,
-                    (WIDTH, CENTRE, PEDESTAL),
-                    PUBLISHED,
-                    0,
-                    TOLERANCE,
-                    scene.mesh,
-                    ratio=rough.over(surface, 0) * coarse_over_fine[:, 0],
-                )
-            )
+            known = rough.over(aim.surface, 0) * coarse_over_fine[:, 0]
+            verified.append(housings.member(finer, rough.x, (WIDTH, CENTRE, PEDESTAL), known))
     return Family(form, samples, cloud, centre, middle, coarse_over_fine, curves, verified)
 
 
-def curve_of(
-    run: Run,
-    scene: Scene,
-    samples: Sampled,
-    form: Form,
-    start: Floats,
-    wanted: Floats,
-    ratio: Floats,
-) -> list[Member]:
+def ends_of(curves: Mapping[float, Sequence[Member]]) -> list[Member]:
+    """The members of all curves whose centres lie farthest apart."""
+    drawn = sorted((m for c in curves.values() for m in c), key=lambda m: float(m.x[CENTRE]))
+    return [drawn[0], drawn[-1]] if len(drawn) > 1 else drawn
+
+
+def curve_of(run: Run, aim: Aim, start: Floats, ratio: Floats) -> list[Member]:
     """Members from low to high centres, on the samples' mesh; see `housing_dimensions.member`."""
-    surface = samples.surfaces[0]
-    ends = housings.reach(scene, surface, form, start, CENTRE, PAIR, wanted)
+    ends = housings.reach(aim, start, CENTRE, PAIR)
     if ends is None:
         return []
     start, curve = start.copy(), []
-    with run.step(f"family ({form.title})"):
+    with run.step(f"family ({aim.form.title})"):
         # off the ends, where a correction would leave the bounds
         count = QUICK_MEMBERS if run.quick else MEMBERS
         for height in ends[0] + np.ptp(ends) * np.linspace(0.04, 0.96, count):
             start[CENTRE] = height
             run.report(f"wall {start[WALL]:.3g} m, centre at {height:.3g} m")
             try:
-                found = housings.member(
-                    scene, form, surface, start, PAIR, wanted, 0, TOLERANCE, ratio=ratio
-                )
+                found = housings.member(aim, start, PAIR, ratio)
             except InputError:
                 continue  # a correction may leave what can be built
             if found.miss <= TOLERANCE:
                 curve.append(found)
-                start, ratio = found.x.copy(), found.over(surface, 0)
+                start, ratio = found.x.copy(), found.over(aim.surface, 0)
     return curve
 
 
@@ -192,36 +163,20 @@ def other_readings(scene: Scene, one: Family) -> list[tuple[str, Member]]:
         ("energy", ONE_BODY, 2, PUBLISHED),
         ("four nodes, housing of steel", STEEL, 0, PUBLISHED),
     )
-    return [
-        (
-            title,
-            housings.member(
-                scene,
-                form,
-                one.samples.surfaces[estimator],
-                one.middle.x,
-                (WIDTH, CENTRE, PEDESTAL),
-                target * one.coarse_over_fine[:, estimator],
-                estimator,
-                TOLERANCE,
-            ),
-        )
-        for title, form, estimator, target in readings
-    ]
+    found = []
+    for title, form, estimator, target in readings:
+        wanted = target * one.coarse_over_fine[:, estimator]
+        aim = Aim(scene, form, one.samples.surfaces[estimator], wanted, TOLERANCE, estimator)
+        found.append((title, housings.member(aim, one.middle.x, (WIDTH, CENTRE, PEDESTAL))))
+    return found
 
 
 def with_wide_ring(scene: Scene, one: Family) -> Member:
     """The nearest housing with a ring of 0.2 m on a fixed underside, all dimensions free."""
+    wanted = PUBLISHED * one.coarse_over_fine[:, 0]
+    aim = Aim(scene, WIDE_RING, one.samples.surfaces[0], wanted, TOLERANCE, most=2)
     return housings.member(
-        scene,
-        WIDE_RING,
-        one.samples.surfaces[0],
-        np.maximum(one.middle.x, WIDE_RING.low),
-        tuple(range(len(DIMENSIONS))),
-        PUBLISHED * one.coarse_over_fine[:, 0],
-        0,
-        TOLERANCE,
-        most=2,
+        aim, np.maximum(one.middle.x, WIDE_RING.low), tuple(range(len(DIMENSIONS)))
     )
 
 
@@ -231,7 +186,7 @@ def assembled(run: Run, scene: Scene, family: Family) -> bands.Series:
     assembly = housings.housed(scene, family.form, family.middle.x)
     with run.side_by_side(3) as jobs:
         coarser = bands.start(jobs, assembly, title, solved=False, tilted=True)
-        tilt = study.solve_tilt(run, assembly, title, study.mesh_of(run, assembly, title))
+        tilt = bearing_scenes.solve_seat(run, assembly, title, timed_mesh(run, assembly, title))
         return coarser.below(bands.of_tilt(tilt))
 
 

@@ -12,21 +12,20 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import (
     bands,
+    bearing_scenes,
     charts,
     design_measures,
     shown,
-    study,
     surrogate,
 )
 from fe_drivetrain.cases.main_bearing.comparison import (
     MEAN_ERROR,
+    ON_MATRIX,
     PUBLISHED,
-    SIXBYSIX,
     Comparison,
     compared,
     of_one_mesh,
 )
-from fe_drivetrain.cases.main_bearing.study import Solved, Tilt
 from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import weighted_statistics
 from fe_drivetrain.drivetrain_file import Scene
@@ -36,6 +35,8 @@ from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.beam import beam_of_scene, main_bearing_beam, shaft
 from fe_drivetrain.shafts.response import bearing_unit_stiffness
 from fe_drivetrain.studies import hub_load_rows
+from fe_drivetrain.studies.seat_stiffness import SeatStiffness
+from fe_drivetrain.studies.solved_assembly import Assembly, timed_mesh
 from fe_drivetrain.turbine_loads.hub_loads import HubLoadSet, assumptions
 
 OF_THESIS = (
@@ -43,7 +44,7 @@ OF_THESIS = (
 )
 
 
-def deflections(solved: Solved, matrix: Floats, series: bands.Series, label: str) -> list[Record]:
+def deflections(solved: Assembly, matrix: Floats, series: bands.Series, label: str) -> list[Record]:
     """Deflection at the hub and slope at the bearing, FE and Timoshenko beams."""
     scene, name = solved.scene, solved.bearing
     bare, ring = (
@@ -162,9 +163,9 @@ class Worked:
 
     Attributes
     ----------
-    spherical, bonded : Solved
+    spherical, bonded : Assembly
         Both bearings on the case's own mesh.
-    tilt : Tilt
+    tilt : SeatStiffness
         K_R of the bonded one.
     series : dict[str, bands.Series]
         Meshes of each kind.
@@ -176,9 +177,9 @@ class Worked:
         Pictures of the model.
     """
 
-    spherical: Solved
-    bonded: Solved
-    tilt: Tilt
+    spherical: Assembly
+    bonded: Assembly
+    tilt: SeatStiffness
     series: dict[str, bands.Series]
     hub: HubLoadSet
     found: Comparison
@@ -187,18 +188,18 @@ class Worked:
 
 def solved(run: Run, spherical_scene: Scene, bonded_scene: Scene) -> Worked:
     """Make the hub loads, solve both scenes, compare over all histories."""
-    pinned_beam = main_bearing_beam(spherical_scene)  # refuses early what it cannot stand for
+    main_bearing_beam(spherical_scene)  # refuses early what it cannot stand for
     with run.side_by_side(7) as jobs:
         solving = jobs.start(
-            study.solve_and_write, spherical_scene, "spherical", None, "mesh_spherical"
+            bearing_scenes.solve_and_write, spherical_scene, "spherical", None, "mesh_spherical"
         )
         # beside the first solid, which compiles loops: two at once would compile each of them twice
         making = surrogate.start(run, jobs)
-        meshed = study.mesh_of(run, bonded_scene, "bonded")
+        mesh = timed_mesh(run, bonded_scene, "bonded")
         solving_bonded = jobs.start(
-            study.solve_and_write, bonded_scene, "bonded", meshed, "mesh_bonded"
+            bearing_scenes.solve_and_write, bonded_scene, "bonded", mesh, "mesh_bonded"
         )
-        tilting = jobs.start(study.solve_tilt, bonded_scene, "bonded, no gearbox", meshed)
+        tilting = jobs.start(bearing_scenes.solve_seat, bonded_scene, "bonded, no gearbox", mesh)
         coarser = bands.start(jobs, spherical_scene, "spherical")
         coarser_bonded = bands.start(jobs, bonded_scene, "bonded", tilted=True)
         hub = surrogate.made(run, making)
@@ -210,7 +211,7 @@ def solved(run: Run, spherical_scene: Scene, bonded_scene: Scene) -> Worked:
             shown.pictures_of, spherical, mean_load, "the mean hub load of all histories"
         )
         bonded, tilt = solving_bonded.result(), tilting.result()
-        found = compared(run, hub, pinned_beam, spherical, bonded, tilt)
+        found = compared(run, hub, spherical, bonded, tilt)
         pictures = drawing.result()
         series = {
             "spherical": coarser.below(bands.of_solved(spherical)),
@@ -247,7 +248,7 @@ def answer(page: Page, found: Comparison, n_histories: int, n_steps: int) -> Non
         f"a correlation of {correlation[second]:.3f}.",
         f"With torsional springs, K_R from the averaged seat, the beam has a mean error of "
         f"{mean_error[third]:.2g} % and a correlation of {correlation[third]:.4f}; on the "
-        f"full 6x6 stiffness {mean_error[SIXBYSIX]:.2g} % and {correlation[SIXBYSIX]:.6f}.",
+        f"full 6x6 stiffness {mean_error[ON_MATRIX]:.2g} % and {correlation[ON_MATRIX]:.6f}.",
         "On a spherical bearing pinned beam and FE agree to solver accuracy: statics decide, and "
         "their agreement says nothing about the FE model. Deflection, slope and stiffness, which "
         "do depend on it, stand below.",
@@ -292,7 +293,7 @@ def stiffness_section(page: Page, work: Worked, stiffness: Floats) -> None:
 def run(run: Run, page: Page) -> None:
     """Make the hub loads, solve both scenes, compare over all histories."""
     page.seed = 1
-    scenes = [study.scene_of(run, page, kind) for kind in ("spherical", "bonded")]
+    scenes = [bearing_scenes.scene_of(run, page, kind) for kind in ("spherical", "bonded")]
     work = solved(run, *scenes)
     hub, found, tilt = work.hub, work.found, work.tilt
     of_beams = errors_by_mesh(run, work)
@@ -342,7 +343,7 @@ def run(run: Run, page: Page) -> None:
     page.data("seconds_for_reactions", found.seconds)
 
 
-def write_stiffness(run: Run, bonded: Solved, tilt: Tilt, stiffness: Floats) -> None:
+def write_stiffness(run: Run, bonded: Assembly, tilt: SeatStiffness, stiffness: Floats) -> None:
     """The 6x6 stiffnesses of both bearing units, for other programs."""
     name = bonded.bearing
     centre = bonded.response.positions[name]

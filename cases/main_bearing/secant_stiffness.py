@@ -1,18 +1,21 @@
 """K_R as a secant over load cases: one number, or scatter where a spring is the wrong form."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import secants, shown, study
+from fe_drivetrain.cases.main_bearing import bearing_scenes, secants, shown
 from fe_drivetrain.cases.main_bearing.secants import FULL, LEAN, OF_FORM, QUANTITIES, SINGLE
 from fe_drivetrain.common import (
     FORCES,
     Floats,
 )
 from fe_drivetrain.comparison import round_off
+from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.report import trace
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.response import (
@@ -31,6 +34,79 @@ EVERY = 40
 TERMS = 3
 
 Reacted = secants.Reacted
+
+
+#: Component and name of both moments.
+PLANES = {4: "vertical plane", 5: "horizontal plane"}
+
+
+@dataclass(frozen=True, eq=False)
+class Worked:
+    """Bearings over load cases, and what comes of them.
+
+    Attributes
+    ----------
+    cases : secants.Cases
+        The load cases.
+    units : dict[str, list[Reacted]]
+        The bonded bearing by housing and mesh, the finest last.
+    scenes : dict[str, Scene]
+        Its scene by housing.
+    free_loads : Floats
+        (m, 6) loads on the spherical bearing.
+    made : dict[str, tuple[Floats, Floats]]
+        Loads and motions of beams on springs of a known form.
+    """
+
+    cases: secants.Cases
+    units: dict[str, list[Reacted]]
+    scenes: dict[str, Scene]
+    free_loads: Floats
+    made: dict[str, tuple[Floats, Floats]]
+
+    @property
+    def hub(self) -> Floats:
+        """(m, 6) loads at the hub."""
+        return self.cases.hub.values
+
+    @property
+    def finest(self) -> dict[str, Reacted]:
+        """The bonded bearing on the finest mesh, by housing."""
+        return {key: meshes[-1] for key, meshes in self.units.items()}
+
+    @property
+    def both(self) -> list[tuple[str, int]]:
+        """Housing and component of each moment."""
+        return [(key, a) for key in self.units for a in PLANES]
+
+    @cached_property
+    def found(self) -> dict[tuple[str, int], secant_stiffness.Secant]:
+        """Secant of each moment, by housing and component."""
+        return {(key, a): self.finest[key].secant(a) for key, a in self.both}
+
+    @cached_property
+    def parts(self) -> dict[tuple[str, int], secant_stiffness.Parts]:
+        """What each moment follows, by housing and component."""
+        return {
+            (key, a): secant_stiffness.parts_of(unit.loads, unit.motions, unit.fit.matrix, a)
+            for key, unit in self.finest.items()
+            for a in PLANES
+        }
+
+    @cached_property
+    def statements(self) -> dict[tuple[str, int], str]:
+        """Whether one torsional spring is the right form, in words."""
+        return {at: secant_stiffness.statement(self.found[at], self.parts[at]) for at in self.both}
+
+    @cached_property
+    def improvement(self) -> dict[str, dict[str, Mapping[str, float]]]:
+        """Errors of beams by housing and form of their spring."""
+        return {key: secants.beam_errors(unit, self.hub) for key, unit in self.finest.items()}
+
+    @property
+    def moment(self) -> float:
+        """Largest moment on the spherical bearing [N m]."""
+        return float(np.abs(self.free_loads[:, 3:]).max())
 
 
 def band_of(meshes: list[Reacted], figure: Callable[[Reacted], float]) -> float | None:
@@ -131,126 +207,120 @@ def secant_traces(key: str, unit: Reacted) -> list[Any]:
     return traces
 
 
-@case(
-    "K_R as a secant over load cases, and the coupling that makes it scatter",
-    source="Stirling 2023, PhD thesis, section 3.3.1, Eq 3.20",
-    settings={
-        "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
-    },
-    changes="scene",
-)
-def run(run: Run, page: Page) -> None:
-    """Secants of three bearings and of made-up springs, and the beams that follow from them."""
-    spherical = study.scene_of(run, page, "spherical", coarsen=False)
-    bonded = study.scene_of(run, page, "bonded", coarsen=False)
-    tall_scene = secants.tall(bonded, TALL)
+def solved(run: Run, page: Page) -> Worked:
+    """Three bearings and beams on made-up springs over the load cases."""
+    spherical = bearing_scenes.scene_of(run, page, "spherical", coarsen=False)
+    bonded = bearing_scenes.scene_of(run, page, "bonded", coarsen=False)
+    scenes = {"library": bonded, "tall": secants.tall(bonded, TALL), "spherical": spherical}
     cases = secants.hub_loads(run, EVERY, bonded)
-    hub = cases.hub.values
     factors = QUICK_FACTORS if run.quick else FACTORS
-    units = {
-        "library": secants.series(run, bonded, factors["library"], cases),
-        "tall": secants.series(run, tall_scene, factors["tall"], cases),
-    }
+    units = {key: secants.series(run, scenes[key], factors[key], cases) for key in factors}
     with run.step("spherical"):
         free_loads, _, _ = secants.reacted(run, spherical, factors["tall"][-1], cases.hub)
-    finest = {key: meshes[-1] for key, meshes in units.items()}
-    both = [(key, a) for key in units for a in (4, 5)]
-    found = {(key, a): finest[key].secant(a) for key, a in both}
-    parts = {
-        (key, a): secant_stiffness.parts_of(
-            finest[key].loads,
-            finest[key].motions,
-            finest[key].fit.matrix,
-            a,
-        )
-        for key, a in both
-    }
-    statements = {at: secant_stiffness.statement(found[at], parts[at]) for at in both}
+    coupled = units["library"][-1].stiffness
+    springs = {"diagonal": np.diag(np.diag(coupled)), "coupled": coupled}
     with run.step("springs of a known form"):
-        coupled = finest["library"].stiffness
         made = {
-            form: secants.on_beam(bonded, stiffness, hub)
-            for form, stiffness in (
-                ("diagonal", np.diag(np.diag(coupled))),
-                ("coupled", coupled),
-            )
+            form: secants.on_beam(bonded, stiffness, cases.hub.values)
+            for form, stiffness in springs.items()
         }
-    improvement = {key: secants.beam_errors(unit, hub) for key, unit in finest.items()}
+    return Worked(cases, units, scenes, free_loads, made)
 
+
+def check(page: Page, work: Worked) -> None:
+    """Springs of a known form, scatter of both housings, the remedy, and the spherical bearing."""
     with page.of(None):
-        check_springs(page, made, coupled)
-    for key, meshes in units.items():
-        with page.of(tall_scene if key == "tall" else bonded):
-            check_scatter(page, key, meshes, parts[key, 4].shares)
-    library, tall = improvement["library"], improvement["tall"]
-    # with loads of little thrust the beam's own error would be all that there is to see
-    if tall[SINGLE][OF_FORM] > 2.0 * tall[FULL]["My"]:
-
-        def remaining(unit: Reacted) -> float:
-            errors = secants.beam_errors(unit, hub)
-            return errors[LEAN]["My"] / errors[SINGLE]["My"]
-
-        with page.of(tall_scene):
-            page.at_most(
-                f"{TITLES['tall']}: error of the beam's My with the coupling over that with a "
-                "single spring",
-                tall[LEAN]["My"] / tall[SINGLE]["My"],
-                0.5,
-                why="more than half of the error is due to the spring's form, or naming it was "
-                "idle",
-                source="what the secant's scatter is due to is put back",
-                measure="reaction",
-                band=band_of(units["tall"], remaining),
-            )
-    moments = np.abs(free_loads[:, 3:]).max()
-    with page.of(spherical):
+        check_springs(page, work.made, work.finest["library"].stiffness)
+    for key, meshes in work.units.items():
+        with page.of(work.scenes[key]):
+            check_scatter(page, key, meshes, work.parts[key, 4].shares)
+    check_remedy(page, work)
+    with page.of(work.scenes["spherical"]):
         page.vanishes(
             "spherical bearing: largest moment over the largest at the hub",
-            float(moments / np.abs(hub[:, 3:]).max()),
+            float(work.moment / np.abs(work.hub[:, 3:]).max()),
             within=1e-6,
             why="accuracy of the solution; the nodal normals of the raceway meet at its centre to "
             "the curved mesh's order",
             source="a sphere that slides carries no moment: K_R is zero in all load cases",
         )
 
-    centre = {key: secant_stiffness.elastic_centre(u.stiffness) for key, u in finest.items()}
+
+def check_remedy(page: Page, work: Worked) -> None:
+    """The coupling that is named takes most of the error of the beam's moment away."""
+    tall = work.improvement["tall"]
+    # with loads of little thrust the beam's own error would be all that there is to see
+    if tall[SINGLE][OF_FORM] <= 2.0 * tall[FULL]["My"]:
+        return
+
+    def remaining(unit: Reacted) -> float:
+        errors = secants.beam_errors(unit, work.hub)
+        return errors[LEAN]["My"] / errors[SINGLE]["My"]
+
+    with page.of(work.scenes["tall"]):
+        page.at_most(
+            f"{TITLES['tall']}: error of the beam's My with the coupling over that with a "
+            "single spring",
+            tall[LEAN]["My"] / tall[SINGLE]["My"],
+            0.5,
+            why="more than half of the error is due to the spring's form, or naming it was idle",
+            source="what the secant's scatter is due to is put back",
+            measure="reaction",
+            band=band_of(work.units["tall"], remaining),
+        )
+
+
+def answer(page: Page, work: Worked, centre: Mapping[str, float]) -> None:
+    """Whether one spring is the right form, where it is, and what that does to a beam."""
+    library, tall = work.improvement["library"], work.improvement["tall"]
     page.answer(
-        f"{TITLES['library'].capitalize()}: {statements['library', 4]}.",
-        f"{TITLES['tall'].capitalize()}: {statements['tall', 4]}.",
+        f"{TITLES['library'].capitalize()}: {work.statements['library', 4]}.",
+        f"{TITLES['tall'].capitalize()}: {work.statements['tall', 4]}.",
         f"Taken at the elastic centre, {-centre['library']:.3f} and {-centre['tall']:.3f} m below "
         "the shaft's axis, the scatter falls to "
-        f"{100 * secants.scatter_at_centre(finest['library']):.2g} and "
-        f"{100 * secants.scatter_at_centre(finest['tall']):.2g} %: a torsional spring that stands "
-        "there is the right form.",
+        f"{100 * secants.scatter_at_centre(work.finest['library']):.2g} and "
+        f"{100 * secants.scatter_at_centre(work.finest['tall']):.2g} %: a torsional spring that "
+        "stands there is the right form.",
         f"In the beam model the named coupling takes the error of My from {tall[SINGLE]['My']:.2g} "
         f"to {tall[LEAN]['My']:.2g} % for the tall pedestal, and the full 6x6 to "
         f"{tall[FULL]['My']:.2g} %; for the scene's housing from {library[SINGLE]['My']:.2g} to "
         f"{library[LEAN]['My']:.2g} %: there the form of the spring does "
         f"{library[SINGLE][OF_FORM]:.2g} %, and what is left is the beam's.",
     )
+
+
+def secant_section(page: Page, work: Worked) -> None:
+    """The secant of each load case."""
     page.section("The secant over load cases")
-    page.text(cases.statement)
-    left_out = float(np.isnan(found["library", 4].secants).mean())
+    page.text(work.cases.statement)
+    left_out = float(np.isnan(work.found["library", 4].secants).mean())
     page.chart(
         "K_R about y of each load case against the thrust on the bearing over its rotation: level "
         "at the elastic centre; at the axis a line whose slope is the arm of the thrust. Cases "
         f"that turn the bearing by less than {secant_stiffness.LEAST_ROTATION:g} of the root mean "
         f"square ({100 * left_out:.0f} %) have no secant and are not shown; in scatter and "
         "stiffness they count",
-        [line for key, unit in finest.items() for line in secant_traces(key, unit)],
+        [line for key, unit in work.finest.items() for line in secant_traces(key, unit)],
         "Fx over rotation about y [MN/rad]",
         "My / rotation [MN m/rad]",
     )
-    planes = {4: "vertical plane", 5: "horizontal plane"}
-    for key, a in both:
-        page.text(f"{TITLES[key].capitalize()}, {planes[a]}: {statements[key, a]}.")
+    for key, a in work.both:
+        page.text(f"{TITLES[key].capitalize()}, {PLANES[a]}: {work.statements[key, a]}.")
+
+
+def coupling_section(page: Page, work: Worked) -> None:
+    """What a moment follows beside its own rotation, and how far one spring holds."""
     page.section("Which coupling breaks it")
     page.table(
         "What a moment follows beside its own rotation, by the 6x6 spring fitted to the load "
         "cases, M_a = theta_a / C_aa - sum C_aj R_j / C_aa: each term less its part in proportion "
         f"to the rotation, which scatters nothing; the {TERMS} that scatter most. Size: root mean "
         "square over that of the moment. Share: of the scatter",
-        [row for key, a in both for row in couplings(key, a, found[key, a], parts[key, a])],
+        [
+            row
+            for key, a in work.both
+            for row in couplings(key, a, work.found[key, a], work.parts[key, a])
+        ],
     )
     page.table(
         "How far one spring at one point holds: what the fitted 6x6 leaves unexplained of each "
@@ -266,9 +336,13 @@ def run(run: Run, page: Page) -> None:
                 f"{c} [%]": 100.0 * float(v)
                 for c, v in zip(FORCES, unit.fit.unexplained, strict=True)
             }
-            for key, unit in finest.items()
+            for key, unit in work.finest.items()
         ],
     )
+
+
+def remedy_section(page: Page, work: Worked) -> None:
+    """Beams on springs of several forms, and springs that must not scatter."""
     page.section("The remedy in a beam model")
     page.table(
         "Root mean square error of a Timoshenko beam against the assembly of solids over the load "
@@ -278,7 +352,7 @@ def run(run: Run, page: Page) -> None:
             {"housing": TITLES[key], "spring": form}
             | {f"{q} [%]": by[q] for q in QUANTITIES}
             | {"My, against the beam on the full 6x6 [%]": by[OF_FORM]}
-            for key, forms in improvement.items()
+            for key, forms in work.improvement.items()
             for form, by in forms.items()
         ],
     )
@@ -297,21 +371,40 @@ def run(run: Run, page: Page) -> None:
                 f"about {axis}": 100.0 * secant_stiffness.secant(loads, motions, a).scatter
                 for a, axis in ((3, "x"), (4, "y"), (5, "z"))
             }
-            for form, (loads, motions) in made.items()
+            for form, (loads, motions) in work.made.items()
         ],
     )
     page.text(
         "The spherical bearing carries no moment in any load case (largest "
-        f"{moments:.2g} N m): its K_R is zero but for round-off."
+        f"{work.moment:.2g} N m): its K_R is zero but for round-off."
     )
-    shown.assume(page, bonded)
+
+
+@case(
+    "K_R as a secant over load cases, and the coupling that makes it scatter",
+    source="Stirling 2023, PhD thesis, section 3.3.1, Eq 3.20",
+    settings={
+        "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
+    },
+    changes="scene",
+)
+def run(run: Run, page: Page) -> None:
+    """Secants of three bearings and of made-up springs, and the beams that follow from them."""
+    work = solved(run, page)
+    check(page, work)
+    centre = {key: secant_stiffness.elastic_centre(u.stiffness) for key, u in work.finest.items()}
+    answer(page, work, centre)
+    secant_section(page, work)
+    coupling_section(page, work)
+    remedy_section(page, work)
+    shown.assume(page, work.scenes["library"])
     page.data(
         "secant",
         {
             f"{key} {FORCES[a]}": {"K_R": f.stiffness, "scatter": f.scatter}
-            for (key, a), f in found.items()
+            for (key, a), f in work.found.items()
         },
     )
-    page.data("statements", {f"{key} {FORCES[a]}": s for (key, a), s in statements.items()})
-    page.data("beam errors", improvement)
+    page.data("statements", {f"{key} {FORCES[a]}": s for (key, a), s in work.statements.items()})
+    page.data("beam errors", work.improvement)
     page.data("elastic centre", centre)

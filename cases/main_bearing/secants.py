@@ -10,7 +10,7 @@ import numpy as np
 from fe_drivetrain.bearing_life.coupled import factors_of
 from fe_drivetrain.cases.main_bearing import (
     bands,
-    study,
+    bearing_scenes,
 )
 from fe_drivetrain.common import FORCES, Floats, InputError, stiffness_transport
 from fe_drivetrain.drivetrain_file import Scene, change_scene
@@ -22,6 +22,7 @@ from fe_drivetrain.shafts.response import (
     secant_stiffness,
     without_gearbox,
 )
+from fe_drivetrain.studies.tilt_secants import loads_and_motions
 from fe_drivetrain.turbine_loads.hub_loads import (
     SHEARS,
     WIND_SPEEDS,
@@ -110,20 +111,17 @@ def reacted(run: Run, scene: Scene, factor: float, hub: PointLoads) -> tuple[Flo
     """Loads and motions (m, 6) of the bearing of a scene on its gearbox, on a coarser mesh."""
     scene = bands.coarser(scene, factor)
     label = f"{scene.bearing_units[0].interface}, sizes x {factor:g}"
-    solved = study.solve_scene(run, scene, label)
+    solved = bearing_scenes.solve(run, scene, label)
     factors = factors_of(hub, scene.gearbox.weight).values
-    response = solved.response
-    return (
-        factors @ response.reactions[solved.bearing].T,
-        factors @ response.motions[f"{solved.bearing}.seat"].T,
-        scene,
-    )
+    return *loads_and_motions(solved.response, solved.bearing, factors), scene
 
 
 def solved(run: Run, scene: Scene, factor: float, cases: Cases) -> Reacted:
     """A bonded bearing over load cases, with its condensed stiffness."""
     on_bearing, motions, coarser = reacted(run, scene, factor, cases.hub)
-    free = study.solve_scene(run, without_gearbox(coarser), f"without gearbox, sizes x {factor:g}")
+    free = bearing_scenes.solve(
+        run, without_gearbox(coarser), f"without gearbox, sizes x {factor:g}"
+    )
     stiffness = bearing_unit_stiffness(free.response, free.bearing)
     fit = secant_stiffness.fitted_spring(on_bearing, motions)
     return Reacted(coarser, on_bearing, motions, stiffness, fit)

@@ -5,25 +5,26 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from fe_drivetrain.cases.main_bearing.bands import Series
-from fe_drivetrain.cases.main_bearing.study import Solved, Tilt, spread
 from fe_drivetrain.common import (
     FORCES,
     Floats,
 )
 from fe_drivetrain.drivetrain_file import Scene
+from fe_drivetrain.elasticity.mesh import quality
 from fe_drivetrain.report import (
     Image,
-    NoPictureError,
     Solid,
     Text,
-    deformed_shape,
-    picture_of_model,
+    model_pictures,
 )
 from fe_drivetrain.report.suite import Page, Run
 from fe_drivetrain.shafts.response import (
     ESTIMATORS,
     LOADS,
 )
+from fe_drivetrain.studies import model_checks
+from fe_drivetrain.studies.seat_stiffness import SeatStiffness
+from fe_drivetrain.studies.solved_assembly import Assembly
 
 #: K_R by plane (Stirling 2023, section 3.3.1) [MN m/rad].
 PUBLISHED = {"vertical": 145.0, "horizontal": 392.0}
@@ -32,24 +33,10 @@ _AS = ", as in the thesis"
 _OTHER_HOUSING = "The thesis's values belong to its own housing, whose dimensions it does not give"
 
 
-def check_solution(page: Page, solved: Solved, label: str) -> None:
+def check_solution(page: Page, solved: Assembly, label: str) -> None:
     """The two independent checks that every solution carries."""
     with page.of(solved.scene):
-        page.vanishes(
-            f"{label}: total equilibrium, applied less reacted",
-            solved.response.equilibrium_error,
-            within=1e-8,
-            why="reactions come from the residual on constrained degrees of freedom: solver "
-            "accuracy",
-            source="exact",
-        )
-        page.vanishes(
-            f"{label}: linearity, a random load solved directly against superposed",
-            solved.response.superposition_error,
-            within=1e-8,
-            why="the scene is linear: solver accuracy",
-            source="exact",
-        )
+        model_checks.check_solution(page, solved.response, label)
 
 
 def check_series(page: Page, series: Series, label: str) -> None:
@@ -64,7 +51,7 @@ def check_series(page: Page, series: Series, label: str) -> None:
         )
 
 
-def tilt_table(page: Page, tilt: Tilt, series: Series) -> None:
+def tilt_table(page: Page, tilt: SeatStiffness, series: Series) -> None:
     """K_R by plane and estimator, each with its band; of the thesis's scene beside its own."""
     rows = []
     for p, (plane, values) in enumerate(tilt.by_plane.items()):
@@ -72,7 +59,7 @@ def tilt_table(page: Page, tilt: Tilt, series: Series) -> None:
         for k, (estimator, value) in enumerate(zip(ESTIMATORS, values.values(), strict=True)):
             band = series.band(lambda f, p=p, k=k: float(f["K_R"][p, k]) / 1e6)
             row |= {estimator: value / 1e6, f"± {estimator}": band}
-        row["spread [%]"] = spread(values)
+        row["spread [%]"] = tilt.spread(plane)
         rows.append(row | {"Stirling 2023": PUBLISHED[plane]})
     page.table(
         f"K_R = M / theta of bearing and housing [MN m/rad], gearbox springs removed. "
@@ -116,7 +103,7 @@ def _unit(load: str) -> str:
     return "N m" if load.rpartition(".")[2].startswith("M") else "N"
 
 
-def mesh_section(page: Page, solutions: Mapping[str, Solved]) -> None:
+def mesh_section(page: Page, solutions: Mapping[str, Assembly]) -> None:
     """A section with mesh, solver and diagnostics of each solution."""
     page.section("Mesh and solution")
     page.table(
@@ -127,7 +114,7 @@ def mesh_section(page: Page, solutions: Mapping[str, Solved]) -> None:
                 "elements": len(s.model.mesh.cells),
                 "nodes": len(s.model.mesh.points),
                 "unknowns": s.response.diagnostics.n_unknowns,
-                "minimum scaled Jacobian": s.quality.minimum_scaled_jacobian,
+                "minimum scaled Jacobian": quality(s.model.mesh).minimum_scaled_jacobian,
                 "solver": s.response.diagnostics.method,
                 "iterations": s.response.diagnostics.iterations or None,
                 "set-up and solve [s]": s.response.diagnostics.seconds,
@@ -151,7 +138,7 @@ def mesh_section(page: Page, solutions: Mapping[str, Solved]) -> None:
     page.table("Why that solver", _choices(solutions), ["model", "solvers, best first"])
 
 
-def _choices(solutions: Mapping[str, Solved]) -> list[tuple[str, str]]:
+def _choices(solutions: Mapping[str, Assembly]) -> list[tuple[str, str]]:
     """Each model that gives another reason for its solver, and the reason."""
     reasons: dict[str, str] = {}
     for label, s in solutions.items():
@@ -159,7 +146,7 @@ def _choices(solutions: Mapping[str, Solved]) -> list[tuple[str, str]]:
     return [(label, reason) for reason, label in reasons.items()]
 
 
-def _warnings(solutions: Mapping[str, Solved]) -> str:
+def _warnings(solutions: Mapping[str, Assembly]) -> str:
     """What the models warn of, each once, with the first model that does."""
     found: dict[str, str] = {}
     for label, s in solutions.items():
@@ -169,7 +156,7 @@ def _warnings(solutions: Mapping[str, Solved]) -> str:
 
 
 def pictures_of(
-    run: Run, solved: Solved, loads: Floats, what: str
+    run: Run, solved: Assembly, loads: Floats, what: str
 ) -> Sequence[Image | Solid | Text]:
     """Draw the model and its deformed shape.
 
@@ -177,7 +164,7 @@ def pictures_of(
     ----------
     run : Run
         Its folder takes the pictures.
-    solved : Solved
+    solved : Assembly
         The model and its response.
     loads : array
         (10,) load factors of the deformed shape.
@@ -190,13 +177,7 @@ def pictures_of(
         For the page; a sentence that says why where nothing can be drawn.
     """
     with run.step("pictures"):
-        try:
-            picture_of_model(solved.model, run.folder / "model.png")
-            shape = deformed_shape(solved.model, solved.response, loads, run.folder, what)
-        except NoPictureError as reason:
-            return [Text(text=f"No picture: {reason}")]
-    caption = f"{solved.scene.title}: parts, loads and supports"
-    return [Image(caption=caption, file="model.png"), shape]
+        return model_pictures(solved.model, solved.response, loads, run.folder, what)
 
 
 def assume(page: Page, scene: Scene) -> None:

@@ -4,23 +4,30 @@ A spherical joint makes the shaft determinate: reactions follow from statics and
 the FE model. Deflection, slope and stiffness do; three forms of the joint show how much it matters.
 """
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import bands, shown, study
-from fe_drivetrain.cases.main_bearing.study import Solved
+from fe_drivetrain.cases.main_bearing import bands, bearing_scenes, shown
 from fe_drivetrain.common import (
     GRAVITY,
     Floats,
 )
+from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import Image, Solid, Text, trace
 from fe_drivetrain.report.suite import Page, Record, Run
-from fe_drivetrain.shafts.beam import beam_of_scene, closed_forms, main_bearing_beam, shaft
+from fe_drivetrain.shafts.beam import beam_of_scene, main_bearing_beam, shaft
 from fe_drivetrain.shafts.response import (
     LOADS,
     bearing_unit_stiffness,
 )
+from fe_drivetrain.studies import Assembly, LinearModel
+from fe_drivetrain.studies.closed_forms import PINNED, closed_form_models
+from fe_drivetrain.studies.solved_assembly import timed_mesh
 from fe_drivetrain.turbine_loads.hub_loads import PointLoads
 
 FORMS = ("sliding", "averaged", "rigid")
@@ -30,7 +37,59 @@ BEAMS = {False: "beam, bare shaft", True: "beam, ring as shaft"}
 SPREAD, BARE_ERROR = "spread of the forms [%]", "bare beam against sliding [%]"
 
 
-def beam_motions(main: Solved, stiffness: Floats, at: Floats) -> dict[bool, list[Floats]]:
+@dataclass(frozen=True, eq=False)
+class Worked:
+    """The three forms of the joint solved, coarser meshes of one, and the beams beside it.
+
+    Attributes
+    ----------
+    solved : dict[str, Assembly]
+        By form.
+    series : bands.Series
+        Figures of the sliding form by mesh.
+    pictures : sequence of Image, Solid or Text
+        Pictures of the model.
+    pinned : LinearModel
+        The pinned beam.
+    """
+
+    solved: dict[str, Assembly]
+    series: bands.Series
+    pictures: Sequence[Image | Solid | Text]
+    pinned: LinearModel
+
+    @property
+    def main(self) -> Assembly:
+        """The sliding form."""
+        return self.solved[FORMS[0]]
+
+    @cached_property
+    def unit(self) -> dict[str, Floats]:
+        """(6, 6) stiffness of the bearing unit, by form."""
+        name = self.main.bearing
+        return {f: bearing_unit_stiffness(s.response, name) for f, s in self.solved.items()}
+
+    @cached_property
+    def stations(self) -> Floats:
+        """(60,) places along the shaft [m]."""
+        shaft_of = self.main.scene.shaft
+        return np.linspace(shaft_of.front, shaft_of.rear, 60)
+
+    @cached_property
+    def motion_of_beam(self) -> dict[bool, list[Floats]]:
+        """Motions of both beams at the stations, at the hub and at the bearing."""
+        scene = self.main.scene
+        ends = [scene.shaft.front, scene.bearing_units[0].bearing.x]
+        at = np.concatenate([self.stations, ends])
+        return beam_motions(self.main, self.unit[FORMS[0]], at)
+
+    @cached_property
+    def rows(self) -> list[Record]:
+        """Deflection and slope, FE and beams."""
+        return deflections(self.solved, self.motion_of_beam, self.series)
+
+
+def beam_motions(main: Assembly, stiffness: Floats, at: Floats) -> dict[bool, list[Floats]]:
     """Motions of both beams at stations, under a vertical force of 1 kN and a moment of 1 kN m."""
     scene = main.scene
     return {
@@ -48,7 +107,7 @@ def beam_motions(main: Solved, stiffness: Floats, at: Floats) -> dict[bool, list
 
 
 def deflections(
-    solved: dict[str, Solved], motion_of_beam: dict[bool, list[Floats]], series: bands.Series
+    solved: dict[str, Assembly], motion_of_beam: dict[bool, list[Floats]], series: bands.Series
 ) -> list[Record]:
     """Deflection and slope at the hub (station -2) and at the bearing (-1), FE and beams."""
     name = solved[FORMS[0]].bearing
@@ -82,7 +141,7 @@ def deflections(
     return rows
 
 
-def causes(main: Solved, beam_load: Floats, mean_load: Floats) -> list[Record]:
+def causes(main: Assembly, beam_load: Floats, mean_load: Floats) -> list[Record]:
     """Vertical loads on the bearing with what a drivetrain has and statics have not."""
     name, weight = main.bearing, main.scene.gearbox.weight
     front = main.scene.shaft.front
@@ -109,7 +168,7 @@ def causes(main: Solved, beam_load: Floats, mean_load: Floats) -> list[Record]:
     ]
 
 
-def axis_deflection(solved: Solved, load: int, n_slices: int) -> tuple[Floats, Floats]:
+def axis_deflection(solved: Assembly, load: int, n_slices: int) -> tuple[Floats, Floats]:
     """Mean vertical displacement of the shaft's nodes in slices along x, by volume."""
     mesh = solved.model.mesh
     weights = solved.model.part_mass["shaft"]
@@ -123,30 +182,16 @@ def axis_deflection(solved: Solved, load: int, n_slices: int) -> tuple[Floats, F
     return mean_x, np.bincount(slot, weights[nodes] * u, n_slices) / total
 
 
-@case(
-    "Spherical main bearing: reactions, deflection and the joint's three forms",
-    source="Stirling 2023, PhD thesis, sections 3.1 and 3.2 (DSRB), Table 3.1, Eq 3.1",
-    settings={
-        "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
-    },
-    changes="scene",
-)
-def run(run: Run, page: Page) -> None:
-    """Solve the three forms of the joint and compare them with statics and with a beam."""
-    scene = study.scene_of(run, page, "spherical")
-    if scene.bearing_units[0].interface != FORMS[0]:
-        page.note(
-            f"The scene's joint is {scene.bearing_units[0].interface}: here stand all three forms "
-            f"of it, and what names none is of the {FORMS[0]} one."
-        )
-    beam = main_bearing_beam(scene)  # refuses before the work what it cannot stand for
+def solved_forms(run: Run, scene: Scene) -> Worked:
+    """Solve the three forms of the joint, and one of them on coarser meshes, too."""
+    main_bearing_beam(scene)  # refuses before the work what it cannot stand for
     with run.side_by_side(len(FORMS) + 2) as jobs:
-        meshed = study.mesh_of(run, scene, "all forms")  # which differ in their constraints only
-        scenes = {form: study.with_interface(scene, form) for form in FORMS}
+        mesh = timed_mesh(run, scene, "all forms")  # which differ in their constraints only
+        scenes = {form: bearing_scenes.with_interface(scene, form) for form in FORMS}
         solving = {
-            form: jobs.start(study.solve_and_write, scenes[form], form, meshed, "mesh")
+            form: jobs.start(bearing_scenes.solve_and_write, scenes[form], form, mesh, "mesh")
             if form == FORMS[0]
-            else jobs.start(study.solve_scene, scenes[form], form, meshed)
+            else jobs.start(bearing_scenes.solve, scenes[form], form, mesh)
             for form in FORMS
         }
         coarser = bands.start(jobs, scenes[FORMS[0]], FORMS[0])
@@ -156,11 +201,14 @@ def run(run: Run, page: Page) -> None:
         solved = {form: job.result() for form, job in solving.items()}
         pictures = drawing.result()
         series = coarser.below(bands.of_solved(main))
-    name = main.bearing
+    return Worked(solved, series, pictures, closed_form_models(scene, {})[PINNED])
 
-    pinned = closed_forms.pinned_model(np.eye(6), beam).T
-    for form, s in solved.items():
-        reaction = s.response.reactions[name][:, :6]
+
+def check_statics(page: Page, work: Worked) -> None:
+    """Reactions of each form against statics."""
+    main, pinned = work.main, work.pinned.matrix.T
+    for form, s in work.solved.items():
+        reaction = s.response.reactions[main.bearing][:, :6]
         worst = np.abs(reaction - pinned)[1:3, [1, 2, 4, 5]].max() / np.abs(pinned[1:3]).max()
         page.vanishes(
             f"{form}: radial reactions of unit hub loads against statics (Eq 3.1)",
@@ -170,21 +218,18 @@ def run(run: Run, page: Page) -> None:
             source="Stirling 2023, Eq 3.1: moment balance about the gearbox",
         )
         shown.check_solution(page, s, form)
-    shown.check_series(page, series, FORMS[0])
+    shown.check_series(page, work.series, FORMS[0])
     page.vanishes(
         "sliding: moment on the bearing per unit of bending moment at the hub",
-        float(np.abs(main.response.reactions[name][3:, 3:6]).max()),
+        float(np.abs(main.response.reactions[main.bearing][3:, 3:6]).max()),
         within=1e-8,
         why="the residual at which the solver stops: the joint has no row for a moment",
         source="a sphere without friction carries no moment",
     )
 
-    # What the reactions cannot show: beams on the bearing unit's own stiffness.
-    unit = {form: bearing_unit_stiffness(s.response, name) for form, s in solved.items()}
-    stations = np.linspace(scene.shaft.front, scene.shaft.rear, 60)
-    at = np.concatenate([stations, [scene.shaft.front, scene.bearing_units[0].bearing.x]])
-    motion_of_beam = beam_motions(main, unit[FORMS[0]], at)
-    rows = deflections(solved, motion_of_beam, series)
+
+def check_deflections(page: Page, rows: list[Record]) -> None:
+    """What the reactions cannot show: FE between beams on the bearing unit's own stiffness."""
     for row in rows:
         stiff, soft = row[BEAMS[True]], row[BEAMS[False]]
         band = row["± sliding"]
@@ -198,28 +243,19 @@ def run(run: Run, page: Page) -> None:
             source="Timoshenko beams on the FE stiffness of the bearing unit",
             band=None if band is None else band / abs(soft - stiff),
         )
-    write_stiffness_json(
-        run.folder / "stiffness.json",
-        scene.title,
-        [
-            stiffness_matrix(
-                f"{name}, {form} joint",
-                unit[form],
-                main.response.positions[name],
-                "from the strain energy of bearing and housing; the joint leaves rotations free",
-            )
-            for form in FORMS
-        ],
-        main.response.diagnostics.n_unknowns,
-    )
-    along_z = [u[2, 2] / 1e9 for u in unit.values()]
+
+
+def answer(page: Page, work: Worked) -> None:
+    """What statics decide, and what the beam and the forms differ by."""
+    rows, series = work.rows, work.series
+    along_z = [u[2, 2] / 1e9 for u in work.unit.values()]
     softer = max(abs(row[BARE_ERROR]) for row in rows)
     page.found("bare beam against FE, worst of deflection and slope [%]", softer)
     page.answer(
         "Reactions of the FE model equal statics to solver accuracy, as they must: the "
         "spherical joint makes the shaft determinate.",
         f"A Timoshenko beam of the bare shaft, on the FE stiffness of the bearing unit, is up to "
-        f"{max(abs(row[BARE_ERROR]) for row in rows):.2g} % softer in deflection and slope than "
+        f"{softer:.2g} % softer in deflection and slope than "
         "the solid: it has no ring that stiffens the seat. With the ring as a section of the shaft "
         "it is stiffer.",
         f"The three forms of the joint differ by at most {max(row[SPREAD] for row in rows):.2g} % "
@@ -227,16 +263,20 @@ def run(run: Run, page: Page) -> None:
         f"{max(along_z):.3g} GN/m.",
     )
     if series.complete:
+        seat = f"{work.main.bearing}.seat"
         uncertainty = max(
             series.percent(lambda f, p=p, at=at: float(f[f"motion {p}"][at])) or 0.0
-            for p, at in (("hub", (2, 2)), ("hub", (4, 4)), (f"{name}.seat", (4, 2)))
+            for p, at in (("hub", (2, 2)), ("hub", (4, 4)), (seat, (4, 2)))
         )
         page.answer(
             "Numerical uncertainty of deflection and slope, from two coarser meshes: "
             f"{uncertainty:.2g} %."
         )
-    page.section("Model")
-    page.add(*pictures)
+
+
+def reactions_section(page: Page, work: Worked) -> None:
+    """Reactions to unit loads, and what can make FE and statics differ."""
+    main = work.main
     page.section("Reactions")
     page.text(
         "The spherical joint makes the shaft determinate, so its radial reactions follow from "
@@ -247,7 +287,7 @@ def run(run: Run, page: Page) -> None:
     shown.reaction_table(
         page,
         "Load on the main bearing for unit loads (sliding joint), moments about its centre",
-        main.response.reactions[name],
+        main.response.reactions[main.bearing],
     )
     shown.reaction_table(
         page,
@@ -258,8 +298,12 @@ def run(run: Run, page: Page) -> None:
     page.table(
         "Vertical load on the main bearing under a typical mean hub load (Fx 200 kN, Fz -370 kN, "
         "My 660 kN m): what can make FE and statics differ",
-        causes(main, closed_forms.pinned_model(mean_load, beam), mean_load),
+        causes(main, work.pinned.reaction(mean_load), mean_load),
     )
+
+
+def deflections_section(page: Page, work: Worked) -> None:
+    """Deflection, slope and stiffness, which do depend on the FE model."""
     page.section("Deflection, slope and stiffness")
     page.text(
         "These do depend on the FE model. The sliding sphere lets the faces slip; the averaged "
@@ -270,14 +314,14 @@ def run(run: Run, page: Page) -> None:
     page.table(
         "Deflection and slope: FE with three forms of the spherical joint, and Timoshenko beams "
         "on the stiffness of the FE bearing unit (sliding)",
-        rows,
+        work.rows,
     )
-    x, uz = axis_deflection(main, LOADS.index("hub.Fz"), 40)
+    x, uz = axis_deflection(work.main, LOADS.index("hub.Fz"), 40)
     page.chart(
         "Vertical deflection of the shaft's axis under Fz = 1 kN at the hub",
         [
             *(
-                trace(title, stations, 1e6 * motion_of_beam[rings][0][:60, 2])
+                trace(title, work.stations, 1e6 * work.motion_of_beam[rings][0][:60, 2])
                 for rings, title in BEAMS.items()
             ),
             trace("FE, mean of each slice", x, 1e9 * uz, points=True),
@@ -285,18 +329,66 @@ def run(run: Run, page: Page) -> None:
         "x along the shaft [m]",
         "uz [µm]",
     )
-    band_row = [series.band(lambda f, k=k: float(f["stiffness"][k, k]) / 1e9) for k in range(3)]
+    band_row = [
+        work.series.band(lambda f, k=k: float(f["stiffness"][k, k]) / 1e9) for k in range(3)
+    ]
     page.table(
         "Translational stiffness of bearing and housing at the bearing's centre [GN/m], and its "
         "band of the sliding form, whose mesh the others share",
         [
-            *([form, *(unit[form].diagonal()[:3] / 1e9).tolist()] for form in FORMS),
+            *([form, *(u.diagonal()[:3] / 1e9).tolist()] for form, u in work.unit.items()),
             [f"± {FORMS[0]}", *band_row],
         ],
         ["form", "along x", "along y", "along z"],
     )
-    shown.mesh_section(page, solved)
-    page.text(series.note())
+
+
+def write_stiffness(run: Run, work: Worked) -> None:
+    """The 6x6 stiffness of the bearing unit by each form, for other programs."""
+    main = work.main
+    write_stiffness_json(
+        run.folder / "stiffness.json",
+        main.scene.title,
+        [
+            stiffness_matrix(
+                f"{main.bearing}, {form} joint",
+                stiffness,
+                main.response.positions[main.bearing],
+                "from the strain energy of bearing and housing; the joint leaves rotations free",
+            )
+            for form, stiffness in work.unit.items()
+        ],
+        main.response.diagnostics.n_unknowns,
+    )
+
+
+@case(
+    "Spherical main bearing: reactions, deflection and the joint's three forms",
+    source="Stirling 2023, PhD thesis, sections 3.1 and 3.2 (DSRB), Table 3.1, Eq 3.1",
+    settings={
+        "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
+    },
+    changes="scene",
+)
+def run(run: Run, page: Page) -> None:
+    """Solve the three forms of the joint and compare them with statics and with a beam."""
+    scene = bearing_scenes.scene_of(run, page, "spherical")
+    if scene.bearing_units[0].interface != FORMS[0]:
+        page.note(
+            f"The scene's joint is {scene.bearing_units[0].interface}: here stand all three forms "
+            f"of it, and what names none is of the {FORMS[0]} one."
+        )
+    work = solved_forms(run, scene)
+    check_statics(page, work)
+    check_deflections(page, work.rows)
+    write_stiffness(run, work)
+    answer(page, work)
+    page.section("Model")
+    page.add(*work.pictures)
+    reactions_section(page, work)
+    deflections_section(page, work)
+    shown.mesh_section(page, work.solved)
+    page.text(work.series.note())
     shown.assume(page, scene)
-    for form, u in unit.items():
+    for form, u in work.unit.items():
         page.data(form, {f"stiffness_{axis}": u[k, k] for k, axis in enumerate("xyz")})

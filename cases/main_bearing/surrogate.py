@@ -1,16 +1,14 @@
-"""Hub loads of the thesis's study: a surrogate on its grid, made beside everything else."""
+"""Hub loads of the thesis's study: the surrogate of the study, made beside everything else."""
 
 from collections.abc import Sequence
 
-from fe_drivetrain.common import user_cache
 from fe_drivetrain.report.suite import Jobs, Run, RunJob
-from fe_drivetrain.turbine_loads.hub_loads import (
-    Condition,
-    HubLoadSet,
-    hub_load_set,
-    not_kept,
-    surrogate_grid,
+from fe_drivetrain.studies.study_loads import (
+    surrogate_conditions,
+    surrogate_set,
+    surrogate_statement,
 )
+from fe_drivetrain.turbine_loads.hub_loads import Condition, HubLoadSet, hub_load_set, not_kept
 
 #: Seeds of each group under --quick: the least that has a standard deviation.
 QUICK_SEEDS = 2
@@ -18,7 +16,7 @@ QUICK_SEEDS = 2
 
 def grid(run: Run) -> list[Condition]:
     """Conditions of the histories."""
-    return [c for c in surrogate_grid() if not run.quick or c.seed <= QUICK_SEEDS]
+    return surrogate_conditions(QUICK_SEEDS if run.quick else None)
 
 
 def start(run: Run, jobs: Jobs) -> list[RunJob[None]]:
@@ -33,23 +31,16 @@ def made(run: Run, making: Sequence[RunJob[None]]) -> HubLoadSet:
     """Hub loads that `start` has begun to make."""
     for job in making:
         job.result()
-    with run.step("hub loads") as step:
-        found = hub_load_set(
-            grid(run), progress=lambda done, of: run.report(f"hub loads ({done} of {of})")
-        )
-        if not making and user_cache().folder is not None:
-            step.name += ", from the cache"
-    return found
+    return surrogate_set(run, grid(run))
 
 
 def statement(hub: HubLoadSet) -> str:
-    """What the loads are."""
+    """What the loads are, and what they stand for here."""
     return (
-        f"Hub loads are a surrogate: {len(hub)} ten-minute histories at 20 Hz of a 2 MW, 80 m, "
-        "three-bladed rotor, quasi-steady blade elements in Kaimal turbulence, over the thesis's "
-        "grid of wind speed, turbulence and shear. They stand in for the thesis's Bladed "
-        "histories, which are not public. A scene of your own on your own histories: "
-        "`fe-drivetrain study mine.yaml --loads FOLDER`."
+        f"{surrogate_statement(len(hub))} It is three-bladed, with quasi-steady blade elements in "
+        "Kaimal turbulence, at 20 Hz over the thesis's grid of wind speed, turbulence and shear, "
+        "and stands in for the thesis's Bladed histories, which are not public. A scene of your "
+        "own on your own histories: `fe-drivetrain study mine.yaml --loads FOLDER`."
     )
 
 

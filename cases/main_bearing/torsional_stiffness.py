@@ -3,14 +3,15 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import bands, shown, study
-from fe_drivetrain.cases.main_bearing.study import Solved
+from fe_drivetrain.cases.main_bearing import bands, bearing_scenes, shown
 from fe_drivetrain.report import bars
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.response import PLANES
+from fe_drivetrain.studies import Assembly, SeatStiffness
+from fe_drivetrain.studies.solved_assembly import timed_mesh
 
 
-def check_energies(page: Page, free: Solved, series: bands.Series) -> None:
+def check_energies(page: Page, free: Assembly, series: bands.Series) -> None:
     """Energy of hub moments: against their work, and that in the overhang against a beam's."""
     response, scene, shaft = free.response, free.scene, free.scene.shaft
     for plane in PLANES:
@@ -50,7 +51,7 @@ def check_energies(page: Page, free: Solved, series: bands.Series) -> None:
     )
 
 
-def by_load(free: Solved, series: bands.Series) -> list[Record]:
+def by_load(free: Assembly, series: bands.Series) -> list[Record]:
     """K_R under a hub moment, and under a hub force with the same moment at the bearing."""
     seat = f"{free.bearing}.seat"
     arm = free.scene.bearing_units[0].bearing.x - free.scene.shaft.front
@@ -81,51 +82,32 @@ def by_load(free: Solved, series: bands.Series) -> list[Record]:
     return rows
 
 
-@case(
-    "Torsional stiffness K_R of bearing and housing, by three estimators",
-    source="Stirling 2023, PhD thesis, section 3.3.1, Eq 3.20, Figures 3.13 and 3.14",
-    settings={
-        "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
-    },
-    changes="scene",
-)
-def run(run: Run, page: Page) -> None:
-    """Measure K_R, and show how much it depends on the estimator and on the load."""
-    scene = study.scene_of(run, page, "bonded")
-    with run.side_by_side(3) as jobs:
-        coarser = bands.start(jobs, scene, "bonded", solved=False, tilted=True)
-        tilt = study.solve_tilt(run, scene, "without gearbox", study.mesh_of(run, scene, "bonded"))
-        series = coarser.below(bands.of_tilt(tilt))
-    free = tilt.free
-    shown.check_solution(page, free, "without gearbox")
-    shown.check_series(page, series, "without gearbox")
-    check_energies(page, free, series)
-
-    spread = {plane: study.spread(k) for plane, k in tilt.by_plane.items()}
-    vertical, horizontal = (k / 1e6 for k in tilt.both("averaged seat"))
+def answer(page: Page, tilt: SeatStiffness, series: bands.Series) -> None:
+    """K_R in both planes, and how far the estimators spread."""
+    both = [k / 1e6 for k in tilt.both("averaged seat")]
     page.answer(
-        f"K_R of bearing and housing is {vertical:.0f} MN m/rad in the vertical and "
-        f"{horizontal:.0f} MN m/rad in the horizontal plane (averaged seat).",
-        f"The three estimators spread by {spread['vertical']:.0f} % and "
-        f"{spread['horizontal']:.0f} %: K_R is a property of the estimator as much as of the "
+        f"K_R of bearing and housing is {both[0]:.0f} MN m/rad in the vertical and "
+        f"{both[1]:.0f} MN m/rad in the horizontal plane (averaged seat).",
+        f"The three estimators spread by {tilt.spread('vertical'):.0f} % and "
+        f"{tilt.spread('horizontal'):.0f} %: K_R is a property of the estimator as much as of the "
         "housing.",
         "The thesis gives 145 and 392 MN m/rad for a housing whose dimensions it does not "
         "state; this housing is another one, and nothing here is fitted to those values.",
     )
+    percent: list[float | None] = [None, None]
     if series.complete:
         percent = [series.percent(lambda f, p=p: float(f["K_R"][p, 1])) for p in range(len(PLANES))]
         page.answer(
             f"Numerical uncertainty from two coarser meshes: {percent[0]:.2g} % in the vertical "
             f"and {percent[1]:.2g} % in the horizontal plane (averaged seat)."
         )
-    for number, (plane, value) in enumerate((("vertical", vertical), ("horizontal", horizontal))):
-        share = percent[number] if series.complete else None
+    for plane, value, share in zip(tilt.by_plane, both, percent, strict=True):
         band = None if share is None else share / 100.0 * value
         page.found(f"K_R, {plane} plane [MN m/rad]", value, band)
-    load_factors = np.zeros(10)
-    load_factors[4] = 1e6
-    page.section("Model")
-    page.add(*shown.pictures_of(run, free, load_factors, "My = 1 MN m at the hub, no gearbox"))
+
+
+def estimators_section(page: Page, tilt: SeatStiffness, series: bands.Series) -> None:
+    """K_R by three estimators, and the points that one of them uses."""
     page.section("K_R by three estimators")
     shown.tilt_table(page, tilt, series)
     by_plane = {
@@ -140,16 +122,20 @@ def run(run: Run, page: Page) -> None:
         "bearing. Energy: M²/2U with the energy of bearing and housing alone, without the shaft's "
         "own compliance under the ring."
     )
-    mesh = free.model.mesh
+    mesh = tilt.free.model.mesh
     page.table(
         "The points that the four-node estimator uses, imprinted in the geometry",
         [
             [key, *mesh.points[node].tolist()]
             for key, node in mesh.named_points.items()
-            if key.startswith(f"{free.bearing}.housing.")
+            if key.startswith(f"{tilt.free.bearing}.housing.")
         ],
         ["point", "x [m]", "y [m]", "z [m]"],
     )
+
+
+def load_section(page: Page, free: Assembly, series: bands.Series) -> None:
+    """Where the work of a moment goes, and K_R under a moment and under a force."""
     page.section("Energy and load")
     page.table(
         "Where the work of a hub moment goes [%]",
@@ -169,6 +155,35 @@ def run(run: Run, page: Page) -> None:
         "same moment at the bearing",
         by_load(free, series),
     )
+
+
+@case(
+    "Torsional stiffness K_R of bearing and housing, by three estimators",
+    source="Stirling 2023, PhD thesis, section 3.3.1, Eq 3.20, Figures 3.13 and 3.14",
+    settings={
+        "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
+    },
+    changes="scene",
+)
+def run(run: Run, page: Page) -> None:
+    """Measure K_R, and show how much it depends on the estimator and on the load."""
+    scene = bearing_scenes.scene_of(run, page, "bonded")
+    with run.side_by_side(3) as jobs:
+        coarser = bands.start(jobs, scene, "bonded", solved=False, tilted=True)
+        mesh = timed_mesh(run, scene, "bonded")
+        tilt = bearing_scenes.solve_seat(run, scene, "without gearbox", mesh)
+        series = coarser.below(bands.of_tilt(tilt))
+    free = tilt.free
+    shown.check_solution(page, free, "without gearbox")
+    shown.check_series(page, series, "without gearbox")
+    check_energies(page, free, series)
+    answer(page, tilt, series)
+    load_factors = np.zeros(10)
+    load_factors[4] = 1e6
+    page.section("Model")
+    page.add(*shown.pictures_of(run, free, load_factors, "My = 1 MN m at the hub, no gearbox"))
+    estimators_section(page, tilt, series)
+    load_section(page, free, series)
     shown.mesh_section(page, {"without gearbox": free})
     page.text(series.note())
     shown.assume(page, scene)

@@ -1,12 +1,13 @@
 """Load steps a second of a bearing in five degrees of freedom, by level of detail."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
 from fe_drivetrain.bearing import (
     Bearing,
+    Equilibrium,
     Races,
     RacesEquilibrium,
     catalogue_bearing,
@@ -70,21 +71,8 @@ def run(run: Run, page: Page) -> None:
         equilibrium_on_races(races, few[:2])
         size = (7, 5, 12) if run.quick else (25, 13, 36)
         table, made = timed_runs(lambda: reduced_table(closed, size), repeats)
-    rows: list[Record] = []
-
-    def level(name: str, steps: Floats, solve: Callable[[], Any]) -> Any:
-        with run.step(name):
-            found, times = timed_runs(solve, repeats)
-        rows.append(
-            {
-                "level": name,
-                "load steps": len(steps),
-                **times.columns(),
-                "steps a second": len(steps) / times.median,
-                "1.728 million steps [s]": STEPS * times.median / len(steps),
-            }
-        )
-        return found
+    levels = Levels(run, repeats)
+    level = levels.timed
 
     whole = level("30 laminae, from the step before", loads, lambda: equilibrium(laminae, loads))
     cold = level("30 laminae, each alone", few, lambda: equilibrium(laminae, few, warm=False))
@@ -100,31 +88,8 @@ def run(run: Run, page: Page) -> None:
     _, peaks = level("table of reduced loads", few, lambda: table(few))
     true = by_row(closed, roller_loads(closed, exact.displacements))
     error = np.abs(peaks - true).max(axis=1) / true.max(axis=1)
-    page.vanishes(
-        "load steps that have not converged to 1e-8",
-        float(lost + sum((~found.converged).sum() for found in (whole, cold, exact))),
-        within=0.0,
-        why="any start leads to the minimum of a convex function",
-        source="convex energy",
-    )
-    page.vanishes(
-        "started from the step before, against each alone: difference of displacements",
-        float(
-            np.abs(whole.displacements[: len(few)] - cold.displacements).max()
-            / np.abs(cold.displacements).max()
-        ),
-        within=1e-6,
-        why="both are within the solver's residual of the same minimum",
-        source="convex energy",
-    )
-    if not run.quick:
-        page.at_most(
-            "table of reduced loads: error of the peak roller, 99th percentile",
-            float(np.quantile(error, 0.99)),
-            TABLE_ERROR,
-            why="linear between nodes 10 deg apart, and the ripple of 36 rollers",
-            source="equilibrium of each step",
-        )
+    check(page, (whole, cold, exact), lost, None if run.quick else error)
+    rows = levels.rows
     flexible_row = rows[-2]
     page.answer(
         f"{rows[0]['steps a second']:,.0f} load steps a second with 72 rollers of 30 laminae "
@@ -137,6 +102,75 @@ def run(run: Run, page: Page) -> None:
         f"{rows[-1]['steps a second']:,.0f} a second with a median error of "
         f"{100 * np.median(error):.1f} % of the peak roller.",
     )
+    starts = {"step before": whole, "each alone": cold, "step before, flexible rings": flexible}
+    show(page, rows, repeats, starts)
+
+
+class Levels:
+    """Times of several levels, one row each.
+
+    Parameters
+    ----------
+    run : Run
+        Whose clock is used.
+    repeats : int
+        Runs of each level.
+    """
+
+    def __init__(self, run: Run, repeats: int) -> None:
+        self.run, self.repeats = run, repeats
+        self.rows: list[Record] = []
+
+    def timed(self, name: str, steps: Floats, solve: Callable[[], Any]) -> Any:
+        """Solve load steps, and keep how many are solved in a second; return the solution."""
+        with self.run.step(name):
+            found, times = timed_runs(solve, self.repeats)
+        self.rows.append(
+            {
+                "level": name,
+                "load steps": len(steps),
+                **times.columns(),
+                "steps a second": len(steps) / times.median,
+                "1.728 million steps [s]": STEPS * times.median / len(steps),
+            }
+        )
+        return found
+
+
+def check(page: Page, found: Sequence[Equilibrium], lost: int, error: Floats | None) -> None:
+    """Check that all steps converge, to the same from either start, and the error of the table."""
+    whole, cold, _ = found
+    page.vanishes(
+        "load steps that have not converged to 1e-8",
+        float(lost + sum((~one.converged).sum() for one in found)),
+        within=0.0,
+        why="any start leads to the minimum of a convex function",
+        source="convex energy",
+    )
+    page.vanishes(
+        "started from the step before, against each alone: difference of displacements",
+        float(
+            np.abs(whole.displacements[: len(cold.displacements)] - cold.displacements).max()
+            / np.abs(cold.displacements).max()
+        ),
+        within=1e-6,
+        why="both are within the solver's residual of the same minimum",
+        source="convex energy",
+    )
+    if error is not None:
+        page.at_most(
+            "table of reduced loads: error of the peak roller, 99th percentile",
+            float(np.quantile(error, 0.99)),
+            TABLE_ERROR,
+            why="linear between nodes 10 deg apart, and the ripple of 36 rollers",
+            source="equilibrium of each step",
+        )
+
+
+def show(
+    page: Page, rows: list[Record], repeats: int, starts: dict[str, Equilibrium | RacesEquilibrium]
+) -> None:
+    """Show the wall time of each level, and the work of a load step."""
     page.section("Levels")
     page.table(
         f"Wall time of the load steps, runs of each level: {repeats}; steps a second of the median",
@@ -151,11 +185,7 @@ def run(run: Run, page: Page) -> None:
                 "worst": int(found.iterations.max()),
                 "evaluations of all rollers, mean": float(found.evaluations.mean()),
             }
-            for name, found in (
-                ("step before", whole),
-                ("each alone", cold),
-                ("step before, flexible rings", flexible),
-            )
+            for name, found in starts.items()
         ],
     )
     page.text(

@@ -17,7 +17,7 @@ from fe_drivetrain.cases.performance.peers import BENCHMARKS, Problem, assembled
 from fe_drivetrain.elasticity.interfaces import eliminate, fixed
 from fe_drivetrain.elasticity.operator import Pattern, kernels, sparsity
 from fe_drivetrain.elasticity.solve import System, multigrid, reduce
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked
 from fe_drivetrain.report.suite import Page, Record, Run, grouped
 
 PROBLEMS, QUICK_PROBLEMS = ["shaft", "assembly"], ["shaft"]
@@ -90,11 +90,10 @@ def run(run: Run, page: Page) -> None:
     page.section("Phases")
     page.table("Median times of each phase, what it moves at least, and its floor", rows)
     traces = [
-        trace(
+        marked(
             f"{name}, {phase}" if len(names) > 1 else phase,
             [row["unknowns"] for row in of],
             [row["over its floor"] for row in of],
-            mode="lines+markers",
         )
         for name, mine in grouped(rows, "problem")
         for phase, of in grouped(mine, "phase")

@@ -34,7 +34,7 @@ from fe_drivetrain.dynamics import (
 from fe_drivetrain.dynamics.equations import equations_of_motion, joined_laws
 from fe_drivetrain.dynamics.machines import slip_line
 from fe_drivetrain.dynamics.steady_state import restoring
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked
 from fe_drivetrain.report.suite import Page, Record, Run, check_in_time, goal, grouped
 
 SPEED = 12.1 * np.pi / 30.0  # rad/s, rated
@@ -111,10 +111,9 @@ def run(run: Run, page: Page) -> None:
         why="forces of meshes would be wrong else",
         source="its residual",
     )
+    short = QUICK_SHORT if run.quick else SHORT
     with run.step("error over the step"):
-        rows, peer = methods(
-            equations, loads, start, QUICK_SHORT if run.quick else SHORT, run.quick, repeats
-        )
+        rows, peer = methods(equations, loads, start, short, run.quick, repeats)
     page.vanishes(
         "average acceleration, shortest step: error of the mesh forces over the largest",
         peer,
@@ -132,19 +131,31 @@ def run(run: Run, page: Page) -> None:
         f"third stage's mesh ({fastest:.0f} Hz): mean loads and low modes are right, the fast "
         "meshes need far shorter steps, which the chart shows.",
     )
+    show_time(page, times, duration, repeats, None if run.quick else seconds)
+    check_convergence(run, page, short, motion.relative_imbalance)
+    show_errors(page, rows, motion.relative_imbalance)
+
+
+def show_time(
+    page: Page, times: Times, duration: float, repeats: int, seconds: float | None
+) -> None:
+    """Show the wall time of the motion, and the goal for ten minutes."""
     page.section("Ten minutes")
     page.table(
         f"Wall time of {duration:g} s of motion at 1 kHz, on one core",
         [{"runs": repeats, **times.columns()}],
     )
-    if not run.quick:
+    if seconds is not None:
         page.section("Goal")
         page.table(
             "What was measured on one core, and the goal of this project for two",
             [goal("ten minutes at 1 kHz [s]", seconds, most=GOAL)],
         )
+
+
+def check_convergence(run: Run, page: Page, short: float, imbalance: float) -> None:
+    """Check energy and convergence over a short time; state what a step of 1 ms leaves open."""
     with run.step("convergence"):
-        short = QUICK_SHORT if run.quick else SHORT
         series = converge_in_time(partial(of_gearbox, short), STEPS[-1], 8)
     page.section("Convergence")
     check_in_time(
@@ -158,19 +169,18 @@ def run(run: Run, page: Page) -> None:
     )
     page.unsettled.append(
         f"Not converged: meshes with a step of {1e3 * STEP:g} ms, of which the energy that appears "
-        f"from nowhere is {motion.relative_imbalance:.2g} of the largest."
+        f"from nowhere is {imbalance:.2g} of the largest."
     )
+
+
+def show_errors(page: Page, rows: list[Record], imbalance: float) -> None:
+    """Show the error of each method over its step and over its computing time."""
     page.section("Error over the step, and over time")
     for key in ("step [s]", TIME):
         page.chart(
             f"Error of the mesh forces over the {key}",
             [
-                trace(
-                    str(name),
-                    [row[key] for row in of],
-                    [row[WITHIN] for row in of],
-                    mode="lines+markers",
-                )
+                marked(str(name), [row[key] for row in of], [row[WITHIN] for row in of])
                 for name, of in grouped(rows[1:], "method")
             ],
             key,
@@ -181,7 +191,7 @@ def run(run: Run, page: Page) -> None:
     page.text(
         "Exudyn takes the laws of the meshes as a Python function here, which is most of its "
         "time; its error is that of the same method. Energy that appears from nowhere is what a "
-        f"step does not resolve: {motion.relative_imbalance:.2g} of the largest at 1 ms."
+        f"step does not resolve: {imbalance:.2g} of the largest at 1 ms."
     )
     page.data("methods", rows)
 
@@ -207,28 +217,8 @@ def methods(
 ) -> tuple[list[Record], float]:
     """Errors at the end against an explicit method; that of the shortest step."""
     meshes = np.flatnonzero(equations.springs.wave >= 0)
-    rows: list[Record] = []
-    inverse = np.linalg.inv(equations.mass)
-    n = len(equations.mass)
-
-    def rates(t: float, y: Floats) -> Floats:
-        force = restoring(equations, t, y[:n], y[n:])[0]
-        return np.concatenate([y[n:], inverse @ (loads.at(t) - force)])
-
-    begin = np.concatenate([start.q, start.velocity])
-    scale = np.maximum(np.abs(begin), 1e-9) * 1e-6
-    found, times = timed_runs(
-        lambda: solve_ivp(rates, (0.0, duration), begin, "DOP853", rtol=1e-8, atol=scale), repeats
-    )
-    rows.append(
-        {
-            "method": "SciPy, DOP853",
-            "step [s]": duration / (len(found.t) - 1),
-            WITHIN: None,
-            **of_motion(times, duration),
-        }
-    )
-    exact = found.y[:n, -1]
+    row, exact = by_scipy(equations, loads, start, duration, repeats)
+    rows = [row]
     stretch = equations.springs.rows[meshes]
     size = float(np.abs(stretch @ exact).max())
 
@@ -270,6 +260,27 @@ def methods(
         except MissingToolError:
             break
     return rows, last
+
+
+def by_scipy(
+    equations: Equations, loads: Loads, start: State, duration: float, repeats: int
+) -> tuple[Record, Floats]:
+    """Time of an explicit method, and displacements at the end."""
+    inverse = np.linalg.inv(equations.mass)
+    n = len(equations.mass)
+
+    def rates(t: float, y: Floats) -> Floats:
+        force = restoring(equations, t, y[:n], y[n:])[0]
+        return np.concatenate([y[n:], inverse @ (loads.at(t) - force)])
+
+    begin = np.concatenate([start.q, start.velocity])
+    scale = np.maximum(np.abs(begin), 1e-9) * 1e-6
+    found, times = timed_runs(
+        lambda: solve_ivp(rates, (0.0, duration), begin, "DOP853", rtol=1e-8, atol=scale), repeats
+    )
+    step = duration / (len(found.t) - 1)
+    row = {"method": "SciPy, DOP853", "step [s]": step, WITHIN: None, **of_motion(times, duration)}
+    return row, found.y[:n, -1]
 
 
 def of_motion(times: Times, duration: float) -> Record:

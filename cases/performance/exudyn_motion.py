@@ -54,12 +54,21 @@ def exudyn_motion(
         Its Newton's method does not converge.
     """
     exudyn_version()
+    exudyn = import_module("exudyn")
+    container = exudyn.SystemContainer()  # the system does not outlive it
+    system = container.AddSystem()
+    sensor = fill(system, equations, loads, start or at_rest(equations))
+    settings = settings_of(exudyn, duration, dt, spectral_radius)
+    if not system.SolveDynamic(settings):
+        raise ArithmeticError("Exudyn's time integration does not converge")
+    found = np.asarray(system.GetSensorStoredData(sensor))
+    return found[:, 0], found[:, 1:]
+
+
+def fill(system: Any, equations: Equations, loads: Loads, begin: State) -> Any:
+    """Add the equations to Exudyn's system; return the sensor of its coordinates."""
     exudyn, items = import_module("exudyn"), import_module("exudyn.itemInterface")
     n = len(equations.mass)
-    K, C = equations.K, equations.C
-    begin = start or at_rest(equations)
-    container = exudyn.SystemContainer()
-    system = container.AddSystem()
     node = system.AddNode(
         items.NodeGenericODE2(
             referenceCoordinates=[0.0] * n,
@@ -68,28 +77,13 @@ def exudyn_motion(
             numberOfODE2Coordinates=n,
         )
     )
-
-    def force(_: Any, t: float, __: int, q: Any, velocity: Any) -> Floats:
-        at, rate = np.array(q), np.array(velocity)
-        inside = restoring(equations, t, at, rate)[0]
-        return np.asarray(loads.at(t) - inside + K @ at + C @ rate)
-
-    laws: dict[str, Any] = {}
-    if equations.springs.special.any():
-
-        def jacobian(_: Any, t: float, __: int, q: Any, v: Any, by_q: float, by_v: float) -> Floats:
-            tangent = restoring(equations, t, np.array(q), np.array(v))[1]
-            return np.asarray(-by_q * tangent - by_v * C)
-
-        laws["jacobianUserFunction"] = jacobian
     system.AddObject(
         items.ObjectGenericODE2(
             nodeNumbers=[node],
             massMatrix=equations.mass,
-            stiffnessMatrix=K,
-            dampingMatrix=C,
-            forceUserFunction=force,
-            **laws,
+            stiffnessMatrix=equations.K,
+            dampingMatrix=equations.C,
+            **laws_of(equations, loads),
         )
     )
     sensor = system.AddSensor(
@@ -100,6 +94,28 @@ def exudyn_motion(
         )
     )
     system.Assemble()
+    return sensor
+
+
+def laws_of(equations: Equations, loads: Loads) -> dict[str, Any]:
+    """Forces beside K and C as a function, and their tangent where springs have a law."""
+    K, C = equations.K, equations.C
+
+    def force(_: Any, t: float, __: int, q: Any, velocity: Any) -> Floats:
+        at, rate = np.array(q), np.array(velocity)
+        inside = restoring(equations, t, at, rate)[0]
+        return np.asarray(loads.at(t) - inside + K @ at + C @ rate)
+
+    def jacobian(_: Any, t: float, __: int, q: Any, v: Any, by_q: float, by_v: float) -> Floats:
+        tangent = restoring(equations, t, np.array(q), np.array(v))[1]
+        return np.asarray(-by_q * tangent - by_v * C)
+
+    laws: dict[str, Any] = {"forceUserFunction": force}
+    return laws | ({"jacobianUserFunction": jacobian} if equations.springs.special.any() else {})
+
+
+def settings_of(exudyn: Any, duration: float, dt: float, spectral_radius: float) -> Any:
+    """Exudyn's settings of its time integration."""
     settings = exudyn.SimulationSettings()
     time = settings.timeIntegration
     time.numberOfSteps = round(duration / dt)
@@ -109,7 +125,4 @@ def exudyn_motion(
     time.generalizedAlpha.spectralRadius = spectral_radius
     settings.solutionSettings.writeSolutionToFile = False
     settings.solutionSettings.sensorsWritePeriod = dt
-    if not system.SolveDynamic(settings):
-        raise ArithmeticError("Exudyn's time integration does not converge")
-    found = np.asarray(system.GetSensorStoredData(sensor))
-    return found[:, 0], found[:, 1:]
+    return settings

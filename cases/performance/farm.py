@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Iterator
+from functools import partial
 from importlib.util import find_spec
 from typing import Any
 
@@ -21,6 +22,7 @@ from fe_drivetrain.common import (
 from fe_drivetrain.report import trace
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.turbine_loads.histories import (
+    Count,
     Counting,
     counted_histories,
     piece,
@@ -72,23 +74,9 @@ def run(run: Run, page: Page) -> None:
         workers = found_workers.count
     repeats = run.count("repeats", 1 if run.quick else 5)
     count = len(sizes(each))
-
-    def in_pieces() -> Any:
-        pieces = (
-            (f"turbine {turbine}", (turbine, number, size))
-            for turbine in range(TURBINES)
-            for number, size in enumerate(sizes(each))
-        )
-        made_in_pieces = counted_histories(made, pieces, COUNTING, local=cores(), report=run.report)
-        found = next(made_in_pieces)[1]
-        for number, (_, more) in enumerate(made_in_pieces, 2):
-            run.report(f"turbines ({number} of {TURBINES})")
-            found = found + more
-        return found
-
     with run.step("in pieces"):
         own = time.process_time()
-        found, times = timed_runs(in_pieces, repeats)
+        found, times = timed_runs(partial(counted_in_pieces, run, each), repeats)
         apart, own = times.median, (time.process_time() - own) / repeats
     import resource  # which Windows does not have
 
@@ -98,34 +86,7 @@ def run(run: Run, page: Page) -> None:
     }
     with run.step("in one stream"):
         (cycles, damage), streamed = timed_runs(lambda: in_one_stream(each), repeats)
-    for m, mine, exact in zip(COUNTING.slopes, found.damage, damage, strict=True):
-        page.equals(
-            f"sum of n r^{m:g} in pieces [-]",
-            float(mine),
-            float(exact),
-            within=0.0,
-            why="the same cycles, and sums without rounding",
-            source="three points of the standard over each whole history",
-            measure="identity",
-        )
-    page.equals(
-        "cycles in pieces [-]",
-        float(found.cycles.amount.sum()),
-        cycles,
-        within=0.0,
-        why="each is counted once, halves as halves",
-        source="three points of the standard over each whole history",
-        measure="identity",
-    )
-    page.equals(
-        "samples at all levels [-]",
-        float(found.levels.amount.sum()),
-        float(TURBINES * each),
-        within=0.0,
-        why="each is at one level",
-        source="the samples that were made",
-        measure="identity",
-    )
+    check(page, found, cycles, damage, TURBINES * each)
     rate = TURBINES * each / apart
     page.answer(
         f"{TURBINES * each:,} samples in {TURBINES * count:,} pieces take {apart:.3g} s, made "
@@ -152,16 +113,59 @@ def run(run: Run, page: Page) -> None:
     )
     page.data("farm", row)
     if workers > 1 and not run.quick:
-        farm = predicted(rate / workers, own / (TURBINES * each))
-        page.table(f"{FARM:.0e} samples, by the model", farm)
-        page.data("predicted", farm)
-        page.text(
-            "Model: the larger of what the workers count and what this process adds. Each of w "
-            f"workers counts as many samples a second as the {workers} here did on average; this "
-            "process takes up and adds the counts of runs of pieces, and used "
-            f"{1e9 * own / (TURBINES * each):.3g} ns of its processor for each sample. Reading of "
-            "files is not in it."
+        show_farm(page, rate, own / (TURBINES * each), workers)
+    show_counts(page, found)
+
+
+def counted_in_pieces(run: Run, each: int) -> Any:
+    """Count the histories of all turbines in pieces, `each` samples of every turbine."""
+    pieces = (
+        (f"turbine {turbine}", (turbine, number, size))
+        for turbine in range(TURBINES)
+        for number, size in enumerate(sizes(each))
+    )
+    made_in_pieces = counted_histories(made, pieces, COUNTING, local=cores(), report=run.report)
+    found = next(made_in_pieces)[1]
+    for number, (_, more) in enumerate(made_in_pieces, 2):
+        run.report(f"turbines ({number} of {TURBINES})")
+        found = found + more
+    return found
+
+
+def check(page: Page, found: Count, cycles: float, damage: list[ExactSum], samples: int) -> None:
+    """Check that pieces and one stream count the same."""
+    for m, mine, exact in zip(COUNTING.slopes, found.damage, damage, strict=True):
+        page.equals(
+            f"sum of n r^{m:g} in pieces [-]",
+            float(mine),
+            float(exact),
+            within=0.0,
+            why="the same cycles, and sums without rounding",
+            source="three points of the standard over each whole history",
+            measure="identity",
         )
+    page.equals(
+        "cycles in pieces [-]",
+        float(found.cycles.amount.sum()),
+        cycles,
+        within=0.0,
+        why="each is counted once, halves as halves",
+        source="three points of the standard over each whole history",
+        measure="identity",
+    )
+    page.equals(
+        "samples at all levels [-]",
+        float(found.levels.amount.sum()),
+        float(samples),
+        within=0.0,
+        why="each is at one level",
+        source="the samples that were made",
+        measure="identity",
+    )
+
+
+def show_counts(page: Page, found: Count) -> None:
+    """Show cycles and levels in classes."""
     page.section("What is counted")
     for name, classes in (("range of cycles", found.cycles), ("level", found.levels)):
         page.chart(
@@ -170,6 +174,20 @@ def run(run: Run, page: Page) -> None:
             f"{name} [-]",
             "number",
         )
+
+
+def show_farm(page: Page, rate: float, own: float, workers: int) -> None:
+    """Show the time of a whole farm, by a model of its workers."""
+    farm = predicted(rate / workers, own)
+    page.table(f"{FARM:.0e} samples, by the model", farm)
+    page.data("predicted", farm)
+    page.text(
+        "Model: the larger of what the workers count and what this process adds. Each of w "
+        f"workers counts as many samples a second as the {workers} here did on average; this "
+        "process takes up and adds the counts of runs of pieces, and used "
+        f"{1e9 * own:.3g} ns of its processor for each sample. Reading of "
+        "files is not in it."
+    )
 
 
 def in_one_stream(each: int) -> tuple[float, list[ExactSum]]:

@@ -79,33 +79,40 @@ def run(run: Run, page: Page) -> None:
         reference, band = checked_reference(run, page, name, body)
         rows = settings(run, name, body, reference)
         tried += rows
-        enough = [row for row in rows if row["error"] + band <= ERROR]
-        if not enough:
-            best.append({"shaft": name, "setting": "none of these"})
-            continue
-        cheapest = min(enough, key=lambda row: row["seconds"])
-        with run.step(f"{name}: the chosen setting again"):
-            own, wall = timed(cheapest["work"], 1 if run.quick else 9)
-        best.append(
-            {
-                "shaft": name,
-                "setting": cheapest["setting"],
-                "error": cheapest["error"],
-                **own.columns("own time", "ms"),
-                "wall time, median [ms]": 1e3 * wall.median,
-                WITHIN_GOAL: "yes" if own.median <= GOAL else "no",
-            }
-        )
-        page.data(
-            name,
-            {"seconds": own.seconds, "wall": wall.seconds, "error": cheapest["error"]},
-        )
+        best.append(cheapest(run, page, name, rows, band))
     found = [row for row in best if "error" in row]
     page.answer(
         f"The 12 x 12 stiffness of a shaft to {ERROR:g} takes "
         + ", ".join(f"{row[OWN]:.0f} ms ({row['shaft']})" for row in found)
         + f", mesh included; the goal is {1e3 * GOAL:g} ms."
     )
+    show(page, tried, best)
+    page.section("Whole shafts, and the factor")
+    whole_shafts(run, page)
+    factors(run, page)
+
+
+def cheapest(run: Run, page: Page, name: str, rows: list[Record], band: float) -> Record:
+    """The fastest setting that is good enough, measured again."""
+    enough = [row for row in rows if row["error"] + band <= ERROR]
+    if not enough:
+        return {"shaft": name, "setting": "none of these"}
+    best = min(enough, key=lambda row: row["seconds"])
+    with run.step(f"{name}: the chosen setting again"):
+        own, wall = timed(best["work"], 1 if run.quick else 9)
+    page.data(name, {"seconds": own.seconds, "wall": wall.seconds, "error": best["error"]})
+    return {
+        "shaft": name,
+        "setting": best["setting"],
+        "error": best["error"],
+        **own.columns("own time", "ms"),
+        "wall time, median [ms]": 1e3 * wall.median,
+        WITHIN_GOAL: "yes" if own.median <= GOAL else "no",
+    }
+
+
+def show(page: Page, tried: list[Record], best: list[Record]) -> None:
+    """Show error against time of all settings, and the fastest ones that are good enough."""
     page.section("Error against time")
     page.chart(
         "Error of the 12 x 12, scaled to 1 on its diagonal, against the time from the shaft to the "
@@ -146,9 +153,6 @@ def run(run: Run, page: Page) -> None:
         "process itself took, which the wall time is on a quiet core; what is done once a session "
         "is done before: kernels are compiled, the element's shape functions set up."
     )
-    page.section("Whole shafts, and the factor")
-    whole_shafts(run, page)
-    factors(run, page)
 
 
 def timed(work: Callable[[], object], repeats: int) -> tuple[Times, Times]:

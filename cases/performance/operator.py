@@ -1,5 +1,6 @@
 """The elastic operator beside scikit-fem's generic form: same matrix, other time."""
 
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -22,9 +23,9 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats, Ints, Times, run_python, scratch_folder, timed_runs
 from fe_drivetrain.drivetrain_file import MATERIALS
 from fe_drivetrain.elasticity.interfaces import eliminate, fixed
-from fe_drivetrain.elasticity.mesh import element_kind, generate
+from fe_drivetrain.elasticity.mesh import Mesh, element_kind, generate
 from fe_drivetrain.elasticity.operator import assemble, is_straight, kernels, sparsity
-from fe_drivetrain.elasticity.solve import factorise, reduce
+from fe_drivetrain.elasticity.solve import Solution, factorise, reduce
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.report.suite import Page, Record, Run, column, goal
 
@@ -70,80 +71,164 @@ COLUMNS = (1, 4, 6, 8, 10, 12, 16, 24)
 def run(run: Run, page: Page) -> None:
     """Assemble every element kind both ways, and the shaft of 110 000 unknowns."""
     lame = MATERIALS["steel"].lame
-    section = Section(length=2.0, outer_diameter=0.7, inner_diameter=0.3)
-    sizes = QUICK if run.quick else MeshSizes(shaft=SIZE)
-    mesh = generate(Shaft(sections=(section,), front=0.0), [], {}, sizes)
-    points, cells, n = mesh.points, mesh.cells, mesh.points.size
     with run.step("compile"):
         first, later = (None, None) if run.quick else compile_times(5)
         for n_nodes in (4, 10, 8):
             assemble(*box(n_nodes, 1), lame)
-
-    with run.step("shaft of curved tetrahedra"):
-        repeats = run.count("repeats", 1 if run.quick else 5)
-        ours, own = timed_runs(partial(assemble, points, cells, lame), repeats)
-        pattern = sparsity(cells, len(points))
-        _, reused = timed_runs(partial(assemble, points, cells, lame, pattern=pattern), repeats)
-        theirs, generic = timed_runs(partial(generic_form, points, cells, lame), repeats)
-        apart = difference(ours, *theirs, points)
-    with run.step("solve"):
-        elimination = eliminate([fixed("rear", mesh.face_nodes("shaft.rear"), n)], n)
-        system = reduce(points, cells, ours, elimination)
-        F = np.zeros((n, 1))
-        F[3 * mesh.face_nodes("shaft.front") + 2] = 1.0
-        solution, solved = timed_runs(lambda: factorise(system).solve(F), repeats)
+    repeats = run.count("repeats", 1 if run.quick else 5)
+    section = Section(length=2.0, outer_diameter=0.7, inner_diameter=0.3)
+    sizes = QUICK if run.quick else MeshSizes(shaft=SIZE)
+    found = assembled(run, generate(Shaft(sections=(section,), front=0.0), [], {}, sizes), repeats)
     with run.step("products"):
-        products = [product_time(ours, count, 2 * repeats) for count in COLUMNS]
-    rows = []
+        products = [product_time(found.K, count, 2 * repeats) for count in COLUMNS]
     with run.step("other elements"):
-        for n_nodes, cuts in CUTS.items():
-            cube = box(n_nodes, cuts // (4 if run.quick else 1))
-            K, mine = timed_runs(partial(assemble, *cube, lame), repeats)
-            matched, other = timed_runs(partial(generic_form, *cube, lame), repeats)
-            rows.append(
-                {
-                    "element": element_kind(n_nodes).name,
-                    "unknowns": f"{cube[0].size:,}",
-                    **mine.columns("ours", "ms"),
-                    **other.columns("scikit-fem", "ms"),
-                    "ratio of medians": other.median / mine.median,
-                    "difference": difference(K, *matched, cube[0]),
-                }
-            )
-    ratio, share = generic.median / own.median, own.median / solved.median
-    straight = float(is_straight(points, cells).mean())
+        rows = [
+            beside(kind, cuts // (4 if run.quick else 1), repeats) for kind, cuts in CUTS.items()
+        ]
     page.vanishes(
         "largest difference from scikit-fem's matrix, relative to its largest entry",
-        max(apart, *column(rows, "difference")),
+        max(found.apart, *column(rows, "difference")),
         within=1e-12,
         why="the same integrals by the same quadrature: round-off",
         source="scikit-fem, linear_elasticity on the same elements",
     )
     page.answer(
-        f"The stiffness of {n:,} unknowns of curved tetrahedra ({100 * straight:.0f} % of them "
-        f"straight) is assembled in {own.median:.2f} s, {ratio:.0f} times faster than by "
-        f"scikit-fem's generic form, and equal to it within {apart:.1e}.",
-        f"That is {100 * share:.0f} % of the {solved.median:.2f} s of the solve.",
+        f"The stiffness of {found.unknowns:,} unknowns of curved tetrahedra "
+        f"({100 * found.straight:.0f} % of them straight) is assembled in "
+        f"{found.own.median:.2f} s, {found.ratio:.0f} times faster than by scikit-fem's generic "
+        f"form, and equal to it within {found.apart:.1e}.",
+        f"That is {100 * found.share:.0f} % of the {found.solved.median:.2f} s of the solve.",
     )
+    show(page, found, rows, products, repeats)
+    page.text(
+        f"Compiling takes {in_words(first)} the first time that it is used on a machine, and is "
+        f"kept on disk: {in_words(later)} from then on, of which most is loading. Both beside the "
+        "import of the libraries."
+    )
+    for name, value in {
+        "unknowns": found.unknowns,
+        "ratio": found.ratio,
+        "own_seconds": found.own.seconds,
+        "generic_seconds": found.generic.seconds,
+        "reused_seconds": found.reused.seconds,
+        "solve_seconds": found.solved.seconds,
+        "straight_share": found.straight,
+        "compile_seconds": first and first.seconds,
+        "load_seconds": later and later.seconds,
+        "products": products,
+    }.items():
+        page.data(name, value)
+
+
+@dataclass(frozen=True)
+class Assembled:
+    """Stiffness of the shaft, with times of assembly and solution.
+
+    Attributes
+    ----------
+    K : sparse array
+        Ours.
+    unknowns : int
+        Its size.
+    straight, apart : float
+        Share of straight elements, and largest difference from the generic form, relative.
+    own, reused, generic, solved : Times
+        Assembled with and without the sparsity, generically, and solved for one load.
+    method : str
+        What solved it.
+    """
+
+    K: Any
+    unknowns: int
+    straight: float
+    apart: float
+    own: Times
+    reused: Times
+    generic: Times
+    solved: Times
+    method: str
+
+    @property
+    def ratio(self) -> float:
+        """Time of the generic form over ours."""
+        return self.generic.median / self.own.median
+
+    @property
+    def share(self) -> float:
+        """Time of assembly over that of the solve."""
+        return self.own.median / self.solved.median
+
+
+def assembled(run: Run, mesh: Mesh, repeats: int) -> Assembled:
+    """Assemble the stiffness of a shaft in each way, and solve it for one load."""
+    lame, points, cells = MATERIALS["steel"].lame, mesh.points, mesh.cells
+    with run.step("shaft of curved tetrahedra"):
+        K, own = timed_runs(partial(assemble, points, cells, lame), repeats)
+        pattern = sparsity(cells, len(points))
+        _, reused = timed_runs(partial(assemble, points, cells, lame, pattern=pattern), repeats)
+        theirs, generic = timed_runs(partial(generic_form, points, cells, lame), repeats)
+    with run.step("solve"):
+        solution, solved = timed_solution(mesh, K, repeats)
+    return Assembled(
+        K=K,
+        unknowns=points.size,
+        straight=float(is_straight(points, cells).mean()),
+        apart=difference(K, *theirs, points),
+        own=own,
+        reused=reused,
+        generic=generic,
+        solved=solved,
+        method=solution.diagnostics.method,
+    )
+
+
+def timed_solution(mesh: Mesh, K: Any, repeats: int) -> tuple[Solution, Times]:
+    """One load at the front of a shaft that is held at its rear."""
+    n = mesh.points.size
+    elimination = eliminate([fixed("rear", mesh.face_nodes("shaft.rear"), n)], n)
+    system = reduce(mesh.points, mesh.cells, K, elimination)
+    F = np.zeros((n, 1))
+    F[3 * mesh.face_nodes("shaft.front") + 2] = 1.0
+    return timed_runs(lambda: factorise(system).solve(F), repeats)
+
+
+def beside(n_nodes: int, cuts: int, repeats: int) -> Record:
+    """Times of one kind of element, and the difference of both matrices."""
+    lame, cube = MATERIALS["steel"].lame, box(n_nodes, cuts)
+    K, mine = timed_runs(partial(assemble, *cube, lame), repeats)
+    matched, other = timed_runs(partial(generic_form, *cube, lame), repeats)
+    return {
+        "element": element_kind(n_nodes).name,
+        "unknowns": f"{cube[0].size:,}",
+        **mine.columns("ours", "ms"),
+        **other.columns("scikit-fem", "ms"),
+        "ratio of medians": other.median / mine.median,
+        "difference": difference(K, *matched, cube[0]),
+    }
+
+
+def show(
+    page: Page, found: Assembled, rows: list[Record], products: list[Record], repeats: int
+) -> None:
+    """Show times of the shaft, goals, other elements, and products with several columns."""
+    times = {
+        "scikit-fem: basis and linear_elasticity": found.generic,
+        "ours, sparsity and values": found.own,
+        "ours, values with the sparsity kept": found.reused,
+        f"set-up and solve of one load by {found.method}": found.solved,
+    }
     page.section("Assembly")
     page.table(
-        f"Hollow shaft, curved ten-node tetrahedra, {n:,} unknowns, runs of each: {repeats}",
-        [
-            {"what": what, **times.columns()}
-            for what, times in (
-                ("scikit-fem: basis and linear_elasticity", generic),
-                ("ours, sparsity and values", own),
-                ("ours, values with the sparsity kept", reused),
-                (f"set-up and solve of one load by {solution.diagnostics.method}", solved),
-            )
-        ],
+        f"Hollow shaft, curved ten-node tetrahedra, {found.unknowns:,} unknowns, runs of each: "
+        f"{repeats}",
+        [{"what": what, **of.columns()} for what, of in times.items()],
     )
     page.table(
         "Goals of this project: compiled kernels for one form against a form of any kind, pass by "
         "pass over memory; and assembly is not what a user waits for",
         [
-            goal("scikit-fem's generic assembly over ours [x]", ratio, least=FASTER),
-            goal("assembly over set-up and solve of one load [-]", share, most=SHARE),
+            goal("scikit-fem's generic assembly over ours [x]", found.ratio, least=FASTER),
+            goal("assembly over set-up and solve of one load [-]", found.share, most=SHARE),
         ],
     )
     page.table(
@@ -156,24 +241,6 @@ def run(run: Run, page: Page) -> None:
         "takes longer than a whole one, so that the solver fills blocks up",
         products,
     )
-    page.text(
-        f"Compiling takes {in_words(first)} the first time that it is used on a machine, and is "
-        f"kept on disk: {in_words(later)} from then on, of which most is loading. Both beside the "
-        "import of the libraries."
-    )
-    for name, value in {
-        "unknowns": n,
-        "ratio": ratio,
-        "own_seconds": own.seconds,
-        "generic_seconds": generic.seconds,
-        "reused_seconds": reused.seconds,
-        "solve_seconds": solved.seconds,
-        "straight_share": straight,
-        "compile_seconds": first and first.seconds,
-        "load_seconds": later and later.seconds,
-        "products": products,
-    }.items():
-        page.data(name, value)
 
 
 def product_time(K: Any, columns: int, repeats: int) -> Record:

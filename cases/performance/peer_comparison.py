@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.performance.peer_goals import (
@@ -79,27 +80,14 @@ def run(run: Run, page: Page) -> None:
     has_ours = any(str(name).partition(".")[0] == OURS for name in settings["tools"])
     variants = parse([*([] if has_ours else [OURS]), *settings["tools"]])
     benchmarks = [BENCHMARKS[name]() for name in settings["problems"]]
-    found: list[list[Row]] = []
-    with scratch_folder() as name:
-        warm_up, problem_file = name / "warm_up.npz", name / "problem.npz"
+    with scratch_folder() as folder:
+        warm_up = folder / "warm_up.npz"
         with run.step("tools: a first small run"):
             shaft = problems.of_size(problems.hollow_shaft(), WARM_UP, settings["right_hand_sides"])
             write_problem(shaft, warm_up)
             first = first_runs(variants, warm_up, plan, run.report)
         there = [(v, first[v][1]) for v in variants if first[v][0].status != "missing"]
-        for benchmark in benchmarks:
-            rows: list[Row] = []
-            for size in settings["sizes"]:
-                with run.step("meshes"):
-                    problem = problems.of_size(benchmark, size, settings["right_hand_sides"])
-                    write_problem(problem, problem_file)
-                unknowns = problem.n_unknowns
-                del problem
-                with run.step(f"{benchmark.title}: {unknowns:,} unknowns"):
-                    rows += rounds.run_rounds(
-                        there, problem_file, warm_up, unknowns, plan, rows, run.report
-                    )
-            found.append(rows)
+        found = [on_meshes(run, b, there, warm_up, settings, plan) for b in benchmarks]
     references = [
         {n: rounds.judge_errors(of_mesh(rows, n)) for n in meshes_of(rows)} for rows in found
     ]
@@ -134,21 +122,50 @@ def run(run: Run, page: Page) -> None:
     for text in [*method(plan), *of_motions(motions)]:
         page.text(text)
     for key, rows in zip(settings["problems"], found, strict=True):
-        page.data(
-            key,
-            [
-                {
-                    "tool": str(r.variant),
-                    "unknowns": r.unknowns,
-                    "seconds": [f["seconds"] for f in r.found],
-                    "bytes": [f["peak_bytes"] for f in r.found],
-                    "stiffness": r.stiffness,
-                    "error": r.error,
-                    "trouble": r.trouble,
-                }
-                for r in rows
-            ],
-        )
+        keep(page, key, rows)
+
+
+def on_meshes(
+    run: Run,
+    benchmark: Benchmark,
+    there: Sequence[tuple[Variant, str]],
+    warm_up: Path,
+    settings: dict[str, Any],
+    plan: Plan,
+) -> list[Row]:
+    """Run the installed tools on every mesh of a benchmark."""
+    rows: list[Row] = []
+    problem_file = warm_up.with_name("problem.npz")
+    for size in settings["sizes"]:
+        with run.step("meshes"):
+            problem = problems.of_size(benchmark, size, settings["right_hand_sides"])
+            write_problem(problem, problem_file)
+        unknowns = problem.n_unknowns
+        del problem
+        with run.step(f"{benchmark.title}: {unknowns:,} unknowns"):
+            rows += rounds.run_rounds(
+                there, problem_file, warm_up, unknowns, plan, rows, run.report
+            )
+    return rows
+
+
+def keep(page: Page, key: str, rows: Sequence[Row]) -> None:
+    """Keep the numbers of one benchmark for other programs."""
+    page.data(
+        key,
+        [
+            {
+                "tool": str(r.variant),
+                "unknowns": r.unknowns,
+                "seconds": [f["seconds"] for f in r.found],
+                "bytes": [f["peak_bytes"] for f in r.found],
+                "stiffness": r.stiffness,
+                "error": r.error,
+                "trouble": r.trouble,
+            }
+            for r in rows
+        ],
+    )
 
 
 def first_runs(

@@ -118,19 +118,13 @@ def run(run: Run, page: Page) -> None:
     most = run.count("processes", cores())
     counts = [2**k for k in range(most.bit_length()) if 2**k <= most]
     repeats = 1 if run.quick else REPEATS
-    strong: list[Record] = []
-    apart = 0.0
     with run.step("one size"):
         system, F = bar(size)
         halo: list[Record] = [
             {"parts": count, "elements integrated twice [%]": 100 * cut(system, count).halo}
             for count in PARTS
         ]
-        exact = solve(system, F, tolerance=TOLERANCE).x
-        for count in counts:
-            row, x = measured(system, F, count, repeats)
-            strong.append(row)
-            apart = max(apart, float(np.abs(x - exact).max() / np.abs(exact).max()))
+        strong, apart = one_size(system, F, counts, repeats)
     with run.step("sizes that grow with the processes"):
         weak = [measured(*bar(size / most * count), count, repeats)[0] for count in counts[:-1]]
         weak.append(strong[-1])
@@ -151,8 +145,56 @@ def run(run: Run, page: Page) -> None:
         f"one, with {last[ITERATIONS]} iterations against {strong[0][ITERATIONS]}, and each takes "
         f"{last[MEMORY]:.0f} MB where one alone takes {strong[0][MEMORY]:.0f}."
     )
-    page.section("Measured")
     shown = f"median of {repeats} by time" if repeats > 1 else "one run"
+    show(page, strong, weak, halo, shown)
+    if run.quick:
+        page.answer("A quick run is too small to extrapolate from.")
+        return
+    model = Model.of([*smaller, last], [*weak[:-1], *strong[:-1]], small)
+    extrapolate(page, model, [*smaller, last], f"{most} processes, {shown}")
+
+
+def one_size(
+    system: ElementSystem, F: Floats, counts: Sequence[int], repeats: int
+) -> tuple[list[Record], float]:
+    """Times of one system over the number of processes, and the difference from our solution."""
+    exact = solve(system, F, tolerance=TOLERANCE).x
+    rows, apart = [], 0.0
+    for count in counts:
+        row, x = measured(system, F, count, repeats)
+        rows.append(row)
+        apart = max(apart, float(np.abs(x - exact).max() / np.abs(exact).max()))
+    return rows, apart
+
+
+def extrapolate(page: Page, model: Model, fitted: list[Record], measured_on: str) -> None:
+    """Show the cost of 1e9 unknowns by the model, and the points that it is fitted to."""
+    predicted = [model.row(TARGET, count) for count in MANY]
+    best = min(predicted, key=lambda row: float(row["time [s]"]))
+    page.answer(
+        f"By the model below 1e9 unknowns take {best['time [s]']:.0f} s (95 %: "
+        f"{best['at least [s]']:.0f} to {best['at most [s]']:.0f} s) on {best[PROCESSES]:,} "
+        f"processes such as these, and {best['memory [TB]']:.2g} TB; cutting up the mesh and "
+        f"handing it over, which one process does, {best[HANDING]:.0f} s before.",
+    )
+    page.section("Extrapolated")
+    page.table("1e9 unknowns, by the model", predicted)
+    page.table(
+        f"What the model is fitted to, on {measured_on}",
+        fitted,
+        [SIZE, EACH, ITERATIONS, ASSEMBLY, SET_UP, ITERATION, MEMORY, HANDING],
+    )
+    page.table("Laws, and how far the points are from them", model.laws())
+    page.text(model.words())
+    page.data("predicted", predicted)
+    page.data("laws", model.laws())
+
+
+def show(
+    page: Page, strong: list[Record], weak: list[Record], halo: list[Record], shown: str
+) -> None:
+    """Show both sweeps, memory, and the elements that are integrated twice."""
+    page.section("Measured")
     page.table(f"One size (strong), {shown}", strong)
     page.table(f"So many unknowns a process (weak), {shown}", weak)
     page.data("strong", strong)
@@ -167,35 +209,12 @@ def run(run: Run, page: Page) -> None:
         axis="memory [MB]",
     )
     page.sweep(
-        f"Elements at borders, integrated by two processes, of {system.n_free:,} unknowns",
+        f"Elements at borders, integrated by two processes, of {strong[-1][SIZE]:,} unknowns",
         halo,
         "parts",
         "elements integrated twice [%]",
         log="x",
     )
-    if run.quick:
-        page.answer("A quick run is too small to extrapolate from.")
-        return
-    model = Model.of([*smaller, last], [*weak[:-1], *strong[:-1]], small)
-    predicted = [model.row(TARGET, count) for count in MANY]
-    best = min(predicted, key=lambda row: float(row["time [s]"]))
-    page.answer(
-        f"By the model below 1e9 unknowns take {best['time [s]']:.0f} s (95 %: "
-        f"{best['at least [s]']:.0f} to {best['at most [s]']:.0f} s) on {best[PROCESSES]:,} "
-        f"processes such as these, and {best['memory [TB]']:.2g} TB; cutting up the mesh and "
-        f"handing it over, which one process does, {best[HANDING]:.0f} s before.",
-    )
-    page.section("Extrapolated")
-    page.table("1e9 unknowns, by the model", predicted)
-    page.table(
-        f"What the model is fitted to, on {most} processes, {shown}",
-        [*smaller, last],
-        [SIZE, EACH, ITERATIONS, ASSEMBLY, SET_UP, ITERATION, MEMORY, HANDING],
-    )
-    page.table("Laws, and how far the points are from them", model.laws())
-    page.text(model.words())
-    page.data("predicted", predicted)
-    page.data("laws", model.laws())
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ from fe_drivetrain.elasticity.solve import (
     reduce,
 )
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
-from fe_drivetrain.report import Chart, chart, trace
+from fe_drivetrain.report import Chart, chart, marked, trace
 from fe_drivetrain.report.suite import Page, Record, Run, column, goal, grouped
 from fe_drivetrain.shafts.response import build_model, mesh_scene
 
@@ -221,45 +221,16 @@ def installed() -> list[str]:
 
 def compare_choices(page: Page, problems: list[Problem], timings: list[dict[str, Timing]]) -> float:
     """What every solver took; how much longer than the best one the choice of ``auto`` did."""
-    rows: list[Record] = []
-    choices: list[Record] = []
-    for problem, timing in zip(problems, timings, strict=True):
-        system = problem.system
-        label = {"system": problem.name, "unknowns": f"{system.n_free:,}"}
-        for method in installed():
-            t = timing.get(method)
-            rows.append(
-                {
-                    **label,
-                    "solver": method,
-                    "set-up [s]": t and t.setup,
-                    "1 [s]": t and t.one,
-                    f"{MANY} [s]": t and t.many,
-                    f"set-up and {MANY}, least [s]": t and t.runs.least,
-                    "median [s]": t and t.runs.median,
-                    "most [s]": t and t.runs.most,
-                    "memory [MiB]": t and t.bytes / 2**20,
-                    "iterations": (t and t.iterations) or None,
-                    "n": system.n_free,
-                    "in all [s]": t and t.total(MANY),
-                }
-            )
-        for n_rhs in (1, MANY):
-            predicted = next(c for c in cost_model.predict(system, n_rhs) if c.method in timing)
-            times = {m: t.total(n_rhs) for m, t in timing.items()}
-            best = min(times, key=times.__getitem__)
-            choices.append(
-                {
-                    **label,
-                    "right-hand sides": n_rhs,
-                    "chosen": predicted.method,
-                    "predicted [s]": predicted.seconds,
-                    "measured [s]": times[predicted.method],
-                    "best": best,
-                    "best [s]": times[best],
-                    "times the best": times[predicted.method] / times[best],
-                }
-            )
+    rows = [
+        side_by_side(problem, method, timing.get(method))
+        for problem, timing in zip(problems, timings, strict=True)
+        for method in installed()
+    ]
+    choices = [
+        choice(problem, timing, n_rhs)
+        for problem, timing in zip(problems, timings, strict=True)
+        for n_rhs in (1, MANY)
+    ]
     worst = max(column(choices, "times the best"))
     page.answer(
         f"The solver that auto chose was at worst {worst:.2f} times as slow as the best one, over "
@@ -294,6 +265,47 @@ def compare_choices(page: Page, problems: list[Problem], timings: list[dict[str,
         ],
     )
     return float(worst)
+
+
+def labels(problem: Problem) -> Record:
+    """Name and size of a system."""
+    return {"system": problem.name, "unknowns": f"{problem.system.n_free:,}"}
+
+
+def side_by_side(problem: Problem, method: str, t: Timing | None) -> Record:
+    """Costs of one solver for a system; empty where it was not tried."""
+    return {
+        **labels(problem),
+        "solver": method,
+        "set-up [s]": t and t.setup,
+        "1 [s]": t and t.one,
+        f"{MANY} [s]": t and t.many,
+        f"set-up and {MANY}, least [s]": t and t.runs.least,
+        "median [s]": t and t.runs.median,
+        "most [s]": t and t.runs.most,
+        "memory [MiB]": t and t.bytes / 2**20,
+        "iterations": (t and t.iterations) or None,
+        "n": problem.system.n_free,
+        "in all [s]": t and t.total(MANY),
+    }
+
+
+def choice(problem: Problem, timing: dict[str, Timing], n_rhs: int) -> Record:
+    """The choice of auto for `n_rhs` right-hand sides, beside the best of the solvers tried."""
+    costs = cost_model.predict(problem.system, n_rhs)
+    predicted = next(c for c in costs if c.method in timing)
+    times = {m: t.total(n_rhs) for m, t in timing.items()}
+    best = min(times, key=times.__getitem__)
+    return {
+        **labels(problem),
+        "right-hand sides": n_rhs,
+        "chosen": predicted.method,
+        "predicted [s]": predicted.seconds,
+        "measured [s]": times[predicted.method],
+        "best": best,
+        "best [s]": times[best],
+        "times the best": times[predicted.method] / times[best],
+    }
 
 
 def constants(problems: list[Problem], timings: list[dict[str, Timing]]) -> list[Record]:
@@ -433,7 +445,7 @@ def check_stop(page: Page, name: str, problem: Problem) -> Record:
     page.chart(
         f"{name}: worst of six loads",
         [
-            trace(label, iterations, values, mode="lines+markers")
+            marked(label, iterations, values)
             for label, values in (
                 ("relative residual", residuals),
                 ("energy error, estimated", estimated),

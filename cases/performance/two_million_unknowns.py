@@ -21,7 +21,7 @@ from fe_drivetrain.cases.performance.peers import (
 )
 from fe_drivetrain.common import cores, scratch_folder
 from fe_drivetrain.comparison import PowerLaw, power_law
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked
 from fe_drivetrain.report.suite import Page, Record, Run
 
 BODIES, QUICK_BODIES = ["shaft", "assembly", "tube", "slender"], ["shaft"]
@@ -234,11 +234,10 @@ def show(page: Page, done: dict[str, list[Row]]) -> None:
         page.chart(
             title,
             [
-                trace(
+                marked(
                     BENCHMARKS[name]().title,
                     [row.unknowns for row in rows],
                     [getattr(row, value) / scale for row in rows],
-                    mode="lines+markers",
                 )
                 for name, rows in done.items()
             ],

@@ -248,31 +248,9 @@ def show_settings(page: Page, study: Study, settings: Sequence[Setting]) -> None
 
 def show_growth(page: Page, grown: Sequence[Grown], curved: Sequence[Outcome]) -> None:
     """Time and memory against the number of unknowns, and their exponents."""
-    rows = [
-        {
-            "unknowns": g.unknowns,
-            "solver": g.used,
-            "runs": min(len(times.seconds) for times in g.times.values()),
-            **{f"{step} [s]": g.times[step].median for step in STEPS},
-            "in all, least [s]": sum(times.least for times in g.times.values()),
-            "in all [s]": g.total,
-            "in all, most [s]": sum(times.most for times in g.times.values()),
-            "us an unknown": 1e6 * g.total / g.unknowns,
-            "peak memory [GiB]": g.peak_bytes / 2**30,
-        }
-        for g in grown
-    ]
+    rows = [costs(g) for g in grown]
     unknowns = column(rows, "unknowns")
     timed = [f"{step} [s]" for step in (*STEPS, "in all")]
-    exponents: list[list[Any]] = [
-        ["auto, own processes", name, unknowns, column(rows, name)] for name in timed
-    ]
-    for solver in dict.fromkeys(o.solver for o in curved if o.solve.method != "auto"):
-        chosen = [o for o in curved if o.solver == solver]
-        n = [o.unknowns for o in chosen]
-        seconds = [o.seconds["set-up"] + o.seconds["solve"] for o in chosen]
-        exponents.append([solver, "set-up and solve", n, seconds])
-        exponents.append([solver, "memory", n, [o.bytes for o in chosen]])
     page.section("Growth with the number of unknowns")
     page.chart(
         "Stepped shaft in curved P2, solver auto, each size in a process of its own: wall time [s] "
@@ -300,7 +278,7 @@ def show_growth(page: Page, grown: Sequence[Grown], curved: Sequence[Outcome]) -
     )
     fitted = [
         [solver, cost, growth_exponent(n, values), min(n, default=0), max(n, default=0)]
-        for solver, cost, n, values in exponents
+        for solver, cost, n, values in cost_curves(rows, curved)
     ]
     page.table(
         "Exponents of a power of n that costs follow, fitted in logarithms",
@@ -311,3 +289,34 @@ def show_growth(page: Page, grown: Sequence[Grown], curved: Sequence[Outcome]) -
         "growth",
         [{"unknowns": g.unknowns, "seconds": g.total, "peak_bytes": g.peak_bytes} for g in grown],
     )
+
+
+def costs(g: Grown) -> Record:
+    """Costs of one size, step by step."""
+    return {
+        "unknowns": g.unknowns,
+        "solver": g.used,
+        "runs": min(len(times.seconds) for times in g.times.values()),
+        **{f"{step} [s]": g.times[step].median for step in STEPS},
+        "in all, least [s]": sum(times.least for times in g.times.values()),
+        "in all [s]": g.total,
+        "in all, most [s]": sum(times.most for times in g.times.values()),
+        "us an unknown": 1e6 * g.total / g.unknowns,
+        "peak memory [GiB]": g.peak_bytes / 2**30,
+    }
+
+
+def cost_curves(rows: Sequence[Record], curved: Sequence[Outcome]) -> list[list[Any]]:
+    """Costs over the number of unknowns: steps of whole runs, time and memory of each solver."""
+    unknowns = column(rows, "unknowns")
+    timed = [f"{step} [s]" for step in (*STEPS, "in all")]
+    exponents: list[list[Any]] = [
+        ["auto, own processes", name, unknowns, column(rows, name)] for name in timed
+    ]
+    for solver in dict.fromkeys(o.solver for o in curved if o.solve.method != "auto"):
+        chosen = [o for o in curved if o.solver == solver]
+        n = [o.unknowns for o in chosen]
+        seconds = [o.seconds["set-up"] + o.seconds["solve"] for o in chosen]
+        exponents.append([solver, "set-up and solve", n, seconds])
+        exponents.append([solver, "memory", n, [o.bytes for o in chosen]])
+    return exponents

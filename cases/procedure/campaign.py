@@ -63,6 +63,27 @@ def run(run: Run, page: Page) -> None:
         computed = shaft_torque(simple, torque, "drivetrain")[RECORDED]
         write_channels(run.folder / "computed.csv", STEP, {"LSS torque [N m]": computed})
     loads(page, computed)
+    check_mean(page, recorded, torque)
+    check_stiffness(page, recorded, truth, gain)
+    page.answer(
+        f"Scaling by power leaves a gain of {gain:.4f} in the torque: the offset of "
+        f"{GAUGE.offset:g} N m has become an error of gain, and the stiffness found has it, too.",
+        f"{MEASURED}, wind included, and computed.csv are what a campaign would hand on.",
+    )
+    show_torque(page, recorded["LSS torque [N m]"], computed)
+    page.assume("damping of the main shaft", DAMPING, "N m s/rad", "the table has none")
+    page.assume("efficiency", EFFICIENCY, "", "of a virtual measurement of power")
+    page.assume("wind", f"{WINDOWS} windows each of {WINDS} m/s", "", "of a virtual campaign")
+    page.assume(
+        "torque of the rotor",
+        f"cube of the wind, rated at {RATED_WIND:g} m/s, and a band up to {BAND[1]:g} Hz",
+        "",
+        "of a virtual campaign, at a constant speed",
+    )
+
+
+def check_mean(page: Page, recorded: dict[str, Floats], torque: Floats) -> None:
+    """Scaling by power gives the mean torque."""
     gauge = recorded["LSS torque [N m]"]
     page.equals(
         "mean torque, scaled to electrical power [kN m]",
@@ -74,8 +95,12 @@ def run(run: Run, page: Page) -> None:
         measure="reaction",
         basis="self-consistency",
     )
+
+
+def check_stiffness(page: Page, recorded: dict[str, Floats], truth: Torsional, gain: float) -> None:
+    """The main shaft's stiffness is found again, but for the gain that is left."""
     twist = recorded["rotor angle [rad]"] - recorded["gearbox angle [rad]"]
-    fit = spectral_fit(gauge, twist, STEP, USED)
+    fit = spectral_fit(recorded["LSS torque [N m]"], twist, STEP, USED)
     stiffness = next(e.stiffness for e in truth.elements if e.name == SHAFT)
     page.equals(
         "stiffness of the main shaft, identified, over gain and truth",
@@ -88,11 +113,10 @@ def run(run: Run, page: Page) -> None:
         measure="stiffness",
         basis="self-consistency",
     )
-    page.answer(
-        f"Scaling by power leaves a gain of {gain:.4f} in the torque: the offset of "
-        f"{GAUGE.offset:g} N m has become an error of gain, and the stiffness found has it, too.",
-        f"{MEASURED}, wind included, and computed.csv are what a campaign would hand on.",
-    )
+
+
+def show_torque(page: Page, gauge: Floats, computed: Floats) -> None:
+    """Torque as measured and as computed, in time and in statistics."""
     page.section("Torque of the main shaft")
     shown = slice(0, round(20.0 / STEP))
     time = np.arange(len(gauge)) * STEP
@@ -120,15 +144,6 @@ def run(run: Run, page: Page) -> None:
     ]
     page.table("Statistics", rows)
     page.data("statistics", rows)
-    page.assume("damping of the main shaft", DAMPING, "N m s/rad", "the table has none")
-    page.assume("efficiency", EFFICIENCY, "", "of a virtual measurement of power")
-    page.assume("wind", f"{WINDOWS} windows each of {WINDS} m/s", "", "of a virtual campaign")
-    page.assume(
-        "torque of the rotor",
-        f"cube of the wind, rated at {RATED_WIND:g} m/s, and a band up to {BAND[1]:g} Hz",
-        "",
-        "of a virtual campaign, at a constant speed",
-    )
 
 
 def loads(page: Page, torque: Floats) -> None:

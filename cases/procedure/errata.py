@@ -26,22 +26,20 @@ from fe_drivetrain.cases.procedure.slewing_drives import (
     MOMENT,
     PITCH,
     RADIAL,
-    stop_motion,
+    rotor_in_yaw,
+    stopped,
 )
 from fe_drivetrain.cases.references import published_campaigns, published_drivetrains
-from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import round_off
 from fe_drivetrain.dynamics.torsion import GENERATOR as GENERATOR_NAME
 from fe_drivetrain.dynamics.torsion import ROTOR, gear_masses, static_stiffness
 from fe_drivetrain.procedure import (
     Solutions,
-    drive_torque,
+    Twist,
     friction_torque,
-    gyroscopic_torque,
     least_squares,
     method_b,
     method_c,
-    printed_drive_torque,
     protest_catalogue,
     ratio_by_ranges,
     shear_between,
@@ -53,9 +51,14 @@ INCONSISTENT, GARBLED, OURS = "inconsistent", "garbled in the text at hand", "op
 
 
 def row(
-    where: str, kind: str, printed: str, right: str, quantity: str, values: tuple[float, float]
+    where: str,
+    kind: str,
+    printed: str,
+    right: str,
+    quantity: str = "none: words",
+    values: tuple[float, float] | tuple[None, None] = (None, None),
 ) -> Record:
-    """A line of the table; values as printed and right."""
+    """A line of the table; values as printed and right, none where only words change."""
     as_printed, as_right = values
     return {
         "where": where,
@@ -65,21 +68,7 @@ def row(
         "quantity": quantity,
         "as printed": as_printed,
         "put right": as_right,
-        "printed / right": as_printed / as_right if as_right else None,
-    }
-
-
-def text_only(where: str, kind: str, printed: str, right: str) -> Record:
-    """A line that changes a name or a reference, and no number."""
-    return {
-        "where": where,
-        "what it is": kind,
-        "printed": printed,
-        "right": right,
-        "quantity": "none: words",
-        "as printed": None,
-        "put right": None,
-        "printed / right": None,
+        "printed / right": as_printed / as_right if as_printed is not None and as_right else None,
     }
 
 
@@ -110,15 +99,13 @@ def load_cases() -> list[Record]:
             f"and shears it by {shear:.2f} m/s)",
             (gust, 0.0),
         ),
-        text_only(
+        row(
             "chapter 7, 'DLC 1.0 to DLC 1.13'",
             INCONSISTENT,
             "numbers without a standard",
             "GL 2003 or 2010; IEC 61400-1 edition 3 ends at 1.5",
         ),
-        text_only(
-            "section 2.5", INCONSISTENT, "see section 5.1", "section 4.2 has these load cases"
-        ),
+        row("section 2.5", INCONSISTENT, "see section 5.1", "section 4.2 has these load cases"),
     ]
 
 
@@ -191,17 +178,13 @@ def identification(page: Page) -> list[Record]:
         simulated(round(190.0 / STEP), band, braking)
         for band, braking in ((NARROW, 0.0), (BROAD, BRAKING))
     )
-    inertia, damping, stiff = TRUTH
+    return [*equation_1(page, near), *equation_5(page, near), *by_ranges(broad["reduced"])]
+
+
+def equation_1(page: Page, near: dict[str, Twist]) -> list[Record]:
+    """Inertia from the torques of rotor and shaft, near the resonance."""
+    inertia = TRUTH[0]
     driven = least_squares(near["aerodynamic"]).values[0]
-    ratio = float(np.median(ratio_by_ranges(near["shaft"])))
-    of = broad["reduced"]
-    ranged, rated = method_b(of, TURN), method_b(of, TURN, stiff)
-    ranges, sampled = (method_c(of, TURN, stiff, sampled=s) for s in (False, True))
-
-    def spread(found: Solutions) -> float:
-        low, high = np.nanpercentile(found.damping, [25.0, 75.0])
-        return float((high - low) / damping)
-
     page.equals(
         "Eq 1 with the aerodynamic torque: inertia over J*",
         float(driven / inertia),
@@ -209,14 +192,6 @@ def identification(page: Page) -> list[Record]:
         **round_off(1e4, "least squares over all samples, whose columns are far from parallel"),
         source="J_r / J*",
         measure="identity",
-    )
-    page.equals(
-        "Eq 5: I / D [s]",
-        ratio,
-        1.0 / OMEGA,
-        within=0.02,
-        why="the band is 6 % wide to either side",
-        source="1 / w of one frequency, whatever I and D",
     )
     return [
         row(
@@ -235,12 +210,28 @@ def identification(page: Page) -> list[Record]:
             "inertia over J*, which Eq 1 asks for, and which a fit finds",
             (1.0, float(least_squares(near["shaft"]).values[0] / inertia)),
         ),
-        text_only(
+        row(
             "section 4.6.2.6",
             INCONSISTENT,
             "'longer than the drive train natural frequency'",
             f"than its period: 5 s are {5.0 * OMEGA / (2.0 * np.pi):.1f} of them",
         ),
+    ]
+
+
+def equation_5(page: Page, near: dict[str, Twist]) -> list[Record]:
+    """Ratio of inertia to damping from ranges, near the resonance."""
+    inertia, damping, _ = TRUTH
+    ratio = float(np.median(ratio_by_ranges(near["shaft"])))
+    page.equals(
+        "Eq 5: I / D [s]",
+        ratio,
+        1.0 / OMEGA,
+        within=0.02,
+        why="the band is 6 % wide to either side",
+        source="1 / w of one frequency, whatever I and D",
+    )
+    return [
         row(
             "Eq 5, sign",
             INCONSISTENT,
@@ -257,6 +248,20 @@ def identification(page: Page) -> list[Record]:
             "I / D [s]",
             (ratio, float(inertia / damping)),
         ),
+    ]
+
+
+def by_ranges(twist: Twist) -> list[Record]:
+    """Scatter of dampings by methods B and C, broadband."""
+    _, damping, stiff = TRUTH
+    ranged, rated = method_b(twist, TURN), method_b(twist, TURN, stiff)
+    ranges, sampled = (method_c(twist, TURN, stiff, sampled=s) for s in (False, True))
+
+    def spread(found: Solutions) -> float:
+        low, high = np.nanpercentile(found.damping, [25.0, 75.0])
+        return float((high - low) / damping)
+
+    return [
         row(
             "Eq 7 to 11, method B",
             INCONSISTENT,
@@ -286,24 +291,27 @@ def identification(page: Page) -> list[Record]:
 
 def pitch(page: Page) -> list[Record]:
     """Torque, inertia and friction of a pitch drive in a shutdown."""
-    time, angle, speed, acceleration = stop_motion()
-    load: Floats = 8e3 + 3e3 * np.sin(1.8 * time)
-    loads = MOMENT * (0.25 + 0.75 * np.cos(angle)), AXIAL, RADIAL
-    resists = friction_torque(*loads, DIAMETER)
-    right = drive_torque(PITCH, load, resists, speed, acceleration)
-    printed = printed_drive_torque(PITCH, load, resists, speed, acceleration)
-    by_speed = (load + np.sign(speed) * resists + PITCH.inertia * speed) / PITCH.ratio
-    summed = 0.003 * (4.4 * MOMENT + AXIAL * DIAMETER + 2.2 * RADIAL + DIAMETER * 1.73)
-    whole = float(friction_torque(MOMENT, AXIAL, RADIAL, DIAMETER))
-    page.equals(
-        "friction of 3 MN m, 200 kN, 100 kN at 2 m [kN m]",
-        whole / 1e3,
-        43.0836,
-        **round_off(10, "three products and their sum"),
-        source="0.003 (4.4 x 3000 + 200 x 2 + 2.2 x 100 x 2 x 1.73)",
-        measure="reaction",
-        basis="self-consistency",
-    )
+    return [
+        *pitch_torque(),
+        pitch_friction(page),
+        row("section 5.2", INCONSISTENT, "torsion M_Bx in the text, M_ZB in Eq 5.1", "the same"),
+        row(
+            "section 5.4.3.2",
+            INCONSISTENT,
+            "three variations of shape announced",
+            "four listed",
+            "shapes",
+            (3.0, 4.0),
+        ),
+    ]
+
+
+def pitch_torque() -> list[Record]:
+    """Torque and inertia of a pitch drive in a shutdown."""
+    stop = stopped()
+    held = stop.load + np.sign(stop.speed) * stop.friction
+    by_speed = (held + PITCH.inertia * stop.speed) / PITCH.ratio
+    right, printed = (float(np.abs(torque).max()) for torque in (stop.right, stop.printed))
     return [
         row(
             "Eq 5.1, inertia",
@@ -319,7 +327,7 @@ def pitch(page: Page) -> list[Record]:
             "the same",
             "the same",
             "largest torque of the motor [N m]",
-            (float(np.abs(printed).max()), float(np.abs(right).max())),
+            (printed, right),
         ),
         row(
             "Fig. 5-6, inertia",
@@ -327,37 +335,60 @@ def pitch(page: Page) -> list[Record]:
             "speed times inertia",
             "acceleration times inertia",
             "largest torque of the motor [N m], the units left aside",
-            (float(np.abs(by_speed).max()), float(np.abs(right).max())),
-        ),
-        row(
-            "Fig. 5-6, friction",
-            GARBLED,
-            "2.2 F_r + D 1.73",
-            "2.2 F_r D 1.73",
-            "friction of 3 MN m, 200 kN, 100 kN at 2 m [kN m]",
-            (summed / 1e3, whole / 1e3),
-        ),
-        text_only(
-            "section 5.2", INCONSISTENT, "torsion M_Bx in the text, M_ZB in Eq 5.1", "the same"
-        ),
-        row(
-            "section 5.4.3.2",
-            INCONSISTENT,
-            "three variations of shape announced",
-            "four listed",
-            "shapes",
-            (3.0, 4.0),
+            (float(np.abs(by_speed).max()), right),
         ),
     ]
 
 
+def pitch_friction(page: Page) -> Record:
+    """Friction of a pitch bearing by Fig. 5-6."""
+    summed = 0.003 * (4.4 * MOMENT + AXIAL * DIAMETER + 2.2 * RADIAL + DIAMETER * 1.73)
+    whole = float(friction_torque(MOMENT, AXIAL, RADIAL, DIAMETER))
+    page.equals(
+        "friction of 3 MN m, 200 kN, 100 kN at 2 m [kN m]",
+        whole / 1e3,
+        43.0836,
+        **round_off(10, "three products and their sum"),
+        source="0.003 (4.4 x 3000 + 200 x 2 + 2.2 x 100 x 2 x 1.73)",
+        measure="reaction",
+        basis="self-consistency",
+    )
+    return row(
+        "Fig. 5-6, friction",
+        GARBLED,
+        "2.2 F_r + D 1.73",
+        "2.2 F_r D 1.73",
+        "friction of 3 MN m, 200 kN, 100 kN at 2 m [kN m]",
+        (summed / 1e3, whole / 1e3),
+    )
+
+
 def yaw(page: Page) -> list[Record]:
     """Tower shear, gyroscopic torque, references."""
+    return [
+        tower_shear(page),
+        gyroscopic(page),
+        row(
+            "section 7.2.2.1",
+            INCONSISTENT,
+            "friction of the yaw bearing: see 7.1.1.1",
+            "7.2.1.1; 7.1.1.1 is the blade's",
+        ),
+        row("section 7.2.2.2", INCONSISTENT, "transients: see 7.1.2.1", "7.2.2.1 has transients"),
+        row("chapter 7", INCONSISTENT, "sections A2.1, B1.1, B2.1", "7.1.2.1, 7.2.1.1, 7.2.2.1"),
+        row(
+            "section 4.6.2.6, load durations before and after",
+            OURS,
+            "does not say which curve has more time above rated",
+            "nothing can be read from it",
+        ),
+    ]
+
+
+def tower_shear(page: Page) -> Record:
+    """Shear at the tower's top, with wind on the tower."""
     force, q = 60e3, 300.0
     found = float(shear_between(0.0, force * BRIDGES + 0.5 * q * BRIDGES**2, BRIDGES)) / force
-    spin = 2.0 * np.array([np.cos(0.09), 0.0, np.sin(0.09)])
-    turning = np.array([0.0, 0.0, np.radians(5.0) / 12.0])
-    torque = gyroscopic_torque(4e6, spin, turning) / 1e3
     page.equals(
         "shear with wind on the tower, beyond the force, over it",
         found - 1.0,
@@ -368,6 +399,19 @@ def yaw(page: Page) -> list[Record]:
         source="q L / 2",
         measure="reaction",
     )
+    return row(
+        "section 6.4, shear at the tower's top",
+        INCONSISTENT,
+        "9 % below the measured force for want of wind on the tower",
+        "q L / 2 above it with wind",
+        f"estimate over the force, {q:g} N/m on 60 kN",
+        (1.0 + DEFICIT, found),
+    )
+
+
+def gyroscopic(page: Page) -> Record:
+    """Gyroscopic torque of a rotor that yaws."""
+    torque = rotor_in_yaw() / 1e3
     page.vanishes(
         "gyroscopic torque about the tower [kN m]",
         float(torque[2]),
@@ -376,42 +420,14 @@ def yaw(page: Page) -> list[Record]:
         ),
         source="H x turning is across both",
     )
-    return [
-        row(
-            "section 6.4, shear at the tower's top",
-            INCONSISTENT,
-            "9 % below the measured force for want of wind on the tower",
-            "q L / 2 above it with wind",
-            f"estimate over the force, {q:g} N/m on 60 kN",
-            (1.0 + DEFICIT, found),
-        ),
-        row(
-            "section 7.2.2.1",
-            INCONSISTENT,
-            "gyroscopic torque around the tower's axis",
-            "across it",
-            "of 4e6 kg m^2 at 2 rad/s, yawing .42 deg/s: its size, and that about the tower [kN m]",
-            (float(np.linalg.norm(torque)), float(torque[2])),
-        ),
-        text_only(
-            "section 7.2.2.1",
-            INCONSISTENT,
-            "friction of the yaw bearing: see 7.1.1.1",
-            "7.2.1.1; 7.1.1.1 is the blade's",
-        ),
-        text_only(
-            "section 7.2.2.2", INCONSISTENT, "transients: see 7.1.2.1", "7.2.2.1 has transients"
-        ),
-        text_only(
-            "chapter 7", INCONSISTENT, "sections A2.1, B1.1, B2.1", "7.1.2.1, 7.2.1.1, 7.2.2.1"
-        ),
-        text_only(
-            "section 4.6.2.6, load durations before and after",
-            OURS,
-            "does not say which curve has more time above rated",
-            "nothing can be read from it",
-        ),
-    ]
+    return row(
+        "section 7.2.2.1",
+        INCONSISTENT,
+        "gyroscopic torque around the tower's axis",
+        "across it",
+        "of 4e6 kg m^2 at 2 rad/s, yawing .42 deg/s: its size, and that about the tower [kN m]",
+        (float(np.linalg.norm(torque)), float(torque[2])),
+    )
 
 
 def derived() -> list[Record]:

@@ -27,6 +27,8 @@ from fe_drivetrain.dynamics.torsion import (
 from fe_drivetrain.procedure import (
     Dip,
     Excitation,
+    Meeting,
+    Misalignment,
     TorqueTable,
     analysed,
     driven_motions,
@@ -61,6 +63,8 @@ SHAPES = {
         (0.2, 0.21, 0.35, 0.36, 0.6, 0.61, 0.75, 0.76), (1.0, 0.2, 0.2, 1.0, 1.0, 0.2, 0.2, 1.0)
     ),
 }
+#: Name, station, directions and their shares, stiffness [N/m].
+Support = tuple[str, int, dict[int, float], float]
 LARGEST, LEAST = "largest torque over that before", "least torque over that before"
 
 
@@ -99,6 +103,18 @@ def resonance(page: Page) -> None:
         Excitation("controller", 0.0, (GENERATOR,), fixed=CONTROLLER),
     )
     found = resonances(register, modes, (SPEEDS[0] * RPM, SPEEDS[1] * RPM))
+    by_name = {e.name: e for e in register}
+    page.vanishes(
+        "frequencies of excitations at their crossings, largest relative error",
+        max(
+            abs(by_name[m.excitation].frequency(m.crossing) / m.frequency - 1.0)
+            for m in found
+            if np.isfinite(m.crossing)
+        ),
+        **round_off(10, "a frequency divided by its order, and multiplied again"),
+        source="n = 60 f / order",
+        basis="self-consistency",
+    )
     rows: list[Record] = [
         {
             "excitation": m.excitation,
@@ -112,25 +128,24 @@ def resonance(page: Page) -> None:
         for m in found
         if m.verdict in ("resonance", "near")
     ]
-    by_name = {e.name: e for e in register}
-    page.vanishes(
-        "frequencies of excitations at their crossings, largest relative error",
-        max(
-            abs(by_name[m.excitation].frequency(m.crossing) / m.frequency - 1.0)
-            for m in found
-            if np.isfinite(m.crossing)
-        ),
-        **round_off(10, "a frequency divided by its order, and multiplied again"),
-        source="n = 60 f / order",
-        basis="self-consistency",
-    )
     met = sum(m.verdict == "resonance" for m in found)
     crossed = sum(m.margin == 0.0 for m in found)
     page.section("Resonance")
     page.table(f"Excitations that meet a mode from {SPEEDS[0]:g} to {SPEEDS[1]:g} rpm", rows)
-    lines = dict.fromkeys(m.excitation for m in found if m.verdict == "resonance")
+    chart_meetings(page, [m for m in found if m.verdict == "resonance"], by_name)
+    page.data("resonances", rows)
+    page.assume("frequency of the controller's communication", CONTROLLER, "Hz", "none is given")
+    page.answer(
+        f"Excitations of drivetrain C cross a frequency {crossed} times in operation, {met} times "
+        "at a part that has 1 % or more of the mode's energy."
+    )
+
+
+def chart_meetings(page: Page, met: list[Meeting], by_name: dict[str, Excitation]) -> None:
+    """Modes that are met, and the lines of the excitations that meet them."""
+    lines = dict.fromkeys(m.excitation for m in met)
     speeds = np.array([0.0, SPEEDS[1]])
-    frequencies = sorted({m.frequency for m in found if m.verdict == "resonance"})
+    frequencies = sorted({m.frequency for m in met})
     page.chart(
         "Campbell diagram: modes that are met, and what meets them; shaded: operation",
         [
@@ -147,12 +162,6 @@ def resonance(page: Page) -> None:
         "frequency [Hz]",
         safe=SPEEDS,
     )
-    page.data("resonances", rows)
-    page.assume("frequency of the controller's communication", CONTROLLER, "Hz", "none is given")
-    page.answer(
-        f"Excitations of drivetrain C cross a frequency {crossed} times in operation, {met} times "
-        "at a part that has 1 % or more of the mode's energy."
-    )
 
 
 def misalignment(page: Page) -> None:
@@ -160,52 +169,20 @@ def misalignment(page: Page) -> None:
     stations = np.array([PLACES.hub, PLACES.bearing, SECOND, PLACES.arms])
     beam = Beam([BeamSection(PLACES.arms - PLACES.hub, 0.6)], [], start=PLACES.hub)
     K = condensed_beam(beam, ("hub", "bearing", "second", "arms"), stations).stiffness
-    half = 0.5 * PLACES.between_arms
-    three = [
-        ("bearing, axial", 1, {0: 1.0}, BEARING),
-        ("bearing, lateral", 1, {1: 1.0}, BEARING),
-        ("bearing, vertical", 1, {2: 1.0}, BEARING),
-        ("arms, lateral", 3, {1: 1.0}, ARM),
-        ("left arm, vertical", 3, {2: 1.0, 3: half}, ARM),
-        ("right arm, vertical", 3, {2: 1.0, 3: -half}, ARM),
-    ]
-    four = [
-        *three,
-        ("second bearing, lateral", 2, {1: 1.0}, BEARING),
-        ("second bearing, vertical", 2, {2: 1.0}, BEARING),
-    ]
+    three, four = supports()
     rows: list[Record] = []
     for name, held in (("three points", three), ("four points", four)):
-        H = np.zeros((len(held), len(K)))
-        for row, (_, station, entries, _) in zip(H, held, strict=True):
-            for direction, value in entries.items():
-                row[6 * station + direction] = value
-        found = influence_of_offsets(
-            K, H, np.array([k for *_, k in held]), tuple(n for n, *_ in held)
-        )
-        page.holds(
-            f"{name}: the degree of static indeterminacy is {len(held) - 6}",
-            found.degree == len(held) - 6,
-            why="offsets of as many supports could not be made up for without force",
-            source="restraints less six rigid motions",
-        )
-        if not found.degree:
-            page.vanishes(
-                f"{name}: largest force of misalignment [N]",
-                float(np.abs(found.forces(np.full(len(held), TOLERANCE))).max()),
-                within=0.0,
-                why="there is no state of stress that is in equilibrium with itself",
-                source="statically determinate supports",
-            )
+        found = influences_of(K, held)
+        check_determinacy(page, name, found)
         forces, _ = found.worst(np.full(len(held), TOLERANCE))
-        for support, force in zip(found.names, forces, strict=True):
-            rows.append(
-                {
-                    "drivetrain on": name,
-                    "support": support,
-                    "worst force [kN]": round(float(force)) / 1e3,
-                }
-            )
+        rows += [
+            {
+                "drivetrain on": name,
+                "support": support,
+                "worst force [kN]": round(float(force)) / 1e3,
+            }
+            for support, force in zip(found.names, forces, strict=True)
+        ]
     page.section("Misalignment")
     page.table(
         f"Worst force in each support, all supports anywhere within {TOLERANCE * 1e3:g} mm", rows
@@ -219,6 +196,54 @@ def misalignment(page: Page) -> None:
     )
 
 
+def supports() -> tuple[list[Support], list[Support]]:
+    """Supports of a drivetrain on three points, and on four."""
+    half = 0.5 * PLACES.between_arms
+    three = [
+        ("bearing, axial", 1, {0: 1.0}, BEARING),
+        ("bearing, lateral", 1, {1: 1.0}, BEARING),
+        ("bearing, vertical", 1, {2: 1.0}, BEARING),
+        ("arms, lateral", 3, {1: 1.0}, ARM),
+        ("left arm, vertical", 3, {2: 1.0, 3: half}, ARM),
+        ("right arm, vertical", 3, {2: 1.0, 3: -half}, ARM),
+    ]
+    return three, [
+        *three,
+        ("second bearing, lateral", 2, {1: 1.0}, BEARING),
+        ("second bearing, vertical", 2, {2: 1.0}, BEARING),
+    ]
+
+
+def influences_of(K: Floats, held: list[Support]) -> Misalignment:
+    """What offsets of the supports do to the forces in all of them."""
+    H = np.zeros((len(held), len(K)))
+    for row, (_, station, entries, _) in zip(H, held, strict=True):
+        for direction, value in entries.items():
+            row[6 * station + direction] = value
+    return influence_of_offsets(
+        K, H, np.array([k for *_, k in held]), tuple(name for name, *_ in held)
+    )
+
+
+def check_determinacy(page: Page, name: str, found: Misalignment) -> None:
+    """Offsets load no determinate supports."""
+    supports = len(found.names)
+    page.holds(
+        f"{name}: the degree of static indeterminacy is {supports - 6}",
+        found.degree == supports - 6,
+        why="offsets of as many supports could not be made up for without force",
+        source="restraints less six rigid motions",
+    )
+    if not found.degree:
+        page.vanishes(
+            f"{name}: largest force of misalignment [N]",
+            float(np.abs(found.forces(np.full(supports, TOLERANCE))).max()),
+            within=0.0,
+            why="there is no state of stress that is in equilibrium with itself",
+            source="statically determinate supports",
+        )
+
+
 def dips(page: Page) -> None:
     """Torque of the shaft while the generator's dips, over depth and duration."""
     free = two_masses(TABLE, "free")
@@ -227,9 +252,9 @@ def dips(page: Page) -> None:
     system = damped(free, {"shafts": shaft_damping(RATIO, inertia, float(free.k[0]))})
     frequency = float(natural_modes(system).frequencies[1])
     page.section("Voltage dips")
-    found = converge_in_time(lambda h, _: dips_of(system, h)[0], 1.0 / (200.0 * frequency))
+    found = converge_in_time(lambda h, _: simulate_dips(system, h)[0], 1.0 / (200.0 * frequency))
     check_dips(page, "dip", found)
-    time, shown, reversals = dips_of(system, found.steps[-1])[1:]
+    time, shown, reversals = simulate_dips(system, found.steps[-1])[1:]
     rows: list[Record] = [
         {
             "depth": depth,
@@ -269,7 +294,7 @@ def dips(page: Page) -> None:
     )
 
 
-def dips_of(
+def simulate_dips(
     system: Torsional, step: float
 ) -> tuple[InTime, Floats, dict[str, Floats], dict[tuple[float, float], int]]:
     """Largest and least torque of each dip, and what is shown of them."""
@@ -308,7 +333,7 @@ def tables(page: Page) -> None:
         gear_masses(TABLE, "free"), {e.name: RATIO for e in gear_masses(TABLE, "free").elements}
     )
     elements = [e.name for e in system.elements if e.name.rpartition(" ")[2] not in ("2", "3")]
-    found = converge_in_time(lambda h, _: shapes_of(system, elements, h), 2.5e-4)
+    found = converge_in_time(lambda h, _: simulate_shapes(system, elements, h), 2.5e-4)
     check_dips(page, "dip on all gears", found)
     rows: list[Record] = [
         {
@@ -324,7 +349,7 @@ def tables(page: Page) -> None:
     page.data("dips by table", rows)
 
 
-def shapes_of(system: Torsional, elements: list[str], step: float) -> InTime:
+def simulate_shapes(system: Torsional, elements: list[str], step: float) -> InTime:
     """Ends of the torque of elements over that before, for dips of each shape."""
     time = np.asarray(np.arange(0.0, 3.0, step), dtype=np.float64)
     names = [e.name for e in system.elements]

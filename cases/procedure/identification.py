@@ -1,5 +1,7 @@
 """Stiffness, damping and inertia from measured signals: printed equations beside the truth."""
 
+from functools import partial
+
 import numpy as np
 
 from fe_drivetrain.cases import case
@@ -30,6 +32,8 @@ from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import InTime, converge_in_time, peak_between
 from fe_drivetrain.dynamics.torsion import damped_modes
 from fe_drivetrain.procedure import (
+    Decay,
+    Motions,
     Solutions,
     Twist,
     band_torque,
@@ -56,6 +60,7 @@ from fe_drivetrain.turbine_loads.histories import spectrum
 
 OF = ("inertia / truth", "damping / truth", "stiffness / truth")
 REPEATS = 20
+MARGIN = 40  # samples left out at either end of a record
 ENCODERS = 4096, 60  # pulses a turn of low- and high-speed shaft
 
 
@@ -128,45 +133,9 @@ def printed(page: Page, run: str, twists: dict[str, Twist]) -> list[Record]:
             ("B, differential", method_b(twist, TURN)),
             ("C, constant", method_c(twist, TURN, stiffness)),
         ):
-            rows.append(of_solutions(run, method, name, found))
+            rows.append(median_line(run, method, name, found))
     if run == "resonance":
-        page.equals(
-            "resonance, Eq 4: stiffness [N m/rad]",
-            stiffness,
-            float(np.hypot(STIFFNESS, DAMPING * OMEGA)),
-            within=1e-3,
-            why="the frequency in a window is within 6 % of the natural one, and damping "
-            "adds 0.2 %",
-            source="a sine at w: sqrt(K^2 + (w D)^2)",
-            measure="stiffness",
-        )
-        page.equals(
-            "resonance, Eq 5: inertia over damping [s]",
-            ratio,
-            1.0 / OMEGA,
-            within=0.02,
-            why="the band is 6 % wide to either side",
-            source=f"1 / w of one frequency, where the truth is {REDUCED / DAMPING:.3f} s",
-            measure="identity",
-        )
-        page.equals(
-            "resonance, method A on the shaft's torque: damping over the truth",
-            float(rows[2][OF[1]]),
-            0.5,
-            within=0.05,
-            why="one frequency, but for a narrow band",
-            source="median of 1 / (1 - tan u) over a turn of u",
-            measure="identity",
-        )
-        page.equals(
-            "resonance, method A on the reduced torque: damping over the truth",
-            float(rows[5][OF[1]]),
-            0.5 * (1.0 + REDUCED * OMEGA / DAMPING),
-            within=0.05,
-            why="one frequency, but for a narrow band",
-            source="(D + J* w) / 2, by the same median",
-            measure="identity",
-        )
+        check_resonance(page, stiffness, ratio, rows)
     near = [row for row in rows[2:] if abs(row[OF[0]] - 1.0) < 0.2 and abs(row[OF[1]] - 1.0) < 0.2]
     page.holds(
         f"{run}: no printed method has inertia and damping within 20 % of the truth",
@@ -177,7 +146,47 @@ def printed(page: Page, run: str, twists: dict[str, Twist]) -> list[Record]:
     return rows
 
 
-def of_solutions(run: str, method: str, torque: str, found: Solutions) -> Record:
+def check_resonance(page: Page, stiffness: float, ratio: float, rows: list[Record]) -> None:
+    """What printed equations have to give at one frequency."""
+    page.equals(
+        "resonance, Eq 4: stiffness [N m/rad]",
+        stiffness,
+        float(np.hypot(STIFFNESS, DAMPING * OMEGA)),
+        within=1e-3,
+        why="the frequency in a window is within 6 % of the natural one, and damping adds 0.2 %",
+        source="a sine at w: sqrt(K^2 + (w D)^2)",
+        measure="stiffness",
+    )
+    page.equals(
+        "resonance, Eq 5: inertia over damping [s]",
+        ratio,
+        1.0 / OMEGA,
+        within=0.02,
+        why="the band is 6 % wide to either side",
+        source=f"1 / w of one frequency, where the truth is {REDUCED / DAMPING:.3f} s",
+        measure="identity",
+    )
+    for torque, damping, expected, source in (
+        ("shaft's", rows[2][OF[1]], 0.5, "median of 1 / (1 - tan u) over a turn of u"),
+        (
+            "reduced",
+            rows[5][OF[1]],
+            0.5 * (1.0 + REDUCED * OMEGA / DAMPING),
+            "(D + J* w) / 2, by the same median",
+        ),
+    ):
+        page.equals(
+            f"resonance, method A on the {torque} torque: damping over the truth",
+            float(damping),
+            expected,
+            within=0.05,
+            why="one frequency, but for a narrow band",
+            source=source,
+            measure="identity",
+        )
+
+
+def median_line(run: str, method: str, torque: str, found: Solutions) -> Record:
     """Medians over the truth."""
     inertia, damping = found.medians()
     kept = found.medians(plausible=True)
@@ -207,20 +216,7 @@ def line(
 
 def elsewhere(page: Page, rows: list[Record]) -> None:
     """A run of the same drivetrain under other random torques, beside this one."""
-
-    def ours(key: str, *method: str, torque: str = "", run: str = "") -> str:
-        values = [
-            float(row[key])
-            for row in rows
-            if row["method"][0] in method
-            and row[key] is not None
-            and torque in ("", row["torque"])
-            and run in ("", row["run"])
-        ]
-        digits = 5 if method == ("E",) else 3
-        low, high = (f"{v:.{digits}g}" for v in (min(values), max(values)))
-        return low if low == high else f"{low} to {high}"
-
+    ours = partial(spread_of, rows)
     shares = [row["share above zero"] for row in rows if row["method"][0] in "BC"]
     aerodynamic = [ours(key, "l", torque="aerodynamic", run="broadband") for key in OF]
     page.table(
@@ -254,10 +250,34 @@ def elsewhere(page: Page, rows: list[Record]) -> None:
         ],
         ["quantity", "independent run", "this run"],
     )
+    check_aerodynamic(page, float(aerodynamic[0]))
+    page.text(
+        "Methods A to C are those of Eq 6 to 13, and medians of B and C are medians of noise, so "
+        "that two runs agree in their size only."
+    )
+
+
+def spread_of(rows: list[Record], key: str, *method: str, torque: str = "", run: str = "") -> str:
+    """One value, or the least and the largest, of methods by their first letter."""
+    values = [
+        float(row[key])
+        for row in rows
+        if row["method"][0] in method
+        and row[key] is not None
+        and torque in ("", row["torque"])
+        and run in ("", row["run"])
+    ]
+    digits = 5 if method == ("E",) else 3
+    low, high = (f"{v:.{digits}g}" for v in (min(values), max(values)))
+    return low if low == high else f"{low} to {high}"
+
+
+def check_aerodynamic(page: Page, inertia: float) -> None:
+    """Least squares on a torque that is not the reduced one."""
     ratio = BRAKING * FRONT / (DRIVING * REAR)
     page.equals(
         "broadband, least squares on the aerodynamic torque: inertia over the truth",
-        float(aerodynamic[0]),
+        inertia,
         FRONT / REDUCED / (1.0 + ratio**2),
         within=0.1,
         relative=False,
@@ -265,10 +285,6 @@ def elsewhere(page: Page, rows: list[Record]) -> None:
         f"three times that, times s_g J_r / (s_a J_g) = {ratio:.1f}",
         source="regression on the reduced torque: J_r / J* / (1 + (s_g J_r / (s_a J_g))^2)",
         measure="identity",
-    )
-    page.text(
-        "Methods A to C are those of Eq 6 to 13, and medians of B and C are medians of noise, so "
-        "that two runs agree in their size only."
     )
 
 
@@ -342,6 +358,11 @@ def fitted(page: Page, run: str, twists: dict[str, Twist]) -> list[Record]:
     return rows
 
 
+def recorded(signal: Floats) -> Floats:
+    """Samples of a fine signal that are recorded, without its ends."""
+    return signal[::5][MARGIN:-MARGIN]
+
+
 def campaign(page: Page, seconds: float) -> list[Record]:
     """Strain gauges scaled by power, pulses timed or counted; fits with bands."""
     fine = 0.001
@@ -350,48 +371,18 @@ def campaign(page: Page, seconds: float) -> list[Record]:
     load = band_torque(samples, fine, BROAD, 160.0, 2)
     motions = periodic_motions(SYSTEM, np.stack([driving, -load]), fine)
     turned = [motions.angle[0] + SPEED * motions.time, motions.angle[1] + SPEED * motions.time]
-    torque = element_torques(SYSTEM, motions)[0] + MEAN
-    power = np.full(samples, 0.95 * MEAN * SPEED)
-    margin = 40
-    taken = motions.time[::5][margin:-margin]
-    fractions = (1.0 / GEAR, 1.0)
-    timed, counted = [], []
-    for angle, pulses, at in zip(turned, ENCODERS, fractions, strict=True):
-        timed.append(timed_angle(motions.time, angle * at, pulses, taken) / at)
-        counted.append(counted_angle(angle * at, pulses)[::5][margin:-margin] / at)
-    exact = (turned[0] - turned[1])[::5][margin:-margin]
-    twists = {"pulses timed": timed[0] - timed[1], "pulses counted": counted[0] - counted[1]}
+    exact = recorded(turned[0] - turned[1])
     # scaling by the mean turns an offset into an error of gain
     left = 1.0 / (1.0 + GAUGE.offset / (GAUGE.gain * MEAN))
-    rows: list[Record] = []
-    for name, twist in twists.items():
-        held, fits, naive = [], [], []
-        for seed in range(REPEATS):
-            bridges = []
-            for number in (0, 1):
-                record = measured(GAUGE, torque, 2 * seed + number)
-                record *= scaled_to_power(record, motions.speed[1] + SPEED, power, 0.95)
-                bridges.append(record[::5][margin:-margin])
-            fit = spectral_fit(bridges[0], twist, STEP, USED, bridges[1])
-            wanted = np.array([0.0, DAMPING, STIFFNESS]) * left
-            held.append(np.abs(fit.values - wanted) < fit.bands)
-            fits.append(fit)
-            rate = np.gradient(twist, STEP)
-            samples_of = Twist(STEP, bridges[0], twist, rate, np.gradient(rate, STEP))
-            naive.append(least_squares(samples_of).values)
-        rows.append(
-            {
-                "twist": name,
-                "error of the twist, rms [mrad]": 1e3 * float((twist - exact).std()),
-                OF[1]: float(fits[0].values[1] / DAMPING),
-                "its band": float(fits[0].bands[1] / DAMPING),
-                OF[2]: float(fits[0].values[2] / STIFFNESS),
-                "band of that": float(fits[0].bands[2] / STIFFNESS),
-                "bands that hold": float(np.mean(held)),
-                "least squares: damping / truth": float(naive[0][1] / DAMPING),
-                "least squares: stiffness / truth": float(naive[0][2] / STIFFNESS),
-            }
-        )
+    bridges = [gauged(motions, seed) for seed in range(2 * REPEATS)]
+    rows = [
+        {
+            "twist": name,
+            "error of the twist, rms [mrad]": 1e3 * float((twist - exact).std()),
+            **identified(twist, bridges, left),
+        }
+        for name, twist in encoded(motions.time, turned).items()
+    ]
     page.between(
         f"pulses timed: share of 95 % bands that hold the truth, {3 * REPEATS} of them",
         rows[0]["bands that hold"],
@@ -414,6 +405,40 @@ def campaign(page: Page, seconds: float) -> list[Record]:
     return rows
 
 
+def gauged(motions: Motions, seed: int) -> Floats:
+    """Torque as recorded by a strain gauge, scaled to electrical power."""
+    record = measured(GAUGE, element_torques(SYSTEM, motions)[0] + MEAN, seed)
+    power = np.full(len(record), 0.95 * MEAN * SPEED)
+    return recorded(record * scaled_to_power(record, motions.speed[1] + SPEED, power, 0.95))
+
+
+def encoded(time: Floats, turned: list[Floats]) -> dict[str, Floats]:
+    """The twist by encoders at both ends, whose pulses are timed or counted."""
+    timed, counted = [], []
+    for angle, pulses, at in zip(turned, ENCODERS, (1.0 / GEAR, 1.0), strict=True):
+        timed.append(timed_angle(time, angle * at, pulses, recorded(time)) / at)
+        counted.append(recorded(counted_angle(angle * at, pulses)) / at)
+    return {"pulses timed": timed[0] - timed[1], "pulses counted": counted[0] - counted[1]}
+
+
+def identified(twist: Floats, bridges: list[Floats], left: float) -> Record:
+    """Fits of spectra by pairs of bridges, and least squares of samples by the first."""
+    pairs = list(zip(bridges[::2], bridges[1::2], strict=True))
+    fits = [spectral_fit(one, twist, STEP, USED, other) for one, other in pairs]
+    wanted = np.array([0.0, DAMPING, STIFFNESS]) * left
+    rate = np.gradient(twist, STEP)
+    naive = least_squares(Twist(STEP, bridges[0], twist, rate, np.gradient(rate, STEP))).values
+    return {
+        OF[1]: float(fits[0].values[1] / DAMPING),
+        "its band": float(fits[0].bands[1] / DAMPING),
+        OF[2]: float(fits[0].values[2] / STIFFNESS),
+        "band of that": float(fits[0].bands[2] / STIFFNESS),
+        "bands that hold": float(np.mean([np.abs(f.values - wanted) < f.bands for f in fits])),
+        "least squares: damping / truth": float(naive[1] / DAMPING),
+        "least squares: stiffness / truth": float(naive[2] / STIFFNESS),
+    }
+
+
 def stopped_twist(step: float) -> tuple[Floats, float]:
     """Twist after torque is lost within 8 ms, and the error of the energy."""
     time = np.arange(round(12.0 / step)) * step
@@ -428,23 +453,7 @@ def stop(page: Page) -> None:
     """Damping from the decay after a stop, frequency from the spectrum."""
     step = 0.002
     twist, _ = stopped_twist(step)
-    time = np.arange(len(twist)) * step
-
-    def in_time(dt: float, _: int) -> InTime:
-        swing, lost = stopped_twist(dt)
-        late = swing[round(1.1 / dt) :] / swing[0]
-        return InTime({"swing of the twist over that before": peak_between(late)}, lost)
-
-    series = converge_in_time(in_time, step)
-    page.section("Stop in time")
-    check_in_time(
-        page,
-        "stop",
-        series,
-        dict.fromkeys(series.finest.values, 0.05),
-        energy=1e-3,
-        why="integrals of the fourth order of the step",
-    )
+    check_stop_in_time(page, step)
     decay = logarithmic_decrement(twist[round(1.05 / step) :], step, 12)
     mode = damped_modes(SYSTEM)
     page.equals(
@@ -468,8 +477,33 @@ def stop(page: Page) -> None:
         measure="identity",
         basis="self-consistency",
     )
-    found = spectrum(twist[round(1.05 / step) :], step, 10.0)
     page.section("Stop")
+    show_decay(page, twist, step, decay)
+
+
+def check_stop_in_time(page: Page, step: float) -> None:
+    """Energy and convergence of the stop."""
+
+    def in_time(dt: float, _: int) -> InTime:
+        swing, lost = stopped_twist(dt)
+        late = swing[round(1.1 / dt) :] / swing[0]
+        return InTime({"swing of the twist over that before": peak_between(late)}, lost)
+
+    series = converge_in_time(in_time, step)
+    page.section("Stop in time")
+    check_in_time(
+        page,
+        "stop",
+        series,
+        dict.fromkeys(series.finest.values, 0.05),
+        energy=1e-3,
+        why="integrals of the fourth order of the step",
+    )
+
+
+def show_decay(page: Page, twist: Floats, step: float, decay: Decay) -> None:
+    """Twist after the stop, and its spectrum."""
+    time = np.arange(len(twist)) * step
     shown = time < 6.0
     page.chart(
         f"Twist after a stop; decrement {decay.decrement:.4f}, damping ratio {decay.ratio:.4f}",
@@ -477,6 +511,7 @@ def stop(page: Page) -> None:
         "time [s]",
         "twist [rad]",
     )
+    found = spectrum(twist[round(1.05 / step) :], step, 10.0)
     near = (found.frequency > 0.5) & (found.frequency < 8.0)
     page.chart(
         "Spectrum of the decay",

@@ -56,7 +56,28 @@ def run(run: Run, page: Page) -> None:
     static = three_point_loads(places, time, hub)
     # of hub loads alone: the weights are those of the first row without any load
     rest = three_point_loads(places, time[:1], np.zeros((1, 6)))
-    for name, table in (("dynamics", moving), ("finite elements", elements), ("statics", static)):
+    check_equilibrium(page, {"dynamics": moving, "finite elements": elements, "statics": static})
+    check_gearing(page, moving)
+    check_vertical_forces(page, hub, static, elements, rest)
+    beside(page, hub, static, elements, without, rest)
+    motions(page, moving, elements)
+    with run.step("between samples"):
+        between_samples(page, places, mounts, time, hub)
+    for table, name in ((moving, "interfaces"), (elements, "interfaces_elements")):
+        write_load_csv(table, run.folder / f"{name}.csv")
+        write_load_json(table, run.folder / f"{name}.json")
+    published_table(run, page, moving)
+    show_all(page, moving)
+    for name, mass in MASSES.items():
+        page.assume(f"mass of the {name}", mass, "kg", "of such machines, round")
+    page.assume("ratio", RATIO, "", "of such machines, round")
+    page.assume("speed of the rotor", SPEED, "rad/s", "of such machines, round")
+    page.assume("stiffness, inertia", "see the case", "", "all but the arms, which are the scene's")
+
+
+def check_equilibrium(page: Page, tables: dict[str, LoadTable]) -> None:
+    """Every body of each model is in equilibrium in every row."""
+    for name, table in tables.items():
         page.vanishes(
             f"{name}: largest error of equilibrium of any body in any row",
             max(float(np.abs(imbalance(table, body.name)).max()) for body in table.bodies),
@@ -64,6 +85,10 @@ def run(run: Run, page: Page) -> None:
             why="rounding, relative to the largest load on the body",
             source="forces and moments of all interfaces, weight and inertia",
         )
+
+
+def check_gearing(page: Page, moving: LoadTable) -> None:
+    """Torques of both sides of the gearbox have its ratio."""
     entrance = moving.interface("gearbox entrance").loads[:, 3]
     output = moving.interface("high-speed shaft").loads[:, 3]
     page.vanishes(
@@ -74,6 +99,12 @@ def run(run: Run, page: Page) -> None:
         source="gearing, without losses",
         basis="self-consistency",
     )
+
+
+def check_vertical_forces(
+    page: Page, hub: Floats, static: LoadTable, elements: LoadTable, rest: LoadTable
+) -> None:
+    """Vertical forces are determined: elements have those of statics."""
     determined = [
         float(
             np.abs(
@@ -93,15 +124,10 @@ def run(run: Run, page: Page) -> None:
         source="statics",
         measure="identity",
     )
-    beside(page, hub, static, elements, without, rest)
-    motions(page, moving, elements)
-    with run.step("between samples"):
-        between_samples(page, places, mounts, time, hub)
-    write_load_csv(moving, run.folder / "interfaces.csv")
-    write_load_json(moving, run.folder / "interfaces.json")
-    write_load_csv(elements, run.folder / "interfaces_elements.csv")
-    write_load_json(elements, run.folder / "interfaces_elements.json")
-    published_table(run, page, moving)
+
+
+def show_all(page: Page, moving: LoadTable) -> None:
+    """Statistics of the loads and motions at all interfaces."""
     page.section("All interfaces")
     rows = [
         {k: v for k, v in row.items() if not isinstance(v, list) and k != "source"}
@@ -113,11 +139,6 @@ def run(run: Run, page: Page) -> None:
         "The files hold each row, and interfaces.json also the duration distribution and the "
         "rainflow cycles of each component. Displacements are from steady turning."
     )
-    for name, mass in MASSES.items():
-        page.assume(f"mass of the {name}", mass, "kg", "of such machines, round")
-    page.assume("ratio", RATIO, "", "of such machines, round")
-    page.assume("speed of the rotor", SPEED, "rad/s", "of such machines, round")
-    page.assume("stiffness, inertia", "see the case", "", "all but the arms, which are the scene's")
 
 
 def between_samples(

@@ -48,29 +48,13 @@ def run(run: Run, page: Page) -> None:
     channels = pitched | yaw_channels(made.history.loads, step)
     listed = listed_quantities()
     tables = {name: filled_table(listed.of(name), channels, step) for name in ("5.3", "6.3", "6.4")}
-    for name, rows in tables.items():
-        page.section(f"Table {name}")
-        shown: list[Record] = [
-            {key: value for key, value in row.items() if key not in ("levels", "seconds", "table")}
-            | {"given": "yes" if row["given"] else "no"}
-            for row in rows
-        ]
-        page.table("Channels that the table asks for; durations are in tables.json", shown)
+    show_tables(page, tables)
     with (run.folder / "tables.json").open("w", encoding="utf-8") as file:
         json.dump(tables, file)
     rows = [row for table in tables.values() for row in table]
     given = [row for row in rows if row["given"]]
-    seconds = [sum(row["seconds"]) for row in given if row["seconds"]]
-    page.equals(
-        "load durations: shortest and longest sum [s]",
-        min(seconds) + max(seconds),
-        2.0 * step * len(made.pitch),
-        within=1e-9,
-        why="every sample is at one level",
-        source="duration of the simulation",
-        measure="identity",
-    )
     by_name = {row["channel"]: row for row in reversed(given)}
+    check_durations(page, given, step * len(made.pitch))
     page.equals(
         "tower top: mean axial force [kN]",
         by_name["tower top axial force"]["mean"] / 1e3,
@@ -97,6 +81,32 @@ def run(run: Run, page: Page) -> None:
     )
     page.assume("nacelle: weight, place behind the tower's axis", "80, 0.8", "t, m", "assumed")
     page.assume("hub: before the tower's axis, above its top", "3.5, 2", "m", "assumed")
+
+
+def show_tables(page: Page, tables: dict[str, list[Record]]) -> None:
+    """What each table asks for, and what is given."""
+    for name, rows in tables.items():
+        page.section(f"Table {name}")
+        shown: list[Record] = [
+            {key: value for key, value in row.items() if key not in ("levels", "seconds", "table")}
+            | {"given": "yes" if row["given"] else "no"}
+            for row in rows
+        ]
+        page.table("Channels that the table asks for; durations are in tables.json", shown)
+
+
+def check_durations(page: Page, given: list[Record], duration: float) -> None:
+    """Every sample is at one level."""
+    seconds = [sum(row["seconds"]) for row in given if row["seconds"]]
+    page.equals(
+        "load durations: shortest and longest sum [s]",
+        min(seconds) + max(seconds),
+        2.0 * duration,
+        within=1e-9,
+        why="every sample is at one level",
+        source="duration of the simulation",
+        measure="identity",
+    )
 
 
 def pitch_channels(pitch: Floats, step: float) -> tuple[dict[str, Floats], float]:

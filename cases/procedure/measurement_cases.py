@@ -38,34 +38,11 @@ def run(run: Run, page: Page) -> None:
     with run.step("cases"):
         found = {of.code: case_channels(of, SYSTEM, MEAN, STEP) for of in cases.cases}
     with run.step("over the step"):
-        page.section("In time")
-        series = converge_in_time(lambda dt, _: of_cases(cases.cases, dt), STEP)
-        check_in_time(
-            page,
-            "scripts",
-            series,
-            dict.fromkeys(series.finest.values, 0.05),
-            energy=1e-2,
-            why="integrals over the corners of the scripts, which samples round off",
-            scale=dict.fromkeys(series.finest.values, MEAN),
-        )
-    rows: list[Record] = []
+        check_steps(page, cases.cases)
+    rows = []
     for of in cases.cases:
-        channels = found[of.code]
-        torque = measured(GAUGE, channels["shaft torque"], 1)
-        rows.append(
-            {
-                "case": of.code,
-                "what": of.title,
-                "duration [s]": of.seconds,
-                "generator, last [rpm]": float(channels["generator speed"][-1]) * 30.0 / np.pi,
-                "shaft torque, least [N m]": float(channels["shaft torque"].min()),
-                "largest [N m]": float(channels["shaft torque"].max()),
-                "measured: least [N m]": float(torque.min()),
-                "measured: largest [N m]": float(torque.max()),
-            }
-        )
-        momentum(page, of, channels)
+        rows.append(torques_of(of, found[of.code]))
+        momentum(page, of, found[of.code])
     page.section("Cases")
     page.table("Each case by its script; torque of the shaft, and as a strain gauge has it", rows)
     page.chart(
@@ -101,7 +78,37 @@ def run(run: Run, page: Page) -> None:
     page.assume("rated torque, high-speed side", MEAN, "N m", "the report prints none")
 
 
-def of_cases(cases: Sequence[MeasurementCase], step: float) -> InTime:
+def check_steps(page: Page, cases: Sequence[MeasurementCase]) -> None:
+    """Energy and convergence of all scripts."""
+    page.section("In time")
+    series = converge_in_time(lambda dt, _: extremes_of_torque(cases, dt), STEP)
+    check_in_time(
+        page,
+        "scripts",
+        series,
+        dict.fromkeys(series.finest.values, 0.05),
+        energy=1e-2,
+        why="integrals over the corners of the scripts, which samples round off",
+        scale=dict.fromkeys(series.finest.values, MEAN),
+    )
+
+
+def torques_of(of: MeasurementCase, channels: dict[str, Floats]) -> Record:
+    """Ends of the shaft's torque in one case, and as a strain gauge has it."""
+    torque = measured(GAUGE, channels["shaft torque"], 1)
+    return {
+        "case": of.code,
+        "what": of.title,
+        "duration [s]": of.seconds,
+        "generator, last [rpm]": float(channels["generator speed"][-1]) * 30.0 / np.pi,
+        "shaft torque, least [N m]": float(channels["shaft torque"].min()),
+        "largest [N m]": float(channels["shaft torque"].max()),
+        "measured: least [N m]": float(torque.min()),
+        "measured: largest [N m]": float(torque.max()),
+    }
+
+
+def extremes_of_torque(cases: Sequence[MeasurementCase], step: float) -> InTime:
     """Ends of the shaft's torque in each case, and the worst error of the energy."""
     values, lost = {}, 0.0
     equations = torsional_equations(SYSTEM)

@@ -1,5 +1,7 @@
 """Pitch and yaw drives: torques, starts, teeth, heat and tower shear, printed and put right."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from fe_drivetrain.cases import case
@@ -8,25 +10,28 @@ from fe_drivetrain.cases.procedure.slewing_drives import (
     BRIDGES,
     DEFICIT,
     DIAMETER,
+    DURATION,
     MOMENT,
     PITCH,
     RADIAL,
     STEP,
     STOP_RAMP,
     TEETH,
+    TURNED,
     YAW,
-    stop_motion,
+    Stop,
+    rotor_in_yaw,
+    stopped,
 )
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import Bools, Floats
 from fe_drivetrain.comparison import round_off
 from fe_drivetrain.procedure import (
+    Moves,
     drive_torque,
     friction_torque,
     governing_torque,
-    gyroscopic_torque,
     moves,
     peak_times,
-    printed_drive_torque,
     shear_between,
     thermal_torque,
     tooth_counts,
@@ -34,7 +39,7 @@ from fe_drivetrain.procedure import (
 )
 from fe_drivetrain.report import trace
 from fe_drivetrain.report.suite import Page, Record, Run
-from fe_drivetrain.turbine_loads.histories import even_levels, time_at_level
+from fe_drivetrain.turbine_loads.histories import Levels, even_levels, time_at_level
 from fe_drivetrain.turbine_loads.hub_loads import (
     Condition,
     Rotor,
@@ -43,8 +48,9 @@ from fe_drivetrain.turbine_loads.hub_loads import (
     turbine_histories,
 )
 
-PAUSE, DURATION, TURNED = 120.0, 12.0, np.radians(5.0)  # s, s, rad
+PAUSE = 120.0  # s
 BRAKES, MOTOR = (100.0, 200.0, 400.0), 150.0  # N m, at the motors of the yaw drives, all together
+STARTS = 600  # of the yaw motors in a day
 WINDS = (13.0, 16.0, 20.0, 24.0)
 ASSUMED = "the report prints none: of the size of a machine of 2 MW"
 
@@ -79,52 +85,9 @@ def work(torque: Floats, speed: Floats) -> float:
 
 def shutdown(page: Page) -> None:
     """Motor torque in a shutdown: printed signs, right ones, and where its power goes."""
-    time, angle, speed, acceleration = stop_motion()
-    left = np.cos(angle)
-    load = 8e3 + 3e3 * np.sin(1.8 * time)
-    friction = friction_torque(MOMENT * (0.25 + 0.75 * left), AXIAL, RADIAL, DIAMETER)
-    right = drive_torque(PITCH, load, friction, speed, acceleration)
-    printed = printed_drive_torque(PITCH, load, friction, speed, acceleration)
-    given, used = work(right, PITCH.ratio * speed), work(load, speed) + work(friction, speed)
-    page.equals(
-        "stop: work of the motor [kJ]",
-        given / 1e3,
-        used / 1e3,
-        **round_off(
-            len(time),
-            "sums over all samples; inertia's power is a sine of each ramp",
-        ),
-        source="work of load and friction; the blade rests before and after",
-        measure="energy",
-    )
-    dissipated = work(printed, PITCH.ratio * speed) - work(load, speed)
-    page.equals(
-        "stop, Eq 5.1 as printed: work beyond that of the load, over that of friction",
-        dissipated / work(friction, speed),
-        -1.0,
-        **round_off(
-            100 * len(time),
-            "sums over all samples, less that of the load; inertia's power is a sine of each ramp",
-        ),
-        source="friction with the printed sign gives power",
-        measure="energy",
-    )
-    page.holds(
-        "inertia by Eq 5.1 as printed is negative, J_B - i^2 J_A",
-        PITCH.printed_inertia < 0.0 < PITCH.inertia,
-        why="a motor would speed up when braked",
-        source="J_B and i^2 J_A of the assumed drive",
-    )
-    moved = moves(speed, STEP, 1e-9)
-    at = float(peak_times(right, moved)[0])
-    page.at_most(
-        "stop: when the torque is largest, over the time of the motion",
-        at,
-        STOP_RAMP / float(moved.durations[0]),
-        why="inertia is felt in the first ramp only, which friction adds to",
-        source="PROTEST 2010, section 5.4.3.1: always at the start",
-        measure="identity",
-    )
+    stop = stopped()
+    check_work(page, stop)
+    check_start(page, stop)
     example = float(friction_torque(3000e3, 200e3, 100e3, 2.0)) / 1e3
     page.equals(
         "friction of 3 MN m, 200 kN and 100 kN at 2 m [kN m]",
@@ -135,33 +98,8 @@ def shutdown(page: Page) -> None:
         measure="reaction",
         basis="self-consistency",
     )
-    page.section("Shutdown")
-    page.chart(
-        "Torque of the pitch motor over a shutdown from 0 to 70 degrees",
-        [
-            trace("right signs", time, right),
-            trace("Eq 5.1 as printed", time, printed, line={"dash": "dash"}),
-            trace(
-                "load and friction alone", time, (load + np.sign(speed) * friction) / PITCH.ratio
-            ),
-        ],
-        "time [s]",
-        "torque [N m]",
-    )
-    rows: list[Record] = [
-        {
-            "signs": name,
-            "inertia of the whole [kg m^2]": inertia,
-            "largest torque [N m]": float(torque[np.abs(torque).argmax()]),
-            "work of the motor [kJ]": work(torque, PITCH.ratio * speed) / 1e3,
-        }
-        for name, inertia, torque in (
-            ("right", PITCH.inertia, right),
-            ("Eq 5.1 as printed", PITCH.printed_inertia, printed),
-        )
-    ]
-    page.table("Shutdown, with the signs right and as printed", rows)
-    page.data("shutdown", rows)
+    show_shutdown(page, stop)
+    right, printed = stop.right, stop.printed
     page.answer(
         f"A shutdown takes {right.max():.0f} N m of the motor, at its start, and by Eq 5.1 as "
         f"printed {printed[np.abs(printed).argmax()]:.0f} N m: there friction drives the blade, "
@@ -173,6 +111,82 @@ def shutdown(page: Page) -> None:
         "kg m^2, kg m^2, -",
         ASSUMED,
     )
+
+
+def check_work(page: Page, stop: Stop) -> None:
+    """Work of the motor, and what Eq 5.1 as printed makes of it."""
+    time, motor = stop.time, PITCH.ratio * stop.speed
+    by_load, by_friction = work(stop.load, stop.speed), work(stop.friction, stop.speed)
+    page.equals(
+        "stop: work of the motor [kJ]",
+        work(stop.right, motor) / 1e3,
+        (by_load + by_friction) / 1e3,
+        **round_off(len(time), "sums over all samples; inertia's power is a sine of each ramp"),
+        source="work of load and friction; the blade rests before and after",
+        measure="energy",
+    )
+    page.equals(
+        "stop, Eq 5.1 as printed: work beyond that of the load, over that of friction",
+        (work(stop.printed, motor) - by_load) / by_friction,
+        -1.0,
+        **round_off(
+            100 * len(time),
+            "sums over all samples, less that of the load; inertia's power is a sine of each ramp",
+        ),
+        source="friction with the printed sign gives power",
+        measure="energy",
+    )
+
+
+def check_start(page: Page, stop: Stop) -> None:
+    """Inertia matters at the start, and has the right sign."""
+    page.holds(
+        "inertia by Eq 5.1 as printed is negative, J_B - i^2 J_A",
+        PITCH.printed_inertia < 0.0 < PITCH.inertia,
+        why="a motor would speed up when braked",
+        source="J_B and i^2 J_A of the assumed drive",
+    )
+    moved = moves(stop.speed, STEP, 1e-9)
+    at = float(peak_times(stop.right, moved)[0])
+    page.at_most(
+        "stop: when the torque is largest, over the time of the motion",
+        at,
+        STOP_RAMP / float(moved.durations[0]),
+        why="inertia is felt in the first ramp only, which friction adds to",
+        source="PROTEST 2010, section 5.4.3.1: always at the start",
+        measure="identity",
+    )
+
+
+def show_shutdown(page: Page, stop: Stop) -> None:
+    """Torque over time, and what both signs make of it."""
+    time, right, printed = stop.time, stop.right, stop.printed
+    bare = (stop.load + np.sign(stop.speed) * stop.friction) / PITCH.ratio
+    page.section("Shutdown")
+    page.chart(
+        "Torque of the pitch motor over a shutdown from 0 to 70 degrees",
+        [
+            trace("right signs", time, right),
+            trace("Eq 5.1 as printed", time, printed, line={"dash": "dash"}),
+            trace("load and friction alone", time, bare),
+        ],
+        "time [s]",
+        "torque [N m]",
+    )
+    rows: list[Record] = [
+        {
+            "signs": name,
+            "inertia of the whole [kg m^2]": inertia,
+            "largest torque [N m]": float(torque[np.abs(torque).argmax()]),
+            "work of the motor [kJ]": work(torque, PITCH.ratio * stop.speed) / 1e3,
+        }
+        for name, inertia, torque in (
+            ("right", PITCH.inertia, right),
+            ("Eq 5.1 as printed", PITCH.printed_inertia, printed),
+        )
+    ]
+    page.table("Shutdown, with the signs right and as printed", rows)
+    page.data("shutdown", rows)
 
 
 def pitching(run: Run, page: Page) -> Floats:
@@ -235,25 +249,68 @@ def pitching(run: Run, page: Page) -> Floats:
     return counts
 
 
-def yawing(page: Page) -> None:
-    """A day of regular yawing: duty, torque, load durations with switching transients."""
-    step, starts = 0.1, 600
+@dataclass(frozen=True)
+class Day:
+    """A day of yawing: speed [rad/s], load and torque of the motors [N m], and when they move."""
+
+    step: float
+    speed: Floats
+    load: Floats
+    torque: Floats
+    moving: Bools
+
+    @property
+    def mean(self) -> float:
+        """Mean torque while yawing [N m]."""
+        return float(np.abs(self.torque[self.moving]).mean())
+
+
+def yawed() -> Day:
+    """Pauses and motions of equal length, the same all day."""
+    step = 0.1
     ramp = np.interp(np.arange(round(DURATION / step)) * step, [0, 0.5, 11.5, 12], [0, 1, 1, 0])
     rate = ramp * TURNED / (ramp.sum() * step)
     speed = np.concatenate(
-        [np.tile(np.concatenate([np.zeros(1200), rate]), starts), np.zeros(1200)]
+        [np.tile(np.concatenate([np.zeros(1200), rate]), STARTS), np.zeros(1200)]
     )
-    # the first sample of a ramp is at rest
-    found = moves(speed, step, 1e-9)
     friction = friction_torque(2500e3, 800e3, 150e3, 2.2)
     load = 60e3 * np.sin(0.05 * np.arange(len(speed)) * step)
     torque = drive_torque(YAW, load, np.full(len(speed), friction), speed, np.gradient(speed, step))
     moving = np.abs(speed) > 1e-9
-    mean = float(np.abs(torque[moving]).mean())
+    return Day(step, speed, load, torque, moving)
+
+
+def yawing(page: Page) -> None:
+    """A day of regular yawing: duty, torque, load durations with switching transients."""
+    day = yawed()
+    # the first sample of a ramp is at rest
+    found = moves(day.speed, day.step, 1e-9)
+    mean = day.mean
     levels = time_at_level(
-        np.abs(torque[moving]), step, even_levels(0.0, 4.0 * max(mean, np.abs(torque).max() / 3.0))
+        np.abs(day.torque[day.moving]),
+        day.step,
+        even_levels(0.0, 4.0 * max(mean, np.abs(day.torque).max() / 3.0)),
     )
-    direct = with_transients(levels, 3.0 * mean, starts)
+    direct = with_transients(levels, 3.0 * mean, STARTS)
+    check_motions(page, found, len(day.speed))
+    check_transients(page, levels, direct)
+    page.section("Yawing")
+    rows = [yawing_row(day, found)]
+    page.table("Yawing as the report found it: 120 s of pause, 12 s of motion, 5 degrees", rows)
+    show_durations(page, levels, direct)
+    page.data("yawing", rows)
+    strength(page, 3.0 * mean, float(np.abs(day.load).max()) / YAW.ratio)
+    gyroscopic(page)
+    page.assume(
+        "yaw drives: J, J_A of all motors, i",
+        f"{YAW.part:g}, {YAW.drive:g}, {YAW.ratio:g}",
+        "kg m^2, kg m^2, -",
+        ASSUMED,
+    )
+
+
+def check_motions(page: Page, found: Moves, samples: int) -> None:
+    """Duty and angle of the motions, counted from the speed."""
     page.equals(
         "yawing: duty",
         found.duty,
@@ -267,34 +324,44 @@ def yawing(page: Page) -> None:
         "yawing: mean angle of a motion [deg]",
         float(np.degrees(found.angle.mean())),
         5.0,
-        **round_off(len(speed), "an angle is the difference of two sums of all samples"),
+        **round_off(samples, "an angle is the difference of two sums of all samples"),
         source="PROTEST 2010, section 6.4",
         measure="identity",
     )
+
+
+def check_transients(page: Page, levels: Levels, direct: Levels) -> None:
+    """Transients of switching add their own time."""
     page.equals(
         "direct switching: time that transients add to the load durations [s]",
         float(direct.amount.sum() - levels.amount.sum()),
-        starts * 0.03,
+        STARTS * 0.03,
         **round_off(
-            len(levels.amount) * DURATION * starts / (starts * 0.03),
+            len(levels.amount) * DURATION * STARTS / (STARTS * 0.03),
             "of the durations of all levels what transients add is a small difference",
         ),
         source="30 ms at each start",
         measure="identity",
     )
-    page.section("Yawing")
-    rows: list[Record] = [
-        {
-            "motion [deg/s]": float(np.degrees(TURNED / DURATION)),
-            "duty": found.duty,
-            "starts in a year": 365.25 * 86400.0 / (PAUSE + DURATION),
-            "mean torque of the motors [N m]": mean,
-            "transient [N m]": 3.0 * mean,
-            "transients in a year [h]": 365.25 * 24.0 / (PAUSE + DURATION) * 0.03,
-            "thermal torque of 600 s [N m]": thermal_torque(np.where(moving, torque, 0.0), step),
-        }
-    ]
-    page.table("Yawing as the report found it: 120 s of pause, 12 s of motion, 5 degrees", rows)
+
+
+def yawing_row(day: Day, found: Moves) -> Record:
+    """Duty, starts and torques of regular yawing."""
+    mean = day.mean
+    torque = np.where(day.moving, day.torque, 0.0)
+    return {
+        "motion [deg/s]": float(np.degrees(TURNED / DURATION)),
+        "duty": found.duty,
+        "starts in a year": 365.25 * 86400.0 / (PAUSE + DURATION),
+        "mean torque of the motors [N m]": mean,
+        "transient [N m]": 3.0 * mean,
+        "transients in a year [h]": 365.25 * 24.0 / (PAUSE + DURATION) * 0.03,
+        "thermal torque of 600 s [N m]": thermal_torque(torque, day.step),
+    }
+
+
+def show_durations(page: Page, levels: Levels, direct: Levels) -> None:
+    """Load durations with and without transients of switching."""
     page.chart(
         "Load durations of the yaw motors: torque that is reached or exceeded",
         [
@@ -305,14 +372,14 @@ def yawing(page: Page) -> None:
         "torque [N m]",
         "x",
     )
-    page.data("yawing", rows)
-    strength(page, 3.0 * mean, float(np.abs(load).max()) / YAW.ratio)
-    gyroscopic = gyroscopic_torque(
-        4e6, 2.0 * np.array([np.cos(0.09), 0.0, np.sin(0.09)]), np.array([0, 0, TURNED / DURATION])
-    )
+
+
+def gyroscopic(page: Page) -> None:
+    """Gyroscopic torque of the rotor while the nacelle yaws."""
+    found = rotor_in_yaw()
     page.vanishes(
         "yawing: gyroscopic torque about the tower, over its whole [kN m/(kN m)]",
-        float(gyroscopic[2] / np.linalg.norm(gyroscopic)),
+        float(found[2] / np.linalg.norm(found)),
         **round_off(4, "products with a turning that is along the tower alone"),
         source="H x turning is across both, with a shaft tilted by 5 degrees",
     )
@@ -320,17 +387,11 @@ def yawing(page: Page) -> None:
         f"The report asks for the gyroscopic torque around the tower's axis in the fatigue of the "
         "yaw "
         f"gear (section 7.2.2.1). A rotor of 4e6 kg m^2 at 2 rad/s gives "
-        f"{np.linalg.norm(gyroscopic) / 1e3:.0f} kN m at this rate of yaw, which bends the tower's "
+        f"{np.linalg.norm(found) / 1e3:.0f} kN m at this rate of yaw, which bends the tower's "
         "top "
         "in the plane of the shaft, and nothing about the tower's axis. About it a tilted shaft "
         "gives its "
         "torque times the sine of the tilt, and a rate of tilt a gyroscopic one."
-    )
-    page.assume(
-        "yaw drives: J, J_A of all motors, i",
-        f"{YAW.part:g}, {YAW.drive:g}, {YAW.ratio:g}",
-        "kg m^2, kg m^2, -",
-        ASSUMED,
     )
 
 

@@ -42,6 +42,7 @@ ROWS = tuple(
 )
 BEARING = Bearing("blade bearing", ROWS)
 BORE, OUTSIDE, WIDTH = 1.015, 1.12, 0.2  # m, of the outer ring
+NEUTRAL, HALF = 0.5 * (BORE + OUTSIDE), 0.5 * (OUTSIDE - BORE)
 NECK = 1.05, 1.10  # m, radii of the hub's neck behind it
 LOAD = (2e5, 0.0, 1e5, 3e6, 0.0)  # N, N m
 STEEL = MATERIALS["steel"]
@@ -169,13 +170,13 @@ def on_necks(
     return rows, shapes
 
 
-def gauges(page: Page, mesh: Meridian, held: Ints, rollers: Floats) -> None:
-    """Strain at the published places, and the waves that a fit of constant length makes of it."""
+def on_the_outside(
+    mesh: Meridian, held: Ints, rollers: Floats, places: Floats
+) -> tuple[Floats, Floats]:
+    """Strain around and radial displacement [m] outside of the ring, in its middle."""
     outer = int(np.hypot(mesh.nodes[:, 0], mesh.nodes[:, 1] - OUTSIDE).argmin())
     r = float(mesh.nodes[outer, 1])
     psi = angles(ROWS[0])
-    dense = np.linspace(0.0, 2.0 * np.pi, 360, endpoint=False)
-    places = np.concatenate([dense, np.array(GAUGES)])
     strain, outwards = np.zeros(len(places)), np.zeros(len(places))
     for n in range(WAVES):
         still = np.unique(np.concatenate([held, dofs(np.arange(len(mesh.nodes)), 2)]))
@@ -192,45 +193,35 @@ def gauges(page: Page, mesh: Meridian, held: Ints, rollers: Floats) -> None:
             waves = np.cos(n * np.subtract.outer(places, psi)) @ loads
             outwards += radial * waves
             strain += (radial + n * around) / r * waves
-    at, values = np.array(GAUGES), strain[len(dense) :]
+    return strain, outwards
+
+
+def gauges(page: Page, mesh: Meridian, held: Ints, rollers: Floats) -> None:
+    """Strain at the published places, and the waves that a fit of constant length makes of it."""
+    dense = np.linspace(0.0, 2.0 * np.pi, 360, endpoint=False)
+    at = np.array(GAUGES)
+    strains, outwards = on_the_outside(mesh, held, rollers, np.concatenate([dense, at]))
+    strain, values = strains[: len(dense)], strains[len(dense) :]
     true = float(np.abs(np.fft.rfft(outwards[: len(dense)])[2])) / (len(dense) / 2)
-    neutral, c = 0.5 * (BORE + OUTSIDE), 0.5 * (OUTSIDE - BORE)
-    rows: list[Record] = []
-    for orders in ([2], [2, 3], [2, 4]):
-        fit = fitted_shape(neutral, c, at, values, orders)
-        amplitude = float(np.hypot(fit.shape.cosine[0], fit.shape.sine[0]))
-        rows.append(
-            {
-                "waves fitted": ", ".join(map(str, orders)),
-                "w2 from strains [µm]": amplitude * 1e6,
-                "w2 of the ring there [µm]": true * 1e6,
-                "left over [µm/m]": fit.residual * 1e6,
-                "strains, standard deviation [µm/m]": float(values.std()) * 1e6,
-                "condition": fit.condition,
-            }
-        )
-    oval = fitted_shape(neutral, c, at, values, [2])
+    rows: list[Record] = [
+        {
+            "waves fitted": ", ".join(map(str, orders)),
+            "w2 from strains [µm]": float(np.hypot(fit.shape.cosine[0], fit.shape.sine[0])) * 1e6,
+            "w2 of the ring there [µm]": true * 1e6,
+            "left over [µm/m]": fit.residual * 1e6,
+            "strains, standard deviation [µm/m]": float(values.std()) * 1e6,
+            "condition": fit.condition,
+        }
+        for orders in ([2], [2, 3], [2, 4])
+        for fit in (fitted_shape(NEUTRAL, HALF, at, values, orders),)
+    ]
     page.section("Gauges")
     page.table("Eight gauges at the published places, outside of the ring, in its middle", rows)
-    page.chart(
-        "Strain round the ring: all of it, at gauges, and as an oval of constant length has it",
-        [
-            trace("ring on its neck", np.degrees(dense), strain[: len(dense)] * 1e6),
-            trace("gauges", np.degrees(at) % 360.0, values * 1e6, mode="markers"),
-            trace(
-                "oval fitted to the gauges",
-                np.degrees(dense),
-                (oval.shape.strain(dense, c) + oval.offset) * 1e6,
-                line={"dash": "dash"},
-            ),
-        ],
-        "angle [deg]",
-        "strain [µm/m]",
-    )
+    chart_strain(page, dense, strain, values)
     page.data("gauges", rows)
     page.text(
         f"Gauges that stand on one half see {values.max() * 1e6:.0f} µm/m at most, the ring has "
-        f"{strain.max() * 1e6:.0f} µm/m on the other half: one wave round, which a ring of "
+        f"{strains.max() * 1e6:.0f} µm/m on the other half: one wave round, which a ring of "
         "constant length has not, comes of the hub that holds it."
     )
     page.holds(
@@ -238,6 +229,27 @@ def gauges(page: Page, mesh: Meridian, held: Ints, rollers: Floats) -> None:
         float(rows[0]["left over [µm/m]"]) > 0.2 * float(values.std()) * 1e6,
         why="the ring is also stretched, bent out of its plane and held by the hub",
         source="PROTEST 2010, section 5.4.3.2: the fit did not match the measurements",
+    )
+
+
+def chart_strain(page: Page, dense: Floats, strain: Floats, values: Floats) -> None:
+    """Strain round the ring, at gauges, and of an oval fitted to these."""
+    at = np.array(GAUGES)
+    oval = fitted_shape(NEUTRAL, HALF, at, values, [2])
+    page.chart(
+        "Strain round the ring: all of it, at gauges, and as an oval of constant length has it",
+        [
+            trace("ring on its neck", np.degrees(dense), strain * 1e6),
+            trace("gauges", np.degrees(at) % 360.0, values * 1e6, mode="markers"),
+            trace(
+                "oval fitted to the gauges",
+                np.degrees(dense),
+                (oval.shape.strain(dense, HALF) + oval.offset) * 1e6,
+                line={"dash": "dash"},
+            ),
+        ],
+        "angle [deg]",
+        "strain [µm/m]",
     )
 
 

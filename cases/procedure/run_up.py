@@ -3,6 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.procedure.swept_modes import Sweep, run_up_peak, swept_response
 from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import InTime, converge_in_time, peak_between, round_off
 from fe_drivetrain.dynamics import (
@@ -22,11 +23,8 @@ from fe_drivetrain.dynamics import (
 from fe_drivetrain.dynamics.torsion import mesh_orders
 from fe_drivetrain.procedure import (
     Meeting,
-    Sweep,
     drivetrain_excitations,
     resonances,
-    run_up_peak,
-    swept_response,
 )
 from fe_drivetrain.report import heat_map, trace
 from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
@@ -60,7 +58,7 @@ def run(run: Run, page: Page) -> None:
         signal, exact, step, orders = simulated_run_up(system, modes, 0.5 if run.quick else 1.0)
     with run.step("convergence of the run-up"):
         series = converge_in_time(
-            lambda h, _: of_run_up(system, 0.25 if run.quick else 1.0, h), STEP
+            lambda h, _: peak_motion(system, 0.25 if run.quick else 1.0, h), STEP
         )
     page.section("Steps of the run-up")
     check_in_time(
@@ -189,7 +187,7 @@ def swept_load(system: System, share: float, step: float) -> tuple[Sweep, Loads]
     return sweep, Loads(push[:, None], time, np.cos(sweep.phase(time))[:, None])
 
 
-def of_run_up(system: System, share: float, step: float) -> InTime:
+def peak_motion(system: System, share: float, step: float) -> InTime:
     """Largest motion of a planet in a run-up."""
     loads = swept_load(system, share, step)[1]
     equations = equations_of(system)

@@ -35,6 +35,7 @@ from . import slivers as slivers
 from . import soft_springs as soft_springs
 from . import solid_shafts as solid_shafts
 from . import solver_trials as solver_trials
+from . import sprung_beams as sprung_beams
 from . import stiffness_choices as stiffness_choices
 from . import studied_lives as studied_lives
 from . import supported_shafts as supported_shafts

@@ -90,7 +90,7 @@ class LoadedBar:
     bar : Bar
         The mesh.
     material : Material
-        Of all of it.
+        Material of all of it.
     u : Floats
         (3 n,) displacements [m].
     """

@@ -79,12 +79,12 @@ def patch(label: str, nodes: int, corners: float, middles: float, seed: int = 0)
     Parameters
     ----------
     nodes : int
-        Of each element.
+        Number of nodes of each element.
     corners, middles : float
         How far corners, and nodes between them, move at most, relative to an element's size.
         Without ``middles`` edges are straight.
     seed : int
-        Of the random moves.
+        Seed of the random moves.
 
     Raises
     ------
@@ -139,7 +139,7 @@ def inner_forces(patch: Patch, stress: Floats, degree: int) -> float:
     stress : Floats
         (3, 3) [Pa].
     degree : int
-        Of the quadrature.
+        Degree of the quadrature.
 
     Returns
     -------
@@ -218,9 +218,9 @@ def patch_test(patch: Patch) -> tuple[float, ...]:
     Returns
     -------
     errors : tuple of float
-        Of displacement and stress with displacements given all round; of displacement, stress and
-        reaction of the supports under tractions on the whole surface, six degrees of freedom held.
-        See `worst_errors`; reactions over the sum of all loads.
+        Errors of displacement and stress with displacements given all round; of displacement,
+        stress and reaction of the supports under tractions on the whole surface, six degrees of
+        freedom held. See `worst_errors`; reactions over the sum of all loads.
     """
     block = patch.block
     points, cells, n = block.points, block.cells, 3 * len(block.points)

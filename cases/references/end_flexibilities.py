@@ -48,11 +48,11 @@ def by_elements(shaft: Shaft, size: float, order: int | None = None, layers: int
     shaft : Shaft
         Held at its front face.
     size : float
-        Of the elements [m].
+        Size of the elements [m].
     order : int or None
-        Of the elements.
+        Order of the elements.
     layers : int
-        Of elements towards each corner.
+        Number of layers of elements towards each corner.
     """
     K = end_stiffness(shaft, STEEL, size, order=order, layers=layers)
     return np.asarray(np.linalg.inv(K[6:, 6:]))

@@ -25,7 +25,7 @@ class EndLoaded:
     mesh : Solid
         The shaft.
     material : Material
-        Of the shaft.
+        Material of the shaft.
     static : Static
         What the solver found.
     """
@@ -78,7 +78,7 @@ def end_forces(mesh: Solid, traction: Callable[[Floats, Floats], Floats]) -> tup
     mesh : Solid
         The shaft.
     traction : callable
-        Of positions and outward normals (k, 3): tractions (k, 3) [Pa].
+        Function of positions and outward normals (k, 3): tractions (k, 3) [Pa].
     """
     front, rear = (
         traction_loads(mesh.points, mesh.section_facets(x), traction)
@@ -119,7 +119,7 @@ def between_rigid_ends(mesh: Solid, material: Material, components: list[int]) -
     mesh : Solid
         The shaft.
     material : Material
-        Of the shaft.
+        Material of the shaft.
     components : list of int
         Motions of the rear face's centre: 0-2 along x, y, z, 3-5 about them; the others are held.
 

@@ -57,7 +57,7 @@ def bar(nodes: int, divisions: int) -> Block:
     Parameters
     ----------
     nodes : int
-        Of an element.
+        Number of nodes of an element.
     divisions : int
         Hexahedra across; along the bar each is half as long again as wide.
     """

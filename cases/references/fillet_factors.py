@@ -253,7 +253,7 @@ class Factor:
     wide, radius : float
         D/d and r/d.
     peak : Peak
-        Of the finer mesh.
+        Peak with the finer mesh.
     band : float
         Half width: what a third more elements along the fillet changed, which at fifth order is
         several times what is left.

@@ -38,7 +38,7 @@ class Grown:
     Attributes
     ----------
     unknowns : int
-        Of the system.
+        Number of unknowns of the system.
     used : str
         The solver.
     seconds : dict of str to list of float
@@ -75,7 +75,7 @@ def grown(
     turn : int
         Elements round any cylinder.
     method : str, optional
-        Of `fe_drivetrain.elasticity.solve.solvers`.
+        Method of `fe_drivetrain.elasticity.solve.solvers`.
     repeats : int, optional
         How often each step is done that takes less than `SHORT_SECONDS`.
 

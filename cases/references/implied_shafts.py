@@ -64,7 +64,7 @@ def of_stiffness(letter: str, lengths: Sequence[float]) -> dict[str, OfStiffness
     letter : str
         "A" to "D".
     lengths : sequence of float
-        Of the shafts, 1 m among them [m].
+        Lengths of the shafts, 1 m among them [m].
     """
     name, power, rpm = published_drivetrains.RATED[letter]
     table, torque = published_drivetrains.table(name), power / (rpm * 2 * np.pi / 60)

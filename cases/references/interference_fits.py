@@ -103,30 +103,24 @@ def press(radii: Sequence[float], misfit: float, materials: Sequence[Material], 
     Parameters
     ----------
     radii : sequence of float
-        Of the shaft's bore, the seat, and the ring's outside [m].
+        Radii of the shaft's bore, the seat, and the ring's outside [m].
     misfit : float
         On the radius [m].
     materials : sequence of Material
-        Of shaft and ring.
+        Materials of shaft and ring.
     n : int
         Elements through the ring; the shaft has four times as many.
 
     Returns
     -------
     found : Pressed
-        Of hexahedra of 27 nodes, one along the axis.
+        Result with hexahedra of 27 nodes, one along the axis.
     """
     _, seat, outside = radii
     width = (outside - seat) / n
     parts = quarters(radii, width, n)
-    n_shaft = len(parts[0].points)
-    points = np.vstack([part.points for part in parts])
-    cells = [parts[0].cells, parts[1].cells + n_shaft]
-    faces = {
-        name: np.vstack([parts[0].faces[name], parts[1].faces[name] + n_shaft])
-        for name in ("y0", "y1", "z0")
-    }
-    both = Block(points, np.vstack(cells), faces)
+    both = _together(parts)
+    n_shaft, points = len(parts[0].points), both.points
     # After the nodes' degrees of freedom one block of three for the misfit, like a reference
     # point's, which every pair on the seat refers to, and which is prescribed.
     size = points.size + 3
@@ -137,7 +131,7 @@ def press(radii: Sequence[float], misfit: float, materials: Sequence[Material], 
     lames = [material.lame for material in materials]
     static = solve_solid(
         points,
-        list(zip(cells, lames, strict=True)),
+        list(zip(np.split(both.cells, [len(parts[0].cells)]), lames, strict=True)),
         None,
         [
             pressed_pairs("fit", outer, inner, outward, points.size, size),
@@ -151,18 +145,38 @@ def press(radii: Sequence[float], misfit: float, materials: Sequence[Material], 
     # the resultant along y of the pressure on a quarter is p c w, whatever the elements
     onto_ring = static.reactions["fit"][: points.size, 0].reshape(-1, 3)[inner]
     radial = (u.reshape(-1, 3)[:, 1:] * points[:, 1:]).sum(axis=1) / np.hypot(*points.T[1:])
-    profiles = []
-    for part, lame, first in zip(parts, lames, (0, n_shaft), strict=True):
-        own = u[3 * first : 3 * first + part.points.size]
-        polar = polar_stresses(nodal_stresses(part.points, part.cells, own, lame), part.points)
-        profiles.append(Profile(np.hypot(*part.points.T[1:]), polar.hoop, polar.radial))
     return Pressed(
         float(onto_ring[:, 1].sum()) / (seat * width),
         float(radial[outer].mean()),
         float(radial[inner].mean()),
         float(static.energy[0]) / width,
-        *profiles,
+        *_profiles(parts, lames, u),
     )
+
+
+def _together(parts: Sequence[Block]) -> Block:
+    """Both bodies in one block, which share no nodes."""
+    n_shaft = len(parts[0].points)
+    points = np.vstack([part.points for part in parts])
+    cells = np.vstack([parts[0].cells, parts[1].cells + n_shaft])
+    faces = {
+        name: np.vstack([parts[0].faces[name], parts[1].faces[name] + n_shaft])
+        for name in ("y0", "y1", "z0")
+    }
+    return Block(points, cells, faces)
+
+
+def _profiles(
+    parts: Sequence[Block], lames: Sequence[tuple[float, float]], u: Floats
+) -> list[Profile]:
+    """Stresses over the radius, of each body."""
+    profiles, first = [], 0
+    for part, lame in zip(parts, lames, strict=True):
+        own = u[first : first + part.points.size]
+        first += part.points.size
+        polar = polar_stresses(nodal_stresses(part.points, part.cells, own, lame), part.points)
+        profiles.append(Profile(np.hypot(*part.points.T[1:]), polar.hoop, polar.radial))
+    return profiles
 
 
 def quarters(radii: Sequence[float], width: float, n: int) -> list[Block]:
@@ -171,7 +185,7 @@ def quarters(radii: Sequence[float], width: float, n: int) -> list[Block]:
     Parameters
     ----------
     radii : sequence of float
-        Of the shaft's bore, the seat, and the ring's outside [m].
+        Radii of the shaft's bore, the seat, and the ring's outside [m].
     width : float
         Along the axis [m].
     n : int
@@ -200,7 +214,7 @@ def pressed_pairs(
     Parameters
     ----------
     name : str
-        Of the constraint.
+        Name of the constraint.
     first, second : Ints
         (n,) nodes of either body; where the misfit is positive, the second is ahead of the first.
     normals : Floats
@@ -208,7 +222,7 @@ def pressed_pairs(
     misfit : int
         The degree of freedom: prescribed it is a misfit [m], loaded a force that presses [N].
     n_dofs : int
-        Of all.
+        Number of all degrees of freedom.
     """
     shared = np.full((len(first), 1), misfit)
     columns = np.hstack([3 * nodes[:, None] + np.arange(3) for nodes in (second, first)] + [shared])

@@ -68,7 +68,7 @@ class Series:
         Parameters
         ----------
         moduli : Sequence[float]
-            Of each body over `E`; those of rigid ones do not count.
+            Modulus of each body over `E`; those of rigid ones do not count.
         rigid : Sequence[int]
             Bodies that are rigid: eliminated.
         """
@@ -191,7 +191,7 @@ class Answer:
     compliance : float
         Motion of the load per unit load; NaN where the solver refuses.
     iterations : int
-        Of multigrid.
+        Number of iterations of multigrid.
     arrived : bool
         Whether the iteration says that it got there; True of a direct solver.
     """

@@ -114,7 +114,7 @@ class LoadedBlock:
     block : Block
         The mesh.
     material : Material
-        Of all of it.
+        Material of all of it.
     static : Static
         The solution.
     F : Floats
@@ -188,7 +188,7 @@ def solve_block(block: Block, material: Material, F: Floats, *held: Constraint) 
     block : Block
         The mesh.
     material : Material
-        Of all of it.
+        Material of all of it.
     F : Floats
         (3 n,) nodal forces [N], as of `face_loads`.
     *held : Constraint

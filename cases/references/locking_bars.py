@@ -79,7 +79,7 @@ def square(nodes: int, across: int, along: int, element: float) -> Block:
     Parameters
     ----------
     nodes : int
-        Of an element.
+        Number of nodes of an element.
     across, along : int
         Hexahedra; each may be six tetrahedra.
     element : float

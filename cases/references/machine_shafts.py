@@ -1,5 +1,7 @@
 """A shaft of a machine as a scene of its own, to be condensed as beam, meridian or solid."""
 
+from typing import Any
+
 from fe_drivetrain.common import InputError
 from fe_drivetrain.common.reading import validated
 from fe_drivetrain.drivetrain_file import Scene
@@ -18,9 +20,9 @@ def shaft_scene(machine: Machine, name: str, size: float = 0.2) -> Scene:
     machine : Machine
         Its table.
     name : str
-        Of a shaft that is given by its size.
+        Name of a shaft that is given by its size.
     size : float
-        Of elements, over the diameter.
+        Size of elements over the diameter.
 
     Returns
     -------
@@ -37,7 +39,29 @@ def shaft_scene(machine: Machine, name: str, size: float = 0.2) -> Scene:
         raise InputError(f"no shaft {name!r} with a diameter: use one of {', '.join(given)}")
     shaft = given[name]
     d = float(shaft.outer or 0.0)
-    units = [
+    return validated(
+        Scene,
+        {
+            "title": f"{name} of {machine.title}",
+            "materials": {"shaft_steel": STEEL.model_dump()},
+            "shaft": {
+                "front": 0.0,
+                "material": "shaft_steel",
+                "sections": [
+                    {"length": shaft.length, "outer_diameter": d, "inner_diameter": shaft.inner}
+                ],
+            },
+            "bearing_units": units_of(machine, name, d),
+            "gearbox": {"stiffness": [1e6] * 6},
+            "mesh": {"shaft": size * d, "bearing": size * d, "housing": size * d},
+        },
+        f"shaft {name}",
+    )
+
+
+def units_of(machine: Machine, name: str, d: float) -> list[dict[str, Any]]:
+    """Bearing units of a shaft, their seats and housings in proportion to its diameter d [m]."""
+    return [
         {
             "bearing": {
                 "name": bearing.name.replace("-", "_"),
@@ -59,21 +83,3 @@ def shaft_scene(machine: Machine, name: str, size: float = 0.2) -> Scene:
         for bearing in machine.bearings
         if bearing.holds == name
     ]
-    return validated(
-        Scene,
-        {
-            "title": f"{name} of {machine.title}",
-            "materials": {"shaft_steel": STEEL.model_dump()},
-            "shaft": {
-                "front": 0.0,
-                "material": "shaft_steel",
-                "sections": [
-                    {"length": shaft.length, "outer_diameter": d, "inner_diameter": shaft.inner}
-                ],
-            },
-            "bearing_units": units,
-            "gearbox": {"stiffness": [1e6] * 6},
-            "mesh": {"shaft": size * d, "bearing": size * d, "housing": size * d},
-        },
-        f"shaft {name}",
-    )

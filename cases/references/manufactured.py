@@ -148,7 +148,7 @@ def trapezoids(nodes: int, share: float = 0.5) -> Callable[[int], Block]:
     Parameters
     ----------
     nodes : int
-        Of the hexahedra.
+        Number of nodes of the hexahedra.
     share : float
         How far the line moves, in heights of an element; parallel sides are as 1 + share to
         1 - share.
@@ -184,7 +184,8 @@ class Domain:
     sliding : dict[str, int]
         Face to the axis of its normal.
     project : callable
-        Of positions (n, 3) on the face "x1" of a mesh: positions and normals on the true face.
+        Function of positions (n, 3) on the face "x1" of a mesh: positions and normals on the true
+        face.
     """
 
     sliding: dict[str, int]
@@ -244,7 +245,7 @@ def relative_errors(
     lame : tuple[float, float]
         Lame's constants (lambda, mu) [Pa].
     degree : int
-        Of the quadrature.
+        Degree of the quadrature.
 
     Returns
     -------
@@ -329,13 +330,13 @@ def convergence(
     divisions : Sequence[int]
         n, ascending; the size of the elements goes with 1 / n.
     mesh : callable
-        Of n.
+        Function of n that makes a mesh.
     domain, exact : Domain, PlaneWaves
         The problem.
     theory : tuple[float, float]
         Orders in L2 and in the energy norm.
     degree : int
-        Of the quadrature of the norms.
+        Degree of the quadrature of the norms.
     """
     errors: dict[str, list[float]] = {name: [] for name in NORMS}
     unknowns = []

@@ -51,7 +51,9 @@ def stepped_growth(depth: float, frequency: float, steps: int, damping: float = 
     """
     period = 2.0 * np.pi / frequency
     wave = fourier_wave([depth], [0.0])
-    springs = spring_laws([[1.0]], 1.0, 2.0 * damping, wave=0, frequency=1.0 / period, waves=[wave])
+    springs = (
+        spring_laws([[1.0]], 1.0, 2.0 * damping).in_phase(frequency=1.0 / period).with_waves([wave])
+    )
     one = equations_of_motion([1.0], springs)
 
     def after(q: float, velocity: float) -> Floats:

@@ -78,7 +78,7 @@ def printed_model(bearing: float, both: bool, mesh_factor: float = 1.0) -> Syste
     Parameters
     ----------
     bearing : float
-        Of every body, across the shaft [N/m].
+        Stiffness of the bearing of every body, across the shaft [N/m].
     both : bool
         Whether d_y of the planetary meshes is there.
     mesh_factor : float

@@ -5,6 +5,7 @@ the frequencies of Tables 6.1, 6.2 and 6.4 stand here.
 """
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from importlib.resources import files
 from typing import Any
 
@@ -14,14 +15,14 @@ import yaml
 from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.comparison.tolerances import digit
 from fe_drivetrain.dynamics.torsion import (
-    Drivetrain,
+    GearTable,
     GeneratorState,
     Modes,
     ParallelStage,
     PlanetaryStage,
     Torsional,
     natural_modes,
-    parse_drivetrain,
+    parse_gear_table,
 )
 
 TABLE_6_1 = "Al-Hamadani 2018, Table 6.1"
@@ -95,12 +96,12 @@ def text_of(name: str) -> str:
     return (files("fe_drivetrain.cases.references") / f"{name}.yaml").read_text("utf-8")
 
 
-def table(name: str) -> Drivetrain:
+def table(name: str) -> GearTable:
     """One of the tables; `name` as in `text_of`."""
-    return parse_drivetrain(text_of(name), source=name)
+    return parse_gear_table(text_of(name), source=name)
 
 
-def nrel_stages(table: Drivetrain) -> tuple[PlanetaryStage, ParallelStage, ParallelStage]:
+def nrel_stages(table: GearTable) -> tuple[PlanetaryStage, ParallelStage, ParallelStage]:
     """The three stages of drivetrain D, the NREL 750 kW.
 
     Raises
@@ -118,7 +119,7 @@ def nrel_stages(table: Drivetrain) -> tuple[PlanetaryStage, ParallelStage, Paral
     return one, two, three
 
 
-def with_values(table: Drivetrain, values: Mapping[str, float]) -> Drivetrain:
+def with_values(table: GearTable, values: Mapping[str, float]) -> GearTable:
     """The table with other values, by dotted key such as "stages.0.carrier"."""
     data = table.model_dump(exclude_none=True)
     for key, value in values.items():
@@ -127,7 +128,7 @@ def with_values(table: Drivetrain, values: Mapping[str, float]) -> Drivetrain:
         for part in path:
             target = target[int(part)] if part.isdecimal() else target[part]
         target[last] = value
-    return Drivetrain.model_validate(data)
+    return GearTable.model_validate(data)
 
 
 def printed_inputs(name: str) -> Iterator[tuple[str, str]]:
@@ -145,10 +146,15 @@ def _numbers(data: Any, key: str) -> Iterator[tuple[str, str]]:
         yield key, data
 
 
+def rounding_bands(name: str, model: Callable[..., Torsional]) -> dict[GeneratorState, Floats]:
+    """Bands as those of `rounding_band`, by state of the generator."""
+    return {state: rounding_band(name, partial(model, generator=state)) for state in STATES}
+
+
 def rounding_band(
     name: str,
-    model: Callable[[Drivetrain], Torsional],
-    base: Drivetrain | None = None,
+    model: Callable[[GearTable], Torsional],
+    base: GearTable | None = None,
     without: frozenset[str] = frozenset(),
 ) -> Floats:
     """Band of each frequency that the rounding of the printed inputs leaves.
@@ -156,7 +162,7 @@ def rounding_band(
     Parameters
     ----------
     name : str
-        Of the table whose digits count.
+        Name of the table whose digits count.
     model : callable
         From a table to its masses.
     base : Drivetrain, optional
@@ -193,7 +199,7 @@ def observable(modes: Modes, least: float = 1e-9) -> Ints:
     Parameters
     ----------
     modes : Modes
-        Of a model with a mass for each gear.
+        Modes of a model with a mass for each gear.
     least : float
         Share of the kinetic energy outside the planets, below which a mode is theirs alone.
 

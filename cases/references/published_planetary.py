@@ -33,17 +33,17 @@ class PlaneStage:
     Attributes
     ----------
     masses : tuple[float, float, float, float]
-        Of sun, ring, carrier and planet [kg].
+        Masses of sun, ring, carrier and planet [kg].
     inertias : tuple[float, float, float, float]
         The same over the radius squared, of the base circles and of the carrier's pins [kg].
     base_diameters : tuple[float, float]
-        Of sun and planet [m].
+        Base diameters of sun and planet [m].
     mesh, pin, sun, ring, carrier : float
         Stiffness of a mesh, of a planet's bearing and across each central body's [N/m].
     turning : tuple[float, float, float]
-        Of sun, ring and carrier about their axis, over the radius squared [N/m].
+        Stiffness of sun, ring and carrier about their axis, over the radius squared [N/m].
     pressure_angle : float
-        Of both meshes [deg].
+        Pressure angle of both meshes [deg].
     """
 
     masses: tuple[float, float, float, float]

@@ -62,15 +62,15 @@ class RatedMesh:
     Attributes
     ----------
     name : str
-        Of the mesh.
+        Name of the mesh.
     pair : Pair
         Its gears.
     materials : tuple of GearMaterial
-        Of both.
+        Materials of both.
     running : Running
         Torque, speed, oil, roughness.
     cycles : tuple of float
-        Of load on one flank of a tooth of each gear, over the life.
+        Cycles of load on one flank of a tooth of each gear, over the life.
     stiffness : tuple of float
         c' and c_gamma_alpha, as printed [N/m^2].
     factors : LoadFactors
@@ -82,7 +82,7 @@ class RatedMesh:
     computed_dynamics : tuple of bool
         Whether K_v, and whether K_Halpha and K_Falpha, are computed.
     cutter : Cutter or None
-        Of an internal gear.
+        Cutter of an internal gear.
     mean_stress : tuple of float
         Y_M of both gears.
     tooth_height : float
@@ -198,20 +198,27 @@ def rated(mesh: RatedMesh, factors: LoadFactors | None = None) -> dict[str, tupl
     dict
         Under the keys of `printed`: values of both gears, or of the mesh.
     """
+    pair, K = mesh.pair, with_dynamics(mesh) if factors is None else factors
+    resonance = resonance_speed(mesh.stiffness[1], mesh.mass, pair.first.teeth)
+    return {
+        "F_t [N]": (pair.tangential_force(mesh.running.torque),),
+        "m_red [kg/m]": (mesh.mass,),
+        "n_E1 [1/min]": (resonance / RPM,),
+        "K_v": (K.K_v,),
+        "K_Halpha": (K.K_Halpha,),
+        "K_Fbeta": (K.K_Fbeta,),
+        **_of_flanks(mesh, K),
+        **_of_roots(mesh, K),
+    }
+
+
+def _of_flanks(mesh: RatedMesh, K: LoadFactors) -> dict[str, tuple[float, ...]]:
+    """Contact stress, what the flanks endure, and their lives."""
     pair, running, own = mesh.pair, mesh.running, mesh.materials
-    K = with_dynamics(mesh) if factors is None else factors
     contact = contact_stress(pair, running.torque, K, own)
     flanks = endured_contact(pair, running, own)
-    roots = root_stress(pair, running.torque, K, mesh.cutter)
-    gears, weaker = (pair.first, pair.second), min(m.contact_limit for m in own)
-    of_roots = [
-        endured_root(gear, r.root, m, rough, Y_M)
-        for gear, r, m, rough, Y_M in zip(
-            gears, roots, own, running.root_roughness, mesh.mean_stress, strict=True
-        )
-    ]
+    weaker = min(m.contact_limit for m in own)
     sigma_HG = [e.curve.at(n) for e, n in zip(flanks, mesh.cycles, strict=True)]
-    sigma_FG = [e.curve.at(n) for e, n in zip(of_roots, mesh.cycles, strict=True)]
     speed = running.speed * pair.first.reference_radius
     radii = pair.curvatures(pair.path.pitch)
     radius = float(radii[0] * radii[1] / (radii[0] + radii[1]))
@@ -219,15 +226,8 @@ def rated(mesh: RatedMesh, factors: LoadFactors | None = None) -> dict[str, tupl
         float(e.curve.endured([1.25 * s])[0]) / n * HOURS
         for e, s, n in zip(flanks, contact.stress, mesh.cycles, strict=True)
     ]
-    resonance = resonance_speed(mesh.stiffness[1], mesh.mass, pair.first.teeth)
     rough = 0.5 * sum(running.flank_roughness)
     return {
-        "F_t [N]": (pair.tangential_force(running.torque),),
-        "m_red [kg/m]": (mesh.mass,),
-        "n_E1 [1/min]": (resonance / RPM,),
-        "K_v": (K.K_v,),
-        "K_Halpha": (K.K_Halpha,),
-        "K_Fbeta": (K.K_Fbeta,),
         "Z_H": (contact.Z_H,),
         "Z_E [sqrt(MPa)]": (contact.Z_E / 1e3,),
         "Z_epsilon": (contact.Z_epsilon,),
@@ -243,6 +243,22 @@ def rated(mesh: RatedMesh, factors: LoadFactors | None = None) -> dict[str, tupl
         "sigma_HG [MPa]": tuple(s / 1e6 for s in sigma_HG),
         "S_H": tuple(g / s for g, s in zip(sigma_HG, contact.stress, strict=True)),
         "life of the flanks at S_H = 1.25 [h]": tuple(lives),
+    }
+
+
+def _of_roots(mesh: RatedMesh, K: LoadFactors) -> dict[str, tuple[float, ...]]:
+    """Tooth form, root stress, and what the roots endure."""
+    pair, running, own = mesh.pair, mesh.running, mesh.materials
+    roots = root_stress(pair, running.torque, K, mesh.cutter)
+    gears, roughness = (pair.first, pair.second), running.root_roughness
+    endured = [
+        endured_root(gear, r.root, m, rough, Y_M)
+        for gear, r, m, rough, Y_M in zip(
+            gears, roots, own, roughness, mesh.mean_stress, strict=True
+        )
+    ]
+    sigma_FG = [e.curve.at(n) for e, n in zip(endured, mesh.cycles, strict=True)]
+    return {
         "Y_F": tuple(r.root.Y_F for r in roots),
         "Y_S": tuple(r.root.Y_S for r in roots),
         "s_Fn [modules]": tuple(r.root.chord for r in roots),
@@ -256,7 +272,7 @@ def rated(mesh: RatedMesh, factors: LoadFactors | None = None) -> dict[str, tupl
             notch_factor(m, r.root.notch) for m, r in zip(own, roots, strict=True)
         ),
         "Y_R_relT": tuple(
-            surface_factor(m, rough) for m, rough in zip(own, running.root_roughness, strict=True)
+            surface_factor(m, rough) for m, rough in zip(own, roughness, strict=True)
         ),
         "Y_X": tuple(size_factor(m, pair.first.normal_module) for m in own),
         "Y_NT": tuple(life_factor(m, n, root=True) for m, n in zip(own, mesh.cycles, strict=True)),

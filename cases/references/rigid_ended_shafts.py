@@ -114,7 +114,7 @@ def polar_moment_error(mesh: Mesh, shaft: Shaft) -> float:
     Parameters
     ----------
     mesh : Mesh
-        Of ten-node tetrahedra.
+        Mesh of ten-node tetrahedra.
     shaft : Shaft
         What it is a mesh of, of cylinders.
     """

@@ -90,9 +90,9 @@ def slice_supports(block: Block, angle: float, plane_end: bool) -> list[Constrai
     Parameters
     ----------
     block : Block
-        Of `ring_sector`.
+        Block from `ring_sector`.
     angle : float
-        Of the sector [rad].
+        Angle of the sector [rad].
     plane_end : bool
         Whether the side z1 stays plane and carries no net force, as in a long cylinder; otherwise
         it is free, as in a disc of twice the width.
@@ -115,7 +115,7 @@ def along_the_middle(
     found : LoadedBlock
         A sector of a ring.
     angle : float
-        Of the sector [rad].
+        Angle of the sector [rad].
     radii : Mapping[str, float]
         Name of each place, and its radius [m].
 
@@ -166,9 +166,9 @@ def pressed_ring(
     ring : Lame
         Its radii and the pressure inside.
     material : Material
-        Of the ring.
+        Material of the ring.
     nodes : int
-        Of an element: 4, 8, 10, 20 or 27.
+        Number of nodes of an element: 4, 8, 10, 20 or 27.
     n : int
         Elements through the wall, and round the sector: those at the bore are about square.
     free_ends : bool

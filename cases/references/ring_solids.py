@@ -36,7 +36,7 @@ def ring_sector(
     angle : float
         From t = 0 on [rad].
     divisions, nodes, edges : tuple[int, int, int], int, Sequence[ArrayLike or None]
-        As for `blocks.brick`: along the radius, the angle, the axis.
+        The same as for `blocks.brick`: along the radius, the angle, the axis.
     """
 
     def shape(unit: Floats) -> Floats:

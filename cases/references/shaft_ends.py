@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.common import Floats, Ints, rigid_motions
+from fe_drivetrain.comparison import grid_convergence, richardson
 from fe_drivetrain.drivetrain_file import MATERIALS, Material
 from fe_drivetrain.elasticity.mesh import generate, shaft_hexahedra
 from fe_drivetrain.elasticity.solve import solve_solid
@@ -111,3 +112,26 @@ def imbalance(K: Floats, shaft: Shaft) -> float:
     rigid = np.vstack([rigid[:3], np.eye(6)[3:], rigid[3:], np.eye(6)[3:]])
     terms = np.abs(K) @ np.abs(rigid)
     return float((np.abs(K @ rigid) / np.where(terms > 0.0, terms, 1.0)).max())
+
+
+def limit_of(cuts: tuple[int, ...], values: list[float]) -> tuple[float, float, str]:
+    """Limit of a stiffness of solids on ever finer meshes, its band, and how both were found.
+
+    Parameters
+    ----------
+    cuts : tuple of int
+        Elements per coarsest element, of two meshes or three.
+    values : list of float
+        Stiffness on each mesh.
+    """
+    sizes = [1 / cut for cut in cuts]
+    if len(cuts) == 2:
+        limit = richardson(sizes, values, 1.0)
+        return (
+            limit,
+            abs(values[-1] - values[-2]),
+            "what the finer of two meshes of the solid changed",
+        )
+    grid = grid_convergence(sizes, values, least_order=1.0)
+    band = max(grid.extrapolated_uncertainty, abs(values[-1] - grid.extrapolated))
+    return grid.extrapolated, band, f"the band of three meshes of the solid ({grid.behaviour})"

@@ -5,7 +5,6 @@ Nothing here uses the finite elements or the frame of the library; a shaft lies 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,7 +34,7 @@ class Tube:
     length : float
         [m].
     material : Material
-        Of the shaft.
+        Material of the shaft.
     """
 
     outer: float
@@ -319,135 +318,14 @@ def between_spheres(radii: tuple[float, float], half_angle: float, shear_modulus
     Parameters
     ----------
     radii : tuple of float
-        Of the flat ends through whose centres the spheres go [m].
+        Radii of the flat ends through whose centres the spheres go [m].
     half_angle : float
-        Of the cone [rad].
+        Half angle of the cone [rad].
     shear_modulus : float
         G [Pa].
     """
     near, far = (r / np.tan(half_angle) for r in radii)
     return float(michell_torque(float(half_angle), shear_modulus) / (near**-3 - far**-3))
-
-
-@dataclass(frozen=True)
-class Spring:
-    """A support in the plane of x and z.
-
-    Attributes
-    ----------
-    x : float
-        Station [m].
-    force : float
-        Stiffness against u_z [N/m], inf is rigid.
-    moment : float
-        Stiffness against the slope [N m/rad].
-    """
-
-    x: float
-    force: float
-    moment: float = 0.0
-
-
-@dataclass(frozen=True)
-class Bent:
-    """Answer of `macaulay`.
-
-    Attributes
-    ----------
-    deflection, slope : Floats
-        At the stations asked for: u_z [m] and the rotation of the section, positive as u_z'
-        where there is no shear [rad].
-    forces, moments : Floats
-        That the supports put on the beam, along z and in the sense of the slope [N, N m].
-    """
-
-    deflection: Floats
-    slope: Floats
-    forces: Floats
-    moments: Floats
-
-
-def macaulay(
-    length: float,
-    EI: float,
-    kGA: float,
-    supports: Sequence[Spring],
-    loads: Sequence[tuple[float, float, float]],
-    at: ArrayLike,
-    load_per_length: float = 0.0,
-) -> Bent:
-    """A uniform Timoshenko beam from 0 to L on any springs, by Macaulay's brackets.
-
-    With F and m the forces along z and the moments in the sense of the slope at stations a,
-    ``phi = c1 + sum F <x-a>^2 / 2EI - m <x-a> / EI + q x^3 / 6EI`` and
-    ``w = c0 + c1 x + sum F (<x-a>^3 / 6EI - <x-a> / kGA) - m <x-a>^2 / 2EI + q (x^4 / 24EI -
-    x^2 / 2kGA)``: the reactions and c0, c1 follow from the springs and from equilibrium.
-
-    Parameters
-    ----------
-    length, EI, kGA : float
-        [m], [N m^2], [N]; kGA may be infinite.
-    supports : Sequence[Spring]
-        The springs.
-    loads : Sequence[tuple[float, float, float]]
-        Station [m], force [N] and moment [N m].
-    at : ArrayLike
-        Stations where the answer is wanted [m].
-    load_per_length : float
-        q along z [N/m].
-    """
-    x = np.atleast_1d(np.asarray(at, dtype=float))
-
-    def force_at(a: float, x: Floats) -> tuple[Floats, Floats]:
-        d = np.maximum(x - a, 0.0)
-        return d**3 / (6 * EI) - d / kGA, d**2 / (2 * EI)
-
-    def moment_at(a: float, x: Floats) -> tuple[Floats, Floats]:
-        d = np.maximum(x - a, 0.0)
-        return -(d**2) / (2 * EI), -d / EI
-
-    unknowns = [(s.x, force_at, s.force, 0) for s in supports if s.force > 0]
-    unknowns += [(s.x, moment_at, s.moment, 1) for s in supports if s.moment > 0]
-    n = len(unknowns)
-    matrix, right = np.zeros((n + 2, n + 2)), np.zeros(n + 2)
-
-    def given(x: Floats) -> tuple[Floats, Floats]:
-        w = load_per_length * (x**4 / (24 * EI) - x**2 / (2 * kGA))
-        phi = load_per_length * x**3 / (6 * EI)
-        for a, force, moment in loads:
-            (wf, pf), (wm, pm) = force_at(a, x), moment_at(a, x)
-            w, phi = w + force * wf + moment * wm, phi + force * pf + moment * pm
-        return w, phi
-
-    for row, (station, _, stiffness, kind) in enumerate(unknowns):
-        here = np.array([station])
-        for column, (a, effect, _, _) in enumerate(unknowns):
-            matrix[row, column] = effect(a, here)[kind][0]
-        matrix[row, row] += 0.0 if np.isinf(stiffness) else 1.0 / stiffness
-        matrix[row, n:] = (1.0, station) if kind == 0 else (0.0, 1.0)
-        right[row] = -given(here)[kind][0]
-    for column, (a, _, _, kind) in enumerate(unknowns):
-        matrix[n:, column] = (1.0, a) if kind == 0 else (0.0, 1.0)
-    right[n] = -load_per_length * length - sum(load[1] for load in loads)
-    right[n + 1] = -load_per_length * length**2 / 2
-    right[n + 1] -= sum(load[0] * load[1] + load[2] for load in loads)
-    # forces are many times what deflections are
-    rows = np.abs(matrix).max(axis=1)
-    columns = np.abs(matrix / rows[:, None]).max(axis=0)
-    found = np.linalg.solve(matrix / rows[:, None] / columns, right / rows) / columns
-    w, phi = given(x)
-    for value, (a, effect, _, _) in zip(found, unknowns, strict=False):
-        more = effect(a, x)
-        w, phi = w + value * more[0], phi + value * more[1]
-    w, phi = w + found[n] + found[n + 1] * x, phi + found[n + 1]
-    forces, moments = np.zeros(len(supports)), np.zeros(len(supports))
-    forces[[i for i, s in enumerate(supports) if s.force > 0]] = [
-        v for v, u in zip(found, unknowns, strict=False) if u[3] == 0
-    ]
-    moments[[i for i, s in enumerate(supports) if s.moment > 0]] = [
-        v for v, u in zip(found, unknowns, strict=False) if u[3] == 1
-    ]
-    return Bent(w, phi, forces, moments)
 
 
 def two_mass_frequencies(stiffness: float, rotor: float, generator: float) -> tuple[float, float]:
@@ -474,7 +352,7 @@ def chain_frequencies(inertias: ArrayLike, springs: ArrayLike, ground: float = 0
     springs : ArrayLike
         (n - 1,) between neighbours [N m/rad].
     ground : float
-        Of the last inertia to the ground [N m/rad].
+        Stiffness of the last inertia to the ground [N m/rad].
     """
     J, k = np.asarray(inertias, dtype=float), np.asarray(springs, dtype=float)
     K = np.diag(np.concatenate([k, [ground]]) + np.concatenate([[0.0], k]))

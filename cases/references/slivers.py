@@ -42,11 +42,11 @@ def bar(height: float, across: int, nodes: int = 10) -> Mesh:
     Parameters
     ----------
     height : float
-        Of the slivers, relative to the size of a cube; below 0 they are inside out.
+        Height of the slivers over the size of a cube; below 0 they are inside out.
     across : int
         Cubes across, an even number; twice as many to a length.
     nodes : int
-        Of an element, 10 or 4.
+        Number of nodes of an element, 10 or 4.
     """
     along = 2 * across
     n = (along, across, across)
@@ -131,7 +131,7 @@ class Bent:
         Errors of the stiffness, relative to the exact one; NaN where nothing came out. Elements of
         ten nodes with straight edges hold the first solution: what is left is the solver's error.
     iterations : int
-        Of the solver, 0 of a direct one.
+        Number of iterations of the solver, 0 of a direct one.
     solver : str
         Which gave the answer, or why there is none.
     condition : float
@@ -153,9 +153,9 @@ def bent(mesh: Mesh, method: str, condition: bool = False) -> Bent:
     Parameters
     ----------
     mesh : Mesh
-        Of the bar.
+        Mesh of the bar.
     method : str
-        Of `solvers.solve`.
+        Method of `solvers.solve`.
     condition : bool
         Whether to estimate the condition number.
     """

@@ -66,7 +66,7 @@ class Motion:
     hub, gearbox : (6, n_loads) array
         Displacements [m] and rotations [rad].
     energy_error, residual : float
-        Of the solver.
+        Energy error and residual of the solver.
     method : str
         That solved in the end.
     """
@@ -107,12 +107,12 @@ class Sprung:
         Parameters
         ----------
         stiffness : sequence of 6 floats
-            Of the gearbox springs [N/m, N m/rad].
+            Stiffness of the gearbox springs [N/m, N m/rad].
 
         Returns
         -------
         warnings : tuple of str
-            Of motions that are hardly restrained.
+            Warnings of motions that are hardly restrained.
         refusal : str
             Why it refuses to solve; empty if it does not.
         """
@@ -139,7 +139,7 @@ class Sprung:
         Parameters
         ----------
         stiffness : sequence of 6 floats
-            Of the gearbox springs [N/m, N m/rad].
+            Stiffness of the gearbox springs [N/m, N m/rad].
         loads : sequence of str
             Names of `fe_drivetrain.shafts.response.LOADS`.
         method : str

@@ -129,7 +129,7 @@ def solid(
     Parameters
     ----------
     shaft, grading : Shaft, Grading
-        As for `hexahedra.shaft_hexahedra`.
+        The same as for `hexahedra.shaft_hexahedra`.
     refinement : int
         r.
     base_turn : int
@@ -157,9 +157,9 @@ def mesh_band(refinements: Sequence[int], values: ArrayLike, order: float = 4.0)
     Parameters
     ----------
     refinements, values : Sequence[int], ArrayLike
-        Of two meshes or more of the family, coarse first; see `fe_drivetrain.comparison.band_of`.
+        Two meshes or more of the family, coarse first; see `fe_drivetrain.comparison.band_of`.
     order : float
-        Of the theory: fourth for energies of smooth solutions, and of parabolas for circles.
+        Order of the theory: fourth for energies of smooth solutions, and of parabolas for circles.
     """
     return band_of(1.0 / np.asarray(refinements, dtype=float), values, order)
 
@@ -218,7 +218,7 @@ class Compliance:
     stations : Floats
         (n,) [m].
     components : tuple[int, ...]
-        Of force and motion, 0-5.
+        Components of force and motion, 0-5.
     matrix : Floats
         (n, c, n, c) motion of a section for a unit load on one [m, rad per N, N m].
     weight : Floats
@@ -226,7 +226,7 @@ class Compliance:
     weight_resultant : Floats
         (c,) force and moment of that weight about the first station [N, N m].
     unknowns, seconds : int, float
-        Of the solution.
+        Number of unknowns and duration of the solution.
     """
 
     stations: Floats
@@ -256,7 +256,7 @@ def sectional_compliance(
     stations : Sequence[float]
         Planes of nodes [m], the front face first.
     components : tuple[int, ...]
-        Of the loads and motions: 0-2 along, 3-5 about x, y and z.
+        Components of the loads and motions: 0-2 along, 3-5 about x, y and z.
     """
     n, chosen = mesh.n_unknowns, list(components)
     points = [

@@ -42,7 +42,7 @@ class Iterated:
     residual : float
         Largest relative residual.
     compliance : (m,) array
-        Of the last iterate [J].
+        Compliance of the last iterate [J].
     """
 
     iterations: int

@@ -65,7 +65,7 @@ class Outcome:
     used : str
         Solver that gave the solution: another than the one asked for where that fell back.
     unknowns, iterations, bytes : int
-        Of the system, of the iteration, and held by factor or hierarchy.
+        Unknowns of the system, iterations, and bytes held by factor or hierarchy.
     times : dict of str to Times
         Wall times of each of `STEPS`.
     values : ndarray
@@ -135,9 +135,9 @@ class Level:
     turn : int
         Elements round any cylinder, at least.
     grading : Grading
-        Of hexahedra.
+        Grading of hexahedra.
     refinement : int
-        Of hexahedra: each element cut into so many along its three directions.
+        Number of parts into which each hexahedron is cut along its three directions.
     """
 
     element: str
@@ -293,9 +293,9 @@ def solved(
     before : tuple of two Times
         Wall times of mesh and of assembly.
     solves : iterable of Solve
-        As for `shaft_outcomes`.
+        The same as for `shaft_outcomes`.
     repeats, short : optional
-        As for `shaft_outcomes`.
+        The same as for `shaft_outcomes`.
     """
     system, loads, quantities = assembled
     for how in solves:

@@ -10,7 +10,7 @@ from fe_drivetrain.bearing import (
     RollerRow,
     catalogue_bearing,
     lamina_loads,
-    read_catalogue,
+    read_bearing_catalogue,
 )
 from fe_drivetrain.bearing_life.coupled import LinearBody, coupled_equilibrium, factors_of
 from fe_drivetrain.bearing_life.life import (
@@ -49,7 +49,7 @@ LOAD = np.array([1.5e5, 0.0, -4e5, 3e5, 0.0])
 #: What a choice may change of a life.
 ENOUGH = 0.05
 
-PITCH = read_catalogue()["bearing_s"].pitch_diameter
+PITCH = read_bearing_catalogue()["bearing_s"].pitch_diameter
 
 
 @dataclass(frozen=True)

@@ -12,14 +12,13 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.cases.references import solid_shafts
 from fe_drivetrain.cases.references.shaft_theory import (
-    Spring,
     Tube,
     evenly_loaded_shear,
-    macaulay,
     parabola_shortfall,
     sag,
 )
 from fe_drivetrain.cases.references.solid_shafts import Compliance, Supported
+from fe_drivetrain.cases.references.sprung_beams import Spring, macaulay
 from fe_drivetrain.shafts.beam import Beam, BeamSection, Support, solve
 
 EVENLY = "Macaulay's brackets with shear of evenly loaded sections (Hutchinson 2001, as quoted by "
@@ -125,7 +124,7 @@ class SupportedShaft:
         Parameters
         ----------
         refinement : int
-            Of the family of meshes, see `solid_shafts.solid`.
+            Refinement of the family of meshes, see `solid_shafts.solid`.
         size : float, optional
             Longest element of the first of them [m].
         """
@@ -147,8 +146,8 @@ def sag_over_beam(tube: Tube) -> tuple[float, float]:
     Returns
     -------
     solid, evenly : float, float
-        Of a mesh of hexahedra, and of the beam with the coefficient of an evenly held root. With
-        the mesh's own mass and I, so that what is left is not the section's error.
+        Values of a mesh of hexahedra, and of the beam with the coefficient of an evenly held root.
+        With the mesh's own mass and I, so that what is left is not the section's error.
     """
     shaft = solid_shafts.straight((0.0, tube.length), tube.outer, tube.inner)
     mesh = solid_shafts.solid(shaft, 2, size=tube.outer)

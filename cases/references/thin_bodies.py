@@ -37,7 +37,7 @@ class Problem:
     Attributes
     ----------
     mesh : Hexahedra
-        Of the body.
+        Mesh of the body.
     shaft : Shaft
         Its geometry.
     system : System
@@ -135,7 +135,7 @@ def bending_compliance(diameter: float, wall: float, size: float, turn: int, cou
     Parameters
     ----------
     diameter, wall : float
-        Of the tube [m].
+        Diameter and wall of the tube [m].
     size : float
         Length s of an element [m].
     turn, count : int
@@ -166,7 +166,7 @@ def oval_work(shaft: Shaft, elements: int = 8) -> float:
     shaft : Shaft
         One section.
     elements : int
-        Of order 8 along the meridian.
+        Number of elements of order 8 along the meridian.
 
     Returns
     -------

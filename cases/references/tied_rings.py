@@ -105,7 +105,7 @@ def ring(
     turn : int
         Elements round.
     nodes : int
-        Of an element.
+        Number of nodes of an element.
     twist : float
         Share of a turn that the mesh is turned by.
     layers : tuple of int

@@ -36,7 +36,7 @@ from fe_drivetrain.shafts.response import (
     PLANES,
     build_model,
     mesh_scene,
-    tilt_stiffness,
+    tilt_by_plane,
     unit_load_response,
 )
 
@@ -196,9 +196,9 @@ def ten_unit_loads(scene: Scene, sizes: MeshSizes) -> Outcome:
     times.append(time.perf_counter())
     bearing = scene.bearing_units[0].bearing.name
     found = {
-        (plane.name, kind): value
-        for plane in PLANES
-        for kind, value in tilt_stiffness(model, response, bearing, plane).items()
+        (plane, kind): value
+        for plane, values in tilt_by_plane(model, response, bearing).items()
+        for kind, value in values.items()
     }
     meshing, rest = np.diff(times)
     seconds = dict.fromkeys(STEPS, 0.0)

@@ -121,7 +121,7 @@ def added_length(shaft: Shaft, shear_modulus: float, stiffness: float) -> float:
     shear_modulus : float
         G [Pa].
     stiffness : float
-        Of the shaft, steps and all [N m/rad].
+        Stiffness of the shaft, steps and all [N m/rad].
     """
     last, G = shaft.pieces[-1], shear_modulus
     polar = polar_moment(last.outer_diameter, last.inner_diameter)

@@ -24,7 +24,7 @@ class TwistedTube:
     Attributes
     ----------
     series : GridConvergence
-        Of the stiffness [N m/rad].
+        Series of the stiffness [N m/rad].
     per_turn, unknowns : int
         Elements round the axis of the finest mesh, and its number of unknowns.
     """
@@ -117,11 +117,11 @@ class TwistedStep:
     Attributes
     ----------
     stiffness, band : float
-        Of the finest mesh, and half width of its numerical uncertainty [N m/rad].
+        Stiffness with the finest mesh, and half width of its numerical uncertainty [N m/rad].
     tolerance, reason : float, str
         How much that mesh may miss, relative, and why.
     unknowns : int
-        Of that mesh.
+        Number of unknowns of that mesh.
     """
 
     stiffness: float
@@ -143,11 +143,11 @@ def twisted_step(
     Parameters
     ----------
     diameters : tuple of float
-        Of the thick part and of the thin one [m].
+        Diameters of the thick part and of the thin one [m].
     length, bore : float
-        Of each part [m].
+        Length and bore of each part [m].
     material : Material
-        Of the shaft.
+        Material of the shaft.
     refinements : sequence of int
         Refinements, coarse first; see `fe_drivetrain.cases.references.solid_shafts.solid`.
     """

@@ -230,7 +230,7 @@ def check_solid(run: Run, page: Page) -> None:
 
 def show(page: Page, found: Map, shown: int, inset: float) -> None:
     """Answer, charts, table and limit."""
-    thick, error, thin = found.thick, found.error, found.thick <= PLATE
+    thick, error = found.thick, found.error
     low = least_safe(thick, error[shown], 10.0)
     worst = np.abs(found.thin).max()
     page.answer(
@@ -262,6 +262,12 @@ def show(page: Page, found: Map, shown: int, inset: float) -> None:
         f"{inset:.3f} of the flange's thickness at each side, measured on a flange of {SHOWN:g} d, "
         f"{MEASURED:g} d thick."
     )
+    show_errors(page, found, shown, low)
+
+
+def show_errors(page: Page, found: Map, shown: int, low: float | None) -> None:
+    """Show the beam's errors; the beam alone is safe from the thickness `low` on."""
+    thick, error, thin = found.thick, found.error, found.thick <= PLATE
     page.section("Results")
     title = f"Error of the rotation by a moment, flange of {SHOWN:g} d, L = {LENGTH:g} d, against "
     title += "the flange's thickness; shaded is where the beam alone is within 10 %"

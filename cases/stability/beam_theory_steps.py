@@ -232,7 +232,7 @@ def check(run: Run, page: Page, found: Map, sharp: Floats, band: float) -> None:
 def show_steps(page: Page, found: Map) -> None:
     """Answer, charts, table and limits of sharp steps."""
     shown = int(np.argmin(np.abs(found.ratios - 1.5)))
-    step, lengths = found.ratios[shown], found.lengths
+    step = found.ratios[shown]
     extra = {name: values[shown] for name, values in found.extra.items()}
     safe = found.least(found.error["bending"][shown], 5.0)
     kept = found.least(found.corrected["bending"][shown], 5.0)
@@ -262,6 +262,12 @@ def show_steps(page: Page, found: Map) -> None:
         "taken out again, so that the error is the step's alone; in one point that was checked "
         "against tractions that need no such correction. In torsion rigid ends disturb nothing."
     )
+    show_errors(page, found, shown, safe)
+
+
+def show_errors(page: Page, found: Map, shown: int, safe: float | None) -> None:
+    """Show the errors at sharp steps; bending is safe from the length `safe` on."""
+    step, lengths = found.ratios[shown], found.lengths
     page.section("Sharp steps")
     along = "length of both halves over small diameter"
     page.chart(

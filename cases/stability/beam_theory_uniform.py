@@ -245,8 +245,7 @@ def check_solids(run: Run, page: Page) -> None:
 
 def show(page: Page, found: Map) -> None:
     """Answer, charts, tables and limits."""
-    lengths, bores, shear, error = found.lengths, found.bores, found.shear, found.error
-    solid, half = 0, list(bores).index(0.5)
+    shear, error, solid = found.shear, found.error, 0
     first = found.least(error[BENT][solid], 1.0)
     safe_corrected = [found.least(row, 1.0) for row in found.corrected[BENT]]
     end = found.ends[solid]
@@ -260,6 +259,26 @@ def show(page: Page, found: Map) -> None:
         f"each end in bending and {end.tension:.3f} D in tension. With that the beam is within 1 % "
         f"for all bores from L = {max(safe_corrected, key=lambda v: v or np.inf):.2g} D.",
     )
+    state_limits(page, found, safe_corrected)
+    page.section("How ends are held")
+    page.text(
+        "Two questions are kept apart. The error of the beam itself shows under loads that are "
+        "spread over both end sections as Saint-Venant's solution has them: then Timoshenko's "
+        "beam with Cowper's coefficient is exact for every length, and Euler and Bernoulli's has "
+        "no shear. The effect of an end shows with rigid end faces, as of a shaft between stiff "
+        "flanges: these keep sections flat and round, which no beam represents, so that the shaft "
+        "is stiffer than its beam however long; only the share falls, as D / L. In torsion rigid "
+        "ends disturb nothing: G J / L is exact at any length."
+    )
+    show_errors(page, found, first)
+    show_lengths(page, found)
+    show_ends(page, found)
+
+
+def state_limits(page: Page, found: Map, safe_corrected: Sequence[float | None]) -> None:
+    """State the shortest shafts of both beams."""
+    lengths, bores, shear, error = found.lengths, found.bores, found.shear, found.error
+    solid, half = 0, list(bores).index(0.5)
     for level in (1.0, 5.0):
         page.limit(
             "Euler and Bernoulli's beam, cantilever",
@@ -284,16 +303,11 @@ def show(page: Page, found: Map) -> None:
             remedy="ends' flexibility from the table added to the beam: within 1 % from "
             f"L = {safe_corrected[i] or np.nan:.2g} D",
         )
-    page.section("How ends are held")
-    page.text(
-        "Two questions are kept apart. The error of the beam itself shows under loads that are "
-        "spread over both end sections as Saint-Venant's solution has them: then Timoshenko's "
-        "beam with Cowper's coefficient is exact for every length, and Euler and Bernoulli's has "
-        "no shear. The effect of an end shows with rigid end faces, as of a shaft between stiff "
-        "flanges: these keep sections flat and round, which no beam represents, so that the shaft "
-        "is stiffer than its beam however long; only the share falls, as D / L. In torsion rigid "
-        "ends disturb nothing: G J / L is exact at any length."
-    )
+
+
+def show_errors(page: Page, found: Map, first: float | None) -> None:
+    """Show errors over length and bore; Timoshenko's deflection is safe from `first` on."""
+    lengths, bores, shear, error = found.lengths, found.bores, found.shear, found.error
     page.section("Solid shaft")
     curves = {
         "Euler-Bernoulli, loads as Saint-Venant has them": ("solid", shear),
@@ -304,7 +318,7 @@ def show(page: Page, found: Map) -> None:
     page.chart(
         "Error of the beam against its length; shaded is where Timoshenko's deflection is within "
         "1 % between rigid ends. Torsion has no error",
-        [dashed(name, lengths, np.abs(of[solid]), dash) for name, (dash, of) in curves.items()],
+        [dashed(name, lengths, np.abs(of[0]), dash) for name, (dash, of) in curves.items()],
         "length over diameter",
         "error without its sign [%]",
         "xy",
@@ -329,8 +343,13 @@ def show(page: Page, found: Map) -> None:
         map_traces(lengths, bores, shear, 2.0),
         *axes,
     )
-    beams = {"Euler-Bernoulli, deflection": shear}
-    beams |= {f"Timoshenko, {name}": percent for name, percent in error.items()}
+
+
+def show_lengths(page: Page, found: Map) -> None:
+    """Show the minimum length of each bore."""
+    lengths = found.lengths
+    beams = {"Euler-Bernoulli, deflection": found.shear}
+    beams |= {f"Timoshenko, {name}": percent for name, percent in found.error.items()}
     page.table(
         "Least length over diameter for errors within 1 % and 5 %; at "
         f"{lengths[0]:g} the sweep begins, and an empty cell is beyond {lengths[-1]:g}",
@@ -341,11 +360,15 @@ def show(page: Page, found: Map) -> None:
                 for name, percent in beams.items()
                 for level in (1.0, 5.0)
             }
-            for i, bore in enumerate(bores)
+            for i, bore in enumerate(found.bores)
         ],
     )
+
+
+def show_ends(page: Page, found: Map) -> None:
+    """Show the lengths that rigid ends take away, and the errors that are left with these."""
     page.section("The remedy: the length by which a rigid end shortens a shaft")
-    usable = lengths >= SHORTEST
+    usable = found.lengths >= SHORTEST
     page.table(
         "Each rigid end adds to the beam's flexibility, at its own face: rotation by a moment "
         "-a D / EI, motion by a force c D^3 / EI, motion by a moment (and rotation by a force) "
@@ -362,7 +385,7 @@ def show(page: Page, found: Map) -> None:
                     np.abs(percent[i, usable]).max() for percent in found.corrected.values()
                 ),
             }
-            for i, (bore, end) in enumerate(zip(bores, found.ends, strict=True))
+            for i, (bore, end) in enumerate(zip(found.bores, found.ends, strict=True))
         ],
     )
 

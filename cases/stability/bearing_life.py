@@ -36,6 +36,7 @@ KAPPA = "viscosity ratio kappa"
 OVER = "e_C C_u / P"
 SIZE = "load over the usual"
 AMPLITUDE = "amplitude of an oscillation [deg]"
+MOVING = "life of the moving ring over that of rotation"
 
 
 @case(
@@ -63,18 +64,48 @@ def run(run: Run, page: Page) -> None:
 
 def lubricant(page: Page) -> None:
     """a_ISO over kappa, and the formula carried on beyond its ends."""
-    rows: list[Record] = []
-    for kappa in decades(-2, 2, 8):
-        a = {ratio: float(life_factor(ratio, kappa)) for ratio in (0.1, 0.5)}
-        rows.append(
-            {
-                KAPPA: float(kappa),
-                "a_ISO at 0.1": a[0.1],
-                "a_ISO at 0.5": a[0.5],
-                "formula carried on, 0.1": carried_on(0.1, float(kappa)),
-                "formula carried on, 0.5": carried_on(0.5, float(kappa)),
-            }
-        )
+    rows = factors(decades(-2, 2, 8))
+    check_factor(page)
+    thick = float(life_factor(0.5, 1e2))
+    page.limit(
+        "life factor a_ISO",
+        KAPPA,
+        low=0.1,
+        high=4.0,
+        criterion="ISO 281 gives a formula",
+        beyond="below, surfaces touch, and wear ends a bearing before fatigue: the formula carried "
+        f"on gives {carried_on(0.5, 1e-2) or 0.0:.2g} at kappa 0.01; above, it would promise "
+        f"{(carried_on(0.5, 1e2) or np.inf) / thick:.1f} times the life at kappa 100",
+        program="takes 0.1 below, the factor of 4 above, and counts the time beyond both",
+        remedy="another grease or temperature; the counted time is with the result",
+    )
+    page.section("Viscosity")
+    page.sweep(
+        "Life factor of rollers at e_C C_u / P of 0.1 and 0.5, and the formula carried on",
+        rows,
+        KAPPA,
+        {key: key for key in list(rows[0])[1:]},
+        log="xy",
+        safe=(0.1, 4.0),
+        axis="a_ISO",
+        table=False,
+    )
+
+
+def factors(kappas: Floats) -> list[Record]:
+    """Life factor a_ISO, and its formula carried on, at two ratios e_C C_u / P."""
+    return [
+        {
+            KAPPA: float(kappa),
+            **{f"a_ISO at {r}": float(life_factor(r, kappa)) for r in (0.1, 0.5)},
+            **{f"formula carried on, {r}": carried_on(r, float(kappa)) for r in (0.1, 0.5)},
+        }
+        for kappa in kappas
+    ]
+
+
+def check_factor(page: Page) -> None:
+    """Check the life factor within the formula's range and beyond, and the time counted beyond."""
     inside = np.array([k for k in decades(-2, 2, 8) if 0.1 <= k <= 4.0])
     formula = np.array([carried_on(0.5, float(k)) for k in inside], dtype=float)
     formula = np.maximum(formula, 0.1)  # its smallest value, which at kappa 0.1 rounding passes
@@ -111,29 +142,6 @@ def lubricant(page: Page) -> None:
         and counted[50.0].thin + counted[50.0].thick == 0.0,
         why="the user would not see that the method was left",
         source="ten seconds at 18 1/min",
-    )
-    page.limit(
-        "life factor a_ISO",
-        KAPPA,
-        low=0.1,
-        high=4.0,
-        criterion="ISO 281 gives a formula",
-        beyond="below, surfaces touch, and wear ends a bearing before fatigue: the formula carried "
-        f"on gives {carried_on(0.5, 1e-2) or 0.0:.2g} at kappa 0.01; above, it would promise "
-        f"{(carried_on(0.5, 100.0) or np.inf) / thick:.1f} times the life at kappa 100",
-        program="takes 0.1 below, the factor of 4 above, and counts the time beyond both",
-        remedy="another grease or temperature; the counted time is with the result",
-    )
-    page.section("Viscosity")
-    page.sweep(
-        "Life factor of rollers at e_C C_u / P of 0.1 and 0.5, and the formula carried on",
-        rows,
-        KAPPA,
-        {key: key for key in list(rows[0])[1:]},
-        log="xy",
-        safe=(0.1, 4.0),
-        axis="a_ISO",
-        table=False,
     )
 
 
@@ -222,18 +230,7 @@ def damage(setup: Setup, load: Floats, grease: Lubricant | None, speed: float | 
 def loads(page: Page, quick: bool) -> None:
     """From nothing to beyond C/2."""
     straight, profiled = thesis_setup("bearing_s_o20"), own_setup()
-    rows: list[Record] = []
-    for factor in decades(-8, 1, 1 if quick else 4):
-        record: Record = {SIZE: float(factor)}
-        for name, setup in (("straight", straight), ("profile", profiled)):
-            u = equilibrium(setup.bearing, factor * LOAD, tolerance=1e-12).displacements
-            q = [lamina_loads(row, u) for row in roller_rows(setup.bearing)]
-            record[f"life, {name} [Mrev]"] = float(setup.lives(q)[0])
-        P = float(profiled.rated.equivalent_load(factor * LOAD)[0])
-        record["P / C"] = P / profiled.capacity
-        highest = max(float(np.max(p)) for pair in pressures(profiled.bearing, u) for p in pair)
-        record["largest pressure [MPa]"] = 1e-6 * highest
-        rows.append(record)
+    rows = lives_over_load(straight, profiled, decades(-8, 1, 1 if quick else 4))
     size = np.array([row[SIZE] for row in rows])
     life = np.array([row["life, straight [Mrev]"] for row in rows])
     page.vanishes(
@@ -251,6 +248,39 @@ def loads(page: Page, quick: bool) -> None:
         why="a number would come from 0 / 0",
         source="Miner's rule",
     )
+    limit_fourth_power(page, profiled, rows, size)
+    limit_capacity(page, profiled, rows)
+    page.section("Load")
+    page.sweep(
+        "Life of bearing S over nine decades of one load",
+        rows,
+        SIZE,
+        {"life, straight [Mrev]": "straight", "life, profile [Mrev]": "profile"},
+        log="xy",
+        axis="L10r [Mrev]",
+        table=False,
+    )
+
+
+def lives_over_load(straight: Setup, profiled: Setup, factors: Floats) -> list[Record]:
+    """Lives of both bearings, equivalent load and pressure of the profiled one, over load."""
+    rows: list[Record] = []
+    for factor in factors:
+        record: Record = {SIZE: float(factor)}
+        for name, setup in (("straight", straight), ("profile", profiled)):
+            u = equilibrium(setup.bearing, factor * LOAD, tolerance=1e-12).displacements
+            q = [lamina_loads(row, u) for row in roller_rows(setup.bearing)]
+            record[f"life, {name} [Mrev]"] = float(setup.lives(q)[0])
+        P = float(profiled.rated.equivalent_load(factor * LOAD)[0])
+        record["P / C"] = P / profiled.capacity
+        highest = max(float(np.max(p)) for pair in pressures(profiled.bearing, u) for p in pair)
+        record["largest pressure [MPa]"] = 1e-6 * highest
+        rows.append(record)
+    return rows
+
+
+def limit_fourth_power(page: Page, profiled: Setup, rows: list[Record], size: Floats) -> None:
+    """State the loads in which the life of profiled rollers goes with the fourth power."""
     profile = np.array([row["life, profile [Mrev]"] for row in rows]) * size**4
     few = replace(profiled, bearing=profiled.bearing.with_rows(laminae=200))
     u = equilibrium(few.bearing, size[0] * LOAD, tolerance=1e-12).displacements
@@ -270,6 +300,10 @@ def loads(page: Page, quick: bool) -> None:
         remedy="no life of one load from that of another; rollers that slide for want of load are "
         "not covered at all: catalogues ask for some 2 % of C (from memory)",
     )
+
+
+def limit_capacity(page: Page, profiled: Setup, rows: list[Record]) -> None:
+    """Check that time above C/2 is counted; state the limit."""
     heavy = [row for row in rows if row["P / C"] > 0.5]
     at = min(heavy, key=lambda row: row["P / C"])
     page.holds(
@@ -290,55 +324,13 @@ def loads(page: Page, quick: bool) -> None:
         program="rates it, and counts the time with P above C/2, and with a static safety below 1",
         remedy="a larger bearing; the counted time is with the result",
     )
-    page.section("Load")
-    page.sweep(
-        "Life of bearing S over nine decades of one load",
-        rows,
-        SIZE,
-        {"life, straight [Mrev]": "straight", "life, profile [Mrev]": "profile"},
-        log="xy",
-        axis="L10r [Mrev]",
-        table=False,
-    )
 
 
 def standstill(page: Page) -> float:
     """Speeds towards zero, and oscillations; life of a ring that stands over that of rotation."""
-    setup, grease = own_setup(), Lubricant(*GRADES["VG 460"])
-    turning, standing, back = (
-        damage(setup, LOAD, grease, speed) for speed in (18.0, 0.01, np.array([18.0, -18.0] * 5))
-    )
-    page.holds(
-        "a bearing that stands does no damage, and its time is counted apart",
-        standing.totals["L10r"] == 0.0 and standing.limits.standing == 10.0,
-        why="years would grow without end while the bearing corrodes in its marks",
-        source="speed of 0.01 1/min, below the tenth that counts as standstill",
-    )
-    page.holds(
-        "an oscillation has the damage of its turns, and its reversals are counted",
-        bool(np.isclose(back.totals["L10r"], turning.totals["L10r"], rtol=1e-12))
-        and back.limits.reversals == 9,
-        why="turns to and fro are turns, but it is no rotation: the user has to know",
-        source="ten seconds of 18 1/min to and fro",
-    )
-    rows: list[Record] = []
-    psi = np.linspace(-np.pi, np.pi, 1440, endpoint=False)
-    q = np.maximum(np.cos(psi), 0.0) ** 1.1
-    ring = q**4
-    modes = np.fft.rfft(ring)
-    for degrees in [*np.geomspace(0.5, 180.0, 18)]:
-        k = np.arange(len(modes))
-        half = np.radians(degrees)
-        seen = np.fft.irfft(modes * np.sinc(k * half / np.pi), len(psi))
-        risk = np.mean(np.maximum(seen, 0.0) ** 1.125) ** (8.0 / 9.0)
-        rows.append(
-            {
-                AMPLITUDE: float(degrees),
-                "life of the moving ring over that of rotation": float(ring.mean() / risk),
-            }
-        )
-    still = float(ring.mean() / np.mean(q**4.5) ** (8.0 / 9.0))
-    ratio = np.array([row["life of the moving ring over that of rotation"] for row in rows])
+    check_time(page)
+    rows, still = oscillating()
+    ratio = np.array([row[MOVING] for row in rows])
     page.equals(
         "life of the moving ring at an amplitude of 0.5 deg, over that of rotation",
         float(ratio[0]),
@@ -356,7 +348,7 @@ def standstill(page: Page) -> float:
     )
     amplitude = np.array([row[AMPLITUDE] for row in rows])
     enough = amplitude[np.abs(ratio - 1.0) <= ENOUGH].min()
-    pitch = 360.0 / roller_rows(setup.bearing)[0].rollers
+    pitch = 360.0 / roller_rows(own_setup().bearing)[0].rollers
     page.limit(
         "rating life of a bearing that oscillates",
         AMPLITUDE,
@@ -374,10 +366,46 @@ def standstill(page: Page) -> float:
         "Life of a ring that moves to and fro under a radial load, at as many turns",
         rows,
         AMPLITUDE,
-        "life of the moving ring over that of rotation",
+        MOVING,
         log="x",
         safe=(float(enough), None),
         table=False,
     )
     page.data("peak over mean of the load zone [-]", float(0.5 / sjovall(0.5, 1.1)[0]))
     return still
+
+
+def oscillating() -> tuple[list[Record], float]:
+    """Life of the moving ring over that of rotation, for each amplitude and for a ring at rest."""
+    psi = np.linspace(-np.pi, np.pi, 1440, endpoint=False)
+    q = np.maximum(np.cos(psi), 0.0) ** 1.1
+    ring = q**4
+    modes = np.fft.rfft(ring)
+    k = np.arange(len(modes))
+    rows: list[Record] = []
+    for degrees in np.geomspace(0.5, 180.0, 18):
+        seen = np.fft.irfft(modes * np.sinc(k * np.radians(degrees) / np.pi), len(psi))
+        risk = np.mean(np.maximum(seen, 0.0) ** 1.125) ** (8.0 / 9.0)
+        rows.append({AMPLITUDE: float(degrees), MOVING: float(ring.mean() / risk)})
+    return rows, float(ring.mean() / np.mean(q**4.5) ** (8.0 / 9.0))
+
+
+def check_time(page: Page) -> None:
+    """Check that time at standstill and reversals are counted."""
+    setup, grease = own_setup(), Lubricant(*GRADES["VG 460"])
+    turning, standing, back = (
+        damage(setup, LOAD, grease, speed) for speed in (18.0, 0.01, np.array([18.0, -18.0] * 5))
+    )
+    page.holds(
+        "a bearing that stands does no damage, and its time is counted apart",
+        standing.totals["L10r"] == 0.0 and standing.limits.standing == 10.0,
+        why="years would grow without end while the bearing corrodes in its marks",
+        source="speed of 0.01 1/min, below the tenth that counts as standstill",
+    )
+    page.holds(
+        "an oscillation has the damage of its turns, and its reversals are counted",
+        bool(np.isclose(back.totals["L10r"], turning.totals["L10r"], rtol=1e-12))
+        and back.limits.reversals == 9,
+        why="turns to and fro are turns, but it is no rotation: the user has to know",
+        source="ten seconds of 18 1/min to and fro",
+    )

@@ -35,6 +35,27 @@ def run(run: Run, page: Page) -> None:
         preload = [small_preload(d) for d in decades(-6, 2, 1 if run.quick else 2)]
     with run.step("mechanism"):
         arms = [mechanism(a) for a in decades(-9, -1, 1 if run.quick else 2)]
+    check(page, rows, preload)
+    state_limits(page, rows, arms)
+    sizes, stiff = (np.log(column(preload, k)) for k in ("preload [µm]", "radial stiffness [N/m]"))
+    power = float(np.polyfit(sizes, stiff, 1)[0])
+    worst = max(column(rows, "plain Newton fails [%]"))
+    page.answer(
+        "With preload or without clearance plain Newton converges. Where the clearance is much "
+        "more than what the load deflects, it fails in up to "
+        f"{worst:.0f} % of random load cases; the damped one "
+        "converges in all, down to 1e-8 of nominal loads.",
+        "There is no least preload: the stiffness of the unloaded bearing falls with its power "
+        f"{power:.2g} only.",
+    )
+    show(page, rows, preload, arms)
+    page.image(
+        "The rollers of bearing S", run.sketch(*rolling_elements(catalogue_bearing("bearing_s")))
+    )
+
+
+def check(page: Page, rows: list[Record], preload: list[Record]) -> None:
+    """Check convergence, refusals of impossible loads, and the stiffness of a free bearing."""
     for name, of in (("clearances and loads", rows), ("preloads", preload)):
         page.vanishes(
             f"{name}: cases of damped Newton that have not converged",
@@ -64,6 +85,10 @@ def run(run: Run, page: Page) -> None:
         why="no roller touches",
         source="clearance",
     )
+
+
+def state_limits(page: Page, rows: list[Record], arms: list[Record]) -> None:
+    """State the loads that plain Newton's method solves, and the arms that carry a moment."""
     worst = max(rows, key=lambda row: row["plain Newton fails [%]"])
     tight = [row for row in rows if row["clearance [µm]"] > 0.0]
     failing = [row[SHARE] for row in tight if row["plain Newton fails [%]"] > 0.0]
@@ -88,16 +113,10 @@ def run(run: Run, page: Page) -> None:
         program="answers, and refuses the moment where the arm is below 1e-6 of the radius",
         remedy="a bearing that resists tilt, or no moment",
     )
-    sizes, stiff = (np.log(column(preload, k)) for k in ("preload [µm]", "radial stiffness [N/m]"))
-    power = float(np.polyfit(sizes, stiff, 1)[0])
-    page.answer(
-        "With preload or without clearance plain Newton converges. Where the clearance is much "
-        "more than what the load deflects, it fails in up to "
-        f"{worst['plain Newton fails [%]']:.0f} % of random load cases; the damped one "
-        "converges in all, down to 1e-8 of nominal loads.",
-        "There is no least preload: the stiffness of the unloaded bearing falls with its power "
-        f"{power:.2g} only.",
-    )
+
+
+def show(page: Page, rows: list[Record], preload: list[Record], arms: list[Record]) -> None:
+    """Show the three sweeps."""
     page.section("Clearance and load")
     for y in ("plain Newton fails [%]", "evaluations, mean"):
         page.sweep(
@@ -127,9 +146,6 @@ def run(run: Run, page: Page) -> None:
         table=False,
     )
     page.table("All arms", arms)
-    page.image(
-        "The rollers of bearing S", run.sketch(*rolling_elements(catalogue_bearing("bearing_s")))
-    )
 
 
 def damping(um: float, factor: float, n: int) -> Record:

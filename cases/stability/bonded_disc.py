@@ -1,5 +1,6 @@
 """A disc bonded to plates, and a bent shaft of the same elements, over Poisson's ratio."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +21,7 @@ from fe_drivetrain.cases.stability.locking_curves import (
 from fe_drivetrain.comparison import DOUBTFUL, last_within
 from fe_drivetrain.elasticity.operator import incompressible
 from fe_drivetrain.elasticity.solve import MAX_ITERATIONS, TOLERANCE, direct_solvers
-from fe_drivetrain.report import crosses, trace
+from fe_drivetrain.report import crosses, marked
 from fe_drivetrain.report.suite import Page, Run
 
 NUS = (0.3, 0.4, 0.45, 0.49, 0.499, 0.4999)
@@ -50,16 +51,28 @@ class DiscSweep:
         In tetrahedra of ten nodes.
     stiffness : float
         With averaged dilatation, at the last nu, by a direct solver [N/m].
+    sizes : list of float
+        Element sizes over the thickness, finest first.
+    by_size : list of float
+        Relative error of the averaged stiffness in each of them, at the last nu.
+    change : float
+        Of the worst averaged error, from a finer mesh.
+    uncertain : float
+        Relative uncertainty of the reference.
     """
 
     nus: tuple[float, ...]
     errors: dict[str, list[float]]
     disc: solids.Disc
     stiffness: float
+    sizes: list[float]
+    by_size: list[float]
+    change: float
+    uncertain: float
 
 
-def disc(run: Run, page: Page) -> DiscSweep:
-    """Pull a bonded disc in tetrahedra: its checks, limits, chart and table."""
+def solve_disc(run: Run) -> DiscSweep:
+    """Pull a bonded disc in tetrahedra: every Poisson's ratio, and coarser meshes at the last."""
     nus = QUICK_NUS if run.quick else NUS
     with run.step("mesh of the disc"):
         discs = solids.discs(solids.disc_mesh(SIZE, TURN))
@@ -77,18 +90,34 @@ def disc(run: Run, page: Page) -> DiscSweep:
             run.report(f"disc: tetrahedra of {name}")
             stiffness = [discs[nodes].stiffness(nu, assembly, "superlu")[0] for nu in nus]
             errors[name] = [k / e - 1.0 for k, e in zip(stiffness, exact, strict=True)]
-    remedied = errors[AVERAGED]
+    remedied = np.array(errors[AVERAGED])
     with run.step("band of the disc"):
         worst = int(np.abs(remedied).argmax())
         other = finer.stiffness(nus[worst], averaged, "superlu")[0] / exact[worst] - 1.0
     thickness = solids.DISC.rear - solids.DISC.front
     sizes = [SIZE, *(QUICK_COARSER if run.quick else COARSER)]
-    by_size = [remedied[-1]]
+    by_size = [errors[AVERAGED][-1]]
     with run.step("coarser discs"):
         for size in sizes[1:]:
             coarse = solids.discs(solids.disc_mesh(size, TURN))[10]
             by_size.append(coarse.stiffness(nus[-1], averaged, "superlu")[0] / exact[-1] - 1.0)
-    per_thickness = [size / thickness for size in sizes]
+    return DiscSweep(
+        nus,
+        errors,
+        discs[10],
+        stiffness[-1],
+        [size / thickness for size in sizes],
+        by_size,
+        abs(other - remedied[worst]),
+        abs(rough / exact[-1] - 1.0),
+    )
+
+
+def check_disc(page: Page, found: DiscSweep) -> None:
+    """Check that plain tetrahedra lock and the remedy holds; state both limits."""
+    nus, errors = found.nus, found.errors
+    remedied, by_size = errors[AVERAGED], found.by_size
+    worst = int(np.abs(remedied).argmax())
     page.equals(
         "disc, curved tetrahedra of 10 nodes, averaged: stiffness over the exact one where it is "
         f"worst, nu = {nus[worst]:g}",
@@ -97,9 +126,9 @@ def disc(run: Run, page: Page) -> DiscSweep:
         within=CRITERION,
         why=curves.HOLDS,
         source="the disc's meridian in elements of order 6, graded to its edge; uncertain by "
-        f"{abs(rough / exact[-1] - 1.0):.1g}",
+        f"{found.uncertain:.1g}",
         measure="stiffness",
-        band=DOUBTFUL * abs(other - remedied[worst]),
+        band=DOUBTFUL * found.change,
     )
     page.holds(
         f"disc, plain tetrahedra of 10 nodes, nu = {nus[-1]:g}: locked",
@@ -119,12 +148,17 @@ def disc(run: Run, page: Page) -> DiscSweep:
     curves.limit(
         page,
         f"averaged tetrahedra of {DEFAULT}, disc bonded to plates, nu = {nus[-1]:g}",
-        per_thickness,
+        found.sizes,
         by_size,
         "the warning asks for four elements through the thickness",
-        f"smaller elements: {100 * by_size[0]:.2g} % at {per_thickness[0]:.2g}",
+        f"smaller elements: {100 * by_size[0]:.2g} % at {found.sizes[0]:.2g}",
         "element size over the disc's thickness [-]",
     )
+
+
+def show_disc(page: Page, found: DiscSweep) -> None:
+    """Show the errors of the disc."""
+    nus, errors = found.nus, found.errors
     page.chart(
         "Error of the bonded disc's stiffness, tetrahedra (shaded: plain ones of 10 nodes within "
         "1 %)",
@@ -145,12 +179,11 @@ def disc(run: Run, page: Page) -> DiscSweep:
         f"Bonded disc in averaged tetrahedra, nu = {nus[-1]:g}",
         [
             {"element size over thickness": size, "error of the stiffness [%]": 100 * error}
-            for size, error in zip(per_thickness, by_size, strict=True)
+            for size, error in zip(found.sizes, found.by_size, strict=True)
         ],
     )
     page.data("disc_nu", nus)
     page.data("disc", errors)
-    return DiscSweep(nus, errors, discs[10], stiffness[-1])
 
 
 def bent_shaft(run: Run, page: Page, of_disc: DiscSweep) -> None:
@@ -217,15 +250,58 @@ def iterations(run: Run, page: Page, of_disc: DiscSweep) -> list[int]:
     """Multigrid on the disc, alone and with a fallback; iterations with plain elements."""
     nus, disc = of_disc.nus, of_disc.disc
     moduli = np.array([solids.bulk_over_shear(nu) for nu in nus])
+    counts, converged = iterated(run, of_disc)
+    used, automatic = check_fallback(run, page, of_disc)
+    check_growth(page, nus, counts)
+    safe = last_within(nus, [0.0 if ok else 1.0 for ok in converged[DEFAULT]], 0.5)
+    page.limit(
+        "multigrid, curved tetrahedra of 10 nodes",
+        NU,
+        high=safe,
+        criterion=f"an energy error of {TOLERANCE:g} in {MAX_ITERATIONS} iterations",
+        beyond=f"stops short after {counts[DEFAULT][-1]} iterations at nu = {nus[-1]:g}; averaging "
+        "the dilatation does not help",
+        program=f"solves directly instead ({used}), and says so; auto takes {automatic} at this "
+        "size",
+        remedy="a direct solver",
+    )
+    traces = []
+    for name, n in counts.items():
+        good, of = np.array(converged[name]), np.array(n)
+        traces.append(marked(name, moduli[good], of[good]))
+        traces.append(crosses(f"{name}: stopped short", moduli[~good], of[~good]))
+    page.section("Iterations")
+    page.chart(
+        f"Multigrid on the disc, iterations to an energy error of {TOLERANCE:g} "
+        f"({disc.unknowns:,} unknowns; a direct solver takes none)",
+        traces,
+        AXIS,
+        "iterations",
+        "x",
+        curves.shaded(safe),
+    )
+    page.data("iterations", counts)
+    page.data("reached", converged)
+    return counts[DEFAULT]
+
+
+def iterated(run: Run, of_disc: DiscSweep) -> tuple[dict[str, list[int]], dict[str, list[bool]]]:
+    """Iterations of multigrid on the disc, by element, and whether each has converged."""
     counts: dict[str, list[int]] = {}
     converged: dict[str, list[bool]] = {}
     for name, assembly in ((DEFAULT, plain), (AVERAGED, averaged)):
         if run.quick and assembly is averaged:
             continue
         with run.step("disc, multigrid"):
-            found = [disc.iterated(nu, assembly) for nu in nus]
+            found = [of_disc.disc.iterated(nu, assembly) for nu in of_disc.nus]
         counts[name] = [i.iterations for i in found]
         converged[name] = [i.energy_error <= TOLERANCE for i in found]
+    return counts, converged
+
+
+def check_fallback(run: Run, page: Page, of_disc: DiscSweep) -> tuple[str, str]:
+    """Check the fallback to a direct solver; return the solver used, and that of auto."""
+    nus, disc = of_disc.nus, of_disc.disc
     with run.step("disc, fallback"):
         stiffness, used = disc.stiffness(nus[-1], averaged, "multigrid")
         automatic = disc.stiffness(nus[-1], averaged)[1]
@@ -242,8 +318,14 @@ def iterations(run: Run, page: Page, of_disc: DiscSweep) -> list[int]:
         why="round-off of a factor: 1e-16 times a condition number of about 1e6, and margin",
         source="the same matrix",
     )
+    return used.method, automatic.method
+
+
+def check_growth(page: Page, nus: tuple[float, ...], counts: Mapping[str, list[int]]) -> None:
+    """Check how iterations grow with the ratio of moduli."""
     grew = [nus.index(nu) for nu in (0.49, 0.499)]
-    decades = np.log(moduli[grew[1]] / moduli[grew[0]])
+    at = [solids.bulk_over_shear(nus[k]) for k in grew]
+    decades = np.log(at[1] / at[0])
     for name, n in counts.items():
         page.equals(
             f"disc, tetrahedra of {name}: power of bulk over shear modulus that multigrid's "
@@ -259,33 +341,3 @@ def iterations(run: Run, page: Page, of_disc: DiscSweep) -> list[int]:
             measure="order",
             band=float(np.log1p(1.0 / n[grew[0]]) / decades),
         )
-    safe = last_within(nus, [0.0 if ok else 1.0 for ok in converged[DEFAULT]], 0.5)
-    page.limit(
-        "multigrid, curved tetrahedra of 10 nodes",
-        NU,
-        high=safe,
-        criterion=f"an energy error of {TOLERANCE:g} in {MAX_ITERATIONS} iterations",
-        beyond=f"stops short after {counts[DEFAULT][-1]} iterations at nu = {nus[-1]:g}; averaging "
-        "the dilatation does not help",
-        program=f"solves directly instead ({used.method}), and says so; auto takes "
-        f"{automatic.method} at this size",
-        remedy="a direct solver",
-    )
-    traces = []
-    for name, n in counts.items():
-        good, of = np.array(converged[name]), np.array(n)
-        traces.append(trace(name, moduli[good], of[good], mode="lines+markers"))
-        traces.append(crosses(f"{name}: stopped short", moduli[~good], of[~good]))
-    page.section("Iterations")
-    page.chart(
-        f"Multigrid on the disc, iterations to an energy error of {TOLERANCE:g} "
-        f"({disc.unknowns:,} unknowns; a direct solver takes none)",
-        traces,
-        AXIS,
-        "iterations",
-        "x",
-        curves.shaded(safe),
-    )
-    page.data("iterations", counts)
-    page.data("reached", converged)
-    return counts[DEFAULT]

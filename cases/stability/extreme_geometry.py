@@ -9,7 +9,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability import extreme_parts
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import crosses, marked
 from fe_drivetrain.report.suite import Page, Run
 
 
@@ -149,32 +149,9 @@ def outcomes(run: Run, sweep: Sweep) -> tuple[Outcomes, Outcomes]:
 def show(page: Page, sweep: Sweep, found: Outcomes, fine: Outcomes) -> str:
     """Checks, chart, table and limit of one dimension; its range in words."""
     parameter, every = sweep.parameter, [*found, *fine]
-    sound = [o for o in found if not o.sentence]
     refused = [o for o in found if o.sentence]
     inside, both = extreme_parts.meshed(found), extreme_parts.meshed(every)
-    page.at_most(
-        f"{parameter}: error of volumes and named areas over what parabolas round a circle allow, "
-        "and rims drawn back, worst of what was meshed",
-        max(o.allowed for o in every if not o.sentence),
-        1.0,
-        why="circles of parabolas, three quarters of the elements a turn asked for; rims are drawn "
-        "back where an element would fold, by as much as their nodes are off the circle",
-        source="exact volumes and areas (cylinders, spheres, Pappus)",
-    )
-    page.vanishes(
-        f"{parameter}: folded elements and other faults in what was meshed",
-        sum(o.folded + o.faults for o in every if not o.sentence),
-        within=0.0,
-        why="a mesh that the program accepts is solved without further checks",
-        source="fe_drivetrain.elasticity.mesh.checks",
-    )
-    page.vanishes(
-        f"{parameter}: refusals without the allowed range or the fix, or in gmsh's words",
-        sum(not o.clear for o in every),
-        within=0.0,
-        why="every refusal has to enable the user to correct the value",
-        source="one sentence: object, value, allowed range, fix",
-    )
+    check(page, parameter, every)
     page.holds(
         f"{parameter}: some are refused and some are meshed, with the remedy all of its values",
         bool(refused) and len(inside) > 0 and not any(o.sentence for o in fine),
@@ -198,11 +175,49 @@ def show(page: Page, sweep: Sweep, found: Outcomes, fine: Outcomes) -> str:
         program=sweep.program,
         remedy=sweep.remedy + (f": meshed from {both[0]:g} to {both[-1]:g}" if fine else ""),
     )
+    show_outcomes(page, sweep, found, fine, safe)
+    return f"{parameter}: {short(low)} to {short(high)}"
+
+
+def check(page: Page, parameter: str, every: Outcomes) -> None:
+    """Check that meshed shapes are exact, and that each refusal says how to correct the value."""
+    page.at_most(
+        f"{parameter}: error of volumes and named areas over what parabolas round a circle allow, "
+        "and rims drawn back, worst of what was meshed",
+        max(o.allowed for o in every if not o.sentence),
+        1.0,
+        why="circles of parabolas, three quarters of the elements a turn asked for; rims are drawn "
+        "back where an element would fold, by as much as their nodes are off the circle",
+        source="exact volumes and areas (cylinders, spheres, Pappus)",
+    )
+    page.vanishes(
+        f"{parameter}: folded elements and other faults in what was meshed",
+        sum(o.folded + o.faults for o in every if not o.sentence),
+        within=0.0,
+        why="a mesh that the program accepts is solved without further checks",
+        source="fe_drivetrain.elasticity.mesh.checks",
+    )
+    page.vanishes(
+        f"{parameter}: refusals without the allowed range or the fix, or in gmsh's words",
+        sum(not o.clear for o in every),
+        within=0.0,
+        why="every refusal has to enable the user to correct the value",
+        source="one sentence: object, value, allowed range, fix",
+    )
+
+
+def show_outcomes(
+    page: Page,
+    sweep: Sweep,
+    found: Outcomes,
+    fine: Outcomes,
+    safe: tuple[float | None, float | None],
+) -> None:
+    """Show the errors and every value."""
+    parameter, every = sweep.parameter, [*found, *fine]
     page.section(parameter[0].upper() + parameter[1:])
-    traces = [curve("meshed", sound)]
-    cross = {"symbol": "x", "size": 11, "color": "#c62828"}
-    values = [o.value for o in refused]
-    traces.append(trace("refused", values, [1.0] * len(refused), True, marker=cross))
+    traces = [curve("meshed", [o for o in found if not o.sentence])]
+    traces.append(crosses("refused", [o.value for o in found if o.sentence]))
     if fine:
         traces.append(curve(f"{sweep.remedy}: meshed", fine))
     positive = [o.value for o in every if o.value > 0]
@@ -226,13 +241,12 @@ def show(page: Page, sweep: Sweep, found: Outcomes, fine: Outcomes) -> str:
     ]
     page.table("Every value", rows)
     page.data(parameter, rows)
-    return f"{parameter}: {short(low)} to {short(high)}"
 
 
 def curve(name: str, meshed: Outcomes) -> Any:
     """Errors of what was meshed."""
     errors = [max(o.error, 1e-16) for o in meshed]
-    return trace(name, [o.value for o in meshed], errors, mode="lines+markers")
+    return marked(name, [o.value for o in meshed], errors)
 
 
 def short(value: float) -> str:

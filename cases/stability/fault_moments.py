@@ -198,104 +198,140 @@ def _say(step: str, lane: int = 0) -> None:
     sys.stderr.flush()
 
 
-def experiment(folder: Path, moments: int) -> Found:
-    """Make every fault happen in a folder of its own."""
-    caches, out = folder / "cache", folder / "reports" / "small"
-    os.environ[CACHE_VARIABLE] = str(caches)
+@dataclass(frozen=True)
+class Bench:
+    """Folders of the experiment.
 
-    def reset() -> None:
-        """Old results, and no mesh in the cache."""
-        for path in out.parent.glob("*"):
+    Attributes
+    ----------
+    folder : Path
+        Where it is.
+    caches, kept, out : Path
+        Meshes that are kept, the old results, and the results that are at risk.
+    """
+
+    folder: Path
+
+    @property
+    def caches(self) -> Path:
+        return self.folder / "cache"
+
+    @property
+    def kept(self) -> Path:
+        return self.folder / "kept"
+
+    @property
+    def out(self) -> Path:
+        return self.folder / "reports" / "small"
+
+    def reset(self) -> None:
+        """Put the old results back, and empty the cache of meshes."""
+        for path in self.out.parent.glob("*"):
             shutil.rmtree(path)
-        shutil.copytree(kept, out)
-        shutil.rmtree(caches, ignore_errors=True)
+        shutil.copytree(self.kept, self.out)
+        shutil.rmtree(self.caches, ignore_errors=True)
 
-    kept = folder / "kept"
-    pid, read = child(lambda: int(run_case(CASE_KILLED, kept, {"mark": OLD}) is None))
-    status, said = ended(pid, read)
-    if status != 0:
-        raise RuntimeError(f"the case that is to be killed ended with status {status}: {said}")
-    stiffness = float(read_results(kept / "results.json").figures["stiffness"])
-    out.parent.mkdir()
-    reset()
-    start = time.perf_counter()
-    ended(*child(lambda: run_new(out)))
-    seconds = time.perf_counter() - start
+    def hidden(self) -> int:
+        """Unfinished files and folders beside results and meshes."""
+        return hidden(self.out.parent, self.caches)
 
-    def sweep(work: Callable[[Path], int], moments: int) -> list[Killed]:
+    def kill(self, work: Callable[[Path], int], at: float) -> tuple[Killed, bool]:
+        """Kill a run `at` seconds after its start; return what it leaves, and if it was over."""
+        self.reset()
+        start = time.perf_counter()
+        pid, read = child(lambda: work(self.out))
+        time.sleep(at)
+        moment = time.perf_counter() - start
+        os.kill(pid, signal.SIGKILL)
+        status, written = ended(pid, read)
+        steps = [line.split(" ...")[0] for line in written.splitlines() if " ..." in line]
+        during = "over" if status == 0 else steps[-1] if steps else "start"
+        return Killed(moment, during, state(self.out), self.hidden()), status == 0
+
+    def sweep(self, work: Callable[[Path], int], seconds: float, moments: int) -> list[Killed]:
         """Kill later and later, until a run ends before; in half steps again if that was soon."""
         found: list[Killed] = []
         step = seconds / moments
         at = 0.5 * step
         while len(found) < 4 * moments:
-            reset()
-            start = time.perf_counter()
-            pid, read = child(lambda: work(out))
-            time.sleep(at)
-            moment = time.perf_counter() - start
-            os.kill(pid, signal.SIGKILL)
-            status, written = ended(pid, read)
-            steps = [line.split(" ...")[0] for line in written.splitlines() if " ..." in line]
-            during = "over" if status == 0 else steps[-1] if steps else "start"
-            found.append(Killed(moment, during, state(out), hidden(out.parent, caches)))
+            killed, over = self.kill(work, at)
+            found.append(killed)
             at += step
-            if status == 0:
+            if over:
                 if len(found) > moments:
                     break
                 step /= 2
                 at = 0.5 * step
         return found
 
-    in_place = sweep(run_in_place, moments // 2)
-    killed = sweep(run_new, moments)
+    def suffer(self, name: str, work: Callable[[], int], at: Path | None = None) -> Fault:
+        """Run with a fault; return its message, its exit status and what it leaves in a folder."""
+        self.reset()
+        status, written = ended(*child(work))
+        (line,) = written.strip().splitlines()[-1:] or [""]
+        return Fault(name, line, status, state(at or self.out), self.hidden())
+
+
+def experiment(folder: Path, moments: int) -> Found:
+    """Make every fault happen in a folder of its own."""
+    bench = Bench(folder)
+    caches, out, kept = bench.caches, bench.out, bench.kept
+    os.environ[CACHE_VARIABLE] = str(caches)
+    pid, read = child(lambda: int(run_case(CASE_KILLED, kept, {"mark": OLD}) is None))
+    status, said = ended(pid, read)
+    if status != 0:
+        raise RuntimeError(f"the case that is to be killed ended with status {status}: {said}")
+    stiffness = float(read_results(kept / "results.json").figures["stiffness"])
+    out.parent.mkdir()
+    bench.reset()
+    start = time.perf_counter()
+    ended(*child(lambda: run_new(out)))
+    seconds = time.perf_counter() - start
+    in_place = bench.sweep(run_in_place, seconds, moments // 2)
+    killed = bench.sweep(run_new, seconds, moments)
     ended(*child(lambda: run_new(out)))
     # keeping anything in the cache tidies it
     Cache(caches).keep("meshes", {}, {"a": np.zeros(1)})
-    left = hidden(out.parent, caches)
+    left = bench.hidden()
+    faults = other_faults(bench)
+    damaged = _damaged(caches, out, stiffness)
+    return Found(seconds, stiffness, killed, in_place, left, faults, damaged)
 
-    def suffered(name: str, work: Callable[[], int], at: Path = out) -> Fault:
-        status, written = ended(*child(work))
-        (line,) = written.strip().splitlines()[-1:] or [""]
-        return Fault(name, line, status, state(at), hidden(out.parent, caches))
 
-    faults = []
-    for sent in (signal.SIGINT, signal.SIGTERM):
-        reset()
-        faults.append(suffered(f"{sent.name} while it solves", partial(_signalled, sent, out)))
-    reset()
-    faults.append(suffered("disk full from 5 kB a file on", lambda: _starved(5000, out)))
-    reset()
-    blocked = folder / "file"
+def other_faults(bench: Bench) -> list[Fault]:
+    """Signals, a full disk, a cache in the way, two runs at once, a mesher that fails."""
+    out = bench.out
+    faults = [
+        bench.suffer(f"{sent.name} while it solves", partial(_signalled, sent, out))
+        for sent in (signal.SIGINT, signal.SIGTERM)
+    ]
+    faults.append(bench.suffer("disk full from 5 kB a file on", lambda: _starved(5000, out)))
+    blocked = bench.folder / "file"
     blocked.write_text("in the way")
-    faults.append(suffered("cache that cannot be written", lambda: _without_cache(blocked, out)))
-    reset()
-    pids = [child(lambda: run_new(out)) for _ in range(2)]
+    work = partial(_without_cache, blocked, out)
+    faults.append(bench.suffer("cache that cannot be written", work))
+    return [*faults, two_runs(bench), one_of_three(bench)]
+
+
+def two_runs(bench: Bench) -> Fault:
+    """Two runs into one folder at once."""
+    bench.reset()
+    pids = [child(lambda: run_new(bench.out)) for _ in range(2)]
     both = [ended(*p) for p in pids]
-    faults.append(
-        Fault(
-            "two runs into one folder",
-            both[0][1].strip().splitlines()[-1],
-            max(status for status, _ in both),
-            state(out),
-            hidden(out.parent),
-        )
+    said, status = both[0][1].strip().splitlines()[-1], max(status for status, _ in both)
+    return Fault(
+        "two runs into one folder", said, status, state(bench.out), hidden(bench.out.parent)
     )
-    reset()
-    many = folder / "many"
-    shutil.copytree(kept, many / "faults" / "fails")
-    faults.append(
-        suffered(
-            "gmsh fails in one case of three",
-            lambda: _one_of_three(many),
-            many / "faults" / "fails",
-        )
-    )
+
+
+def one_of_three(bench: Bench) -> Fault:
+    """Let the mesher fail in one case of three: old results stay there, the others finish."""
+    many = bench.folder / "many"
+    failing = many / "faults" / "fails"
+    shutil.copytree(bench.kept, failing)
+    fault = bench.suffer("gmsh fails in one case of three", lambda: _one_of_three(many), failing)
     others = [state(many / "faults" / name) for name in ("first", "last")]
-    if others != [NEW, NEW]:
-        faults[-1] = replace(faults[-1], found=BROKEN)
-    return Found(
-        seconds, stiffness, killed, in_place, left, faults, _damaged(caches, out, stiffness)
-    )
+    return fault if others == [NEW, NEW] else replace(fault, found=BROKEN)
 
 
 def _signalled(sent: signal.Signals, out: Path) -> int:

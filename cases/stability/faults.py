@@ -6,7 +6,7 @@ from typing import Any
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import CORES_VARIABLE, MissingToolError, run_python, scratch_folder
-from fe_drivetrain.report import chart, trace
+from fe_drivetrain.report import Chart, chart, trace
 from fe_drivetrain.report.suite import Page, Record, Run, column
 
 #: Kills over the duration of a run without faults.
@@ -127,11 +127,16 @@ def check_kills(page: Page, killed: list[Record], in_place: list[Record], left: 
     )
 
 
+def safe_moment(in_place: list[Record]) -> float | None:
+    """Share of a run after which no kill leaves half a result written in place."""
+    last = max((k for k, is_broken in enumerate(broken(in_place)) if is_broken), default=-1)
+    shares = column(in_place, "share of a run [-]")
+    return shares[last + 1] if last + 1 < len(shares) else None
+
+
 def show(page: Page, killed: list[Record], in_place: list[Record], found: Any) -> None:
     """Answer, limits, charts, tables."""
-    half, shares = broken(in_place), column(in_place, "share of a run [-]")
-    last = max((k for k, is_broken in enumerate(half) if is_broken), default=-1)
-    safe_from = shares[last + 1] if last + 1 < len(shares) else None
+    half, safe_from = broken(in_place), safe_moment(in_place)
     tries, wrong = found["damaged"]
     hidden = sum(kill["hidden beside them, until the next run"] > 0 for kill in killed)
     page.answer(
@@ -143,12 +148,32 @@ def show(page: Page, killed: list[Record], in_place: list[Record], found: Any) -
         f"{tries} damages of a kept mesh gave other numbers {wrong} times; a full disk, "
         "signals, two runs at once and a mesher that fails each leave whole results.",
     )
+    state_limits(page, killed, half, found["damaged"], safe_from)
+    page.section("Killed")
+    page.add(picture(killed, in_place, safe_from))
+    page.table(
+        "Kills, in order of their moments, as the program writes",
+        [{**kill, "moment [s]": round(kill["moment [s]"], 3)} for kill in killed],
+        [name for name in killed[0] if name != "share of a run [-]"],
+    )
+    show_others(page, found)
+
+
+def state_limits(
+    page: Page,
+    killed: list[Record],
+    half: list[bool],
+    damaged: tuple[int, int],
+    safe_from: float | None,
+) -> None:
+    """State when a kill spoils results written in place, and what damages of kept meshes do."""
+    tries, wrong = damaged
     page.limit(
         "results written straight into their folder",
         "moment of a kill, share of the run [-]",
         low=safe_from,
         criterion=CRITERION,
-        beyond=f"{sum(half)} of {len(in_place)} kills left half a result, and the old one lost",
+        beyond=f"{sum(half)} of {len(half)} kills left half a result, and the old one lost",
         program="writes beside them under a hidden name, exchanges the two in one operation, and "
         "removes what a kill left at the next run",
         remedy=f"{len(killed) - sum(broken(killed))} of {len(killed)} kills left the whole of the "
@@ -162,8 +187,12 @@ def show(page: Page, killed: list[Record], in_place: list[Record], found: Any) -
         program="checks every byte by its checksum; what does not match is made again",
         remedy="the mesh made again gives the same stiffness to the last digit",
     )
+
+
+def picture(killed: list[Record], in_place: list[Record], safe_from: float | None) -> Chart:
+    """Chart of the results that kills leave, over the moment of the kill."""
     heights = {"broken": 0, "old": 1, "new": 2}
-    picture = chart(
+    drawn = chart(
         "What a kill leaves in the result folder, against its moment: as the program writes, "
         "always the whole of the old or of the new results; written in place, half of them until "
         "the end (safe range of writing in place shaded)",
@@ -187,18 +216,17 @@ def show(page: Page, killed: list[Record], in_place: list[Record], found: Any) -
         if safe_from is None
         else (safe_from, 1.05 * max(column([*killed, *in_place], "share of a run [-]"))),
     )
-    picture.figure["layout"]["yaxis"] |= {
+    drawn.figure["layout"]["yaxis"] |= {
         "tickvals": list(heights.values()),
         "ticktext": list(heights),
         "range": [-0.4, 2.4],
     }
-    page.section("Killed")
-    page.add(picture)
-    page.table(
-        "Kills, in order of their moments, as the program writes",
-        [{**kill, "moment [s]": round(kill["moment [s]"], 3)} for kill in killed],
-        [name for name in killed[0] if name != "share of a run [-]"],
-    )
+    return drawn
+
+
+def show_others(page: Page, found: Any) -> None:
+    """Show other faults, and how results are protected."""
+    tries, _ = found["damaged"]
     page.section("Other faults")
     page.table(
         "What the program reports, returns and leaves",

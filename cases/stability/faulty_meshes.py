@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -43,7 +44,7 @@ class Faulty:
     mesh: Mesh
     place: Floats
     reach: float
-    part: str
+    part: str = "shaft"
 
 
 def sound() -> Mesh:
@@ -65,34 +66,45 @@ NEEDED = (
 )
 
 
+class Chosen(NamedTuple):
+    """An element, its middle [m] and its extent [m]."""
+
+    cell: int
+    place: Floats
+    size: float
+
+
 def faulty(mesh: Mesh, seed: int = 0) -> Iterator[Faulty]:
     """Every fault, one after the other, in elements of the shaft chosen at random."""
     rng = np.random.default_rng(seed)
     inner = _inner_cells(mesh, "shaft")
-    points, cells = mesh.points, mesh.cells
 
-    def chosen() -> tuple[int, Floats, float]:
+    def choose() -> Chosen:
         cell = int(rng.choice(inner))
-        corners = points[cells[cell, :4]]
-        return cell, corners.mean(axis=0), float(np.ptp(corners, axis=0).max())
+        corners = mesh.points[mesh.cells[cell, :4]]
+        return Chosen(cell, corners.mean(axis=0), float(np.ptp(corners, axis=0).max()))
 
-    cell, place, size = chosen()
+    yield from _bad_shapes(mesh, choose)
+    yield from _bad_joints(mesh, choose)
+    yield from _bad_records(mesh, choose)
+
+
+def _bad_shapes(mesh: Mesh, choose: Callable[[], Chosen]) -> Iterator[Faulty]:
+    """Elements turned inside out or flat."""
+    points, cells = mesh.points, mesh.cells
+    cell, place, size = choose()
     other = cells.copy()
     other[cell, [0, 1]] = other[cell, [1, 0]]
     other[cell, [5, 6, 7, 8]] = other[cell, [6, 5, 8, 7]]
-    yield Faulty(
-        "two corners exchanged", "inverted", replace(mesh, cells=other), place, size, "shaft"
-    )
+    yield Faulty("two corners exchanged", "inverted", replace(mesh, cells=other), place, size)
 
-    cell, place, size = chosen()
+    cell, place, size = choose()
     moved = points.copy()
     a, b, middle = cells[cell, 0], cells[cell, 1], cells[cell, 4]
     moved[middle] += 1.2 * (points[cells[cell, 3]] - (points[a] + points[b]) / 2)
-    yield Faulty(
-        "mid-side node moved", "inverted", replace(mesh, points=moved), place, 2 * size, "shaft"
-    )
+    yield Faulty("mid-side node moved", "inverted", replace(mesh, points=moved), place, 2 * size)
 
-    cell, place, size = chosen()
+    cell, place, size = choose()
     moved = points.copy()
     base = points[cells[cell, :3]]
     normal = np.cross(base[1] - base[0], base[2] - base[0])
@@ -102,97 +114,59 @@ def faulty(mesh: Mesh, seed: int = 0) -> Iterator[Faulty]:
     moved[top] -= (height - 1e-8 * math.copysign(size, height)) * normal
     for (i, j), middle in zip(TETRAHEDRON_EDGES, cells[cell, 4:], strict=True):
         moved[middle] = (moved[cells[cell, i]] + moved[cells[cell, j]]) / 2
-    yield Faulty(
-        "corner moved into the opposite facet",
-        "flat",
-        replace(mesh, points=moved),
-        place,
-        2 * size,
-        "shaft",
-    )
+    flat = replace(mesh, points=moved)
+    yield Faulty("corner moved into the opposite facet", "flat", flat, place, 2 * size)
 
-    cell, place, size = chosen()
-    twice = Mesh(
-        points,
-        np.vstack([cells, cells[cell]]),
-        np.append(mesh.part, mesh.part[cell]),
-        mesh.part_names,
-        mesh.faces,
-        mesh.named_points,
-    )
-    yield Faulty("element that stands there twice", "overlap", twice, place, size, "shaft")
 
-    cell, place, size = chosen()
+def _bad_joints(mesh: Mesh, choose: Callable[[], Chosen]) -> Iterator[Faulty]:
+    """Elements that are doubled, torn off, halved or left out."""
+    points, cells = mesh.points, mesh.cells
+    cell, place, size = choose()
+    twice = replace(
+        mesh, cells=np.vstack([cells, cells[cell]]), part=np.append(mesh.part, mesh.part[cell])
+    )
+    yield Faulty("element that stands there twice", "overlap", twice, place, size)
+
+    cell = choose().cell
     node = int(cells[cell, 0])
-    yield Faulty(
-        "one node of one element doubled",
-        "crack",
-        _split(mesh, np.array([cell]), np.array([node])),
-        points[node],
-        1e-9,
-        "shaft",
-    )
+    torn = _split(mesh, np.array([cell]), np.array([node]))
+    yield Faulty("one node of one element doubled", "crack", torn, points[node], 1e-9)
 
     seat = mesh.face_nodes("shaft.seat.main_bearing")
-    own = mesh.part_cells("main_bearing")
-    place = points[mesh.faces["shaft.seat.main_bearing"]].reshape(-1, 3)
-    yield Faulty(
-        "bearing not joined to its seat",
-        "crack",
-        _split(mesh, own, seat),
-        place.mean(axis=0),
-        float(np.ptp(place, axis=0).max()),
-        "shaft",
-    )
+    at = points[mesh.faces["shaft.seat.main_bearing"]].reshape(-1, 3)
+    torn, extent = _split(mesh, mesh.part_cells("main_bearing"), seat), float(np.ptp(at, 0).max())
+    yield Faulty("bearing not joined to its seat", "crack", torn, at.mean(axis=0), extent)
 
-    cell, place, size = chosen()
-    yield Faulty(
-        "edge halved in one element only", "hanging node", _halved(mesh, cell), place, size, "shaft"
-    )
+    cell, place, size = choose()
+    halved = _halved(mesh, cell)
+    yield Faulty("edge halved in one element only", "hanging node", halved, place, size)
 
-    yield Faulty("slice of the shaft left out", "pieces", *_without_slice(mesh), "shaft")
+    yield Faulty("slice of the shaft left out", "pieces", *_without_slice(mesh))
 
+
+def _bad_records(mesh: Mesh, choose: Callable[[], Chosen]) -> Iterator[Faulty]:
+    """Positions, names and units that are wrong."""
+    points, cells, base = mesh.points, mesh.cells, mesh.faces["main_bearing.housing.base"]
     at = np.array([0.1, 0.2, 0.3])
     more = replace(mesh, points=np.vstack([points, at]))
     yield Faulty("node that nothing uses", "unused node", more, at, 1e-9, "of no part")
 
-    cell, place, size = chosen()
+    cell, place, size = choose()
     lost = points.copy()
     lost[cells[cell, 2]] = np.nan
-    yield Faulty(
-        "position that is no number",
-        "no position",
-        replace(mesh, points=lost),
-        place,
-        size,
-        "shaft",
-    )
+    unplaced = replace(mesh, points=lost)
+    yield Faulty("position that is no number", "no position", unplaced, place, size)
 
-    fewer = {n: f for n, f in mesh.faces.items() if n != "shaft.seat.main_bearing"}
-    middle_of = points[mesh.part_nodes("shaft")].mean(axis=0)
-    yield Faulty(
-        "seat without its name", "missing face", replace(mesh, faces=fewer), middle_of, 0.1, "shaft"
-    )
+    names = {n: f for n, f in mesh.faces.items() if n != "shaft.seat.main_bearing"}
+    fewer, middle = replace(mesh, faces=names), points[mesh.part_nodes("shaft")].mean(axis=0)
+    yield Faulty("seat without its name", "missing face", fewer, middle, 0.1)
 
-    strange = mesh.faces | {"shaft.front": mesh.faces["main_bearing.housing.base"]}
-    base_at = points[mesh.faces["main_bearing.housing.base"][0, :3]].mean(axis=0)
-    yield Faulty(
-        "front named on the base of the housing",
-        "wrong face",
-        replace(mesh, faces=strange),
-        base_at,
-        1e-9,
-        "shaft",
-    )
+    wrong = replace(mesh, faces=mesh.faces | {"shaft.front": base})
+    at = points[base[0, :3]].mean(axis=0)
+    yield Faulty("front named on the base of the housing", "wrong face", wrong, at, 1e-9)
 
-    yield Faulty(
-        "millimetres for metres",
-        "scale",
-        replace(mesh, points=1000 * points),
-        np.zeros(3),
-        400.0,
-        "shaft",
-    )
+    large = replace(mesh, points=1000 * points)
+    yield Faulty("millimetres for metres", "scale", large, np.zeros(3), 400.0)
 
 
 def _inner_cells(mesh: Mesh, part: str) -> Ints:

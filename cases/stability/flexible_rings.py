@@ -105,6 +105,12 @@ def run(run: Run, page: Page) -> None:
         f"Shapes that give {share:g} of what a contact does may be left out, and harmonics beyond "
         f"{waves:.0f}, for {100 * ENOUGH:.0f} % of the peak roller.",
     )
+    show(page, rows, shapes, harmonics)
+    page.image("The rollers of bearing S", run.sketch(*rolling_elements(bearing())))
+
+
+def show(page: Page, rows: list[Record], shapes: list[Record], harmonics: list[Record]) -> None:
+    """Show random loads, walls, shapes and harmonics."""
     page.section("Wall and clearance")
     page.table("Random loads", rows)
     page.sweep(
@@ -126,7 +132,6 @@ def run(run: Run, page: Page) -> None:
             by="wall [mm]",
             log="xy",
         )
-    page.image("The rollers of bearing S", run.sketch(*rolling_elements(bearing())))
 
 
 def damping(wall: float, clearance: float, factor: float, n: int) -> Record:

@@ -17,7 +17,7 @@ from fe_drivetrain.elasticity.mesh import (
     volume,
 )
 from fe_drivetrain.geometry import MeshSizes
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import crosses, marked
 from fe_drivetrain.report.suite import Page, Record, Run, column, grouped
 
 #: Elements to a full turn of the fillet's radius; a fillet is a quarter of a turn.
@@ -35,6 +35,7 @@ REPAIRS = {
 COARSE = 0.05
 
 TURN = "elements a turn"
+AROUND = "elements to a full turn of the fillet's radius"
 FOLDED, AT_NODE = "folded", "folded at a node"
 TORSION, PEAK = "error of torsion", "error of the peak stress"
 
@@ -146,15 +147,14 @@ def show(page: Page, rows: list[Record], of: Mapping[str, list[Record]]) -> None
     worst_peak = np.nanmax(np.abs(np.array(column(raw, PEAK))[folded]))
     repaired_peak = np.abs(np.array(column(of["refined"], PEAK))[folded]).max()
     worst_torsion = np.abs(column(of["refined"], TORSION)).max()
-    totals = {name: sum(column(series, FOLDED)) for name, series in of.items()}
     page.answer(
         f"Curving folds elements on the fillet below {safe:g} elements to a turn."
         if safe is not None
         else "Curving folds elements in every mesh of the sweep.",
-        f"{totals['as curved']} elements fold over the sweep, {hidden} of them where none of "
-        f"their ten nodes shows it. Relaxing leaves {totals['relaxed']}, gmsh's HighOrder "
-        f"{totals['HighOrder']}, its HighOrderElastic {totals['HighOrderElastic']}, and "
-        f"relaxing with local refinement, as the program does, {totals['refined']}.",
+        f"{total(raw)} elements fold over the sweep, {hidden} of them where none of "
+        f"their ten nodes shows it. Relaxing leaves {total(of['relaxed'])}, gmsh's HighOrder "
+        f"{total(of['HighOrder'])}, its HighOrderElastic {total(of['HighOrderElastic'])}, and "
+        f"relaxing with local refinement, as the program does, {total(of['refined'])}.",
         f"Left in, they mostly give no sign: {silent} of {folded.sum()} such meshes are solved as "
         "if nothing were wrong, with the peak stress of torsion in error by up to "
         f"{100 * worst_peak:.0f} %, where the program's meshes are within "
@@ -163,65 +163,81 @@ def show(page: Page, rows: list[Record], of: Mapping[str, list[Record]]) -> None
     )
     page.limit(
         "curved tetrahedra on a fillet, as gmsh's setOrder(2) makes them",
-        "elements to a full turn of the fillet's radius [-]",
+        f"{AROUND} [-]",
         low=safe,
         criterion="no element folded anywhere inside",
-        beyond=f"elements fold, {hidden} of {totals['as curved']} only between their nodes; peak "
+        beyond=f"elements fold, {hidden} of {total(raw)} only between their nodes; peak "
         f"stress wrong by up to {100 * worst_peak:.0f} %, or 'singular'",
         program="relaxes, then refines the part up to three times; refuses what is left with "
         "element and place",
         remedy="relaxing and local refinement: none folded, stiffness of torsion within "
         f"{100 * worst_torsion:.1f} %, peak stress within {100 * repaired_peak:.0f} %",
     )
-    cross = {"symbol": "x", "size": 11, "color": "#c62828"}
-    gone = trace("no answer as curved", x[no_answer], [1.0] * no_answer.sum(), True, marker=cross)
-
-    def chart(caption: str, y: str, quantity: str, shift: float, extra: list[Any]) -> None:
-        traces = []
-        for name, series in of.items():
-            answered = [row for row in series if np.isfinite(row[quantity])]
-            values = np.abs(column(answered, quantity)) + shift
-            traces.append(trace(name, column(answered, TURN), values, mode="lines+markers"))
-        label = "elements to a full turn of the fillet's radius"
-        page.chart(caption, [*traces, *extra], label, y, "xy", (safe, None))
-
-    page.section("How many fold")
-    chart(
-        "Folded elements, plus 0.1 so that none can be drawn",
-        "folded elements + 0.1",
-        FOLDED,
-        0.1,
-        [],
-    )
-    page.table(
-        "Repairs",
-        [
-            {"name": n, "what it does": text, "folded elements left in the sweep": totals[n]}
-            for n, text in REPAIRS.items()
-        ],
-    )
-    sentences = [row["sentence"] for row in raw if row["sentence"]]
-    page.text(f"What the check reports of the coarsest mesh: {' '.join(sentences[-1:])}.")
-    page.section("What they do to the answer")
-    lost = [gone] if no_answer.any() else []
-    chart(
-        "Error of the torsional stiffness. Folded elements hide in the error of the coarse mesh, "
-        "until there is no answer at all",
-        "relative error of the stiffness",
-        TORSION,
-        0.0,
-        lost,
-    )
-    chart(
-        "Error of the peak stress in torsion: here folded elements show",
-        "relative error of the peak stress",
-        PEAK,
-        0.0,
-        lost,
-    )
+    show_sweeps(page, of, safe)
     shown = [name for name in rows[0] if name not in ("missed", "sentence")]
     every = [
         {name: None if row[name] != row[name] else row[name] for name in shown} for row in rows
     ]
     page.table("Every mesh", every)
     page.data("every mesh", every)
+
+
+def total(series: list[Record]) -> int:
+    """Elements that fold in all meshes of a series."""
+    return sum(column(series, FOLDED))
+
+
+def show_sweeps(page: Page, of: Mapping[str, list[Record]], safe: float | None) -> None:
+    """Show how many elements fold, and the errors, over the elements to a turn."""
+    page.section("How many fold")
+    page.chart(
+        "Folded elements, plus 0.1 so that none can be drawn",
+        curves(of, FOLDED, 0.1),
+        AROUND,
+        "folded elements + 0.1",
+        "xy",
+        (safe, None),
+    )
+    page.table(
+        "Repairs",
+        [
+            {"name": n, "what it does": text, "folded elements left in the sweep": total(of[n])}
+            for n, text in REPAIRS.items()
+        ],
+    )
+    sentences = [row["sentence"] for row in of["as curved"] if row["sentence"]]
+    page.text(f"What the check reports of the coarsest mesh: {' '.join(sentences[-1:])}.")
+    page.section("What they do to the answer")
+    page.chart(
+        "Error of the torsional stiffness. Folded elements hide in the error of the coarse mesh, "
+        "until there is no answer at all",
+        curves(of, TORSION) + no_answers(of["as curved"]),
+        AROUND,
+        "relative error of the stiffness",
+        "xy",
+        (safe, None),
+    )
+    page.chart(
+        "Error of the peak stress in torsion: here folded elements show",
+        curves(of, PEAK) + no_answers(of["as curved"]),
+        AROUND,
+        "relative error of the peak stress",
+        "xy",
+        (safe, None),
+    )
+
+
+def curves(of: Mapping[str, list[Record]], quantity: str, shift: float = 0.0) -> list[Any]:
+    """Curves of the absolute value of a quantity, one for each series of meshes."""
+    traces = []
+    for name, series in of.items():
+        answered = [row for row in series if np.isfinite(row[quantity])]
+        values = np.abs(column(answered, quantity)) + shift
+        traces.append(marked(name, column(answered, TURN), values))
+    return traces
+
+
+def no_answers(raw: list[Record]) -> list[Any]:
+    """Crosses at the meshes that have no answer, if there are any."""
+    at = [row[TURN] for row in raw if np.isnan(row[TORSION])]
+    return [crosses("no answer as curved", at)] if at else []

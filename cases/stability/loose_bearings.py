@@ -113,6 +113,11 @@ def steps(page: Page, quick: bool) -> float:
                 "converged": found.converged,
             }
         )
+    return judge_bounces(page, rows)
+
+
+def judge_bounces(page: Page, rows: list[Record]) -> float:
+    """Check the order of the bounces' error, show it; return the longest step that is enough."""
     size = [row["height of the bounce, error over the clearance"] for row in rows]
     over_steps = [row[STEP] for row in rows]
     slope, spread = fitted_exponent(over_steps[::-1], size[::-1], (1e-6, 0.3))

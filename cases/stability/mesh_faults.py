@@ -8,11 +8,11 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import rigid_ended_shafts, slivers
 from fe_drivetrain.cases.references.exact_blocks import LENGTH, SIDE
 from fe_drivetrain.cases.stability import faulty_meshes
-from fe_drivetrain.common import InputError
+from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.drivetrain_file import Scene, library_scene
 from fe_drivetrain.elasticity.mesh import Mesh, find_faults, generate
 from fe_drivetrain.geometry import WIDEST, MeshSizes, Section, Shaft
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import crosses, marked, trace
 from fe_drivetrain.report.suite import Page, Record, Run, column
 from fe_drivetrain.shafts.response import build_model, mesh_scene, needed_faces
 
@@ -28,8 +28,6 @@ DIAMETER = 0.5  # m, of the shaft that is meant
 
 #: Of a stiffness: the largest effect that an unnoticed fault may have.
 CRITERION = 0.01
-
-CROSS = {"symbol": "x", "size": 11, "color": "#c62828"}
 
 
 @case(
@@ -93,7 +91,31 @@ def doubled_nodes(run: Run, page: Page) -> None:
         )
     # the energy of a singular tip converges with the first power of the element size
     limit = 2 * fine - coarse
+    check_crack(page, rows, limit, fine)
     merged = max(column(rows, "nodes merged"))
+    share, loss = (np.array(column(rows, key)) for key in ("share of the height", "torn mesh"))
+    safe = max(share[loss < CRITERION], default=0.0)
+    page.answer(
+        f"Unnoticed, doubled nodes over half a section cost {100 * fine:.0f} % of the bending "
+        "stiffness and no solver reports it; only when the bar falls in two is it 'singular'. "
+        f"Merging the nodes gives the exact stiffness back to {merged:.0e}."
+    )
+    page.limit(
+        "a mesh with doubled nodes, solved unchecked",
+        "share of a section's height with doubled nodes [-]",
+        high=safe,
+        criterion=f"stiffness lost below {100 * CRITERION:g} %",
+        beyond=f"a crack: {100 * fine:.0f} % of the bending stiffness lost at one half, without "
+        "any sign; 'singular' at 1",
+        program="finds doubled nodes before the solve, unless they are a joint's; refuses with "
+        "node, element and place",
+        remedy=f"merging the nodes: exact to {merged:.0e}",
+    )
+    show_crack(page, rows, safe)
+
+
+def check_crack(page: Page, rows: list[Record], limit: float, fine: float) -> None:
+    """Check the stiffness that a crack costs, its report, and that merging its nodes helps."""
     page.equals(
         "bending stiffness lost by a crack of half the height that the mesh has by mistake",
         limit,
@@ -116,37 +138,24 @@ def doubled_nodes(run: Run, page: Page) -> None:
     )
     page.vanishes(
         "bending stiffness after nodes at one place are merged, less the exact one, worst",
-        merged,
+        max(column(rows, "nodes merged")),
         within=1e-9,
         why="quadratic elements hold the solution; round-off",
         source="Euler-Bernoulli, exact without lateral contraction",
     )
+
+
+def show_crack(page: Page, rows: list[Record], safe: float) -> None:
+    """Show the stiffness lost by cracks."""
     share, loss = (np.array(column(rows, key)) for key in ("share of the height", "torn mesh"))
     whole = np.isnan(loss)
-    safe = max(share[loss < CRITERION], default=0.0)
-    page.answer(
-        f"Unnoticed, doubled nodes over half a section cost {100 * fine:.0f} % of the bending "
-        "stiffness and no solver reports it; only when the bar falls in two is it 'singular'. "
-        f"Merging the nodes gives the exact stiffness back to {merged:.0e}."
-    )
-    page.limit(
-        "a mesh with doubled nodes, solved unchecked",
-        "share of a section's height with doubled nodes [-]",
-        high=safe,
-        criterion=f"stiffness lost below {100 * CRITERION:g} %",
-        beyond=f"a crack: {100 * fine:.0f} % of the bending stiffness lost at one half, without "
-        "any sign; 'singular' at 1",
-        program="finds doubled nodes before the solve, unless they are a joint's; refuses with "
-        "node, element and place",
-        remedy=f"merging the nodes: exact to {merged:.0e}",
-    )
     traces = [
-        trace("torn mesh", share[~whole], loss[~whole], mode="lines+markers"),
+        marked("torn mesh", share[~whole], loss[~whole]),
         trace("theory of the crack", share, column(rows, "theory of the crack")),
-        trace("nodes merged", share, column(rows, "nodes merged"), mode="lines+markers"),
+        marked("nodes merged", share, column(rows, "nodes merged")),
     ]
     if whole.any():
-        traces.append(trace("'singular'", share[whole], [1.0] * whole.sum(), True, marker=CROSS))
+        traces.append(crosses("'singular'", share[whole]))
     page.section("Doubled nodes")
     page.chart(
         "Bending stiffness lost where nodes are doubled from the top of a section downwards: a "
@@ -161,21 +170,11 @@ def doubled_nodes(run: Run, page: Page) -> None:
 
 def wrong_units(run: Run, page: Page) -> None:
     """A shaft whose lengths are given too large by a factor."""
-    stiffness, refusal = [], ""
     scale = np.array(QUICK_SCALES if run.quick else SCALES)
     run.report("millimetres for metres")
     with run.step("wrong units"):
-        for s in scale:
-            shaft = Shaft(front=0.0, sections=(Section(length=s, outer_diameter=DIAMETER * s),))
-            try:
-                mesh = generate(shaft, sizes=MeshSizes(shaft=0.25 * s, elements_per_turn=8))
-            except InputError as error:
-                refusal = refusal or str(error)
-                stiffness.append(np.nan)
-                continue
-            solid = rigid_ended_shafts.solved(mesh, shaft, ("torsion",))
-            stiffness.append(solid.stiffness["torsion"])
-    ratio = np.array(stiffness) / stiffness[0]
+        stiffness, refusal = torsion_of_scaled(scale)
+    ratio = stiffness / stiffness[0]
     caught = np.isnan(ratio)
     page.holds(
         "millimetres taken for metres are refused before meshing",
@@ -214,8 +213,8 @@ def wrong_units(run: Run, page: Page) -> None:
         f"Torsional stiffness of a shaft of {DIAMETER:g} m whose lengths are given too large by a "
         "factor",
         [
-            trace("answered", scale[~caught], ratio[~caught], mode="lines+markers"),
-            trace("refused", scale[caught], scale[caught] ** 3, True, marker=CROSS),
+            marked("answered", scale[~caught], ratio[~caught]),
+            crosses("refused", scale[caught], scale[caught] ** 3),
         ],
         "lengths given over lengths meant",
         "stiffness over the one meant",
@@ -227,6 +226,22 @@ def wrong_units(run: Run, page: Page) -> None:
         "within what is plausible: no check of sizes can find that. A modulus in MPa or GPa is "
         "refused by the range of the material."
     )
+
+
+def torsion_of_scaled(scales: Floats) -> tuple[Floats, str]:
+    """Torsional stiffness of scaled shafts [N m/rad], NaN where refused, and the first refusal."""
+    stiffness, refusal = [], ""
+    for s in scales:
+        shaft = Shaft(front=0.0, sections=(Section(length=s, outer_diameter=DIAMETER * s),))
+        try:
+            mesh = generate(shaft, sizes=MeshSizes(shaft=0.25 * s, elements_per_turn=8))
+        except InputError as error:
+            refusal = refusal or str(error)
+            stiffness.append(np.nan)
+            continue
+        solid = rigid_ended_shafts.solved(mesh, shaft, ("torsion",))
+        stiffness.append(solid.stiffness["torsion"])
+    return np.array(stiffness), refusal
 
 
 def every_kind(run: Run, page: Page) -> list[Record]:

@@ -278,38 +278,8 @@ def show_facets(
                 program="warns of faces further apart than a hundredth of their radius",
                 remedy="`mortar.settled`: nothing is lost",
             )
-    refused = next(
-        (
-            ratio
-            for ratio, tie in zip(ratios, coarse_slaves, strict=True)
-            if tie.tie is None and reports(tie, APART)
-        ),
-        None,
-    )
-    page.limit(
-        "mortar tie of a cylinder, straight facets, slave coarser (8 round)",
-        "elements of the finer face to one of the coarser",
-        high=None if refused is None else max([r for r in ratios if r < refused] or [refused]),
-        criterion="tied at all",
-        beyond="facets lie further apart than a quarter of a fine facet, and do not meet",
-        program="refuses, names the gap and the fix",
-        remedy="the finer face as the slave, or curved facets",
-    )
-    remedied = [r for r in as_meshed if np.isfinite(r["once settled"])]
-    traces.append(
-        curve(
-            "straight hexahedra, settled (remedy)",
-            column(remedied, "elements round"),
-            column(remedied, "once settled"),
-            {"dash": "dash"},
-        )
-    )
-    no_tie = [r for r in as_meshed if np.isnan(r["torque lost"])]
-    if no_tie:
-        names = [f"{r['elements']}, {r['tie']}" for r in no_tie]
-        at = column(no_tie, "elements round")
-        cross = {"symbol": "x"}
-        traces.append(trace("refused", at, [1.0] * len(at), True, text=names, marker=cross))
+    limit_straight(page, ratios, coarse_slaves)
+    traces += [remedied(as_meshed), *refusals(as_meshed)]
     page.section("Gaps between facets")
     page.chart(
         "Torque that the tie loses, of the torque; slave twice as fine. Shaded where curved facets "
@@ -334,6 +304,48 @@ def show_facets(
     )
 
 
+def limit_straight(page: Page, ratios: Sequence[int], coarse_slaves: list[Tie]) -> None:
+    """State the ratio at which straight facets no longer meet."""
+    refused = next(
+        (
+            ratio
+            for ratio, tie in zip(ratios, coarse_slaves, strict=True)
+            if tie.tie is None and reports(tie, APART)
+        ),
+        None,
+    )
+    page.limit(
+        "mortar tie of a cylinder, straight facets, slave coarser (8 round)",
+        "elements of the finer face to one of the coarser",
+        high=None if refused is None else max([r for r in ratios if r < refused] or [refused]),
+        criterion="tied at all",
+        beyond="facets lie further apart than a quarter of a fine facet, and do not meet",
+        program="refuses, names the gap and the fix",
+        remedy="the finer face as the slave, or curved facets",
+    )
+
+
+def remedied(as_meshed: list[Record]) -> Any:
+    """Curve of straight facets after the tie is settled."""
+    settled = [r for r in as_meshed if np.isfinite(r["once settled"])]
+    return curve(
+        "straight hexahedra, settled (remedy)",
+        column(settled, "elements round"),
+        column(settled, "once settled"),
+        {"dash": "dash"},
+    )
+
+
+def refusals(as_meshed: list[Record]) -> list[Any]:
+    """Crosses of the ties that are refused, drawn at 1."""
+    no_tie = [r for r in as_meshed if np.isnan(r["torque lost"])]
+    if not no_tie:
+        return []
+    names = [f"{r['elements']}, {r['tie']}" for r in no_tie]
+    at = column(no_tie, "elements round")
+    return [trace("refused", at, [1.0] * len(at), True, text=names, marker={"symbol": "x"})]
+
+
 def show_ratios(page: Page, settled: list[Record], shared: Twisted) -> None:
     """Stress and stiffness of settled ties over the ratio: limits, chart, table."""
     ratios = list(dict.fromkeys(column(settled, "ratio")))
@@ -344,33 +356,7 @@ def show_ratios(page: Page, settled: list[Record], shared: Twisted) -> None:
         for kind in TIES
     }
     most = {key: last_within(ratios, errors, allowed) for key, errors in stress.items()}
-    node = stress["node by node", "coarser"]
-    by_node = series(settled, "node by node", "coarser", "stiffness over the exact one")
-    page.limit(
-        "tie of a cylinder node by node, settled, slave coarser",
-        "elements of the finer face to one of the coarser",
-        high=most["node by node", "coarser"],
-        criterion=f"error of the stress within {FACTOR:g} times that of shared nodes",
-        beyond=f"stress in error by up to {100 * node.max():.0f} %, stiffness by "
-        f"{100 * np.abs(by_node - 1).max():.2g} %",
-        program="warns of a slave that is the coarser",
-        remedy="mortar tie, or the finer face as the slave",
-    )
-    for kind in ("standard", "dual"):
-        for side in SIDES:
-            high = most[kind, side]
-            page.limit(
-                f"mortar tie of a cylinder, {kind} multipliers, settled, slave {side}",
-                "elements of the finer face to one of the coarser",
-                high=None if high == ratios[-1] else high,
-                criterion=f"error of the stress within {FACTOR:g} times that of shared nodes",
-                beyond="largest error of the stress in the sweep "
-                f"{100 * stress[kind, side].max():.2g} %",
-                program="warns of a slave that is the coarser"
-                if side == "coarser"
-                else "nothing to be done",
-                remedy="the finer face as the slave",
-            )
+    limit_ratios(page, settled, stress, most)
     page.section("Mesh ratio")
     page.chart(
         "Stress in the outer ring, settled ties of curved tetrahedra: root mean square error over "
@@ -399,6 +385,42 @@ def show_ratios(page: Page, settled: list[Record], shared: Twisted) -> None:
         (None, most["node by node", "coarser"] or ratios[0]),
     )
     page.table("Settled ties of curved tetrahedra", settled)
+
+
+def limit_ratios(
+    page: Page,
+    settled: list[Record],
+    stress: dict[tuple[str, str], Floats],
+    most: dict[tuple[str, str], float | None],
+) -> None:
+    """State the ratios up to which each tie has the stress of shared nodes."""
+    node = stress["node by node", "coarser"]
+    by_node = series(settled, "node by node", "coarser", "stiffness over the exact one")
+    page.limit(
+        "tie of a cylinder node by node, settled, slave coarser",
+        "elements of the finer face to one of the coarser",
+        high=most["node by node", "coarser"],
+        criterion=f"error of the stress within {FACTOR:g} times that of shared nodes",
+        beyond=f"stress in error by up to {100 * node.max():.0f} %, stiffness by "
+        f"{100 * np.abs(by_node - 1).max():.2g} %",
+        program="warns of a slave that is the coarser",
+        remedy="mortar tie, or the finer face as the slave",
+    )
+    for kind in ("standard", "dual"):
+        for side in SIDES:
+            high = most[kind, side]
+            page.limit(
+                f"mortar tie of a cylinder, {kind} multipliers, settled, slave {side}",
+                "elements of the finer face to one of the coarser",
+                high=None if high == settled[-1]["ratio"] else high,
+                criterion=f"error of the stress within {FACTOR:g} times that of shared nodes",
+                beyond="largest error of the stress in the sweep "
+                f"{100 * stress[kind, side].max():.2g} %",
+                program="warns of a slave that is the coarser"
+                if side == "coarser"
+                else "nothing to be done",
+                remedy="the finer face as the slave",
+            )
 
 
 def curve(name: str, x: Sequence[int], y: Any, line: dict[str, str] | None = None) -> Any:

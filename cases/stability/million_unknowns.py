@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from fe_drivetrain.cases.references import thin_bodies as bodies
 from fe_drivetrain.cases.references.solver_trials import compliance, factor_memory
 from fe_drivetrain.common import InputError, peak_memory, timed_runs
 from fe_drivetrain.elasticity.solve import TOLERANCE, multigrid, round_off, schwarz
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked
 from fe_drivetrain.report.suite import Page, Record, Run, column, grouped
 
 #: Unknowns, about.
@@ -220,18 +221,23 @@ def show(page: Page, rows: list[Record], peak: float) -> None:
         program="auto takes them where a factor does not fit or takes longer",
         remedy="none needed",
     )
+    show_costs(page, rows, peak)
+
+
+def over_unknowns(name: str, series: list[Record], key: str) -> Any:
+    """Curve of a quantity over the number of unknowns."""
+    return marked(name, column(series, "unknowns"), column(series, key))
+
+
+def show_costs(page: Page, rows: list[Record], peak: float) -> None:
+    """Show iterations and memory over the number of unknowns, and all numbers."""
     page.section("Iterations and memory")
     page.chart(
         "Iterations of conjugate gradients with patches, to an energy error of 1e-9. Shaded: all, "
         "none was found where they fail",
         [
-            trace(
-                name,
-                column(series, "unknowns"),
-                column(series, "iterations of patches"),
-                mode="lines+markers",
-            )
-            for name, series in of.items()
+            over_unknowns(name, series, "iterations of patches")
+            for name, series in grouped(rows, "body")
         ],
         "unknowns",
         "iterations",
@@ -242,12 +248,7 @@ def show(page: Page, rows: list[Record], peak: float) -> None:
     page.chart(
         "Memory beside the stiffness matrix",
         [
-            trace(
-                f"{name}, {what}",
-                column(series, "unknowns"),
-                column(series, key),
-                mode="lines+markers",
-            )
+            over_unknowns(f"{name}, {what}", series, key)
             for key, what, of_rows in (
                 ("memory of patches [GiB]", "patches", rows),
                 ("memory of a factor [GiB]", "direct factor", known),

@@ -1,13 +1,16 @@
 """Near-mechanisms: motions that soft springs hardly restrain are named, with the digits lost."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.soft_springs import Sprung, scene_of, sprung
-from fe_drivetrain.comparison import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
+from fe_drivetrain.common import Floats
+from fe_drivetrain.comparison import FOUR_DIGITS, decades, in_words, safe_range
 from fe_drivetrain.elasticity.interfaces import WEAK
 from fe_drivetrain.elasticity.mesh import Mesh
-from fe_drivetrain.report import crosses, trace
+from fe_drivetrain.report import crosses, marked, trace
 from fe_drivetrain.report.suite import Page, Record, Run, column
 from fe_drivetrain.shafts.response import mesh_scene
 
@@ -58,6 +61,42 @@ def solve(loose: Sprung, held: Sprung, targets: list[float]) -> list[Record]:
     return rows
 
 
+@dataclass(frozen=True)
+class Softened:
+    """Ever softer springs at one form of the joint.
+
+    Attributes
+    ----------
+    rows : list of dict
+        One for each restraint.
+    at_zero : str
+        Why it is refused without springs.
+    """
+
+    rows: list[Record]
+    at_zero: str
+
+    def of(self, key: str) -> Floats:
+        """One quantity of all restraints."""
+        return np.array(column(self.rows, key))
+
+    @property
+    def errors(self) -> dict[str, Floats]:
+        """Relative errors of each motion, NaN where refused."""
+        return {motion: self.of(f"error of the {motion}") for motion in MOTIONS}
+
+    @property
+    def worst(self) -> Floats:
+        """The larger error of both motions."""
+        return np.asarray(np.fmax(*self.errors.values()))
+
+    @property
+    def soft(self) -> tuple[float, tuple[str, ...]]:
+        """The ratio nearest to 1e-12, and the warnings there."""
+        row = min(self.rows, key=lambda row: abs(np.log10(row["ratio"]) + 12.0))
+        return row["ratio"], row["warned"]
+
+
 def sweep(run: Run, page: Page, joint: str, mesh: Mesh) -> list[Record]:
     """Soften the springs of one form of the joint: its checks, chart and limit; all points."""
     targets = decades(-17, -5, 0.5 if run.quick else 1.25)
@@ -65,28 +104,44 @@ def sweep(run: Run, page: Page, joint: str, mesh: Mesh) -> list[Record]:
         loose = sprung(scene_of("spherical", joint, rigid=()), mesh)
         held = sprung(scene_of("spherical", joint, rigid=(1, 2, 3)), mesh)
         _, at_zero = loose.warnings_and_refusal(HELD)
-        rows = solve(loose, held, targets.tolist())
-    predicted = np.array(column(rows, "2e-16 over the ratio"))
-    has_warning = np.array(column(rows, "warnings")) > 0
-    errors = {motion: np.array(column(rows, f"error of the {motion}")) for motion in MOTIONS}
-    worst = np.fmax(*errors.values())
-    answered = np.isfinite(worst)
-    remedy = max(column(rows, "remedy"))
-    for motion, error in errors.items():
-        usable = answered & (error > 0.0) & (error < 0.1) & (targets < 1e-5)
+        found = Softened(solve(loose, held, targets.tolist()), at_zero)
+    check_errors(run, page, joint, found)
+    check_words(page, joint, found)
+    low, _ = safe_range(targets, found.worst, FOUR_DIGITS)
+    assert low is not None
+    page.limit(
+        f"soft springs as the only restraint, {joint} joint",
+        RATIO,
+        low=low,
+        criterion="error of the motion below 1e-4",
+        beyond="the error of the motion grows tenfold a decade: about 2e-16 over the ratio",
+        program=f"warns below {WEAK:.0e} with the name of the motion and the digits lost; "
+        f"refuses below {targets[np.isfinite(found.worst)].min():.0e}, by name",
+        remedy="the direction held rigidly, and moment over stiffness added: right to "
+        f"{found.of('remedy').max():.0e}",
+    )
+    show(page, joint, found, low)
+    shown_keys = [key for key in found.rows[0] if key not in ("warned", "remedy")]
+    page.data(joint, [{key: row[key] for key in shown_keys[:3]} for row in found.rows])
+    return [{"joint": joint, "least safe": low, **row} for row in found.rows]
+
+
+def check_errors(run: Run, page: Page, joint: str, found: Softened) -> None:
+    """Check that errors grow as the program states, and that the remedy has none."""
+    targets, predicted = found.of("ratio"), found.of("2e-16 over the ratio")
+    for motion, error in found.errors.items():
+        usable = (error > 0.0) & (error < 0.1) & (targets < 1e-5)
         lost = np.log10(error[usable] / predicted[usable])
-        exponent, band = fitted_exponent(targets[usable], error[usable])
-        page.equals(
+        page.exponent(
             f"{joint} joint, {motion}: error against the restraint, exponent",
-            exponent,
+            targets[usable],
+            error[usable],
             -1.0,
             within=0.4 if run.quick else 0.2,
             why="round-off scatters by about a decade from point to point: by as much at one end "
             "of six decades it changes a slope by 0.2, and twice that is let pass of the four "
             "points of a quick run",
             source="round-off of the bodies' stiffness acts as springs to ground",
-            measure="order",
-            band=band,
         )
         page.vanishes(
             f"{joint} joint, {motion}: digits lost, less those that the program names, mean "
@@ -100,14 +155,18 @@ def sweep(run: Run, page: Page, joint: str, mesh: Mesh) -> list[Record]:
         )
     page.vanishes(
         f"{joint} joint: held rigidly, and moment over stiffness added: worst error at any spring",
-        remedy,
+        found.of("remedy").max(),
         within=1e-8,
         why="the iteration stops at 1e-9 in the energy norm",
         source="statics, and the held shaft by a direct solver",
     )
-    silent = answered & ~has_warning & ~(worst < FOUR_DIGITS)
-    at = int(np.argmin(np.abs(np.log10(targets) + 12.0)))
-    warned = rows[at]["warned"]
+
+
+def check_words(page: Page, joint: str, found: Softened) -> None:
+    """Check that warnings and refusals name the motion where digits are lost, and only there."""
+    has_warning = found.of("warnings") > 0
+    silent = np.isfinite(found.worst) & ~has_warning & ~(found.worst < FOUR_DIGITS)
+    _, warned = found.soft
     page.holds(
         f"{joint} joint: springs of 1e-12 of the shaft: warned of by name, about each of three "
         "axes",
@@ -118,7 +177,7 @@ def sweep(run: Run, page: Page, joint: str, mesh: Mesh) -> list[Record]:
     )
     page.holds(
         f"{joint} joint: no springs: refused, and the free motions named",
-        all(f"turn freely about {axis}" in at_zero for axis in "xyz"),
+        all(f"turn freely about {axis}" in found.at_zero for axis in "xyz"),
         why="without springs the stiffness is singular, and any answer would be round-off",
         source="a shaft on a sphere turns about three axes",
     )
@@ -130,47 +189,35 @@ def sweep(run: Run, page: Page, joint: str, mesh: Mesh) -> list[Record]:
     )
     page.holds(
         f"{joint} joint: restraints of ten times the threshold and more: silent",
-        not has_warning[targets > 10.0 * WEAK].any(),
+        not has_warning[found.of("ratio") > 10.0 * WEAK].any(),
         why="a warning that comes where all digits are there would soon be ignored",
         source="error of 2e-16 over the ratio: less than 1e-4 there",
     )
-    low, _ = safe_range(targets, worst, FOUR_DIGITS)
-    assert low is not None
-    page.limit(
-        f"soft springs as the only restraint, {joint} joint",
-        RATIO,
-        low=low,
-        criterion="error of the motion below 1e-4",
-        beyond="the error of the motion grows tenfold a decade: about 2e-16 over the ratio",
-        program=f"warns below {WEAK:.0e} with the name of the motion and the digits lost; "
-        f"refuses below {targets[answered].min():.0e}, by name",
-        remedy="the direction held rigidly, and moment over stiffness added: right to "
-        f"{remedy:.0e}",
-    )
+
+
+def show(page: Page, joint: str, found: Softened, low: float) -> None:
+    """Show the errors and the program's warning; safe from the ratio `low` on."""
+    targets, answered = found.of("ratio"), np.isfinite(found.worst)
+    has_warning = found.of("warnings") > 0
     page.section(f"{joint.capitalize()} joint")
     page.chart(
         "Error of the rotation at the hub under a moment there, against the rotation when held "
         "plus moment over stiffness. Shaded: four digits. Crosses: refused",
         [
             *(
-                trace(
-                    motion,
-                    targets[answered],
-                    np.maximum(error[answered], 1e-16),
-                    mode="lines+markers",
-                )
-                for motion, error in errors.items()
+                marked(motion, targets[answered], np.maximum(error[answered], 1e-16))
+                for motion, error in found.errors.items()
             ),
             trace(
                 "as the warning estimates it",
                 targets[has_warning],
-                np.minimum(predicted[has_warning], 1.0),
+                np.minimum(found.of("2e-16 over the ratio")[has_warning], 1.0),
                 line={"dash": "dash"},
             ),
             trace(
                 "held, moment over stiffness added",
                 targets,
-                np.maximum(column(rows, "remedy"), 1e-16),
+                np.maximum(found.of("remedy"), 1e-16),
                 line={"dash": "dot"},
             ),
             crosses("refused", targets[~answered]),
@@ -180,10 +227,8 @@ def sweep(run: Run, page: Page, joint: str, mesh: Mesh) -> list[Record]:
         "xy",
         (low, None),
     )
-    page.text(f"At {targets[at]:.0e} the program warns: {warned[0] if warned else ''}")
-    shown_keys = [key for key in rows[0] if key not in ("warned", "remedy")]
-    page.data(joint, [{key: row[key] for key in shown_keys[:3]} for row in rows])
-    return [{"joint": joint, "least safe": low, **row} for row in rows]
+    at, warned = found.soft
+    page.text(f"At {at:.0e} the program warns: {warned[0] if warned else ''}")
 
 
 @case(

@@ -4,7 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.mathieu import stepped_growth
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked, trace
 from fe_drivetrain.report.suite import Page, Run
 
 DEPTHS = (0.05, 0.1, 0.2, 0.4)
@@ -53,7 +53,7 @@ def run(run: Run, page: Page) -> None:
     page.section("Growth over damping")
     page.chart(
         "Rate of growth over e w / 4, at twice the natural frequency; shaded: no growth",
-        [trace(f"e = {e}", over, rate, mode="lines+markers") for e, rate in rates.items()]
+        [marked(f"e = {e}", over, rate) for e, rate in rates.items()]
         + [trace("first order", over, 1.0 - over, line={"dash": "dot"})],
         DAMPING,
         "rate of growth over e w / 4",

@@ -1,6 +1,6 @@
 """Couplings by penalty springs instead of elimination: wrong when soft, wrong when stiff."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,8 +13,8 @@ from fe_drivetrain.cases.stability.penalised_couplings import (
     penalised,
     work,
 )
-from fe_drivetrain.common import InputError
-from fe_drivetrain.comparison import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
+from fe_drivetrain.common import Bools, Floats, InputError
+from fe_drivetrain.comparison import FOUR_DIGITS, decades, in_words, safe_range
 from fe_drivetrain.drivetrain_file import change_scene, library_scene
 from fe_drivetrain.elasticity.solve import System, solve
 from fe_drivetrain.report import crosses, trace
@@ -68,8 +68,64 @@ def run(run: Run, page: Page) -> None:
     )
 
 
+@dataclass(frozen=True)
+class Penalised:
+    """One coupling by penalties, against its elimination.
+
+    Attributes
+    ----------
+    penalties : (n,) array
+        Over the mean diagonal.
+    direct : (n, loads) array
+        Relative error of the compliance, direct solver; NaN where it refuses.
+    tried, iterated_error, arrived : (m,) array
+        Penalties of multigrid, largest error, and whether it has converged.
+    counts : list of int
+        Its iterations.
+    uncertain, by_iteration : float
+        Of the elimination: what another scale changes, and multigrid.
+    iterations : int
+        Of multigrid with the elimination.
+    """
+
+    penalties: Floats
+    direct: Floats
+    tried: Floats
+    iterated_error: Floats
+    arrived: Bools
+    counts: list[int]
+    uncertain: float
+    by_iteration: float
+    iterations: int
+
+    @property
+    def error(self) -> Floats:
+        """The largest error of each penalty."""
+        return np.asarray(np.abs(self.direct).max(axis=1))
+
+
 def sweep(run: Run, page: Page, kind: str) -> Record:
     """One coupling over all penalties: its checks, chart and limits; the range that is safe."""
+    found = coupled(run, kind)
+    penalties, error = found.penalties, found.error
+    best = int(np.nanargmin(error))
+    exponents = check_exponents(page, kind, found, 0.4 if run.quick else 0.15)
+    check_elimination(page, kind, found)
+    low, high = state_limits(page, kind, found)
+    show(page, kind, found, (low, high))
+    return {
+        "coupling": NAMES[kind],
+        "safe from": low,
+        "to": high,
+        "best": penalties[best],
+        "least error": error[best],
+        "exponent, soft": exponents[0],
+        "exponent, stiff": exponents[1],
+    }
+
+
+def coupled(run: Run, kind: str) -> Penalised:
+    """One coupling by elimination and by each penalty, with both solvers."""
     with run.step(f"{kind}: elimination"):
         body = bar(kind, 2)
         system, F = eliminated(body)
@@ -77,57 +133,79 @@ def sweep(run: Run, page: Page, kind: str) -> Record:
         by_iteration, iterations, _ = iterated(system, F)
         # a stiffness scaled by a third rounds differently everywhere
         other = work(scaled(system, 1.0 / 3.0), F, "superlu") / 3.0
-    uncertain = float(np.abs(other / exact - 1.0).max())
     penalties = decades(-3, 14, 1 if run.quick else 3)
     with run.step(f"{kind}: penalty, direct"):
         direct = np.array([work(*penalised(body, p), "superlu") for p in penalties]) / exact - 1.0
-    error, spread = np.abs(direct).max(axis=1), np.sqrt((direct**2).mean(axis=1))
     tried = decades(-2, 10, 0.25 if run.quick else 0.5)
     with run.step(f"{kind}: penalty, multigrid"):
         found = [iterated(*penalised(body, p)) for p in tried]
-    iterated_error = np.array([np.abs(w / exact - 1.0).max() for w, _, _ in found])
-    arrived = np.array([converged for _, _, converged in found])
+    return Penalised(
+        penalties=penalties,
+        direct=direct,
+        tried=tried,
+        iterated_error=np.array([np.abs(w / exact - 1.0).max() for w, _, _ in found]),
+        arrived=np.array([converged for _, _, converged in found]),
+        counts=[count for _, count, _ in found],
+        uncertain=float(np.abs(other / exact - 1.0).max()),
+        by_iteration=float(np.abs(by_iteration / exact - 1.0).max()),
+        iterations=iterations,
+    )
 
-    low, high = safe_range(penalties, error, FOUR_DIGITS)
-    safe_iterated = safe_range(tried, np.where(arrived, iterated_error, np.nan), ONE_PERCENT)
+
+def check_exponents(page: Page, kind: str, found: Penalised, within: float) -> tuple[float, float]:
+    """Check the exponents of the errors of soft and stiff penalties; return both."""
+    penalties, error = found.penalties, found.error
+    spread = np.sqrt((found.direct**2).mean(axis=1))
     best = int(np.nanargmin(error))
-    soft, soft_band = fitted_exponent(penalties[: best + 1], spread[: best + 1], (1e-6, 1e-2))
-    stiff, stiff_band = fitted_exponent(penalties[best:], spread[best:], (2.0 * spread[best], 0.1))
-    page.equals(
+    soft = page.exponent(
         f"{kind}: error of a soft penalty, exponent",
-        soft,
+        penalties[: best + 1],
+        spread[: best + 1],
         -1.0,
         within=0.05,
+        between=(1e-6, 1e-2),
         why="first order in the compliance: the next order is a hundredth of the leading error at "
         "most",
         source="springs in series: the penalty's own compliance is added",
-        measure="order",
-        band=soft_band,
     )
-    page.equals(
+    stiff = page.exponent(
         f"{kind}: error of a stiff penalty, exponent",
-        stiff,
+        penalties[best:],
+        spread[best:],
         1.0,
-        within=0.4 if run.quick else 0.15,
+        within=within,
+        between=(2.0 * spread[best], 0.1),
         why="round-off scatters by about a decade from point to point: a slope over five decades "
         "in steps of a third of one by 0.15, over the few points of a quick run by 0.4",
         source="round-off of penalty terms, 2e-16 of them, is added to the elastic ones",
-        measure="order",
-        band=stiff_band,
     )
+    return soft, stiff
+
+
+def check_elimination(page: Page, kind: str, found: Penalised) -> None:
+    """Check the round-off of the reference, and that both solvers agree on it."""
     page.vanishes(
         f"{kind}: elimination, stiffness scaled by a third against unscaled",
-        uncertain,
+        found.uncertain,
         within=1e-10,
         why="round-off times the condition number of the bar",
         source="a linear system",
     )
     page.vanishes(
         f"{kind}: elimination, multigrid against direct",
-        float(np.abs(by_iteration / exact - 1.0).max()),
+        found.by_iteration,
         within=1e-10,
         why="iterations stop at 1e-9 in the energy norm, which counts squared",
         source="the same discrete model",
+    )
+
+
+def state_limits(page: Page, kind: str, found: Penalised) -> tuple[float | None, float | None]:
+    """State the safe penalties of both solvers; return those of the direct one."""
+    penalties, error = found.penalties, found.error
+    low, high = safe_range(penalties, error, FOUR_DIGITS)
+    safe_iterated = safe_range(
+        found.tried, np.where(found.arrived, found.iterated_error, np.nan), ONE_PERCENT
     )
     lost = ~np.isfinite(error)
     page.limit(
@@ -141,7 +219,7 @@ def sweep(run: Run, page: Page, kind: str) -> Record:
         if lost.any()
         else "below: the coupling yields; above: round-off",
         program="eliminates all couplings; springs above 1e16 N/m are refused",
-        remedy=f"elimination: right to {uncertain:.0e}",
+        remedy=f"elimination: right to {found.uncertain:.0e}",
     )
     page.limit(
         f"penalty in place of elimination, multigrid: {NAMES[kind]}",
@@ -151,8 +229,16 @@ def sweep(run: Run, page: Page, kind: str) -> Record:
         criterion="converged, and error of the compliance below 1 %",
         beyond="no convergence: smoother and aggregates do not take the springs into account",
         program="gives up early and takes a direct factor, and says so",
-        remedy=f"elimination: {iterations} iterations",
+        remedy=f"elimination: {found.iterations} iterations",
     )
+    return low, high
+
+
+def show(page: Page, kind: str, found: Penalised, safe: tuple[float | None, float | None]) -> None:
+    """Show the errors, and keep all numbers."""
+    penalties, error = found.penalties, found.error
+    tried, iterated_error, arrived = found.tried, found.iterated_error, found.arrived
+    lost = ~np.isfinite(error)
     page.section(NAMES[kind].capitalize())
     page.chart(
         f"Error of the compliance of a bar, {NAMES[kind]}. Shaded: safe with the direct solver. "
@@ -164,14 +250,14 @@ def sweep(run: Run, page: Page, kind: str) -> Record:
             trace(
                 "elimination, direct: its round-off",
                 [penalties[0], penalties[-1]],
-                [max(uncertain, 1e-16)] * 2,
+                [max(found.uncertain, 1e-16)] * 2,
                 line={"dash": "dash"},
             ),
         ],
         PENALTY,
         "relative error",
         "xy",
-        (low, high),
+        safe,
     )
     page.data(
         kind,
@@ -180,18 +266,9 @@ def sweep(run: Run, page: Page, kind: str) -> Record:
             "error": error,
             "iterated_penalty": tried,
             "iterated_error": iterated_error,
-            "iterations": [count for _, count, _ in found],
+            "iterations": found.counts,
         },
     )
-    return {
-        "coupling": NAMES[kind],
-        "safe from": low,
-        "to": high,
-        "best": penalties[best],
-        "least error": error[best],
-        "exponent, soft": soft,
-        "exponent, stiff": stiff,
-    }
 
 
 def check_protection(run: Run, page: Page) -> None:

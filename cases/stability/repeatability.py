@@ -1,6 +1,7 @@
 """Two runs, bit for bit: with one thread, with two, and with the nodes in another order."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,13 +15,16 @@ from fe_drivetrain.cases.stability.fingerprints import (
     tube_answers,
 )
 from fe_drivetrain.common import Floats, scratch_folder
-from fe_drivetrain.comparison import FOUR_DIGITS, fitted_exponent, in_words, safe_range
-from fe_drivetrain.report import trace
+from fe_drivetrain.comparison import FOUR_DIGITS, in_words, safe_range
+from fe_drivetrain.report import marked, trace
 from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Lengths over diameters of the tubes that other processes solve.
 LENGTHS = (5.0, 200.0)
 QUICK_LENGTHS = (5.0,)
+
+#: The runs that are to agree in every bit.
+FIRST = "one thread / one thread, again"
 
 #: Lengths over diameters of the tubes whose nodes are numbered in two ways.
 SLENDERNESS = (2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0)
@@ -63,6 +67,37 @@ def renumbered(slenderness: tuple[float, ...]) -> dict[str, Floats]:
     }
 
 
+@dataclass(frozen=True)
+class Renumbered:
+    """Change of the stiffness of a tube with its nodes in another order.
+
+    Attributes
+    ----------
+    slenderness : tuple of float
+        L/D.
+    by_method : dict of array
+        Relative change by each solver, NaN where it refuses.
+    """
+
+    slenderness: tuple[float, ...]
+    by_method: dict[str, Floats]
+
+    @property
+    def direct(self) -> list[Floats]:
+        """Changes by the direct solvers."""
+        return [values for method, values in self.by_method.items() if method != "multigrid"]
+
+    @property
+    def typical(self) -> Floats:
+        """Geometric mean of the direct solvers."""
+        return np.asarray(10.0 ** np.log10(np.maximum(self.direct, 1e-17)).mean(axis=0))
+
+    @property
+    def safe(self) -> float | None:
+        """L/D up to which all direct solvers keep four digits."""
+        return safe_range(self.slenderness, np.max(self.direct, axis=0), FOUR_DIGITS)[1]
+
+
 @case(
     "Repeatability: two runs bit for bit, with one thread and with two",
     source="IEEE 754: sums depend on their order; Higham 2002, ch. 4",
@@ -82,13 +117,40 @@ def run(run: Run, page: Page) -> None:
                 runs[name] = elsewhere(folder / f"{len(runs)}.npz", lengths, threads)
     slenderness = QUICK_SLENDERNESS if run.quick else SLENDERNESS
     with run.step("nodes in another order"):
-        reordered = renumbered(slenderness)
-    direct = [values for method, values in reordered.items() if method != "multigrid"]
-    typical = 10.0 ** np.log10(np.maximum(direct, 1e-17)).mean(axis=0)
-    _, high = safe_range(slenderness, np.max(direct, axis=0), FOUR_DIGITS)
-
-    parts = ["mesh", "operator", *reordered]
+        reordered = Renumbered(slenderness, renumbered(slenderness))
+    parts = ["mesh", "operator", *reordered.by_method]
     rows = [compare(runs, a, b, part) for part in parts for a, b in pairs]
+    changed = check(page, runs, rows, reordered, run.quick)
+    high = reordered.safe
+    page.limit(
+        "the last bits of a stiffness: any change of order (threads, node numbers)",
+        "L/D of a tube",
+        high=high,
+        criterion="two orders of the same operations agree to 1e-4",
+        beyond="round-off in another order is another answer; it grows as (L/D)^4",
+        program="with one thread repeats every bit; refuses a residual above 1e-2",
+        remedy="one thread (FE_DRIVETRAIN_CORES=1) for the bits; beam or meridian for the digits",
+    )
+    changing = dict.fromkeys(
+        r["part"] for r in rows if r["runs"] != FIRST and r["differ in any bit"]
+    )
+    page.answer(
+        f"Two runs with one thread agree in every bit of {len(runs['one thread'])} arrays, from "
+        f"mesh to stiffness: {changed} differ.",
+        "Two threads are not tried in a quick run."
+        if run.quick
+        else f"With two threads these change in their last bits: {', '.join(changing) or 'none'}; "
+        f"these do not: {', '.join(part for part in parts if part not in changing)}.",
+        "What another order of the operations changes grows as the fourth power of L/D: "
+        f"stiffnesses agree to four digits up to L/D = {in_words(high)}.",
+    )
+    show(page, rows, lengths, reordered)
+
+
+def check(
+    page: Page, runs: Mapping[str, Arrays], rows: list[Record], reordered: Renumbered, quick: bool
+) -> int:
+    """Check bits and digits of all runs; return how many arrays differ with one thread."""
     one_thread = different(runs["one thread"], runs["one thread, again"])
     page.vanishes(
         f"two runs with one thread, {len(runs['one thread'])} arrays from mesh to stiffness: how "
@@ -98,24 +160,23 @@ def run(run: Run, page: Page) -> None:
         why="the same operations in the same order round in the same way: bit for bit",
         source="IEEE 754",
     )
-    exponent, band = fitted_exponent(slenderness, typical, (1e-15, 0.1))
-    page.equals(
+    page.exponent(
         "nodes in another order: difference of the stiffness against L/D, exponent",
-        exponent,
+        reordered.slenderness,
+        reordered.typical,
         4.0,
-        within=0.3 if run.quick else 0.15,
+        within=0.3 if quick else 0.15,
+        between=(1e-15, 0.1),
         why="round-off scatters by about a decade from point to point: by as much at either end of "
         "the two and a half decades of the fit it changes a slope by 0.8, a fifth of it; 15 % of "
         "the mean of several solvers, and twice that of the three points of a quick run",
         source="round-off over the energy of bending, as in stability/precision",
-        measure="order",
-        band=band,
     )
-    if not run.quick:
+    if not quick:
         between = {r["part"]: r for r in rows if r["runs"] == "one thread / two threads"}
         page.at_most(
             "one thread against two: largest difference of a stiffness",
-            max(between[part]["stiffness by, at most"] for part in reordered),
+            max(between[part]["stiffness by, at most"] for part in reordered.by_method),
             FOUR_DIGITS,
             why="four digits of stiffness, at lengths where another order of the nodes leaves as "
             "many",
@@ -130,29 +191,12 @@ def run(run: Run, page: Page) -> None:
                 why="no sum is divided among threads: the order of its terms is the same",
                 source="each sum is one thread's, in one order",
             )
-    page.limit(
-        "the last bits of a stiffness: any change of order (threads, node numbers)",
-        "L/D of a tube",
-        high=high,
-        criterion="two orders of the same operations agree to 1e-4",
-        beyond="round-off in another order is another answer; it grows as (L/D)^4",
-        program="with one thread repeats every bit; refuses a residual above 1e-2",
-        remedy="one thread (FE_DRIVETRAIN_CORES=1) for the bits; beam or meridian for the digits",
-    )
-    first = f"{pairs[0][0]} / {pairs[0][1]}"
-    changing = dict.fromkeys(
-        r["part"] for r in rows if r["runs"] != first and r["differ in any bit"]
-    )
-    page.answer(
-        f"Two runs with one thread agree in every bit of {len(runs['one thread'])} arrays, from "
-        f"mesh to stiffness: {len(one_thread)} differ.",
-        "Two threads are not tried in a quick run."
-        if run.quick
-        else f"With two threads these change in their last bits: {', '.join(changing) or 'none'}; "
-        f"these do not: {', '.join(part for part in parts if part not in changing)}.",
-        "What another order of the operations changes grows as the fourth power of L/D: "
-        f"stiffnesses agree to four digits up to L/D = {in_words(high)}.",
-    )
+    return len(one_thread)
+
+
+def show(page: Page, rows: list[Record], lengths: tuple[float, ...], reordered: Renumbered) -> None:
+    """Show what differs between runs, and the differences over slenderness."""
+    slenderness = reordered.slenderness
     page.section("Runs")
     page.table(
         "What differs between two processes: mesh and stiffness matrix of a main bearing, and "
@@ -165,7 +209,7 @@ def run(run: Run, page: Page) -> None:
         "solver does not give (multigrid on slender tubes) is not compared."
     )
     at = np.array(slenderness)
-    repeated = max(r["stiffness by, at most"] for r in rows if r["runs"] == first)
+    repeated = max(r["stiffness by, at most"] for r in rows if r["runs"] == FIRST)
     page.section("Nodes in another order")
     page.chart(
         "Difference of the bending stiffness of a tube between nodes numbered from the front and "
@@ -173,13 +217,12 @@ def run(run: Run, page: Page) -> None:
         "solver refuses",
         [
             *(
-                trace(
+                marked(
                     f"renumbered, {method}",
                     at[np.isfinite(values)],
                     np.maximum(values[np.isfinite(values)], 1e-17),
-                    mode="lines+markers",
                 )
-                for method, values in reordered.items()
+                for method, values in reordered.by_method.items()
             ),
             *(
                 trace(
@@ -201,7 +244,7 @@ def run(run: Run, page: Page) -> None:
         "L/D",
         "relative difference",
         "xy",
-        (None, high),
+        (None, reordered.safe),
     )
     page.data("slenderness", slenderness)
-    page.data("renumbered", reordered)
+    page.data("renumbered", reordered.by_method)

@@ -1,6 +1,6 @@
 """Bent bars and shafts: where linear elements lock, by theory and measured, and what holds."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,8 +26,8 @@ from fe_drivetrain.cases.stability.locking_curves import CRITERION, WITHIN, erro
 from fe_drivetrain.comparison import last_within
 from fe_drivetrain.elasticity.operator import elasticity, incompatible, incompressible
 from fe_drivetrain.elasticity.solve import recovery_estimate
-from fe_drivetrain.report import trace
-from fe_drivetrain.report.suite import Page, Run
+from fe_drivetrain.report import marked
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Lengths of elements over the depth of the square bar.
 LENGTHS = (1 / 16, 1 / 8, 1 / 4, 1 / 2, 1.0, 2.0, 4.0, 8.0, 16.0)
@@ -105,28 +105,11 @@ def run(run: Run, page: Page) -> None:
     square = square_bars(run)
     theory_error = check_theory(page, square)
     tip = cantilevers(run, page, square.most, slenderness)
-    for name, values in square.held.items():
-        page.vanishes(
-            f"square bar, {name}, 1 across: stiffness over E I, less one, worst of all lengths",
-            np.abs(values).max(),
-            within=1e-6,
-            why="bricks of these hold the parabolas of pure bending exactly; round-off of elements "
-            "16 times as long as the bar is deep, and more of tetrahedra as flat as 1:16",
-            source=PURE,
-        )
+    check_held(page, square.held)
     shafts = round_hexahedra(run, page, round_lengths)
     tetrahedra = round_tetrahedra(run, page)
     estimates = estimated(run, square.lengths)
-    share = min(min(values) for values in estimates.values())
-    page.at_least(
-        "error estimate of one mesh, hexahedra of 8 nodes in any length: estimated over true error "
-        "by locking, least",
-        share,
-        1.0 / 3.0,
-        why="the band of a result is three times the estimate: it would not contain the answer",
-        source="error_estimate.recovery_estimate",
-        measure="identity",
-    )
+    share = check_estimate(page, estimates)
     state_limits(page, square, tip, shafts, slenderness, round_lengths, share)
     at_200 = tip[f"8 nodes, {square.most} across"][-1]
     left = shafts["8 nodes, incompatible modes, 8 round a turn"][-1]
@@ -142,6 +125,40 @@ def run(run: Run, page: Page) -> None:
     )
     show_square(page, square)
     show_others(page, square, tip, shafts, slenderness, round_lengths)
+    show_tables(page, square, tetrahedra, estimates)
+    page.image("The square bar, one brick across", run.sketch(bars.square(27, 1, 8, 1.0)))
+
+
+def check_held(page: Page, held: Excesses) -> None:
+    """Check that elements which contain the parabolas of pure bending have no error."""
+    for name, values in held.items():
+        page.vanishes(
+            f"square bar, {name}, 1 across: stiffness over E I, less one, worst of all lengths",
+            np.abs(values).max(),
+            within=1e-6,
+            why="bricks of these hold the parabolas of pure bending exactly; round-off of elements "
+            "16 times as long as the bar is deep, and more of tetrahedra as flat as 1:16",
+            source=PURE,
+        )
+
+
+def check_estimate(page: Page, estimates: Excesses) -> float:
+    """Check the minimum of the estimated over the true error; return it."""
+    share = min(min(values) for values in estimates.values())
+    page.at_least(
+        "error estimate of one mesh, hexahedra of 8 nodes in any length: estimated over true error "
+        "by locking, least",
+        share,
+        1.0 / 3.0,
+        why="the band of a result is three times the estimate: it would not contain the answer",
+        source="error_estimate.recovery_estimate",
+        measure="identity",
+    )
+    return share
+
+
+def show_tables(page: Page, square: Square, tetrahedra: list[Record], estimates: Excesses) -> None:
+    """Show tetrahedra as the program meshes, and the estimated over the true error."""
     page.table(
         f"Tetrahedra as the program meshes, L/D = {SHAFT_SLENDERNESS}; linear ones on the same "
         "corners. Against the circle's E I, linear ones lose by their flat sides a part of what "
@@ -152,15 +169,11 @@ def run(run: Run, page: Page) -> None:
     page.chart(
         "Error of the energy estimated from one mesh of 8-node hexahedra, over the true one: 1 is "
         "right, above a third the estimate's band contains the answer",
-        [
-            trace(name, square.lengths, values, mode="lines+markers")
-            for name, values in estimates.items()
-        ],
+        [marked(name, square.lengths, values) for name, values in estimates.items()],
         OVER_DEPTH,
         "estimated over true error [-]",
         "x",
     )
-    page.image("The square bar, one brick across", run.sketch(bars.square(27, 1, 8, 1.0)))
 
 
 def square_bars(run: Run) -> Square:
@@ -286,8 +299,8 @@ def estimated(run: Run, lengths: Sequence[float]) -> Excesses:
 def state_limits(
     page: Page,
     square: Square,
-    tip: Mapping[str, list[float]],
-    shafts: Mapping[str, list[float]],
+    tip: Excesses,
+    shafts: Excesses,
     slenderness: Sequence[int],
     round_lengths: Sequence[float],
     share: float,
@@ -297,7 +310,6 @@ def state_limits(
         "scenes are meshed in curved tetrahedra of 10 nodes only; of other meshes the error "
         f"estimate is at least {share:.2g} times the error by locking"
     )
-
     modes = f"incompatible modes, or {SECOND_ORDER}"
     for n in square.linear[8]:
         for nodes, kind, remedy in ((8, "hexahedra", modes), (4, "tetrahedra", SECOND_ORDER)):
@@ -320,15 +332,13 @@ def state_limits(
         f"length over depth, {ALONG} elements along [-]",
     )
     for name, values in shafts.items():
-        limit(
-            page,
-            f"hexahedra of {name}",
-            round_lengths,
-            values,
-            program,
-            SECOND_ORDER,
-            OVER_DIAMETER,
-        )
+        of = f"hexahedra of {name}"
+        limit(page, of, round_lengths, values, program, SECOND_ORDER, OVER_DIAMETER)
+    limit_cubes(page, square, program)
+
+
+def limit_cubes(page: Page, square: Square, program: str) -> None:
+    """State how many cubes a bent bar needs across."""
     for name, values in square.cubes.items():
         low, worst = first_within(square.across[name], values), max(values, key=abs)
         if abs(worst) > CRITERION and low is not None:

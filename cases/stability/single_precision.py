@@ -251,6 +251,27 @@ def run(run: Run, page: Page) -> None:
         for name, sweep in asked.items()
     }
     every = [trial for swept in found.values() for trial in swept]
+    check(page, every, found[IN_UNITS])
+    page.answer(
+        f"On {len(every)} solids the hierarchy in single precision takes at most "
+        f"{max(t.single - t.double for t in every)} iterations more than one in double precision, "
+        "and gives the same answers; where the range of single precision ends, the program keeps "
+        "double precision.",
+        *in_their_place(every),
+    )
+    sentences = beyond_bounds(found)
+    if sentences:
+        page.section("Bounds of the largest eigenvalue")
+    for sentence in sentences:
+        page.text(sentence)
+    for name, swept in found.items():
+        limit_of(page, name, swept, asked[name].protects)
+        show(page, name, swept)
+    page.image("A shaft of five diameters", run.sketch(bodies.uniform(0.7, 0.175, 3.5)))
+
+
+def check(page: Page, every: list[Trial], in_units: list[Trial]) -> None:
+    """Check that single precision needs as many iterations, to the same answers."""
     page.vanishes(
         "solids on which the double-precision hierarchy converges and the single one does not",
         sum(t.double >= 0 > t.single for t in every),
@@ -284,41 +305,30 @@ def run(run: Run, page: Page) -> None:
             "tolerance of iterations",
             source="a direct factor, refined",
         )
-    beyond = [t for t in found[IN_UNITS] if not 1e-45 < t.value < 1e28]
+    beyond = [t for t in in_units if not 1e-45 < t.value < 1e28]
     page.holds(
         "stiffnesses beyond the range of single precision stay in double precision",
         all(t.stored == "float64" for t in beyond),
         why="an infinite entry is no preconditioner",
         source="the hierarchy's own choice",
     )
-    page.answer(
-        f"On {len(every)} solids the hierarchy in single precision takes at most "
-        f"{max(t.single - t.double for t in every)} iterations more than one in double precision, "
-        "and gives the same answers; where the range of single precision ends, the program keeps "
-        "double precision.",
-        *in_their_place(every),
+
+
+def show(page: Page, name: str, swept: list[Trial]) -> None:
+    """Show the iterations of one sweep."""
+    page.section(name)
+    at = [t.value for t in swept if t.double >= 0], [t.value for t in swept if t.single >= 0]
+    page.chart(
+        f"Iterations to an energy error of {TOLERANCE:.0e}",
+        [
+            trace("double precision", at[0], [t.double for t in swept if t.double >= 0]),
+            trace("single precision", at[1], [t.single for t in swept if t.single >= 0], True),
+        ],
+        name,
+        "iterations",
+        "x",
     )
-    sentences = beyond_bounds(found)
-    if sentences:
-        page.section("Bounds of the largest eigenvalue")
-    for sentence in sentences:
-        page.text(sentence)
-    for name, swept in found.items():
-        limit_of(page, name, swept, asked[name].protects)
-        page.section(name)
-        at = [t.value for t in swept if t.double >= 0], [t.value for t in swept if t.single >= 0]
-        page.chart(
-            f"Iterations to an energy error of {TOLERANCE:.0e}",
-            [
-                trace("double precision", at[0], [t.double for t in swept if t.double >= 0]),
-                trace("single precision", at[1], [t.single for t in swept if t.single >= 0], True),
-            ],
-            name,
-            "iterations",
-            "x",
-        )
-        page.table("Iterations to the same", [row_of(t) for t in swept])
-    page.image("A shaft of five diameters", run.sketch(bodies.uniform(0.7, 0.175, 3.5)))
+    page.table("Iterations to the same", [row_of(t) for t in swept])
 
 
 def in_their_place(every: list[Trial]) -> list[str]:

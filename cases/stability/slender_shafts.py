@@ -6,7 +6,6 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import solver_trials as trials
 from fe_drivetrain.cases.references import thin_bodies as bodies
 from fe_drivetrain.cases.stability import solver_sweep as sweep
-from fe_drivetrain.comparison import fitted_exponent
 from fe_drivetrain.report.suite import Page, Run
 
 DIAMETER, WALL = 0.7, 0.175  # m
@@ -71,18 +70,16 @@ def run(run: Run, page: Page) -> None:
 def check(page: Page, points: list[sweep.Point], patches: list[int]) -> float:
     """The condition number's growth, which is returned, and what each solver makes of it."""
     long = [p for p in points if 100 <= p.value <= 1000]
-    exponent, band = fitted_exponent([p.value for p in long], [p.condition for p in long])
-    page.equals(
+    exponent = page.exponent(
         "condition number over L/D, as many elements from 100 diameters on: exponent",
-        exponent,
+        [p.value for p in long],
+        [p.condition for p in long],
         4.0,
         within=0.4,
         relative=False,
         why="the estimate of a one-norm may be wrong by a factor of 2.5, which over one decade of "
         "L/D is 0.4 of a slope",
         source="bending energy over the energy of one element, Euler-Bernoulli: (L/D)^-4",
-        measure="order",
-        band=band,
     )
     page.vanishes(
         "torsional compliance, all direct solvers up to 500 diameters: largest error",

@@ -5,10 +5,9 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import slivers
 from fe_drivetrain.common import Bools, Floats
-from fe_drivetrain.comparison import fitted_exponent
 from fe_drivetrain.elasticity.mesh import FLATTEST, find_faults, flatness
 from fe_drivetrain.elasticity.solve import MAX_ITERATIONS
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import crosses, marked
 from fe_drivetrain.report.suite import Page, Record, Run, column
 
 #: Heights of the slivers, in cubes.
@@ -23,8 +22,6 @@ CRITERION = 1e-6
 
 FLATNESS = "least height over longest edge of the flattest element [-]"
 EPSILON = float(np.finfo(float).eps)
-
-CROSS = {"symbol": "x", "size": 11, "color": "#c62828"}
 
 
 def flattened(run: Run, height: float, across: int) -> Record:
@@ -123,10 +120,10 @@ def check_condition(page: Page, rows: list[Record]) -> float:
     """How the condition number grows; its exponent."""
     x, condition = array(rows, "flatness"), array(rows, "condition number")
     usable = (x < 1e-2) & (condition < 1e14)
-    exponent, band = fitted_exponent(x[usable], condition[usable])
-    page.equals(
+    exponent = page.exponent(
         "order of the condition number in the flatness of the slivers",
-        exponent,
+        x[usable],
+        condition[usable],
         -1.0,
         within=0.1,
         relative=False,
@@ -134,8 +131,6 @@ def check_condition(page: Page, rows: list[Record]) -> float:
         source="the volume of a sliver is as its height, its squared gradients as the height to "
         "the power of -2: its stiffness, and with it the largest eigenvalue (which Shewchuk 2002 "
         "treats in general; read in its abstract), as one over the height",
-        measure="order",
-        band=band,
     )
     return exponent
 
@@ -234,7 +229,7 @@ def state_limits(page: Page, rows: list[Record], beyond: list[Record], exponent:
 
 def show_answer(page: Page, rows: list[Record]) -> None:
     """Errors over the flatness."""
-    x, marked = array(rows, "flatness"), "lines+markers"
+    x = array(rows, "flatness")
     bending, shear = "10 nodes, bending (held exactly)", "error of shear"
     errors = {
         f"direct, {bending}": "error of bending, direct",
@@ -250,10 +245,10 @@ def show_answer(page: Page, rows: list[Record]) -> None:
         "changes; round-off grows until nothing is left",
         [
             *(
-                trace(name, x, np.maximum(np.abs(array(rows, key)), EPSILON), mode=marked)
+                marked(name, x, np.maximum(np.abs(array(rows, key)), EPSILON))
                 for name, key in errors.items()
             ),
-            trace("no answer", failed, np.ones(len(failed)), True, marker=CROSS),
+            crosses("no answer", failed),
         ],
         FLATNESS.removesuffix(" [-]"),
         "relative error of the stiffness",
@@ -270,27 +265,24 @@ def show_answer(page: Page, rows: list[Record]) -> None:
 
 def show_solvers(page: Page, rows: list[Record]) -> None:
     """Condition and iterations over the flatness, and the table."""
-    x, alone, marked = array(rows, "flatness"), gives_up(rows), "lines+markers"
+    x, alone = array(rows, "flatness"), gives_up(rows)
     steps, condition = array(rows, "iterations, multigrid"), array(rows, "condition number")
     page.section("The solvers")
     page.chart(
         "Condition number and iterations. Multigrid stops early where it cannot converge, and a "
         "direct solver answers",
         [
-            trace("condition number over 1e6", x, condition / 1e6, mode=marked),
-            trace("iterations of multigrid", x[~alone], steps[~alone], mode=marked),
-            trace(
+            marked("condition number over 1e6", x, condition / 1e6),
+            marked("iterations of multigrid", x[~alone], steps[~alone]),
+            crosses(
                 "multigrid gives up, a direct solver answers",
                 x[alone],
                 np.full(int(alone.sum()), MAX_ITERATIONS),
-                True,
-                marker=CROSS,
             ),
-            trace(
+            marked(
                 "iterations after the slivers are taken out",
                 x,
                 array(rows, "iterations, optimised"),
-                mode=marked,
             ),
         ],
         FLATNESS.removesuffix(" [-]"),

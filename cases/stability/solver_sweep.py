@@ -11,7 +11,7 @@ from fe_drivetrain.cases.references.thin_bodies import Problem
 from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.comparison import FOUR_DIGITS
 from fe_drivetrain.elasticity.solve import TOLERANCE, solvers
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import crosses, marked, trace
 from fe_drivetrain.report.suite import Page, Record
 
 #: Residual that is commonly taken for an answer.
@@ -189,18 +189,15 @@ def show_iterations(page: Page, points: Sequence[Point], x: str, safe: Range) ->
         f"crosses: after {trials.ITERATIONS} it has not",
         [
             trace("multigrid", values, [i.iterations for i in multigrid]),
-            trace(
+            crosses(
                 "multigrid, not converged",
                 [values[k] for k in stopped],
                 [multigrid[k].iterations for k in stopped],
-                True,
-                marker={"symbol": "x", "size": 10},
             ),
-            trace(
+            marked(
                 "patches with a spectral coarse space",
                 values,
                 [p.iterations["schwarz"].iterations for p in points],
-                mode="lines+markers",
             ),
         ],
         x,

@@ -8,9 +8,9 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.solid_shafts import straight
 from fe_drivetrain.cases.stability import solver_steps
 from fe_drivetrain.common import Floats
-from fe_drivetrain.comparison import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
+from fe_drivetrain.comparison import FOUR_DIGITS, decades, in_words, safe_range
 from fe_drivetrain.elasticity.solve import TOLERANCE
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked, trace
 from fe_drivetrain.report.suite import Page, Record, Run
 
 TOLERANCES = decades(-12, -1, 2)
@@ -67,13 +67,14 @@ def check(
 ) -> Record:
     """One stiffness: how its error falls, its limit, and its row of the table."""
     error = steps.error[figure]
-    exponent, band = fitted_exponent(steps.energy_error, error, (1e2 * FLOOR, 1e-1))
     is_own = figure == problem.own
-    page.equals(
+    exponent = page.exponent(
         f"{name}, {figure}: error against the energy error, exponent",
-        exponent,
+        steps.energy_error,
+        error,
         2.0 if is_own else 1.0,
         within=0.02 if is_own else 0.3,
+        between=(1e2 * FLOOR, 1e-1),
         why="exact in exact arithmetic, from a start at zero: what is left is round-off near the "
         "lower end of the fit, a hundredth of the error there"
         if is_own
@@ -83,8 +84,6 @@ def check(
         if is_own
         else "Cauchy and Schwarz: |l.(u - u_k)| is within the energy error times the energy norm "
         "of what l would do as a load",
-        measure="order",
-        band=band,
     )
     # the error of the first iterate that the estimate accepts
     stopped = [
@@ -145,7 +144,7 @@ def show(page: Page, name: str, problem: solver_steps.Problem, steps: solver_ste
         f"{problem.unknowns:,} unknowns. Shaded: four digits of every one of them",
         [
             *(
-                trace(figure, energy, np.maximum(error, 1e-16), mode="lines+markers")
+                marked(figure, energy, np.maximum(error, 1e-16))
                 for figure, error in steps.error.items()
             ),
             trace(

@@ -7,9 +7,9 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.soft_springs import Sprung, scene_of, sprung
 from fe_drivetrain.common import Bools, Floats, InputError
-from fe_drivetrain.comparison import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
+from fe_drivetrain.comparison import FOUR_DIGITS, decades, in_words, safe_range
 from fe_drivetrain.drivetrain_file import Scene
-from fe_drivetrain.report import crosses, trace
+from fe_drivetrain.report import crosses, marked, trace
 from fe_drivetrain.report.suite import Page, Run
 from fe_drivetrain.shafts.beam import Support, beam_of_scene, unit_load_response
 from fe_drivetrain.shafts.response import mesh_scene
@@ -55,6 +55,63 @@ class Swept:
     def answered(self) -> Bools:
         """Where there is an answer."""
         return np.isfinite(self.hub)
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Relative errors over the spring of a shaft on a spherical bearing.
+
+    Attributes
+    ----------
+    of : Swept
+        The motions.
+    hub, reaction, beam : (n,) array
+        Of the hub's motion, of the gearbox's reaction, and of the beam; NaN where refused.
+    """
+
+    of: Swept
+    hub: Floats
+    reaction: Floats
+    beam: Floats
+
+    @property
+    def worst(self) -> Floats:
+        """The larger of both errors of the solid."""
+        return np.asarray(np.fmax(self.hub, self.reaction))
+
+
+@dataclass(frozen=True)
+class OneSpring:
+    """A bonded bearing with one spring more, from a free end to a held one.
+
+    Attributes
+    ----------
+    of : Swept
+        The motions.
+    free, held : float
+        Motion of the hub without the spring, and with the end held [m].
+    own : float
+        Motion of the spring's end by its force [m/N].
+    error, reaction_error : (n,) array
+        Of the hub's motion and of the reaction, relative.
+    """
+
+    of: Swept
+    free: float
+    held: float
+    own: float
+    error: Floats
+    reaction_error: Floats
+
+    @property
+    def from_free(self) -> Floats:
+        """Departure from the free shaft, relative."""
+        return np.asarray(np.abs(self.of.hub / self.free - 1.0))
+
+    @property
+    def from_held(self) -> Floats:
+        """Departure from the held shaft, relative."""
+        return np.asarray(np.abs(self.of.hub / self.held - 1.0))
 
 
 def swept(run: Run, name: str, model: Sprung, stiffness: Floats, other: float) -> Swept:
@@ -118,53 +175,13 @@ def spherical(run: Run, page: Page) -> None:
         _, at_zero = model.warnings_and_refusal([OTHER, OTHER, 0.0, 0, 0, 0])
     with run.step("beam"):
         beam_error = beam_errors(scene, held_scene, stiffness, lever)
-    answered, warned = found.answered, found.warned
     error = np.abs(found.hub / (rigid.hub[2, 0] + lever**2 / stiffness) - 1.0)
     # statics: the gearbox carries the load times the lever, whatever its spring
     reaction_error = np.abs(found.reaction / -lever - 1.0)
-    worst = np.fmax(error, reaction_error)
-    low, high = safe_range(stiffness, worst, FOUR_DIGITS)
-    soft, soft_band = fitted_exponent(
-        stiffness[stiffness < 1e5], error[stiffness < 1e5], (1e-12, 0.1)
-    )
-    silent = answered & ~warned & ~(worst < FOUR_DIGITS)
-    allowed = stiffness <= STIFFEST
-    page.holds(
-        "spherical, no gearbox spring: refused, and the motion named",
-        "turn freely about y" in at_zero,
-        why="without a spring the stiffness is singular, and any answer would be round-off",
-        source="a shaft on a sphere",
-    )
-    page.equals(
-        "spherical, soft spring: error of the hub's motion, exponent",
-        soft,
-        -1.0,
-        within=0.4 if run.quick else 0.2,
-        why=SCATTER,
-        source="round-off of the shaft's stiffness acts as springs to ground",
-        measure="order",
-        band=soft_band,
-    )
-    page.holds(
-        "spherical: every answer without four digits was warned of or refused, from a spring of "
-        "nothing to the stiffest that a scene may have",
-        not silent[allowed].any(),
-        why="an answer without digits looks like any other",
-        source="statics: the reaction of the gearbox is the lever times the load",
-    )
-    page.holds(
-        "spherical: springs above those that leave four digits are all solved",
-        bool(answered[allowed & (stiffness >= (low or 0.0))].all()),
-        why="there is no mechanism to refuse: the spring holds the shaft",
-        source="statics",
-    )
-    page.vanishes(
-        "beam by the force method: worst error wherever the solid answers",
-        beam_error[answered].max(),
-        within=1e-10,
-        why="round-off of a flexibility that the spring's is added to",
-        source="statics: the lever squared over the spring is added",
-    )
+    errors = Errors(found, error, reaction_error, beam_error)
+    low, high = safe_range(stiffness, errors.worst, FOUR_DIGITS)
+    check_spherical(page, errors, at_zero, low, 0.4 if run.quick else 0.2)
+    answered, warned = found.answered, found.warned
     first_warned = stiffness[warned].max() if warned.any() else None
     by_beam = np.isfinite(beam_error)
     page.limit(
@@ -187,21 +204,73 @@ def spherical(run: Run, page: Page) -> None:
         f"motion that is hardly held, and below {stiffness[answered].min():.1g} N/m it refuses "
         "to answer."
     )
+    show_spherical(page, errors, at_zero, (low, high))
+
+
+def check_spherical(
+    page: Page, errors: Errors, at_zero: str, low: float | None, within: float
+) -> None:
+    """Check for warnings where digits are lost, answers elsewhere, and a beam that loses none."""
+    found, stiffness, error = errors.of, errors.of.stiffness, errors.hub
+    silent = found.answered & ~found.warned & ~(errors.worst < FOUR_DIGITS)
+    allowed = stiffness <= STIFFEST
+    page.holds(
+        "spherical, no gearbox spring: refused, and the motion named",
+        "turn freely about y" in at_zero,
+        why="without a spring the stiffness is singular, and any answer would be round-off",
+        source="a shaft on a sphere",
+    )
+    page.exponent(
+        "spherical, soft spring: error of the hub's motion, exponent",
+        stiffness[stiffness < 1e5],
+        error[stiffness < 1e5],
+        -1.0,
+        within=within,
+        between=(1e-12, 0.1),
+        why=SCATTER,
+        source="round-off of the shaft's stiffness acts as springs to ground",
+    )
+    page.holds(
+        "spherical: every answer without four digits was warned of or refused, from a spring of "
+        "nothing to the stiffest that a scene may have",
+        not silent[allowed].any(),
+        why="an answer without digits looks like any other",
+        source="statics: the reaction of the gearbox is the lever times the load",
+    )
+    page.holds(
+        "spherical: springs above those that leave four digits are all solved",
+        bool(found.answered[allowed & (stiffness >= (low or 0.0))].all()),
+        why="there is no mechanism to refuse: the spring holds the shaft",
+        source="statics",
+    )
+    page.vanishes(
+        "beam by the force method: worst error wherever the solid answers",
+        errors.beam[found.answered].max(),
+        within=1e-10,
+        why="round-off of a flexibility that the spring's is added to",
+        source="statics: the lever squared over the spring is added",
+    )
+
+
+def show_spherical(
+    page: Page, errors: Errors, at_zero: str, safe: tuple[float | None, float | None]
+) -> None:
+    """Show the errors, and the message of the program for each spring."""
+    found, error, beam_error = errors.of, errors.hub, errors.beam
+    stiffness, answered, warned = found.stiffness, found.answered, found.warned
+    by_beam = np.isfinite(beam_error)
     page.section("Spherical bearing: from a mechanism to a held shaft")
     quiet, loud = answered & ~warned, answered & warned
-    marked = "lines+markers"
     page.chart(
         "Error of the hub's motion under a force there, against the motion held plus lever squared "
         "over stiffness. Shaded: four digits",
         [
-            trace(
-                "solid, no warning", stiffness[quiet], np.maximum(error[quiet], 1e-16), mode=marked
-            ),
-            trace("solid, warned of", stiffness[loud], error[loud], mode=marked),
+            marked("solid, no warning", stiffness[quiet], np.maximum(error[quiet], 1e-16)),
+            marked("solid, warned of", stiffness[loud], error[loud]),
             trace(
                 "reaction of the gearbox",
                 stiffness[answered],
-                np.maximum(reaction_error[answered], 1e-16),
+                np.maximum(errors.reaction[answered], 1e-16),
                 line={"dash": "dot"},
             ),
             crosses("refused", stiffness[~answered]),
@@ -215,7 +284,7 @@ def spherical(run: Run, page: Page) -> None:
         RADIAL,
         "relative error",
         "xy",
-        (low, high),
+        safe,
     )
     rows = [{"stiffness [N/m]": 0.0, "error": None, "warned": False, "refused": at_zero}]
     rows += [
@@ -229,87 +298,110 @@ def spherical(run: Run, page: Page) -> None:
 def bonded(run: Run, page: Page) -> None:
     """A shaft that its bearing holds, with one spring more."""
     with run.step("bonded: springs"):
-        scene = scene_of("bonded")
-        mesh = mesh_scene(scene)
-        model, held = sprung(scene, mesh), sprung(scene_of("bonded", rigid=(2, 3)), mesh)
-        none, loads = [0.0] * 6, ["hub.Fz", "gearbox.weight"]
-        free = model.solve(none, loads, "superlu")
-        fast = held.solve(none, loads, "superlu")
-        assert free is not None
-        assert fast is not None
-        k = decades(0, 32, 0.25 if run.quick else 0.5)
-        found = swept(run, "bonded", model, k, 0.0)
-    # one spring on a solved body: its force, and what that moves
-    motion, own, across = free.gearbox[2, 0], -free.gearbox[2, 1], -free.hub[2, 1]
-    force = motion * k / (1.0 + k * own)
-    error = np.abs(found.hub / (free.hub[2, 0] - across * force) - 1.0)
-    reaction_error = np.abs(found.reaction / force - 1.0)
-    _, high = safe_range(k, np.fmax(error, reaction_error), FOUR_DIGITS)
-    from_free = np.abs(found.hub / free.hub[2, 0] - 1.0)
-    from_held = np.abs(found.hub / fast.hub[2, 0] - 1.0)
-    above = k > STIFFEST
-    between = (k > 1.0 / own) & ~above
-    stiff, stiff_band = fitted_exponent(k[above], reaction_error[above], (1e-11, 0.1))
-    page.equals(
-        "bonded, stiff spring: error of the gearbox's reaction, exponent",
-        stiff,
-        1.0,
-        within=0.4 if run.quick else 0.2,
-        why=SCATTER,
-        source="the spring times a motion that round-off does not let vanish",
-        measure="order",
-        band=stiff_band,
-    )
-    for quantity, at, departure, expected in (
-        ("soft spring: departure from the free shaft", k > 0.0, from_free, 1.0),
-        ("stiff spring: departure from the held shaft", between, from_held, -1.0),
-    ):
-        exponent, band = fitted_exponent(k[at], departure[at], (1e-9, 1e-2))
-        page.equals(
-            f"bonded, {quantity}, exponent",
-            exponent,
-            expected,
-            within=0.05,
-            why=FIRST_ORDER,
-            source="one spring on a body: k u / (1 + k c)",
-            measure="order",
-            band=band,
-        )
-    page.equals(
-        "bonded: hub motion at the softest spring, over that of the free shaft",
-        found.hub[0] / free.hub[2, 0],
-        1.0,
-        within=1e-7,
-        why="the spring of 1 N/m is 1e-8 of the shaft's own stiffness",
-        source="the same scene without a spring",
-        measure="deflection",
-        band=error[0],
-    )
-    last = np.flatnonzero(k <= 1.01 * STIFFEST)[-1]
-    page.equals(
-        "bonded: hub motion at the stiffest spring that a scene may have, over that of the held "
-        "shaft",
-        found.hub[last] / fast.hub[2, 0],
-        1.0,
-        within=1e-6,
-        why="1e16 N/m is 1e8 times the shaft's own stiffness; its round-off is as much",
-        source="the same scene, held rigidly",
-        measure="deflection",
-        band=error[last],
-    )
+        found = one_spring(run, decades(0, 32, 0.25 if run.quick else 0.5))
+    errors = np.fmax(found.error, found.reaction_error)
+    _, high = safe_range(found.of.stiffness, errors, FOUR_DIGITS)
+    check_first_order(page, found, 0.4 if run.quick else 0.2)
+    check_ends(page, found)
     limit_stiff(page, "bonded", high)
     page.answer(
         "On a bonded bearing the free and the held shaft are recovered, first order in the "
         "spring and in its compliance; the reaction of the spring keeps four digits up to "
         f"{in_words(high)} N/m, and a scene may have 1e16."
     )
+    show_bonded(page, found, high)
+
+
+def one_spring(run: Run, k: Floats) -> OneSpring:
+    """Solve a bonded bearing with springs k [N/m], with none, and held rigidly."""
+    scene = scene_of("bonded")
+    mesh = mesh_scene(scene)
+    model, held = sprung(scene, mesh), sprung(scene_of("bonded", rigid=(2, 3)), mesh)
+    none, loads = [0.0] * 6, ["hub.Fz", "gearbox.weight"]
+    free = model.solve(none, loads, "superlu")
+    fast = held.solve(none, loads, "superlu")
+    assert free is not None
+    assert fast is not None
+    found = swept(run, "bonded", model, k, 0.0)
+    # one spring on a solved body: its force, and what that moves
+    motion, own, across = free.gearbox[2, 0], -free.gearbox[2, 1], -free.hub[2, 1]
+    force = motion * k / (1.0 + k * own)
+    return OneSpring(
+        of=found,
+        free=free.hub[2, 0],
+        held=fast.hub[2, 0],
+        own=own,
+        error=np.abs(found.hub / (free.hub[2, 0] - across * force) - 1.0),
+        reaction_error=np.abs(found.reaction / force - 1.0),
+    )
+
+
+def check_first_order(page: Page, found: OneSpring, within: float) -> None:
+    """Check how errors, and departures from both ends, go with the stiffness of the spring."""
+    k, reaction_error = found.of.stiffness, found.reaction_error
+    above = k > STIFFEST
+    between = (k > 1.0 / found.own) & ~above
+    page.exponent(
+        "bonded, stiff spring: error of the gearbox's reaction, exponent",
+        k[above],
+        reaction_error[above],
+        1.0,
+        within=within,
+        between=(1e-11, 0.1),
+        why=SCATTER,
+        source="the spring times a motion that round-off does not let vanish",
+    )
+    for quantity, at, departure, expected in (
+        ("soft spring: departure from the free shaft", k > 0.0, found.from_free, 1.0),
+        ("stiff spring: departure from the held shaft", between, found.from_held, -1.0),
+    ):
+        page.exponent(
+            f"bonded, {quantity}, exponent",
+            k[at],
+            departure[at],
+            expected,
+            within=0.05,
+            between=(1e-9, 1e-2),
+            why=FIRST_ORDER,
+            source="one spring on a body: k u / (1 + k c)",
+        )
+
+
+def check_ends(page: Page, found: OneSpring) -> None:
+    """Check that the softest and the stiffest spring give the free and the held shaft."""
+    page.equals(
+        "bonded: hub motion at the softest spring, over that of the free shaft",
+        found.of.hub[0] / found.free,
+        1.0,
+        within=1e-7,
+        why="the spring of 1 N/m is 1e-8 of the shaft's own stiffness",
+        source="the same scene without a spring",
+        measure="deflection",
+        band=found.error[0],
+    )
+    last = np.flatnonzero(found.of.stiffness <= 1.01 * STIFFEST)[-1]
+    page.equals(
+        "bonded: hub motion at the stiffest spring that a scene may have, over that of the held "
+        "shaft",
+        found.of.hub[last] / found.held,
+        1.0,
+        within=1e-6,
+        why="1e16 N/m is 1e8 times the shaft's own stiffness; its round-off is as much",
+        source="the same scene, held rigidly",
+        measure="deflection",
+        band=found.error[last],
+    )
+
+
+def show_bonded(page: Page, found: OneSpring, high: float | None) -> None:
+    """Show errors and departures; the reaction is safe up to the stiffness `high`."""
     page.section("Bonded bearing: from a free end to a held one")
     page.text(
         "The bonded bearing holds the shaft by itself. One spring more moves the hub by what its "
         "force moves: from two unit loads on the free shaft its motion with any spring follows, "
         "and that is the reference for the solution with that spring."
     )
-    answered = found.answered
+    k, answered = found.of.stiffness, found.of.answered
     page.chart(
         "Hub motion under a force there: error, and departure from the two limits. Shaded: four "
         "digits",
@@ -317,10 +409,10 @@ def bonded(run: Run, page: Page) -> None:
             *(
                 trace(name, k[answered], np.maximum(values[answered], 1e-16), mode=mode)
                 for name, values, mode in (
-                    ("error", error, "lines+markers"),
-                    ("departure from the free shaft", from_free, "lines"),
-                    ("departure from the held shaft", from_held, "lines"),
-                    ("error of the gearbox's reaction", reaction_error, "lines"),
+                    ("error", found.error, "lines+markers"),
+                    ("departure from the free shaft", found.from_free, "lines"),
+                    ("departure from the held shaft", found.from_held, "lines"),
+                    ("error of the gearbox's reaction", found.reaction_error, "lines"),
                 )
             ),
             crosses("refused", k[~answered]),

@@ -5,9 +5,9 @@ from scipy import linalg
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
-from fe_drivetrain.comparison import decades, fitted_exponent, safe_range
+from fe_drivetrain.comparison import decades, safe_range
 from fe_drivetrain.dynamics import Level, System, library_machine, machine_system
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked
 from fe_drivetrain.report.suite import Page, Run
 
 FACTOR = "stiffness of bearings, shafts in bending and pins, over the tabled one"
@@ -48,16 +48,15 @@ def sweep(page: Page, name: str, factors: Floats) -> None:
     best = int(error.argmin())
     # before, the nearest frequency may be that of another motion; behind, round-off
     far = slice(*np.searchsorted(factors, [9e4, 2e9]).tolist())
-    slope, spread = fitted_exponent(factors[far], error[far], (1e-8, 1e-3))
-    page.equals(
+    page.exponent(
         f"{name}: error over the stiffness, exponent",
-        slope,
+        factors[far],
+        error[far],
         -1.0,
         within=0.1,
+        between=(1e-8, 1e-3),
         why="the next order is a thousandth of the largest error that is taken",
         source="springs in series",
-        measure="order",
-        band=spread,
     )
     page.at_most(
         f"{name}: least error of all torsional frequencies",
@@ -83,10 +82,7 @@ def sweep(page: Page, name: str, factors: Floats) -> None:
     page.section(machine.title)
     page.chart(
         "Largest error of a torsional frequency; shaded: safe by singular values",
-        [
-            trace(way, factors, np.maximum(found, 1e-17), mode="lines+markers")
-            for way, found in errors.items()
-        ],
+        [marked(way, factors, np.maximum(found, 1e-17)) for way, found in errors.items()],
         FACTOR,
         "relative error",
         "xy",

@@ -285,13 +285,14 @@ def state_limits(
     page: Page, of_ring: Swept, of_chain: Swept, many_high: float | None, allowed: float
 ) -> None:
     """Answer and limits."""
-    (low, high), (m_low, m_high) = of_ring.safe, of_ring.safe_iterated
-    (_, chain_high), (_, chain_m_high) = of_chain.safe, of_chain.safe_iterated
+    low, high = of_ring.safe
+    _, chain_high = of_chain.safe
     rigid_low, _ = safe_range(of_chain.contrast, of_chain.rigid, FOUR_DIGITS)
     page.answer(
         f"Four digits of stiffness survive a ring down to {in_words(low)} of the shaft's modulus "
-        f"with a direct factor and {in_words(m_low)} with multigrid, stiff bodies up to "
-        f"{in_words(chain_high)} and {in_words(chain_m_high)} times that of soft ones between "
+        f"with a direct factor and {in_words(of_ring.safe_iterated[0])} with multigrid, stiff "
+        f"bodies up to {in_words(chain_high)} and {in_words(of_chain.safe_iterated[1])} times that "
+        "of soft ones between "
         f"them, and {COUNT} bodies of random stiffness a ratio of {in_words(many_high)}.",
         "Beyond, round-off of the stiff bodies exceeds the stiffness of the soft ones: the error "
         "grows tenfold a decade. A ring stiffer than the shaft does no harm, however stiff.",
@@ -316,16 +317,7 @@ def state_limits(
         remedy="the shaft rigid: right to "
         f"{np.max(of_ring.rigid[of_ring.contrast < (low or 0.0)]):.0e} there",
     )
-    page.limit(
-        "multigrid: ring about a shaft",
-        RING,
-        low=m_low,
-        high=m_high,
-        criterion="converged, and error below 1e-4",
-        beyond="the preconditioner is no longer positive in round-off: no convergence",
-        program="says so, and takes a direct factor",
-        remedy="direct factor; further down, the shaft rigid",
-    )
+    limit_iterated(page, RING, of_ring.safe_iterated)
     page.limit(
         "direct solver: chain of soft and stiff bodies",
         CHAIN,
@@ -336,15 +328,7 @@ def state_limits(
         program=program,
         remedy=f"stiff bodies rigid: below 1e-4 from {in_words(rigid_low)} on",
     )
-    page.limit(
-        "multigrid: chain of soft and stiff bodies",
-        CHAIN,
-        high=chain_m_high,
-        criterion="converged, and error below 1e-4",
-        beyond="no convergence: stiff bodies move rigidly against each other in one aggregate",
-        program="says so, and takes a direct factor",
-        remedy="direct factor; further up, stiff bodies rigid",
-    )
+    limit_iterated(page, CHAIN, of_chain.safe_iterated)
     page.limit(
         "direct solver: random stiffness of many bodies",
         "largest modulus over the least",
@@ -353,6 +337,35 @@ def state_limits(
         beyond="the error grows tenfold a decade",
         program=program,
         remedy="stiff bodies rigid",
+    )
+
+
+ITERATED = {
+    RING: (
+        "multigrid: ring about a shaft",
+        "the preconditioner is no longer positive in round-off: no convergence",
+        "direct factor; further down, the shaft rigid",
+    ),
+    CHAIN: (
+        "multigrid: chain of soft and stiff bodies",
+        "no convergence: stiff bodies move rigidly against each other in one aggregate",
+        "direct factor; further up, stiff bodies rigid",
+    ),
+}
+
+
+def limit_iterated(page: Page, parameter: str, safe: tuple[float | None, float | None]) -> None:
+    """State the range of one contrast with multigrid."""
+    method, beyond, remedy = ITERATED[parameter]
+    page.limit(
+        method,
+        parameter,
+        low=safe[0] if parameter == RING else None,
+        high=safe[1],
+        criterion="converged, and error below 1e-4",
+        beyond=beyond,
+        program="says so, and takes a direct factor",
+        remedy=remedy,
     )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability import housing_nodes as housing
 from fe_drivetrain.common import Floats
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked, trace
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.response import PLANES, VERTICAL
 
@@ -275,8 +275,8 @@ def state_limits(
 def show_nodes(page: Page, finest: housing.Tilted, chosen: Choices, safe: float) -> None:
     """K_R over radius, angle and place along the shaft."""
 
-    def marked(name: str, x: Any, plane: str, values: list[Stiffness]) -> Any:
-        return trace(name, x, 1 + excess(finest, plane, values), mode="lines+markers")
+    def excess_of(name: str, x: Any, plane: str, values: list[Stiffness]) -> Any:
+        return marked(name, x, 1 + excess(finest, plane, values))
 
     def level(name: str, value: float, dash: str) -> Any:
         return trace(name, chosen.radii[[0, -1]], [value] * 2, line={"dash": dash})
@@ -289,7 +289,7 @@ def show_nodes(page: Page, finest: housing.Tilted, chosen: Choices, safe: float)
         "K_R by four nodes upright about the shaft, over that of the averaged seat: the further "
         f"out, the stiffer; shaded where both planes are within {100 * MISLEADS:g} %",
         [
-            *(marked(f"{p}, {NODES}", chosen.radii, p, chosen.upright) for p in NAMES),
+            *(excess_of(f"{p}, {NODES}", chosen.radii, p, chosen.upright) for p in NAMES),
             *(
                 level(f"{p}, {ENERGY}", of_seat(p, finest.by_plane[p][ENERGY]), "dot")
                 for p in NAMES
@@ -319,7 +319,7 @@ def show_nodes(page: Page, finest: housing.Tilted, chosen: Choices, safe: float)
         ),
     ):
         curves = [
-            marked(f"{p}, {where}", x, p, values) for where, values in of.items() for p in NAMES
+            excess_of(f"{p}, {where}", x, p, values) for where, values in of.items() for p in NAMES
         ]
         page.chart(caption, curves, label, RATIO)
 
@@ -356,7 +356,7 @@ def show_loads(page: Page, finest: housing.Tilted, secant: dict[str, Floats]) ->
         "Secant M / theta with a hub thrust beside the moment, over that of the moment alone; "
         f"shaded where the seat's is within {100 * MISLEADS:g} %",
         [
-            *(trace(k, THRUST, v, mode="lines+markers") for k, v in secant.items()),
+            *(marked(k, THRUST, v) for k, v in secant.items()),
             trace(
                 "averaged seat, thrust's rotation taken off (remedy)",
                 THRUST,

@@ -9,7 +9,7 @@ from scipy.special import erf
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import FORCES, Floats, InputError, scratch_folder
 from fe_drivetrain.comparison import fitted_exponent, statistics
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked, trace
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.turbine_loads.hub_loads import UNITS, read_hub_loads
 
@@ -172,9 +172,9 @@ def run(run: Run, page: Page) -> None:
         f"One of {SAMPLES:,} samples of the model with a larger and larger error; shaded is where "
         "the RMSE is safe",
         [
-            trace("RMSE", spoilt.sizes, spoilt.rms, mode="lines+markers"),
+            marked("RMSE", spoilt.sizes, spoilt.rms),
             trace("bias without its sign", spoilt.sizes, spoilt.bias),
-            trace("median error", spoilt.sizes, spoilt.median, mode="lines+markers"),
+            marked("median error", spoilt.sizes, spoilt.median),
         ],
         "outlier over the standard deviation of the reference",
         "error over the standard deviation",
@@ -338,15 +338,15 @@ def show_crossing(page: Page, found: Crossing, theory: float) -> None:
         "error, mean |model - reference| over mean |reference|, counts every newton equally and "
         "needs no cut."
     )
-    means, marked = found.means, "lines+markers"
+    means = found.means
     page.chart(
         f"Median of {found.cut.shape[1]} histories: normal samples about a mean, the model with "
         f"an error of {100 * NOISE:g} % of their standard deviation; shaded is where the "
         "percentage is safe",
         [
-            trace("mean percentage error", means, np.median(found.percent, axis=1), mode=marked),
+            marked("mean percentage error", means, np.median(found.percent, axis=1)),
             trace("its largest of all histories", means, found.percent.max(axis=1)),
-            trace("relative error", means, np.median(found.relative, axis=1), mode=marked),
+            marked("relative error", means, np.median(found.relative, axis=1)),
             trace("its largest of all histories ", means, found.relative.max(axis=1)),
         ],
         "mean of the reference over its standard deviation",

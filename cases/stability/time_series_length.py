@@ -7,8 +7,8 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability import streamed_series as series
 from fe_drivetrain.common import Floats
-from fe_drivetrain.comparison import fitted_exponent, moments
-from fe_drivetrain.report import trace
+from fe_drivetrain.comparison import moments
+from fe_drivetrain.report import marked, trace
 from fe_drivetrain.report.suite import Page, Record, Run, column
 
 #: Samples of the histories whose variance is taken, and how many of these.
@@ -113,10 +113,10 @@ def check_variances(page: Page, errors: dict[str, Floats]) -> float:
     lost = errors[NAIVE]
     # where digits are lost, but not yet all of them
     sloping = (RATIOS >= 1e2) & (lost < 0.1)
-    exponent, band = fitted_exponent(RATIOS[sloping], lost[sloping])
-    page.equals(
+    exponent = page.exponent(
         "sums of squares: power of mean over standard deviation with which digits are lost",
-        exponent,
+        RATIOS[sloping],
+        lost[sloping],
         2.0,
         within=0.15,
         relative=False,
@@ -124,8 +124,6 @@ def check_variances(page: Page, errors: dict[str, Floats]) -> float:
         "decades at either end of some five decades, three times that",
         source="rounding of a sum of squares is eps (mean / deviation)^2 of the variance: Chan, "
         "Golub and LeVeque 1983, The American Statistician 37, 242-247",
-        measure="order",
-        band=band,
     )
     page.vanishes(
         "merged chunks: worst relative error of the variance, mean up to 1e9 deviations",
@@ -223,10 +221,7 @@ def show(
         f"Relative error of the variance of {SAMPLES:,} samples, root mean square of {HISTORIES} "
         "histories; shaded is where sums of squares keep four digits. No error at all is drawn at "
         "1e-17",
-        [
-            trace(name, RATIOS, np.maximum(values, 1e-17), mode="lines+markers")
-            for name, values in errors.items()
-        ],
+        [marked(name, RATIOS, np.maximum(values, 1e-17)) for name, values in errors.items()],
         "mean over standard deviation",
         "relative error",
         "xy",
@@ -239,12 +234,7 @@ def show(
         "whole history takes less than 2 GiB",
         [
             *(
-                trace(
-                    rows[0]["way"],
-                    column(rows, "samples"),
-                    column(rows, "memory [MiB]"),
-                    mode="lines+markers",
-                )
+                marked(rows[0]["way"], column(rows, "samples"), column(rows, "memory [MiB]"))
                 for rows in (streamed, whole)
             ),
             trace(

@@ -1,10 +1,12 @@
 """How short a time step has to be: steps in a mesh period, and where a method blows up."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats
-from fe_drivetrain.comparison import decades, fitted_exponent, last_within
+from fe_drivetrain.common import Floats, Ints
+from fe_drivetrain.comparison import decades, last_within
 from fe_drivetrain.dynamics import (
     AVERAGE,
     LINEAR,
@@ -23,7 +25,7 @@ from fe_drivetrain.dynamics import (
     varying_equations,
     wind_up,
 )
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked
 from fe_drivetrain.report.suite import Page, Run
 
 FREQUENCY = 128.5  # Hz, of the third stage's mesh at 6 rpm
@@ -80,21 +82,24 @@ def accuracy(page: Page, duration: float) -> float:
     # two steps extrapolated: of the fourth order
     exact = (4.0 * force(AVERAGE, 1024) - force(AVERAGE, 512)) / 3.0
     swing = float(np.ptp(exact))
-    traces, found = [], {}
+    found = {}
     for scheme in (AVERAGE, generalised_alpha(0.8), generalised_alpha(0.0)):
-        error = np.array([np.abs(force(scheme, int(n)) - exact).max() / swing for n in counts])
-        found[scheme.name] = error
-        traces.append(trace(scheme.name, counts, error, mode="lines+markers"))
-    slope, spread = fitted_exponent(counts, found[AVERAGE.name], (1e-6, 1e-1))
-    page.equals(
+        error = [np.abs(force(scheme, int(n)) - exact).max() / swing for n in counts]
+        found[scheme.name] = np.array(error)
+    return judge_accuracy(page, counts, found)
+
+
+def judge_accuracy(page: Page, counts: Ints, found: Mapping[str, Floats]) -> float:
+    """Check the order of the errors, show them; return the minimum number of steps."""
+    page.exponent(
         "average acceleration: error of a mesh force over the steps in its period, exponent",
-        slope,
+        counts,
+        found[AVERAGE.name],
         -2.0,
         within=0.1,
+        between=(1e-6, 1e-1),
         why="largest errors of beats have no steady phase",
         source="second order",
-        measure="order",
-        band=spread,
     )
     error = found[AVERAGE.name]
     least = last_within(counts[::-1], error[::-1], ENOUGH) or float(counts[-1])
@@ -111,7 +116,7 @@ def accuracy(page: Page, duration: float) -> float:
     page.section("Steps in a period of the mesh")
     page.chart(
         "Largest error of the mesh force over its swing; shaded: enough",
-        traces,
+        [marked(name, counts, error) for name, error in found.items()],
         STEPS,
         "error",
         "xy",
@@ -165,7 +170,7 @@ def stability(page: Page) -> None:
     page.section("Stability")
     page.chart(
         "Growth of one mass in a step",
-        [trace(name, steps, values, mode="lines+markers") for name, values in growth.items()],
+        [marked(name, steps, values) for name, values in growth.items()],
         OVER,
         "growth in a step",
         "xy",

@@ -1,5 +1,7 @@
 """Teeth that part: where a mesh without backlash in the model pulls, and what parting does."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.integrate import solve_ivp
 
@@ -17,7 +19,7 @@ from fe_drivetrain.dynamics import (
     steady,
 )
 from fe_drivetrain.dynamics.steady_state import restoring
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked, trace
 from fe_drivetrain.report.suite import Page, Run, check_in_time
 
 #: Variation of the stiffness, damping ratio, half backlash over the static deflection.
@@ -26,6 +28,27 @@ STEPS, PERIODS, SETTLE = 96, 10, 70
 OVER = "mesh frequency over the natural frequency"
 EXTRA = HALF + 1.0
 """Deflection under the mean load, of 1, from the middle of the backlash."""
+
+
+@dataclass(frozen=True)
+class Sweeps:
+    """Minimum and maximum mesh force over its mean, over the mesh frequency.
+
+    Attributes
+    ----------
+    at : (n,) array
+        Mesh frequency over the natural one.
+    up, down, linear : (n, 2) array
+        With backlash, frequency rising and falling, and without backlash.
+    lost : int
+        Time steps without convergence.
+    """
+
+    at: Floats
+    up: Floats
+    down: Floats
+    linear: Floats
+    lost: int
 
 
 @case(
@@ -37,15 +60,46 @@ def run(run: Run, page: Page) -> None:
     """Sweep the mesh frequency up and down, with backlash and without."""
     at = np.linspace(0.55, 1.25, 15 if run.quick else 71)
     with run.step("sweeps"):
-        up, lost_up = sweep(at, HALF)
-        down, lost_down = sweep(at[::-1], HALF)
-        down = down[::-1]
-        linear, _ = sweep(at, 0.0)
-    least_linear, least = linear[:, 0], np.minimum(up[:, 0], down[:, 0])
-    pulls = least_linear < 0.0
+        found = sweeps(at)
+    check_contact(page, found)
+    with run.step("peer"):
+        check_peer(page)
+    check_steps(page)
+    up, down, linear = found.up, found.down, found.linear
+    pulls = linear[:, 0] < 0.0
+    jump = float(np.abs(up[:, 1] - down[:, 1]).max())
+    low, high = float(at[pulls].min()), float(at[pulls].max())
+    parted = at[(np.minimum(up[:, 0], down[:, 0]) < 1e-6) | pulls]
+    past = float(parted.min())
+    safe = float(at[at > parted.max()].min())
+    page.limit(
+        "a mesh as a spring that pulls as it pushes",
+        OVER,
+        low=safe,
+        criterion="force of the mesh above zero all the time, wherever the motion comes from",
+        beyond=f"from {low:.2f} to {high:.2f} teeth part, and down to {past:.2f} they stay "
+        f"parted if they were: the linear model pulls with up to "
+        f"{-linear[:, 0].min():.2f} of the mean force, and its peak is {linear[:, 1].max():.2f}, "
+        f"with backlash {max(up[:, 1].max(), down[:, 1].max()):.2f}",
+        program="has a dead zone with both flanks (backlash), met by Newton's method in each step",
+        remedy="give the backlash; start from both sides: motion may depend on where it comes from",
+    )
+    page.answer(
+        f"With a stiffness that varies by {100 * VARIATION:.0f} % and {100 * RATIO:.0f} % of "
+        f"critical damping teeth part from {low:.2f} to {high:.2f} of the natural frequency, and "
+        f"stay parted down to {past:.2f} if they come from above; a spring that pulls is wrong.",
+        f"Parting softens the mesh: sweeps up and down differ by up to {jump:.2f} of the mean "
+        "force, where the motion depends on its past.",
+    )
+    show(page, found, safe)
+
+
+def check_contact(page: Page, found: Sweeps) -> None:
+    """Check that backlash changes nothing while teeth stay in contact, and pulls none."""
+    least = np.minimum(found.up[:, 0], found.down[:, 0])
     page.vanishes(
         "frequencies at which teeth stay in contact: swings with and without backlash",
-        float(np.abs(up - linear)[least_linear > 0.05].max(initial=0.0)),
+        float(np.abs(found.up - found.linear)[found.linear[:, 0] > 0.05].max(initial=0.0)),
         within=1e-4,
         why="the same law there; what is left of the start decays to 1e-4",
         source="linear where nothing parts",
@@ -58,75 +112,43 @@ def run(run: Run, page: Page) -> None:
     )
     page.vanishes(
         "time steps in which Newton's method did not converge",
-        float(lost_up + lost_down),
+        float(found.lost),
         within=0.0,
         why="the law has one slope on each side of a flank",
         source="piecewise linear",
     )
-    with run.step("peer"):
-        check_peer(page)
-    check_steps(page)
-    jump = float(np.abs(up[:, 1] - down[:, 1]).max())
-    low, high = float(at[pulls].min()), float(at[pulls].max())
-    parted = at[(least < 1e-6) | pulls]
-    past = float(parted.min())
-    safe = float(at[at > parted.max()].min())
-    page.limit(
-        "a mesh as a spring that pulls as it pushes",
-        OVER,
-        low=safe,
-        criterion="force of the mesh above zero all the time, wherever the motion comes from",
-        beyond=f"from {low:.2f} to {high:.2f} teeth part, and down to {past:.2f} they stay "
-        f"parted if they were: the linear model pulls with up to "
-        f"{-least_linear.min():.2f} of the mean force, and its peak is {linear[:, 1].max():.2f}, "
-        f"with backlash {max(up[:, 1].max(), down[:, 1].max()):.2f}",
-        program="has a dead zone with both flanks (backlash), met by Newton's method in each step",
-        remedy="give the backlash; start from both sides: motion may depend on where it comes from",
-    )
-    page.answer(
-        f"With a stiffness that varies by {100 * VARIATION:.0f} % and {100 * RATIO:.0f} % of "
-        f"critical damping teeth part from {low:.2f} to {high:.2f} of the natural frequency, and "
-        f"stay parted down to {past:.2f} if they come from above; a spring that pulls is wrong.",
-        f"Parting softens the mesh: sweeps up and down differ by up to {jump:.2f} of the mean "
-        "force, where the motion depends on its past.",
-    )
+
+
+def sweeps(at: Floats) -> Sweeps:
+    """Sweep the mesh frequency up and down, with backlash and without."""
+    up, lost_up = sweep(at, HALF)
+    down, lost_down = sweep(at[::-1], HALF)
+    return Sweeps(at, up, down[::-1], sweep(at, 0.0)[0], lost_up + lost_down)
+
+
+def show(page: Page, found: Sweeps, safe: float) -> None:
+    """Show maximum and minimum force; the linear model is safe from the frequency `safe` on."""
+    at, up, down, linear = found.at, found.up, found.down, found.linear
     page.section("Sweeps")
-    page.chart(
-        "Largest force over the mean",
-        [
-            trace("with backlash, up", at, up[:, 1], mode="lines+markers"),
-            trace("with backlash, down", at, down[:, 1], mode="lines+markers"),
-            trace("spring that pulls", at, linear[:, 1], line={"dash": "dot"}),
-        ],
-        OVER,
-        "largest force over the mean",
-        safe=(safe, None),
-    )
-    page.chart(
-        "Least force over the mean: 0 where teeth part",
-        [
-            trace("with backlash, up", at, up[:, 0], mode="lines+markers"),
-            trace("with backlash, down", at, down[:, 0], mode="lines+markers"),
-            trace("spring that pulls", at, linear[:, 0], line={"dash": "dot"}),
-        ],
-        OVER,
-        "least force over the mean",
-        safe=(safe, None),
-    )
+    for caption, y, k in (
+        ("Largest force over the mean", "largest force over the mean", 1),
+        ("Least force over the mean: 0 where teeth part", "least force over the mean", 0),
+    ):
+        traces = [
+            marked("with backlash, up", at, up[:, k]),
+            marked("with backlash, down", at, down[:, k]),
+            trace("spring that pulls", at, linear[:, k], line={"dash": "dot"}),
+        ]
+        page.chart(caption, traces, OVER, y, safe=(safe, None))
     page.data("sweep", {"frequency": at, "up": up, "down": down, "linear": linear})
 
 
 def mesh(frequency: float, half: float) -> Equations:
     """One mesh of unit mass and mean stiffness, its frequency over its natural one."""
-    springs = spring_laws(
-        [[1.0]],
-        1.0,
-        0.0,
-        lower=-half,
-        upper=half,
-        wave=0,
-        frequency=frequency / (2.0 * np.pi),
-        waves=[fourier_wave([VARIATION], [0.0])],
+    springs = (
+        spring_laws([[1.0]], 1.0, 0.0, lower=-half, upper=half)
+        .in_phase(frequency=frequency / (2.0 * np.pi))
+        .with_waves([fourier_wave([VARIATION], [0.0])])
     )
     return equations_of_motion([1.0], springs, [[2.0 * RATIO]])
 

@@ -7,7 +7,13 @@ from pydantic import ValidationError
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import locking_solids as solids
-from fe_drivetrain.cases.stability.bonded_disc import bent_shaft, disc, iterations
+from fe_drivetrain.cases.stability.bonded_disc import (
+    bent_shaft,
+    check_disc,
+    iterations,
+    show_disc,
+    solve_disc,
+)
 from fe_drivetrain.cases.stability.locking_curves import (
     AVERAGED,
     AXIS,
@@ -25,7 +31,7 @@ from fe_drivetrain.common import InputError
 from fe_drivetrain.comparison import band_of, last_within
 from fe_drivetrain.drivetrain_file import HIGHEST_POISSON_RATIO
 from fe_drivetrain.elasticity.operator import incompatible
-from fe_drivetrain.report import crosses, trace
+from fe_drivetrain.report import crosses, marked
 from fe_drivetrain.report.suite import Page, Run
 
 #: Poisson's ratios of the pressed cylinder.
@@ -59,7 +65,9 @@ LAME = "Lame 1852; Timoshenko and Goodier 1970, art 28, in plane strain"
 def run(run: Run, page: Page) -> None:
     """Raise Poisson's ratio towards 1/2 in plain elements and in remedied ones."""
     best = cylinder(run, page)
-    of_disc = disc(run, page)
+    of_disc = solve_disc(run)
+    check_disc(page, of_disc)
+    show_disc(page, of_disc)
     near_half(run, page)
     bent_shaft(run, page, of_disc)
     stress(run, page)
@@ -184,39 +192,12 @@ def near_half(run: Run, page: Page) -> None:
     distances = QUICK_DISTANCES if run.quick else DISTANCES
     with run.step("round-off"):
         settled = solids.press(27, 2, 0.5 - distances[0], averaged).excess
-        lost: dict[float, float] = {}
-        refused: list[float] = []
-        for distance in distances:
-            try:
-                lost[distance] = solids.press(27, 2, 0.5 - distance, averaged).excess - settled
-            except InputError:
-                refused.append(distance)
-        try:
-            solids.material(0.5 - 1e-7)
-            accepted = True
-        except ValidationError:
-            accepted = False
+        lost, refused = towards_half(distances, settled)
         highest, finer = (
             solids.press(27, n, HIGHEST_POISSON_RATIO, averaged).excess for n in (2, 4)
         )
     kept, changes = list(lost), np.abs(list(lost.values()))
-    page.equals(
-        "cylinder, hexahedra of 27 nodes, averaged: stiffness over the exact one at the largest nu "
-        f"that a material may have, {HIGHEST_POISSON_RATIO:g}",
-        1.0 + highest,
-        1.0,
-        within=CRITERION,
-        why="the remedy is to hold a stiffness within 1 % wherever it is accepted",
-        source=LAME,
-        measure="stiffness",
-        band=2.0 * abs(highest - finer),
-    )
-    page.holds(
-        "a material with nu = 1/2 - 1e-7 is refused",
-        not accepted,
-        why="nearer to 1/2 digits of the stiffness are lost without a warning",
-        source=f"materials.Material: at most {HIGHEST_POISSON_RATIO:g}",
-    )
+    check_highest(page, highest, abs(highest - finer))
     nearest = last_within(kept, changes, DIGITS)
     page.limit(
         "averaged dilatation, round-off",
@@ -238,13 +219,52 @@ def near_half(run: Run, page: Page) -> None:
         "Cylinder, averaged hexahedra of 27 nodes: how far the stiffness, over the exact one, is "
         f"from its value at 1/2 - nu = {distances[0]:g} (shaded: four digits)",
         [
-            trace("averaged", kept, np.maximum(changes, 1e-12), mode="lines+markers"),
+            marked("averaged", kept, np.maximum(changes, 1e-12)),
             crosses("found singular", refused),
         ],
         "1/2 - nu [-]",
         "change of the stiffness, relative [-]",
         "xy",
         (nearest, None),
+    )
+
+
+def towards_half(
+    distances: Sequence[float], settled: float
+) -> tuple[dict[float, float], list[float]]:
+    """Change of the stiffness by distance from 1/2, and where the matrix is singular."""
+    lost, refused = {}, []
+    for distance in distances:
+        try:
+            lost[distance] = solids.press(27, 2, 0.5 - distance, averaged).excess - settled
+        except InputError:
+            refused.append(distance)
+    return lost, refused
+
+
+def check_highest(page: Page, highest: float, change: float) -> None:
+    """Check the maximum nu of a material, and that a larger one is refused."""
+    try:
+        solids.material(0.5 - 1e-7)
+        accepted = True
+    except ValidationError:
+        accepted = False
+    page.equals(
+        "cylinder, hexahedra of 27 nodes, averaged: stiffness over the exact one at the largest nu "
+        f"that a material may have, {HIGHEST_POISSON_RATIO:g}",
+        1.0 + highest,
+        1.0,
+        within=CRITERION,
+        why="the remedy is to hold a stiffness within 1 % wherever it is accepted",
+        source=LAME,
+        measure="stiffness",
+        band=2.0 * change,
+    )
+    page.holds(
+        "a material with nu = 1/2 - 1e-7 is refused",
+        not accepted,
+        why="nearer to 1/2 digits of the stiffness are lost without a warning",
+        source=f"materials.Material: at most {HIGHEST_POISSON_RATIO:g}",
     )
 
 

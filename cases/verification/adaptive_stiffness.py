@@ -2,12 +2,16 @@
 ones.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import rigid_ended_shafts
 from fe_drivetrain.cases.verification.adaptivity import marked, refined_sizes
 from fe_drivetrain.cases.verification.rigid_balance import check_balance
+from fe_drivetrain.common import Floats
+from fe_drivetrain.geometry import Shaft
 from fe_drivetrain.report import trace
 from fe_drivetrain.report.suite import Page, Record, Run, column, grouped
 
@@ -23,6 +27,16 @@ START = (0.25, 14)
 STEPS, QUICK_STEPS = 4, 1
 #: Refinement ends at so many unknowns.
 MOST = 60_000
+
+
+@dataclass(frozen=True)
+class Rates:
+    """Error [%] of the finest comparable adaptive mesh, that of a uniform one as large, slopes."""
+
+    unknowns: int
+    error: float
+    uniform_error: float
+    slope: dict[str, float]
 
 
 def record(kind: str, solved: rigid_ended_shafts.Solved, exact: float, marks: int) -> Record:
@@ -41,18 +55,10 @@ def record(kind: str, solved: rigid_ended_shafts.Solved, exact: float, marks: in
     }
 
 
-@case(
-    "Adaptive and uniform refinement: bending stiffness of a shaft with a sharp step",
-    source="Doerfler 1996, SIAM J. Numer. Anal. 33, 1106-1124; Zienkiewicz and Zhu 1992, Int. J. "
-    "Numer. Meth. Eng. 33, 1331-1364; reference from the shaft's meridian",
-)
-def run(run: Run, page: Page) -> None:
-    """Refine step by step, and compare with uniform meshes."""
-    shaft = rigid_ended_shafts.SHAFTS[SHAFT]
-    with run.step("reference"):
-        exact = rigid_ended_shafts.exact(shaft, 0.1, 10)[LOAD]
-        rough = rigid_ended_shafts.exact(shaft, 0.1, 5)[LOAD]
-
+def solve_all(
+    run: Run, shaft: Shaft, exact: float
+) -> tuple[list[Record], list[float], rigid_ended_shafts.Solved]:
+    """Rows and imbalances of uniform meshes, then of refined ones, and the last of these."""
     rows: list[Record] = []
     imbalances = []
     for size, turn in QUICK_UNIFORM if run.quick else UNIFORM:
@@ -74,11 +80,19 @@ def run(run: Run, page: Page) -> None:
         run.report(f"adaptive: {solved.unknowns:,} unknowns, error {error:.2g}")
         if solved.unknowns > MOST:
             break
+    return rows, imbalances, solved
 
-    curves = {
+
+def error_curves(rows: list[Record]) -> dict[str, Floats]:
+    """(2, n) unknowns and true errors [%] by kind of mesh."""
+    return {
         kind: np.array([column(series, "unknowns"), column(series, "true error [%]")])
         for kind, series in grouped(rows, "meshes")
     }
+
+
+def convergence_rates(curves: dict[str, Floats]) -> Rates:
+    """Adaptive meshes beside uniform ones of as many unknowns."""
     uniform, adaptive = curves["uniform"], curves["adaptive"]
     last = int(np.flatnonzero(adaptive[0] <= uniform[0, -1]).max())
     unknowns, error = int(adaptive[0, last]), adaptive[1, last]
@@ -86,17 +100,49 @@ def run(run: Run, page: Page) -> None:
     slope = {
         kind: np.polyfit(np.log(curve[0]), np.log(curve[1]), 1)[0] for kind, curve in curves.items()
     }
+    return Rates(unknowns, float(error), same, slope)
 
+
+@case(
+    "Adaptive and uniform refinement: bending stiffness of a shaft with a sharp step",
+    source="Doerfler 1996, SIAM J. Numer. Anal. 33, 1106-1124; Zienkiewicz and Zhu 1992, Int. J. "
+    "Numer. Meth. Eng. 33, 1331-1364; reference from the shaft's meridian",
+)
+def run(run: Run, page: Page) -> None:
+    """Refine step by step, and compare with uniform meshes."""
+    shaft = rigid_ended_shafts.SHAFTS[SHAFT]
+    with run.step("reference"):
+        exact = rigid_ended_shafts.exact(shaft, 0.1, 10)[LOAD]
+        rough = rigid_ended_shafts.exact(shaft, 0.1, 5)[LOAD]
+    rows, imbalances, finest = solve_all(run, shaft, exact)
+    curves = error_curves(rows)
+    rates = convergence_rates(curves)
     check_balance(page, imbalances)
+    check(page, finest, rates, exact, doubt=abs(rough / exact - 1))
+    page.answer(
+        f"At {rates.unknowns:,} unknowns the error of the adaptive mesh is {rates.error:.2g} %, "
+        f"that of a uniform one of as many {rates.uniform_error:.2g} %.",
+        f"Error falls with unknowns to the power {rates.slope['adaptive']:.2f} on adaptive meshes, "
+        f"{rates.slope['uniform']:.2f} on uniform ones: the sharp step holds these back.",
+    )
+    show(page, rows, curves)
+    page.image("The shaft with a sharp step", run.sketch(shaft))
+    page.data("meshes", rows)
+
+
+def check(
+    page: Page, finest: rigid_ended_shafts.Solved, rates: Rates, exact: float, doubt: float
+) -> None:
+    """Adaptive meshes beat uniform ones, and the last one's band covers its error."""
     page.at_most(
-        f"error of the adaptive mesh of {unknowns:,} unknowns over that of a uniform one of as "
-        "many",
-        float(error / same),
+        f"error of the adaptive mesh of {rates.unknowns:,} unknowns over that of a uniform one "
+        "of as many",
+        rates.error / rates.uniform_error,
         1.0,
         why="refinement that does not beat uniform meshes is not worth its solves",
         source="uniform meshes of this case, between two of them on logarithmic scales",
     )
-    k, estimate = solved.stiffness[LOAD], solved.estimate[LOAD]
+    k, estimate = finest.stiffness[LOAD], finest.estimate[LOAD]
     page.equals(
         "bending stiffness on the last adaptive mesh [N m/rad]",
         k,
@@ -105,16 +151,14 @@ def run(run: Run, page: Page) -> None:
         why="the band, three times the error estimated on that one mesh: the check is of the "
         "estimate, which must cover the true error",
         source="the shaft's meridian in fourth-order elements, graded to its corners; "
-        f"uncertain by {abs(rough / exact - 1):.1g}",
+        f"uncertain by {doubt:.1g}",
         basis="self-consistency",
         band=estimate.band(k),
     )
-    page.answer(
-        f"At {unknowns:,} unknowns the error of the adaptive mesh is {error:.2g} %, that of a "
-        f"uniform one of as many {same:.2g} %.",
-        f"Error falls with unknowns to the power {slope['adaptive']:.2f} on adaptive meshes, "
-        f"{slope['uniform']:.2f} on uniform ones: the sharp step holds these back.",
-    )
+
+
+def show(page: Page, rows: list[Record], curves: dict[str, Floats]) -> None:
+    """Errors against unknowns."""
     page.section("Error against unknowns")
     page.chart(
         "Error of the bending stiffness, true and as estimated on each mesh",
@@ -142,5 +186,3 @@ def run(run: Run, page: Page) -> None:
         "Each mesh is generated again from the shape, with sizes from the one before, so that its "
         "curved surfaces are as exact as it is fine."
     )
-    page.image("The shaft with a sharp step", run.sketch(shaft))
-    page.data("meshes", rows)

@@ -7,14 +7,14 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification.bands_over_errors import (
     BAND,
-    BINS,
     COVERED,
     ERROR,
     HOLDS,
     LEFT,
     RATIO,
     WIDE,
-    counted,
+    coverage,
+    histogram,
 )
 from fe_drivetrain.cases.verification.filleted_shafts import filleted_scenes
 from fe_drivetrain.cases.verification.independent_shafts import FOUND, independent_shaft
@@ -40,7 +40,7 @@ from fe_drivetrain.shafts.fidelity import (
 )
 
 SHAFTS, SOLIDS, FILLETS = 200, 25, 19
-#: Of a quick run: shafts of few elements, one of them also as a solid.
+#: Shafts of a quick run, of few elements, one of them also as a solid.
 QUICK, QUICK_SOLIDS, QUICK_FILLETS = (2, 3), (2,), 1
 #: Order of the reference, layers of elements at its corners, in quadrilaterals and where fillets
 #: take triangles, which have no higher order. Elements are half as large as the band's, at most.
@@ -142,7 +142,7 @@ def judged(run: Run, about: Record, scene: Scene, solve: dict[str, Solve]) -> li
     return rows
 
 
-def of_seed(run: Run, seed: int, with_solid: bool) -> list[Record]:
+def judged_seed(run: Run, seed: int, with_solid: bool) -> list[Record]:
     """A random shaft, judged, or what an earlier run found."""
     levels: dict[str, Solve] = {MERIDIAN: banded_meridian}
     if with_solid:
@@ -156,7 +156,7 @@ def of_seed(run: Run, seed: int, with_solid: bool) -> list[Record]:
     return run.kept(content, lambda: judged(run, {"seed": seed}, random_scene(seed), levels))
 
 
-def of_fillet(run: Run, name: str) -> list[Record]:
+def judged_fillet(run: Run, name: str) -> list[Record]:
     """A shaft with one fillet, judged, or what an earlier run found."""
     scene = filleted_scenes()[name]
     levels: dict[str, Solve] = {ONE_FILLET: banded_meridian}
@@ -171,9 +171,7 @@ def found_by_kind(rows: list[Record]) -> list[Record]:
             "level": level,
             "kind": kind,
             "shafts": len(of),
-            "bands that hold": sum(column(of, HOLDS)),
-            "coverage [%]": 100 * float(np.mean(column(of, HOLDS))),
-            "median band over error": float(np.median(column(of, RATIO))),
+            **coverage(of),
             "least band over error": min(column(of, RATIO)),
             "median error, relative": float(np.median(column(of, ERROR))),
         }
@@ -195,16 +193,8 @@ def found_by_kind(rows: list[Record]) -> list[Record]:
 )
 def run(run: Run, page: Page) -> None:
     """Random shafts at level 2, some of them at level 3, and shafts with one fillet, with bands."""
-    rows: list[Record] = []
     seeds, solids = chosen(run)
-    fillets = run.count("fillets", QUICK_FILLETS if run.quick else FILLETS)
-    names = list(filleted_scenes())[:fillets]
-    with run.side_by_side(1 if run.quick else len(seeds)) as jobs:
-        started = [jobs.start(of_seed, seed, seed in solids) for seed in seeds]
-        started += [jobs.start(of_fillet, name) for name in names]
-        for number, job in enumerate(started, 1):
-            run.report(f"shafts ({number} of {len(started)})")
-            rows += job.result()
+    rows = all_judged(run, seeds, solids)
     found = found_by_kind(rows)
     of_fillets = [row for row in rows if row["level"] == ONE_FILLET]
     check_reserve(page, of_fillets)
@@ -213,26 +203,56 @@ def run(run: Run, page: Page) -> None:
     else:
         check_coverage(page, found)
     page.answer(
-        *(
-            f"Level {level}: {sum(column(of, HOLDS))} of {len(of)} bands hold; by kind at a median "
-            "of "
-            + ", ".join(f"{row['median band over error']:.2g} ({row['kind']})" for row in kinds)
-            + " times the error."
-            for (level, of), (_, kinds) in zip(
-                grouped(rows, "level"), grouped(found, "level"), strict=True
-            )
-        ),
+        *coverage_sentences(rows, found),
         compare_with_ngsolve(run, page),
         *(["A quick run is a sample: too few to judge 95 % by."] if run.quick else []),
     )
+    show(page, rows, found, of_fillets)
+    page.image(
+        "The first of the random shafts, with the rings of its bearings",
+        run.sketch(*shaft_with_rings(random_scene(seeds[0]))),
+    )
+    page.data("coverage", found)
+    page.data("shafts", rows)
+
+
+def all_judged(run: Run, seeds: Sequence[int], solids: Sequence[int]) -> list[Record]:
+    """Bands and errors of the random shafts, then of those with one fillet."""
+    rows: list[Record] = []
+    fillets = run.count("fillets", QUICK_FILLETS if run.quick else FILLETS)
+    names = list(filleted_scenes())[:fillets]
+    with run.side_by_side(1 if run.quick else len(seeds)) as jobs:
+        started = [jobs.start(judged_seed, seed, seed in solids) for seed in seeds]
+        started += [jobs.start(judged_fillet, name) for name in names]
+        for number, job in enumerate(started, 1):
+            run.report(f"shafts ({number} of {len(started)})")
+            rows += job.result()
+    return rows
+
+
+def coverage_sentences(rows: list[Record], found: list[Record]) -> list[str]:
+    """How many bands hold at each level, and how wide they are."""
+    return [
+        f"Level {level}: {sum(column(of, HOLDS))} of {len(of)} bands hold; by kind at a median "
+        "of "
+        + ", ".join(f"{row['median band over error']:.2g} ({row['kind']})" for row in kinds)
+        + " times the error."
+        for (level, of), (_, kinds) in zip(
+            grouped(rows, "level"), grouped(found, "level"), strict=True
+        )
+    ]
+
+
+def show(page: Page, rows: list[Record], found: list[Record], of_fillets: list[Record]) -> None:
+    """Bands over errors, and every shaft."""
     page.section("Bands over errors")
     page.chart(
         "Histogram of bands over errors: below 1 a band does not hold",
-        [
-            {"type": "bar", "name": f"level {level}, {kind}", "x": BINS, "y": counted(of)}
+        histogram(
+            (f"level {level}, {kind}", of)
             for level, of_level in grouped(rows, "level")
             for kind, of in grouped(of_level, "kind")
-        ],
+        ),
         "band over error",
         "shafts",
     )
@@ -248,12 +268,6 @@ def run(run: Run, page: Page) -> None:
         "ring or two; all follow from the seed. On shafts with one fillet the corners of the ring "
         "decide, where the error falls most slowly with the order."
     )
-    page.image(
-        "The first of the random shafts, with the rings of its bearings",
-        run.sketch(*shaft_with_rings(random_scene(seeds[0]))),
-    )
-    page.data("coverage", found)
-    page.data("shafts", rows)
 
 
 def compare_with_ngsolve(run: Run, page: Page) -> str:

@@ -8,14 +8,14 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification.bands_over_errors import (
     BAND,
-    BINS,
     COVERED,
     ERROR,
     HOLDS,
     LEFT,
     RATIO,
     WIDE,
-    counted,
+    coverage,
+    histogram,
 )
 from fe_drivetrain.cases.verification.random_scenes import random_scene
 from fe_drivetrain.common import MOTIONS, Cache, Floats, InputError
@@ -106,7 +106,7 @@ def reference(scene: Scene, asked: list[Quantity]) -> list[tuple[Floats, Floats]
     return found
 
 
-def of_another_bore(scene: Scene) -> Scene:
+def with_another_bore(scene: Scene) -> Scene:
     """The scene with a wider bore all along its shaft, or with one where it has none."""
     sections = scene.shaft.sections
     smallest = min(min(s.outer_diameter, s.outer_diameter_end or np.inf) for s in sections)
@@ -120,7 +120,7 @@ def changes(
     run: Run, seed: int, scene: Scene, asked: list[Quantity], exact: list[tuple[Floats, Floats]]
 ) -> list[Record]:
     """Bands and errors of the changes of one scene's quantities to those of a like design."""
-    other = of_another_bore(scene)
+    other = with_another_bore(scene)
     exact_after = run.clocked("references", reference, other, asked)
     found = run.clocked(
         "changes with bands", compare_designs, {"first": scene, "other": other}, asked, NEVER
@@ -201,6 +201,42 @@ def kept(run: Run, seed: int, with_changes: bool) -> list[Record]:
 def run(run: Run, page: Page) -> None:
     """Random scenes on every interface, each figure with its band, against the reference."""
     count = run.count("scenes", QUICK if run.quick else SCENES)
+    last, rows = all_judged(run, count)
+    found = [
+        {
+            "figure": kind,
+            "figures": len(of),
+            **coverage(of),
+            "median error, relative": float(np.median(column(of, ERROR))),
+        }
+        for kind, of in (("all", rows), *grouped(rows, "kind"))
+    ]
+    whole = found[0]
+    values = [row for row in rows if row["kind"] != CHANGE]
+    median = float(np.median(column(values, RATIO)))
+    check(page, whole, median, run.quick)
+    page.answer(
+        f"{whole['bands that hold']} of {whole['figures']} bands hold of {count} scenes "
+        f"({whole['coverage [%]']:.3g} %); those of values at a median of "
+        f"{median:.2g} times the error.",
+        *(["A quick run is a sample: too few to judge 95 % by."] if run.quick else []),
+    )
+    if changed := [row[BAND] / row[BOTH] for row in rows if row["kind"] == CHANGE]:
+        page.answer(
+            f"Bands of {len(changed)} changes are {min(changed):.2g} to {max(changed):.2g} of the "
+            f"sum of the bands of both values, {np.median(changed):.2g} in the median."
+        )
+    show(page, rows, found)
+    page.image(
+        "The last of the random shafts, with the rings of its bearings",
+        run.sketch(*shaft_with_rings(last)),
+    )
+    page.data("coverage", found)
+    page.data("figures", rows)
+
+
+def all_judged(run: Run, count: int) -> tuple[Scene, list[Record]]:
+    """The last of the scenes, and bands and errors of all."""
     rows: list[Record] = []
     with run.side_by_side(1 if run.quick else count) as jobs:
         # the first are at work while others are meshed
@@ -211,20 +247,12 @@ def run(run: Run, page: Page) -> None:
         for number, (_, job) in enumerate(started, 1):
             run.report(f"scenes ({number} of {count})")
             rows += job.result()
-    kinds = grouped(rows, "kind")
-    found: list[Record] = [
-        {
-            "figure": kind,
-            "figures": len(of),
-            "bands that hold": sum(column(of, HOLDS)),
-            "coverage [%]": 100 * float(np.mean(column(of, HOLDS))),
-            "median band over error": float(np.median(column(of, RATIO))),
-            "median error, relative": float(np.median(column(of, ERROR))),
-        }
-        for kind, of in (("all", rows), *kinds)
-    ]
-    whole = found[0]
-    if not run.quick:
+    return started[-1][0], rows
+
+
+def check(page: Page, whole: Record, median: float, quick: bool) -> None:
+    """Enough bands hold, and they are not wide."""
+    if not quick:
         page.at_least(
             f"share of {whole['figures']} bands that hold",
             whole["coverage [%]"] / 100,
@@ -232,29 +260,21 @@ def run(run: Run, page: Page) -> None:
             why="a band is stated as one that holds 95 times in 100",
             source="the same scenes in much finer meshes",
         )
-    values = [row for row in rows if row["kind"] != CHANGE]
     page.at_most(
         "median band over error, values",
-        float(np.median(column(values, RATIO))),
-        WIDE if not run.quick else 2 * WIDE,
+        median,
+        WIDE if not quick else 2 * WIDE,
         why="wider bands hold more often and say less; a few figures have twice that room",
         source="the same scenes in much finer meshes",
     )
-    page.answer(
-        f"{whole['bands that hold']} of {whole['figures']} bands hold of {count} scenes "
-        f"({whole['coverage [%]']:.3g} %); those of values at a median of "
-        f"{np.median(column(values, RATIO)):.2g} times the error.",
-        *(["A quick run is a sample: too few to judge 95 % by."] if run.quick else []),
-    )
-    if changed := [row[BAND] / row[BOTH] for row in rows if row["kind"] == CHANGE]:
-        page.answer(
-            f"Bands of {len(changed)} changes are {min(changed):.2g} to {max(changed):.2g} of the "
-            f"sum of the bands of both values, {np.median(changed):.2g} in the median."
-        )
+
+
+def show(page: Page, rows: list[Record], found: list[Record]) -> None:
+    """Bands over errors, and every figure."""
     page.section("Bands over errors")
     page.chart(
         "Histogram of bands over errors: below 1 a band does not hold",
-        [{"type": "bar", "name": kind, "x": BINS, "y": counted(of)} for kind, of in kinds],
+        histogram(grouped(rows, "kind")),
         "band over error",
         "figures",
     )
@@ -271,9 +291,3 @@ def run(run: Run, page: Page) -> None:
         f"{CHANGED}rd scene is compared with one of another bore, as `compare` does: what both "
         "meshes get wrong cancels in the change, and so it does in its band."
     )
-    page.image(
-        "The last of the random shafts, with the rings of its bearings",
-        run.sketch(*shaft_with_rings(started[-1][0])),
-    )
-    page.data("coverage", found)
-    page.data("figures", rows)

@@ -1,6 +1,8 @@
 """Bands over errors: columns of a record, what is required, and bins of a histogram."""
 
+from collections.abc import Iterable
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +18,20 @@ BINS = [
 
 BAND, ERROR, RATIO = "band, relative", "error, relative", "band over error"
 LEFT, HOLDS = "left of the reference, relative", "holds"
+
+
+def coverage(rows: list[Record]) -> Record:
+    """How many bands hold, and how wide they are."""
+    return {
+        "bands that hold": sum(column(rows, HOLDS)),
+        "coverage [%]": 100 * float(np.mean(column(rows, HOLDS))),
+        "median band over error": float(np.median(column(rows, RATIO))),
+    }
+
+
+def histogram(kinds: Iterable[tuple[str, list[Record]]]) -> list[Any]:
+    """Bars of bands over errors, by kind."""
+    return [{"type": "bar", "name": kind, "x": BINS, "y": counted(rows)} for kind, rows in kinds]
 
 
 def counted(rows: list[Record]) -> list[int]:

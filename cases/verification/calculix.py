@@ -242,16 +242,7 @@ def run(run: Run, page: Page, row: Mapping[str, Any]) -> None:
         found = [job.result() for job in work]
     for one in found:
         page.about(forms[one.label], one.label)
-        for quantity, values in one.differences.items():
-            page.vanishes(
-                f"{one.label}: {quantity}, largest difference of all unit loads",
-                float(values.max()),
-                within=TOLERANCE,
-                why="ccx prints seven digits, an error of up to 5e-7 of the largest number; "
-                "coordinates and coefficients of the deck have fourteen",
-                source=f"CalculiX {ccx_version()} on the same deck, C3D10 at four points",
-                band=ROUNDING,
-            )
+        check(page, one)
     worst = ", ".join(f"{one.label} {_worst(one.differences):.1e}" for one in found)
     usual = ", ".join(f"{one.label} {one.usual[QUANTITIES[0]].max():.1e}" for one in found)
     page.answer(
@@ -261,6 +252,41 @@ def run(run: Run, page: Page, row: Mapping[str, Any]) -> None:
         "With this project's usual integration of curved elements displacements differ by "
         f"{usual} on this coarse mesh.",
     )
+    add_results(page, found)
+    page.section("How it was compared")
+    page.text(
+        "The deck has all of the model: ten-node tetrahedra, materials, interfaces and couplings "
+        "as linear equations, supports, springs to ground, and the unit loads, a step each. ccx "
+        "solves it with its own elements, elimination and direct solver. It is beside this page "
+        "(.inp)."
+    )
+    page.text(
+        "ccx integrates its ten-node tetrahedra at four points, which is exact for straight edges "
+        "only; this project takes eleven points in curved elements. To compare the programs and "
+        "not the integration, the project's stiffness is integrated at four points, too. What the "
+        "usual integration changes is shown by open symbols."
+    )
+    for one in found:
+        page.data(one.label, one.differences)
+    page.image("The scene, as meshed here", run.sketch(mesh))
+
+
+def check(page: Page, one: Compared) -> None:
+    """Each quantity is the same in both programs."""
+    for quantity, values in one.differences.items():
+        page.vanishes(
+            f"{one.label}: {quantity}, largest difference of all unit loads",
+            float(values.max()),
+            within=TOLERANCE,
+            why="ccx prints seven digits, an error of up to 5e-7 of the largest number; "
+            "coordinates and coefficients of the deck have fourteen",
+            source=f"CalculiX {ccx_version()} on the same deck, C3D10 at four points",
+            band=ROUNDING,
+        )
+
+
+def add_results(page: Page, found: Sequence[Compared]) -> None:
+    """Differences of all decks, their sizes, and reactions side by side."""
     page.section("Differences")
     for one in found:
         add_differences(page, one)
@@ -297,22 +323,6 @@ def run(run: Run, page: Page, row: Mapping[str, Any]) -> None:
                 for k, load in enumerate(one.loads)
             ],
         )
-    page.section("How it was compared")
-    page.text(
-        "The deck has all of the model: ten-node tetrahedra, materials, interfaces and couplings "
-        "as linear equations, supports, springs to ground, and the unit loads, a step each. ccx "
-        "solves it with its own elements, elimination and direct solver. It is beside this page "
-        "(.inp)."
-    )
-    page.text(
-        "ccx integrates its ten-node tetrahedra at four points, which is exact for straight edges "
-        "only; this project takes eleven points in curved elements. To compare the programs and "
-        "not the integration, the project's stiffness is integrated at four points, too. What the "
-        "usual integration changes is shown by open symbols."
-    )
-    for one in found:
-        page.data(one.label, one.differences)
-    page.image("The scene, as meshed here", run.sketch(mesh))
 
 
 def _worst(differences: Mapping[str, Floats]) -> float:

@@ -31,6 +31,7 @@ Words = Callable[[Path], list[str]]
 
 FAILED = 99
 SCENE, LOADS, PROJECT = "my.yaml", "loads.csv", "project.yaml"
+PAGES = ("advise", "uncertainty", "validate", "loads")
 CASES = ("drivetrain/two_masses", "drivetrain/five_masses")
 
 #: Words of each kind of command that writes, in a folder that has a scene, loads and a project; all
@@ -275,11 +276,8 @@ def main() -> None:
     folder, kills, names = Path(sys.argv[1]), int(sys.argv[2]), sys.argv[3:]
     os.environ[CACHE_VARIABLE] = str(folder / "cache")
     kinds = {name: words for name, words in (QUICK | OTHERS).items() if name in names}
-    load(
-        f"fe_drivetrain.command_line.{name}"
-        for name in ("validate_page", "run", "studies", "export", "loads_page")
-    )
-    load(iter(("fe_drivetrain.pages.advice", "fe_drivetrain.pages.uncertainty")))
+    load(f"fe_drivetrain.command_line.{name}" for name in ("run", "studies", "export"))
+    load(f"fe_drivetrain.pages.{name}" for name in PAGES)
     load(f"fe_drivetrain.cases.{name.replace('/', '.')}" for name in CASES)
     load(iter(("fe_drivetrain.report.page", "fe_drivetrain.report.index", "rich.progress")))
     gc.freeze()

@@ -61,31 +61,8 @@ def run(run: Run, page: Page) -> None:
     kills = run.count("kills", QUICK_KILLS if run.quick else KILLS)
     with run.step("kills, and folders of others"):
         found = experiment(kills, chosen(run))
+    check(page, kills, found)
     names = ", ".join(column(found, "command"))
-    for key, what, why in (
-        ("lost", "files of others lost or changed", "one lost file is one too many"),
-        ("broken", "results that are neither old nor new", "half a result could be taken for one"),
-        ("left", "hidden files and folders after the next run", "they would fill the disk in time"),
-    ):
-        page.vanishes(
-            f"{kills} kills of each of {len(found)} commands: {what}",
-            sum(column(found, key)),
-            within=0.0,
-            why=why,
-            source=COUNTED,
-        )
-    page.holds(
-        "every command into a folder of others: is refused, or writes its own file alone",
-        all(column(found, "refused")) and all(column(found, "untouched")),
-        why="a folder that is not of an earlier run belongs to somebody",
-        source=COUNTED,
-    )
-    page.holds(
-        "kills ended runs of every command, and a file that is changed on purpose is found",
-        all(column(found, "ended")) and all(column(found, "seen")),
-        why="otherwise nothing would have been tested",
-        source=COUNTED,
-    )
     total = sum(column(found, "ended"))
     page.answer(
         f"Of {kills * len(found)} runs of {len(found)} kinds of command {total} were ended by a "
@@ -119,3 +96,31 @@ def run(run: Run, page: Page) -> None:
         "without such a list, which is not empty, is refused before any work."
     )
     page.data("commands", found)
+
+
+def check(page: Page, kills: int, found: list[dict[str, Any]]) -> None:
+    """No file of others is lost, and the experiment would have found it."""
+    for key, what, why in (
+        ("lost", "files of others lost or changed", "one lost file is one too many"),
+        ("broken", "results that are neither old nor new", "half a result could be taken for one"),
+        ("left", "hidden files and folders after the next run", "they would fill the disk in time"),
+    ):
+        page.vanishes(
+            f"{kills} kills of each of {len(found)} commands: {what}",
+            sum(column(found, key)),
+            within=0.0,
+            why=why,
+            source=COUNTED,
+        )
+    page.holds(
+        "every command into a folder of others: is refused, or writes its own file alone",
+        all(column(found, "refused")) and all(column(found, "untouched")),
+        why="a folder that is not of an earlier run belongs to somebody",
+        source=COUNTED,
+    )
+    page.holds(
+        "kills ended runs of every command, and a file that is changed on purpose is found",
+        all(column(found, "ended")) and all(column(found, "seen")),
+        why="otherwise nothing would have been tested",
+        source=COUNTED,
+    )

@@ -14,7 +14,7 @@ WIDE, RADIUS = 1.6, 0.25
 PER_FILLET = (6, 11)
 #: With 4 and 6, what meshes of the same sizes scatter by is as much as the band leaves.
 QUICK = (4, 7)
-#: Of stress in elements of second order; and of the polynomial fitted to it along the arc.
+#: Order of stress in elements of second order; degree of the polynomial fitted along the arc.
 ORDER, DEGREE = 2.0, 6
 
 
@@ -35,43 +35,10 @@ def run(run: Run, page: Page) -> None:
         for n in meshes
     ]
     page.section("Result")
-    rows: list[Record] = []
+    rows = []
     for load, f in flat.items():
-        values = [solid.factor(load, DEGREE) for solid in solids]
-        limit = richardson([1.0 / n for n in meshes], values, ORDER)
-        # what the polynomial itself leaves out, on a profile that is known
-        angle, factor = f.peak.profile.T
-        fitted = abs(solid_fillet.fitted_peak(angle, factor, DEGREE) - f.peak.factor)
-        band = DOUBTFUL * abs(limit - values[-1]) + fitted
-        within = (band + f.band) / f.peak.factor
-        why = "the bands of both: grid convergence index of two meshes at second order, safety "
-        why += f"factor 3, and what a polynomial of degree {DEGREE} along the arc leaves out "
-        why += f"({fitted:.1g})"
-        source = f"the same shoulder in its meridian, fifth order (band {f.band:.1g})"
-        title = f"K_t in {load} [-]"
-        target = Target(title, f.peak.factor, within, why, source, measure="stress")
-        page.meets(values[-1], target, band)
-        shown = (f"solid, {solid.unknowns:,} unknowns [-]" for solid in solids)
-        rows.append(
-            {
-                "load": load,
-                **dict(zip(shown, values, strict=True)),
-                "extrapolated [-]": limit,
-                "band [-]": band,
-                "meridian [-]": f.peak.factor,
-                "its band [-]": f.band,
-                "from the meridian [%]": 100 * (values[-1] / f.peak.factor - 1.0),
-            }
-        )
-        nodes = solids[-1].profile(load)
-        at, stress = nodes[:: max(1, len(nodes) // 400)].T
-        name = f"nodes of the solid, {meshes[-1]} elements along the fillet"
-        curves = [
-            trace(name, at, stress, points=True, marker={"size": 4}),
-            trace("meridian", angle[::4], factor[::4]),
-        ]
-        x, y = "angle on the arc, from the thinner shaft [deg]", "local stress / nominal stress [-]"
-        page.chart(f"Stress along the fillet in {load}", curves, x, y)
+        rows.append(check(page, load, f, solids, meshes))
+        add_profile(page, load, f, solids[-1], meshes[-1])
     worst = max(abs(row["from the meridian [%]"]) for row in rows)
     page.answer(
         f"With {solids[-1].unknowns:,} unknowns curved tetrahedra find K_t of the meridian within "
@@ -90,3 +57,57 @@ def run(run: Run, page: Page) -> None:
     page.image("The shouldered shaft", run.sketch(fillet_factors.shouldered(WIDE, RADIUS)))
     page.data("K_t", rows)
     page.data("elements along the fillet", meshes)
+
+
+def check(
+    page: Page,
+    load: str,
+    f: fillet_factors.Factor,
+    solids: list[solid_fillet.SolidFillet],
+    meshes: tuple[int, ...],
+) -> Record:
+    """The solid's factor against the meridian's; its row of the table."""
+    values = [solid.factor(load, DEGREE) for solid in solids]
+    limit = richardson([1.0 / n for n in meshes], values, ORDER)
+    # what the polynomial itself leaves out, on a profile that is known
+    angle, factor = f.peak.profile.T
+    fitted = abs(solid_fillet.fitted_peak(angle, factor, DEGREE) - f.peak.factor)
+    band = DOUBTFUL * abs(limit - values[-1]) + fitted
+    within = (band + f.band) / f.peak.factor
+    why = "the bands of both: grid convergence index of two meshes at second order, safety "
+    why += f"factor 3, and what a polynomial of degree {DEGREE} along the arc leaves out "
+    why += f"({fitted:.1g})"
+    source = f"the same shoulder in its meridian, fifth order (band {f.band:.1g})"
+    title = f"K_t in {load} [-]"
+    target = Target(title, f.peak.factor, within, why, source, measure="stress")
+    page.meets(values[-1], target, band)
+    shown = (f"solid, {solid.unknowns:,} unknowns [-]" for solid in solids)
+    return {
+        "load": load,
+        **dict(zip(shown, values, strict=True)),
+        "extrapolated [-]": limit,
+        "band [-]": band,
+        "meridian [-]": f.peak.factor,
+        "its band [-]": f.band,
+        "from the meridian [%]": 100 * (values[-1] / f.peak.factor - 1.0),
+    }
+
+
+def add_profile(
+    page: Page,
+    load: str,
+    f: fillet_factors.Factor,
+    solid: solid_fillet.SolidFillet,
+    per_fillet: int,
+) -> None:
+    """Stress along the fillet, by the solid's nodes and in the meridian."""
+    angle, factor = f.peak.profile.T
+    nodes = solid.profile(load)
+    at, stress = nodes[:: max(1, len(nodes) // 400)].T
+    name = f"nodes of the solid, {per_fillet} elements along the fillet"
+    curves = [
+        trace(name, at, stress, points=True, marker={"size": 4}),
+        trace("meridian", angle[::4], factor[::4]),
+    ]
+    x, y = "angle on the arc, from the thinner shaft [deg]", "local stress / nominal stress [-]"
+    page.chart(f"Stress along the fillet in {load}", curves, x, y)

@@ -30,7 +30,7 @@ from fe_drivetrain.studies.life_digest import kept_digest as life_digest
 from fe_drivetrain.studies.load_digest import LoadOptions
 from fe_drivetrain.studies.load_reactions import kept_digest as loads_digest
 from fe_drivetrain.studies.rolling_bearings import Choices, bearings_of
-from fe_drivetrain.turbine_loads.hub_loads import Condition, hub_load_set, write_csv
+from fe_drivetrain.turbine_loads.hub_loads import Condition, hub_load_set, write_hub_loads
 from fe_drivetrain.turbine_loads.hub_loads.recorded import OWN_NAMES
 
 #: Bits turned in the file of each kind.
@@ -63,7 +63,7 @@ class Maker:
         self.wind = replace(WIND, seed=2) if other else WIND
         self.shaft = SHAFT.model_copy(update={"front": 0.1}) if other else SHAFT
         self.loads = folder / f"loads_{int(other)}.csv"
-        write_csv(hub_load_set([self.wind], DURATION, RATE, cache=False)[0], self.loads)
+        write_hub_loads(hub_load_set([self.wind], DURATION, RATE, cache=False)[0], self.loads)
 
     def mesh(self) -> Any:
         """Points and cells of a small shaft."""
@@ -87,7 +87,7 @@ class Maker:
 
     def counted_loads(self) -> Any:
         """The digest of a file by `loads`."""
-        options = LoadOptions(slopes=(3.0, 10.0), rotor_speed=1.5)
+        options = LoadOptions(slopes=(3.0, 10.0), rotor_speed_rpm=15.0)
         found = loads_digest(silent, self.loads, options, resume=True)
         return {name: array.tobytes() for name, array in as_arrays(found).items()}
 

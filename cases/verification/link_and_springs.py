@@ -16,7 +16,7 @@ from fe_drivetrain.cases.verification.shaft_inputs import show_inputs
 from fe_drivetrain.common import Floats
 from fe_drivetrain.drivetrain_file import MATERIALS
 from fe_drivetrain.report import trace
-from fe_drivetrain.report.suite import Page, Run
+from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Bending and torsion [N m/rad] of the three shafts of Park et al. 2021, Table 2.
 TABLE = {
@@ -26,6 +26,9 @@ TABLE = {
 }
 SPLIT = 0.5
 STEEL = MATERIALS["steel"]
+
+#: Deflection and rotation of a cantilever's tip under each load of `BEAM`.
+Tip = dict[str, tuple[float, float]]
 
 
 def implied(bending: float, torsion: float) -> tuple[float, float]:
@@ -69,7 +72,7 @@ def link(load: str, d: float | Floats, k: ArrayLike) -> tuple[Any, Any]:
     return angle * arm, angle
 
 
-def meshed_tip(C: solid_shafts.Compliance) -> dict[str, tuple[float, float]]:
+def meshed_tip(C: solid_shafts.Compliance) -> Tip:
     """Deflection and rotation of the solid's tip under each load of `BEAM`."""
     tip = C.matrix[1, :, 1, :]
     per_length = STEEL.density * TUBE.area
@@ -83,28 +86,10 @@ def meshed_tip(C: solid_shafts.Compliance) -> dict[str, tuple[float, float]]:
     }
 
 
-@case(
-    "Shaft as two rigid links with a rotational spring: position of the joint",
-    source="Park et al. 2021, Front. Energy Res. 8:604414, Eq 13-16 and Table 2",
-)
-def run(run: Run, page: Page) -> None:
-    """The solid's compliance, and what one joint makes of each load, over the split d."""
-    refinements = (1, 2) if run.quick else (1, 2, 3)
-    tips = []
-    for refinement in refinements:
-        with run.step("mesh and solve"):
-            mesh = solid_shafts.solid(solid_shafts.straight((0.0, L), DIAMETER), refinement)
-            tips.append(meshed_tip(solid_shafts.sectional_compliance(mesh, STEEL, (0.0, L))))
-    solid = tips[-1]
-    section = 2 * 4 * parabola_shortfall(mesh.per_turn)
-    local = solid_shafts.local_compliance(TUBE)
-    slack = {
-        "end force": 2 * local / BEAM["end force"][0],
-        "end moment": 0.0,
-        "distributed weight": L * local / BEAM["distributed weight"][0],
-    }
-    arcs = f"{mesh.per_turn} parabolic arcs round a turn; loads that enter evenly over a section, "
-    arcs += f"{solid_shafts.LOCAL:.0%} of what one diameter shears"
+def check_splits(
+    page: Page, refinements: tuple[int, ...], tips: list[Tip], slack: dict[str, float], why: str
+) -> list[Record]:
+    """The split that each load needs, by beam and solid; rows of a table."""
     rows = []
     for load, (w, phi) in BEAM.items():
         needed = 1 - w / (phi * L)
@@ -124,13 +109,20 @@ def run(run: Run, page: Page) -> None:
             f"{load}: split that meets both deflection and rotation of the tip, solid [-]",
             by_mesh[-1],
             needed,
-            within=(section + slack[load]) * (1 - needed),
+            within=(slack[load]) * (1 - needed),
             relative=False,
-            why=arcs,
+            why=why,
             source="1 - w / (phi L) of Timoshenko's cantilever, evenly held (Hutchinson 2001)",
             measure="deflection",
             band=band,
         )
+    return rows
+
+
+def check_equation(
+    page: Page, refinements: tuple[int, ...], tips: list[Tip], slack: float, why: str
+) -> float:
+    """Eq 15 for an end force, split nowhere and in the middle; the latter over the solid."""
     halves = [link("end force", SPLIT, park(SPLIT))[0] / tip["end force"][0] for tip in tips]
     page.equals(
         "Eq 15 at d = 0: deflection under an end force, over the beam's",
@@ -147,12 +139,17 @@ def run(run: Run, page: Page) -> None:
         "Eq 15 at d = 1/2: deflection under an end force, over the solid's",
         float(halves[-1]),
         0.5,
-        within=section + slack["end force"],
-        why=arcs,
+        within=slack,
+        why=why,
         source="(1 - d)^2 / ((1 - d)^2 + d^2)",
         measure="deflection",
         band=solid_shafts.mesh_band(refinements, halves),
     )
+    return float(halves[-1])
+
+
+def check_implied(page: Page) -> None:
+    """The shaft that the table implies has what the table states."""
     for what, value, printed in (
         ("torsion of the low-speed shaft implied by the table", TUBE.GJ / L, TABLE["low-speed"][1]),
         (
@@ -172,15 +169,52 @@ def run(run: Run, page: Page) -> None:
             measure="stiffness",
             basis="self-consistency",
         )
+
+
+@case(
+    "Shaft as two rigid links with a rotational spring: position of the joint",
+    source="Park et al. 2021, Front. Energy Res. 8:604414, Eq 13-16 and Table 2",
+)
+def run(run: Run, page: Page) -> None:
+    """The solid's compliance, and what one joint makes of each load, over the split d."""
+    refinements = (1, 2) if run.quick else (1, 2, 3)
+    tips = []
+    for refinement in refinements:
+        with run.step("mesh and solve"):
+            mesh = solid_shafts.solid(solid_shafts.straight((0.0, L), DIAMETER), refinement)
+            tips.append(meshed_tip(solid_shafts.sectional_compliance(mesh, STEEL, (0.0, L))))
+    section = 2 * 4 * parabola_shortfall(mesh.per_turn)
+    local = solid_shafts.local_compliance(TUBE)
+    slack = {
+        "end force": section + 2 * local / BEAM["end force"][0],
+        "end moment": section,
+        "distributed weight": section + L * local / BEAM["distributed weight"][0],
+    }
+    arcs = f"{mesh.per_turn} parabolic arcs round a turn; loads that enter evenly over a section, "
+    arcs += f"{solid_shafts.LOCAL:.0%} of what one diameter shears"
+    rows = check_splits(page, refinements, tips, slack, arcs)
+    half = check_equation(page, refinements, tips, slack["end force"], arcs)
+    check_implied(page)
     force, _, weight = (row["solid"] for row in rows)
     page.answer(
         "One joint meets deflection and rotation of a cantilever's tip at d = 1/2 for an end "
         f"moment, {force:.3f} for an end force and {weight:.3f} for the weight (slender: 1/3 and "
         "1/4): no split serves all.",
-        f"Eq 15 at d = 1/2, which the paper's table implies, gives {100 * halves[-1]:.0f} % of the "
+        f"Eq 15 at d = 1/2, which the paper's table implies, gives {100 * half:.0f} % of the "
         "deflection under an end force: it counts the spring's energy once for each link, where "
         "one spring has one rotation.",
     )
+    show_splits(page, rows, tips[-1])
+    show_implied(page)
+    page.image(
+        "The low-speed shaft that the table implies",
+        run.sketch(solid_shafts.straight((0.0, L), DIAMETER)),
+    )
+    page.data("split", {row["load"]: row["solid"] for row in rows})
+
+
+def show_splits(page: Page, rows: list[Record], solid: Tip) -> None:
+    """Errors of springs and splits for each load."""
     page.section("Where the split must sit")
     show_inputs(
         page,
@@ -224,6 +258,10 @@ def run(run: Run, page: Page) -> None:
         "the clamp; without the second term Eq 15 meets the deflection at any d. An end moment "
         "needs k = EI / L whatever the split."
     )
+
+
+def show_implied(page: Page) -> None:
+    """Shafts that have the stiffness of the table."""
     page.section("What the table implies")
     shafts = []
     for name, (bending, torsion) in TABLE.items():
@@ -243,11 +281,6 @@ def run(run: Run, page: Page) -> None:
         "Table 2. With d = 0 or 1 no shaft longer than wide has both",
         shafts,
     )
-    page.image(
-        "The low-speed shaft that the table implies",
-        run.sketch(solid_shafts.straight((0.0, L), DIAMETER)),
-    )
-    page.data("split", {row["load"]: row["solid"] for row in rows})
 
 
 def add_errors(
@@ -255,7 +288,7 @@ def add_errors(
     caption: str,
     d: Floats,
     k: float | Floats,
-    solid: dict[str, tuple[float, float]],
+    solid: Tip,
 ) -> None:
     """Errors of deflection and rotation of each load over the split."""
     lines = []
@@ -269,9 +302,7 @@ def add_errors(
     page.chart(caption, lines, "d", "error [%]")
 
 
-def one_split(
-    label: str, d: float, k: float, solid: dict[str, tuple[float, float]]
-) -> dict[str, float | str]:
+def one_split(label: str, d: float, k: float, solid: Tip) -> dict[str, float | str]:
     """Errors [%] of one spring and split, for each load."""
     row: dict[str, float | str] = {"spring and split": label}
     for load, references in solid.items():

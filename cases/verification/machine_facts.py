@@ -17,7 +17,7 @@ from fe_drivetrain.dynamics.modes import system_modes
 from fe_drivetrain.dynamics.static import static
 from fe_drivetrain.dynamics.system import System
 from fe_drivetrain.dynamics.torsion.gear_table import (
-    Drivetrain,
+    GearTable,
     PlanetaryStage,
     gear_masses,
     stage_masses,
@@ -236,7 +236,7 @@ def _unit(K: Floats) -> Floats:
     return np.asarray(K / np.outer(root, root))
 
 
-def table_facts(table: Drivetrain) -> list[Fact]:
+def table_facts(table: GearTable) -> list[Fact]:
     """Facts of a gear table with a mass for each gear, and for each stage."""
     ratios, twice = [1.0], table.rotor
     speeds = {"rotor": 1.0}

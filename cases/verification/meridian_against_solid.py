@@ -1,6 +1,8 @@
 """Stiffness between rigid ends: the meridian in harmonics against solids."""
 
 import time
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -11,10 +13,11 @@ from fe_drivetrain.cases.references.shaft_ends import (
     Solid,
     has_fillets,
     imbalance,
+    limit_of,
     solid_stiffness,
 )
 from fe_drivetrain.cases.references.torsion_meridian import torsion_bounds
-from fe_drivetrain.comparison import grid_convergence, richardson
+from fe_drivetrain.common import Floats
 from fe_drivetrain.elasticity.revolution import end_stiffness
 from fe_drivetrain.geometry import Shaft
 from fe_drivetrain.report import trace
@@ -34,22 +37,63 @@ ENTRIES = (
     ("torsion", 3, 3, "N m/rad"),
     ("bending", 5, 5, "N m/rad"),
 )
+MERIDIAN_TIME = "meridian, from the shaft to the 12 x 12 [ms]"
 
 
-def limit_of(values: list[float], quick: bool) -> tuple[float, float, str]:
-    """Where a series of meshes goes, its band, and what the band is."""
-    sizes = [1 / cut for cut in CUTS[: len(values)]]
-    if quick:
-        limit = richardson(sizes, values, 1.0)
-        return (
+@dataclass(frozen=True)
+class Compared:
+    """A shaft's 12 x 12, its band and its time [s] by the meridian, and solids, coarse to fine."""
+
+    flat: Floats
+    bands: Floats
+    seconds: float
+    solids: list[Solid]
+
+
+def compared(run: Run, name: str, cuts: tuple[int, ...]) -> Compared:
+    """Solve a shaft in its meridian and as ever finer solids."""
+    shaft = SHAFTS[name]
+    with run.step(f"{name}: meridian"):
+        rough = end_stiffness(shaft, STEEL, order=5, layers=3, per_fillet=2)
+        end_stiffness(shaft, STEEL, per_fillet=2)  # what is done once for all is done
+        start = time.perf_counter()
+        flat = end_stiffness(shaft, STEEL, per_fillet=2)
+        seconds = time.perf_counter() - start
+    solids = [run.timed(f"{name}: solid", solid_stiffness, shaft, STEEL, cut) for cut in cuts]
+    return Compared(flat, np.abs(flat - rough), seconds, solids)
+
+
+def check_entries(page: Page, name: str, found: Compared, cuts: tuple[int, ...]) -> list[Record]:
+    """Each entry against the limit of the solids; rows of a table."""
+    solids, rows = found.solids, []
+    kind = "curved tetrahedra" if has_fillets(SHAFTS[name]) else "hexahedra of 27 nodes"
+    for entry, i, j, unit in ENTRIES:
+        values = [s.K[i, j] for s in solids]
+        limit, band, words = limit_of(cuts, values)
+        page.equals(
+            f"{name}: {entry}",
+            found.flat[i, j],
             limit,
-            abs(values[-1] - values[-2]),
-            "what the finer of two meshes of the solid changed",
+            within=band / abs(limit),
+            why=words,
+            source=f"{kind}, {solids[-1].unknowns:,} unknowns",
+            unit=unit,
+            measure="stiffness",
+            band=found.bands[i, j],
         )
-    grid = grid_convergence(sizes, values, least_order=1.0)
-    limit = grid.extrapolated
-    band = max(grid.extrapolated_uncertainty, abs(values[-1] - limit))
-    return limit, band, f"the band of three meshes of the solid ({grid.behaviour})"
+        rows.append(
+            {
+                "shaft": name,
+                "entry": entry,
+                "unit": unit,
+                **{f"solid, cut {c}": v for c, v in zip(cuts, values, strict=True)},
+                "its limit": limit,
+                "its band": band,
+                "meridian": found.flat[i, j],
+                "band of the meridian": found.bands[i, j],
+            }
+        )
+    return rows
 
 
 @case(
@@ -60,80 +104,57 @@ def limit_of(values: list[float], quick: bool) -> tuple[float, float, str]:
 def run(run: Run, page: Page) -> None:
     """Uniform, bored, stepped, conical and filleted shafts."""
     cuts = CUTS[:2] if run.quick else CUTS
-    traces = []
     rows: list[Record] = []
-    cost: list[Record] = []
+    by_name = {}
     for name in QUICK if run.quick else SHAFTS:
-        shaft = SHAFTS[name]
-        with run.step(f"{name}: meridian"):
-            rough = end_stiffness(shaft, STEEL, order=5, layers=3, per_fillet=2)
-            end_stiffness(shaft, STEEL, per_fillet=2)  # what is done once for all is done
-            start = time.perf_counter()
-            flat = end_stiffness(shaft, STEEL, per_fillet=2)
-            seconds = time.perf_counter() - start
-        bands = np.abs(flat - rough)
-        solids: list[Solid] = []
-        for cut in cuts:
-            solids.append(run.timed(f"{name}: solid", solid_stiffness, shaft, STEEL, cut))
-        scale = np.sqrt(flat.diagonal())
-        unit = np.outer(scale, scale)
-        gaps = [np.abs(s.K / unit - flat / unit).max() for s in solids]
-        traces.append(trace(name, [s.unknowns for s in solids], gaps))
-        for entry, i, j, of in ENTRIES:
-            values = [s.K[i, j] for s in solids]
-            limit, band, words = limit_of(values, run.quick)
-            kind = "curved tetrahedra" if has_fillets(shaft) else "hexahedra of 27 nodes"
-            page.equals(
-                f"{name}: {entry}",
-                flat[i, j],
-                limit,
-                within=band / abs(limit),
-                why=words,
-                source=f"{kind}, {solids[-1].unknowns:,} unknowns",
-                unit=of,
-                measure="stiffness",
-                band=bands[i, j],
-            )
-            rows.append(
-                {
-                    "shaft": name,
-                    "entry": entry,
-                    "unit": of,
-                    **{f"solid, cut {c}": v for c, v in zip(cuts, values, strict=True)},
-                    "its limit": limit,
-                    "its band": band,
-                    "meridian": flat[i, j],
-                    "band of the meridian": bands[i, j],
-                }
-            )
+        shaft, found = SHAFTS[name], compared(run, name, cuts)
+        by_name[name] = found
+        rows += check_entries(page, name, found, cuts)
         if not has_fillets(shaft):  # the bounds are of straight outlines
-            check_torsion(run, page, name, shaft, flat[3, 3], bands[3, 3])
+            check_torsion(run, page, name, shaft, found.flat[3, 3], found.bands[3, 3])
         page.vanishes(
             f"{name}: force under a rigid motion of the 12 x 12, over its terms [-]",
-            imbalance(flat, shaft),
+            imbalance(found.flat, shaft),
             within=1e-9,
             why="round-off of a direct solve: 1e-16 times a condition number of 1e6 or so",
             source="equilibrium of the free body",
         )
-        cost.append(
-            {
-                "shaft": name,
-                "meridian, from the shaft to the 12 x 12 [ms]": 1000.0 * seconds,
-                "unknowns of the finest solid": solids[-1].unknowns,
-                "its assembly and solve [s]": solids[-1].seconds,
-            }
-        )
+    cost = [
+        {
+            "shaft": name,
+            MERIDIAN_TIME: 1000.0 * found.seconds,
+            "unknowns of the finest solid": found.solids[-1].unknowns,
+            "its assembly and solve [s]": found.solids[-1].seconds,
+        }
+        for name, found in by_name.items()
+    ]
     largest = max(abs(row["meridian"] / row["its limit"] - 1.0) for row in rows)
-    milliseconds = column(cost, "meridian, from the shaft to the 12 x 12 [ms]")
+    milliseconds = column(cost, MERIDIAN_TIME)
     page.answer(
         "The meridian has every stiffness of the solids within their bands, at most "
         f"{100 * largest:.2g} % from their limit, in {min(milliseconds):.0f} to "
         f"{max(milliseconds):.0f} ms a shaft."
     )
+    show(page, by_name, rows, cost)
+    page.image("The last of the shafts", run.sketch(shaft))
+    page.data("stiffness", rows)
+    page.data("time", cost)
+
+
+def convergence(name: str, found: Compared) -> Any:
+    """Differences of the solids from the meridian, scaled, as a line of a chart."""
+    scale = np.sqrt(found.flat.diagonal())
+    unit = np.outer(scale, scale)
+    gaps = [np.abs(s.K / unit - found.flat / unit).max() for s in found.solids]
+    return trace(name, [s.unknowns for s in found.solids], gaps)
+
+
+def show(page: Page, by_name: dict[str, Compared], rows: list[Record], cost: list[Record]) -> None:
+    """Differences by the solid's size, and stiffness in numbers."""
     page.section("Result")
     page.chart(
         "Largest difference of the 12 x 12 from the meridian's, scaled to 1 on the diagonal",
-        traces,
+        [convergence(name, found) for name, found in by_name.items()],
         "unknowns of the solid",
         "difference [-]",
         "xy",
@@ -149,9 +170,6 @@ def run(run: Run, page: Page) -> None:
         "matrix by the energy of six motions of the front; nothing is shared with the meridian but "
         "the shaft and the material."
     )
-    page.image("The last of the shafts", run.sketch(shaft))
-    page.data("stiffness", rows)
-    page.data("time", cost)
 
 
 def check_torsion(

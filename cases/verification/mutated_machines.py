@@ -18,7 +18,7 @@ from fe_drivetrain.cases.verification.machine_facts import (
 )
 from fe_drivetrain.cases.verification.mutated_tables import mutated
 from fe_drivetrain.dynamics import MACHINES, Machine, MachineTable, library_machine, parse_machine
-from fe_drivetrain.dynamics.torsion import Drivetrain, parse_drivetrain
+from fe_drivetrain.dynamics.torsion import GearTable, parse_gear_table
 from fe_drivetrain.report.suite import Page, Record, Run
 
 MACHINES_TRIED, TABLES_TRIED, QUICK, FEWEST = 300, 200, 40, 20
@@ -87,7 +87,7 @@ def slips(
     return rows
 
 
-def plain(table: Machine | Drivetrain) -> dict[str, Any]:
+def plain(table: Machine | GearTable) -> dict[str, Any]:
     """Mappings, lists and values, as in a file."""
     return table.model_dump(mode="json", exclude_none=True)
 
@@ -107,8 +107,8 @@ def try_machine(data: dict[str, Any], text: bool) -> Outcome:
 def try_table(data: dict[str, Any], text: bool) -> Outcome:
     """A gear table from data, or from text."""
     if text:
-        return tried(partial(parse_drivetrain, as_text(data)), table_facts)
-    return tried(partial(Drivetrain.model_validate, data), table_facts)
+        return tried(partial(parse_gear_table, as_text(data)), table_facts)
+    return tried(partial(GearTable.model_validate, data), table_facts)
 
 
 def check(page: Page, name: str, rows: list[Record]) -> None:

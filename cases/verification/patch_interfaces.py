@@ -30,7 +30,33 @@ def run(run: Run, page: Page) -> None:
         spheres = [{DIVISIONS: n, ERROR: patched.sphere_error(n)} for n in divisions]
     for name, error in {**ties, **points, **kinematics}.items():
         page.meets(error, Target(name, 0.0, 1e-12, ROUND_OFF, PATCH))
-    before, last = column(spheres, ERROR)[-2:]
+    order = check_order(page, *column(spheres, ERROR)[-2:])
+    exact = {**ties, **points}
+    page.answer(
+        f"Constant stress passes every interface on plane faces to {max(exact.values()):.1e} of "
+        f"itself, {len(ties)} bonds and ties among them, of any mesh ratio, either side the slave. "
+        "Tied node by node, meshes that do not match have stress errors of up to "
+        f"{max(by_nodes.values()):.1f} times the stress. Pressure through the sliding sphere "
+        f"converges with order {order:.1f}."
+    )
+    show_errors(page, exact, by_nodes)
+    page.section("Pressure through a sliding sphere")
+    title = "Root mean square of the stress error, of the pressure: sliding sphere, tet10"
+    page.sweep(title, spheres, DIVISIONS, ERROR, log="xy")
+    page.text(
+        "An isotropic strain fulfils the joint exactly, sliding and averaged. The forces do not "
+        "balance exactly: the sliding joint pushes each node along the sphere's radius, the "
+        "pressure on a facet is integrated with the facet's own normals. The averaged joint "
+        "carries the sphere's resultant only: it passes no pressure, and adds nothing to what "
+        "presses on both faces."
+    )
+    sketch = run.sketch(patched.two_blocks((27, 10, 2, 3)))
+    page.image("Two of the oblique blocks, hexahedra on tetrahedra", sketch)
+    page.data("stress errors", exact | by_nodes)
+
+
+def check_order(page: Page, before: float, last: float) -> float:
+    """Order of the stress error of the sliding sphere, on its two finest meshes."""
     order = float(np.log2(before / last))
     page.at_least(
         "sliding sphere under pressure: order of the stress error",
@@ -42,14 +68,11 @@ def run(run: Run, page: Page) -> None:
         source="interpolation: normals of quadratic facets are of second order",
         measure="order",
     )
-    exact = {**ties, **points}
-    page.answer(
-        f"Constant stress passes every interface on plane faces to {max(exact.values()):.1e} of "
-        f"itself, {len(ties)} bonds and ties among them, of any mesh ratio, either side the slave. "
-        "Tied node by node, meshes that do not match have stress errors of up to "
-        f"{max(by_nodes.values()):.1f} times the stress. Pressure through the sliding sphere "
-        f"converges with order {order:.1f}."
-    )
+    return order
+
+
+def show_errors(page: Page, exact: dict[str, float], by_nodes: dict[str, float]) -> None:
+    """Interfaces that pass by design, and ties node by node beside them."""
     page.section("Interfaces under constant stress")
     title = "Largest error of the stress, of unit stress; interfaces that pass, and ties node by "
     title += "node beside them"
@@ -68,16 +91,3 @@ def run(run: Run, page: Page) -> None:
         "rigid face can pass only what leaves it plane and undeformed: tension along its normal "
         "without lateral contraction, here with Poisson's ratio zero."
     )
-    page.section("Pressure through a sliding sphere")
-    title = "Root mean square of the stress error, of the pressure: sliding sphere, tet10"
-    page.sweep(title, spheres, DIVISIONS, ERROR, log="xy")
-    page.text(
-        "An isotropic strain fulfils the joint exactly, sliding and averaged. The forces do not "
-        "balance exactly: the sliding joint pushes each node along the sphere's radius, the "
-        "pressure on a facet is integrated with the facet's own normals. The averaged joint "
-        "carries the sphere's resultant only: it passes no pressure, and adds nothing to what "
-        "presses on both faces."
-    )
-    sketch = run.sketch(patched.two_blocks((27, 10, 2, 3)))
-    page.image("Two of the oblique blocks, hexahedra on tetrahedra", sketch)
-    page.data("stress errors", exact | by_nodes)

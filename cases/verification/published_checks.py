@@ -57,12 +57,21 @@ def check_digits(
 
 def check_free_free(page: Page, by_eigenvalues: float, closed: float) -> None:
     """The free-free frequency of rotor and generator, by eigenvalues and in closed form."""
+    of = "the eigenvalues of two masses"
+    formula = "sqrt(k (1 / J_rotor + 1 / n^2 J_generator)) / 2 pi"
+    check_frequency(page, "free-free", by_eigenvalues, closed, of, formula)
+
+
+def check_frequency(
+    page: Page, name: str, by_eigenvalues: float, closed: float, of: str, formula: str
+) -> None:
+    """A frequency by eigenvalues and in closed form."""
     page.vanishes(
-        "free-free frequency by eigenvalues against the closed form",
+        f"{name} frequency by eigenvalues against the closed form",
         by_eigenvalues / closed - 1,
         within=1e-9,
-        why="round-off of the eigenvalues of two masses: both are the same formula",
-        source="sqrt(k (1 / J_rotor + 1 / n^2 J_generator)) / 2 pi",
+        why=f"round-off of {of}: both are the same formula",
+        source=formula,
         basis="self-consistency",
     )
 

@@ -30,21 +30,9 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     high = G * polar_moment(given["high"]) / given["high_length"] * given["wisdem_ratio"] ** 2
     series = 1 / (1 / shaft.closed + 1 / high)
     generator = given["generator"] * given["ratio"] ** 2
-    both = rotor * generator / (rotor + generator)
     free, fixed = two_mass_frequencies(stiffness, rotor, generator)
     soft, _ = two_mass_frequencies(series, rotor, generator)
-    page.equals(
-        "damping ratio of the free-free mode [-]",
-        float(given["damping"] / (2 * np.sqrt(stiffness * both))),
-        0.05,
-        within=0.0005,
-        relative=False,
-        why="the published 5 % to two figures",
-        source="Jonkman et al. 2009, NREL/TP-500-38060, section 5: stiffness and damping for 5 % "
-        "(second-hand: the section itself was not read)",
-        measure="frequency",
-        basis="second-hand",
-    )
+    check_damping(page, given, rotor * generator / (rotor + generator))
     check_free_free(page, float(chain_frequencies([rotor, generator], [stiffness])[1]), free)
     check_torsion(page, "finite elements, low-speed shaft alone", found, shaft.closed, CLOSED_FORM)
     page.answer(
@@ -70,16 +58,7 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
         ("published, generator held", fixed),
     ]
     page.table("Frequencies of rotor and generator", frequencies, ["stiffness", "frequency [Hz]"])
-    diameters = np.linspace(0.4, 1.2, 60)
-    by_diameter = G * np.array([polar_moment(d) for d in diameters])
-    curves = [trace(f"{L:g} m", diameters, by_diameter / L) for L in (1.0, 2.28, 4.0)]
-    curves += [
-        trace("published", diameters[[0, -1]], [stiffness] * 2),
-        trace("finite elements", [shaft.outer], [found.stiffness], True, marker={"size": 10}),
-    ]
-    title = "Stiffness of a solid main shaft by its diameter, for several lengths, beside the "
-    title += "published figure of the drivetrain"
-    page.chart(title, curves, "diameter [m]", STIFFNESS, "y")
+    show_by_diameter(page, stiffness, shaft)
     page.text(
         "A shaft can only be softer than all of itself: compliances add. With the published "
         "figure and a shaft that takes half of the compliance, it would be "
@@ -88,3 +67,33 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     )
     solid = "a wall of 0.288 m leaves 1 mm of 0.577 m: 1e-11 of J"
     page.assume("bore of the low-speed shaft", "none", "", solid)
+
+
+def check_damping(page: Page, given: Mapping[str, Any], inertia: float) -> None:
+    """The published damping is 5 % of critical."""
+    page.equals(
+        "damping ratio of the free-free mode [-]",
+        float(given["damping"] / (2 * np.sqrt(given["stiffness"] * inertia))),
+        0.05,
+        within=0.0005,
+        relative=False,
+        why="the published 5 % to two figures",
+        source="Jonkman et al. 2009, NREL/TP-500-38060, section 5: stiffness and damping for 5 % "
+        "(second-hand: the section itself was not read)",
+        measure="frequency",
+        basis="second-hand",
+    )
+
+
+def show_by_diameter(page: Page, stiffness: float, shaft: MainShaft) -> None:
+    """Stiffness of a solid shaft over its diameter, beside the published figure."""
+    diameters = np.linspace(0.4, 1.2, 60)
+    by_diameter = shaft.G * np.array([polar_moment(d) for d in diameters])
+    curves = [trace(f"{L:g} m", diameters, by_diameter / L) for L in (1.0, 2.28, 4.0)]
+    curves += [
+        trace("published", diameters[[0, -1]], [stiffness] * 2),
+        trace("finite elements", [shaft.outer], [shaft.found.stiffness], True, marker={"size": 10}),
+    ]
+    title = "Stiffness of a solid main shaft by its diameter, for several lengths, beside the "
+    title += "published figure of the drivetrain"
+    page.chart(title, curves, "diameter [m]", STIFFNESS, "y")

@@ -1,5 +1,6 @@
 """Spherical joint between two elastic shells, each of its forms against the exact solution."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -47,14 +48,10 @@ COLOURS: dict[Joint, str] = {
 }
 
 
-@case(
-    "Spherical joint between elastic shells: all its forms against the exact solution",
-    source="Navier's equation in a sphere, solutions of first order (own derivation; the rigid "
-    "sphere in an infinite solid is Kelvin's), and Lame 1852 for pressure",
-)
-def run(run: Run, page: Page) -> None:
-    """Move, turn and press the joint on several meshes."""
-    levels = QUICK_LEVELS if run.quick else LEVELS
+def solve_all(
+    run: Run, levels: Sequence[tuple[int, int]]
+) -> tuple[dict[Joint, Mesh], dict[Joint, list[Moved]], list[Pressed]]:
+    """The finest meshes, and what moved and pressed cores give on all."""
     moved: dict[Joint, list[Moved]] = {joint: [] for joint in JOINTS}
     pressed: list[Pressed] = []
     for level in levels:
@@ -64,6 +61,18 @@ def run(run: Run, page: Page) -> None:
             for joint, mesh in meshes.items():
                 moved[joint].append(move_core(mesh, (INNER, OUTER), joint))
             pressed.append(press(separate, (INNER, OUTER), PRESSURE))
+    return meshes, moved, pressed
+
+
+@case(
+    "Spherical joint between elastic shells: all its forms against the exact solution",
+    source="Navier's equation in a sphere, solutions of first order (own derivation; the rigid "
+    "sphere in an infinite solid is Kelvin's), and Lame 1852 for pressure",
+)
+def run(run: Run, page: Page) -> None:
+    """Move, turn and press the joint on several meshes."""
+    levels = QUICK_LEVELS if run.quick else LEVELS
+    meshes, moved, pressed = solve_all(run, levels)
     sizes = [1.0 / across for across, _ in levels]
     exact = {joint: core_stiffness(INNER, OUTER, joint) for joint in JOINTS}
     turn = turning_stiffness(INNER, OUTER)
@@ -81,17 +90,7 @@ def run(run: Run, page: Page) -> None:
         f"{turn / 1e9:.4g} GN m/rad.",
     )
     page.section("Displaced core")
-    fourth = [errors["sliding"][-1] * (s / sizes[-1]) ** 4 for s in sizes]
-    page.chart(
-        "Error of the stiffness of the core against the exact one",
-        [
-            *(trace(joint, sizes, errors[joint], mode="lines+markers") for joint in JOINTS),
-            trace("fourth order", sizes, fourth, line={"dash": "dot"}),
-        ],
-        "element size, quarters of a turn [-]",
-        "relative error [-]",
-        ("x", "y"),
-    )
+    show_errors(page, sizes, errors)
     page.chart(
         "Displacement along the motion, on the radius at right angles to it, core moved by 1: "
         "lines exact, points the finest mesh",
@@ -104,6 +103,30 @@ def run(run: Run, page: Page) -> None:
         [(j, *(m.stiffness / 1e9 for m in moved[j]), exact[j] / 1e9) for j in JOINTS],
         ["joint", *(f"{a} x {t} elements" for a, t in levels), "exact"],
     )
+    show_problem(page)
+    for joint in JOINTS:
+        computed = [m.stiffness for m in moved[joint]]
+        page.data(joint, {"exact": exact[joint], "computed": computed})
+    page.image("Half of both shells", run.sketch(cut_open(mesh_of(INNER, OUTER, 4, 2))))
+
+
+def show_errors(page: Page, sizes: list[float], errors: dict[Joint, list[float]]) -> None:
+    """Error of the stiffness over the size of the elements."""
+    fourth = [errors["sliding"][-1] * (s / sizes[-1]) ** 4 for s in sizes]
+    page.chart(
+        "Error of the stiffness of the core against the exact one",
+        [
+            *(trace(joint, sizes, errors[joint], mode="lines+markers") for joint in JOINTS),
+            trace("fourth order", sizes, fourth, line={"dash": "dot"}),
+        ],
+        "element size, quarters of a turn [-]",
+        "relative error [-]",
+        ("x", "y"),
+    )
+
+
+def show_problem(page: Page) -> None:
+    """What is solved, and how the exact solution is found."""
     page.section("Problem")
     page.text(
         "Two concentric shells meet in a sphere; the inner one is bonded to a rigid core, the "
@@ -125,10 +148,6 @@ def run(run: Run, page: Page) -> None:
         "m",
         "seat, raceway and shell of the library's main bearing, as spheres",
     )
-    for joint in JOINTS:
-        computed = [m.stiffness for m in moved[joint]]
-        page.data(joint, {"exact": exact[joint], "computed": computed})
-    page.image("Half of both shells", run.sketch(cut_open(mesh_of(INNER, OUTER, 4, 2))))
 
 
 def band(sizes: list[float], values: list[float]) -> float:

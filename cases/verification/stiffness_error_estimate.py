@@ -55,7 +55,7 @@ def record(
     }
 
 
-def of_bar(problem: str, nodes: int, across: int) -> Record:
+def estimate_bar(problem: str, nodes: int, across: int) -> Record:
     """A bar of which the energy is known."""
     solve, source = BARS[problem]
     bar = solve(nodes, across)
@@ -67,7 +67,7 @@ def of_bar(problem: str, nodes: int, across: int) -> Record:
     return record(problem, NAMES[nodes], bar.unknowns, error, found.relative, **more)
 
 
-def of_shaft(run: Run, name: str, imbalances: list[float]) -> list[Record]:
+def estimate_shaft(run: Run, name: str, imbalances: list[float]) -> list[Record]:
     """A shaft between rigid ends, three loads on each mesh; adds to the solver's imbalances."""
     shaft = rigid_ended_shafts.SHAFTS[name]
     with run.step("reference of the shafts"):
@@ -110,7 +110,7 @@ def run(run: Run, page: Page) -> None:
     """Estimate the errors of bars and shafts, and compare."""
     with run.step("bars"):
         rows = [
-            of_bar(problem, nodes, across)
+            estimate_bar(problem, nodes, across)
             for problem in BARS
             for nodes, series in (QUICK_DIVISIONS if run.quick else DIVISIONS).items()
             for across in series
@@ -118,7 +118,7 @@ def run(run: Run, page: Page) -> None:
     imbalances: list[float] = []
     for name in rigid_ended_shafts.SHAFTS:
         if not (run.quick and name == "bored"):
-            rows += of_shaft(run, name, imbalances)
+            rows += estimate_shaft(run, name, imbalances)
     for row in rows:
         page.between(
             f"{row['problem']}, {row['element']}, {row['unknowns']:,} unknowns: estimated over "
@@ -151,6 +151,15 @@ def run(run: Run, page: Page) -> None:
         ("x", "y"),
     )
     page.table("Error of the stiffness, which is too high, and its estimate", rows, SHOWN)
+    show_shape(page, rows)
+    page.image(
+        "The shaft with a sharp step", run.sketch(rigid_ended_shafts.SHAFTS["stepped, sharp"])
+    )
+    page.data("effectivity", found)
+
+
+def show_shape(page: Page, rows: list[Record]) -> None:
+    """Errors of the polar moment, which estimates from stresses do not see."""
     page.section("What the estimate does not see")
     page.text(
         "Torsion of a shaft of uniform section moves points by products of two coordinates, which "
@@ -174,7 +183,3 @@ def run(run: Run, page: Page) -> None:
             if row.get(SHAPE)
         ],
     )
-    page.image(
-        "The shaft with a sharp step", run.sketch(rigid_ended_shafts.SHAFTS["stepped, sharp"])
-    )
-    page.data("effectivity", found)

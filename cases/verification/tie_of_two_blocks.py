@@ -24,6 +24,7 @@ QUICK_UNCUT = (1, 2, 3)
 MORTAR: tuple[Literal["dual", "standard"], ...] = ("dual", "standard")
 
 TITLES = {"twist": "torsion", "bend": "pure bending", "across": "force across a clamped bar"}
+UNITS = {"twist": "N m/rad", "across": "N/m"}
 WORST = "worst of all ratios"
 
 
@@ -38,9 +39,9 @@ class Found:
     tied : dict[TieKind, list[Stiffnesses]]
         By kind of tie, one for each ratio.
     entries : dict[TieKind, list[int]]
-        Of a row of the tie, mean; likewise.
+        Entries of a row of the tie, mean, by kind of tie, one for each ratio.
     whole : dict[int, Stiffnesses]
-        By divisions.
+        Whole bars by divisions.
     across : GridConvergence
         Convergence of the whole bar's stiffness across [N/m].
     exact : dict[str, float]
@@ -101,10 +102,8 @@ def solved(run: Run) -> Found:
 def run(run: Run, page: Page) -> None:
     """Stiffness of the tied bar beside that of the whole one."""
     found = solved(run)
-    for kind in MORTAR:
-        check_twist(page, found, kind)
-    for kind in MORTAR:
-        check_across(page, found, kind)
+    check_stiffness(page, found, "twist")
+    check_stiffness(page, found, "across")
     check_bending(page, found)
     check_balance(page, found)
     largest = max(
@@ -162,35 +161,29 @@ def worst(found: Found, kind: TieKind, quantity: str) -> tuple[str, float]:
     return f"{WORST} ({own} on {other})", getattr(found.tied[kind][at], quantity)
 
 
-def check_twist(page: Page, found: Found, kind: TieKind) -> None:
-    """Torsion against St Venant."""
-    where, stiffness = worst(found, kind, "twist")
-    exact, coarse = found.exact["twist"], found.coarse["twist"]
-    page.equals(
-        f"{TITLES['twist']}: stiffness, {kind} multipliers, {where} [N m/rad]",
-        stiffness,
-        exact,
-        within=2.0 * coarse,
-        why="twice the error of the whole bar of the coarser mesh: a tie of optimal order adds no "
-        "more than the elements' own error",
-        source="St Venant's series for the square bar (Timoshenko and Goodier art 109)",
-        band=coarse * exact,
-    )
-
-
-def check_across(page: Page, found: Found, kind: TieKind) -> None:
-    """The clamped bar against the whole one."""
-    where, stiffness = worst(found, kind, "across")
-    exact, coarse = found.exact["across"], found.coarse["across"]
-    page.equals(
-        f"{TITLES['across']}: stiffness, {kind} multipliers, {where} [N/m]",
-        stiffness,
-        exact,
-        within=2.0 * coarse + found.across.extrapolated_uncertainty / exact,
-        why="twice the error of the whole bar of the coarser mesh, and the band of the reference",
-        source=f"whole bar, {found.across.sentence('N/m')}",
-        band=coarse * exact,
-    )
+def check_stiffness(page: Page, found: Found, quantity: str) -> None:
+    """The worst of all ratios, with either multipliers, against St Venant or the whole bar."""
+    exact, coarse = found.exact[quantity], found.coarse[quantity]
+    unit, doubt = UNITS[quantity], 0.0
+    why = "twice the error of the whole bar of the coarser mesh"
+    if quantity == "twist":
+        why += ": a tie of optimal order adds no more than the elements' own error"
+        source = "St Venant's series for the square bar (Timoshenko and Goodier art 109)"
+    else:
+        why += ", and the band of the reference"
+        source = f"whole bar, {found.across.sentence(unit)}"
+        doubt = found.across.extrapolated_uncertainty / exact
+    for kind in MORTAR:
+        where, stiffness = worst(found, kind, quantity)
+        page.equals(
+            f"{TITLES[quantity]}: stiffness, {kind} multipliers, {where} [{unit}]",
+            stiffness,
+            exact,
+            within=2.0 * coarse + doubt,
+            why=why,
+            source=source,
+            band=coarse * exact,
+        )
 
 
 def check_bending(page: Page, found: Found) -> None:

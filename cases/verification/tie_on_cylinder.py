@@ -132,6 +132,22 @@ class Reference:
         return np.asarray(self.errors(shared, quantity) + self.doubt / self.value)
 
 
+def solve_rings(run: Run, pairs: Sequence[tuple[int, int]]) -> tuple[list[Record], list[Record]]:
+    """Stiffness of rings that share their nodes, and of tied pairs."""
+    shared: list[Record] = []
+    with run.step("shared nodes"):
+        for turn in QUICK_SHARED if run.quick else SHARED:
+            one = two_bodies.together(ring(BORE, OUTSIDE, turn, rings=2))
+            shared.append({RINGS: f"shared, {turn}", COARSER: turn, **stiffnesses(one)})
+    rows: list[Record] = []
+    with run.step("tied"):
+        for own, other in pairs:
+            bodies, tie = tied(own, other)
+            found = {**stiffnesses(bodies, [tie]), RIGID: rigid_energy(bodies, tie)}
+            rows.append({RINGS: f"{own} on {other}", COARSER: min(own, other), **found})
+    return shared, rows
+
+
 @case(
     "Rings tied on a cylinder: torsion and radial stiffness",
     source="closed form of the twisted ring; rings that share their nodes",
@@ -141,17 +157,7 @@ def run(run: Run, page: Page) -> None:
     pairs = QUICK_PAIRS if run.quick else PAIRS
     ratios = QUICK_RATIOS if run.quick else RATIOS
     turns = QUICK_PATCH if run.quick else PATCH
-    shared: list[Record] = []
-    with run.step("shared nodes"):
-        for turn in QUICK_SHARED if run.quick else SHARED:
-            one = two_bodies.together(ring(BORE, OUTSIDE, turn, rings=2))
-            shared.append({RINGS: f"shared, {turn}", COARSER: turn, **stiffnesses(one)})
-    rows: list[Record] = []
-    with run.step("tied"):
-        for own, other in (*pairs, *ratios):
-            bodies, tie = tied(own, other)
-            found = {**stiffnesses(bodies, [tie]), RIGID: rigid_energy(bodies, tie)}
-            rows.append({RINGS: f"{own} on {other}", COARSER: min(own, other), **found})
+    shared, rows = solve_rings(run, (*pairs, *ratios))
     with run.step("stress through the tie"):
         patches = {name: [traction_error(n, *how) for n in turns] for name, how in WAYS.items()}
         loose = rigid_energy(*as_meshed(*pairs[0]))
@@ -175,6 +181,20 @@ def run(run: Run, page: Page) -> None:
     page.section("Stiffness")
     for quantity, reference in references.items():
         add_chart(page, quantity, reference, shared, rows[: len(pairs)], rows[len(pairs) :])
+    show_stiffness(page, references, shared, rows)
+    show_patches(page, turns, patches, loose, rows[0][RINGS])
+    page.image("The tied rings", run.sketch(tied(*pairs[0])[0]))
+    page.data("tied", rows)
+    page.data("shared", shared)
+    page.data("exact torsion [N m/rad]", references[TORSION].value)
+    page.data("traction errors", patches)
+    page.data("elements round", turns)
+
+
+def show_stiffness(
+    page: Page, references: dict[str, Reference], shared: list[Record], rows: list[Record]
+) -> None:
+    """Stiffness of all rings, and their errors."""
     page.table(
         "Rings tied, and rings of shared nodes",
         [
@@ -190,6 +210,12 @@ def run(run: Run, page: Page) -> None:
         "The inner ring is the slave. In torsion the bore is held and the outer surface turned; "
         "radially the outer surface is moved across as a rigid body."
     )
+
+
+def show_patches(
+    page: Page, turns: Sequence[int], patches: dict[str, list[float]], loose: float, first: str
+) -> None:
+    """Stress through the tie over the mesh, and what settling the nodes is for."""
     page.section("Curvature")
     page.chart(
         "Error of a uniform stress passed through the tie, as nodal forces on the master",
@@ -202,16 +228,10 @@ def run(run: Run, page: Page) -> None:
         "Two meshes of one cylinder lie a little apart. Slave nodes are settled where the tie sees "
         "the master face, so that rigid motions pass exactly; with the nodes as meshed, turning "
         f"the rings as one body about an axis across costs {loose:.1e} of the energy of unit "
-        f"strain ({rows[0][RINGS]} elements). Stress passes as well as facets meet the cylinder; "
+        f"strain ({first} elements). Stress passes as well as facets meet the cylinder; "
         "with dual multipliers only what is constant in a facet does, and the rest is wrong from "
         "node to node, though right in the mean."
     )
-    page.image("The tied rings", run.sketch(tied(*pairs[0])[0]))
-    page.data("tied", rows)
-    page.data("shared", shared)
-    page.data("exact torsion [N m/rad]", references[TORSION].value)
-    page.data("traction errors", patches)
-    page.data("elements round", turns)
 
 
 def references_of(shared: Sequence[Record]) -> dict[str, Reference]:

@@ -21,7 +21,7 @@ from .arrangements import toroidal as toroidal
 from .catalogue import Entry as Entry
 from .catalogue import catalogue_bearing as catalogue_bearing
 from .catalogue import catalogue_entry as catalogue_entry
-from .catalogue import read_catalogue as read_catalogue
+from .catalogue import read_bearing_catalogue as read_bearing_catalogue
 from .contact import ContactLaw as ContactLaw
 from .contact import PointContact as PointContact
 from .contact import houpert as houpert
@@ -32,14 +32,12 @@ from .contact import linear as linear
 from .contact import log_profile as log_profile
 from .contact import palmgren_line as palmgren_line
 from .contact import point_contact as point_contact
-from .contact import straight_roller as straight_roller
 from .contact_forces import COMPONENTS as COMPONENTS
 from .contact_forces import elements as elements
 from .contact_forces import forces as forces
 from .contact_forces import roller_loads as roller_loads
 from .contact_forces import turn as turn
 from .distribution import effective_centre as effective_centre
-from .distribution import load_zone_share as load_zone_share
 from .distribution import sjovall as sjovall
 from .distribution import superposed_peak as superposed_peak
 from .geometry import BallRow as BallRow
@@ -69,6 +67,5 @@ from .subsurface import exposure as exposure
 from .subsurface import largest_shear as largest_shear
 from .subsurface import shear_at_depth as shear_at_depth
 from .subsurface import stresses_below_ellipse as stresses_below_ellipse
-from .subsurface import stresses_below_line as stresses_below_line
 from .tables import ReducedTable as ReducedTable
 from .tables import reduced_table as reduced_table

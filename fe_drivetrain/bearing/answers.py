@@ -12,6 +12,7 @@ from fe_drivetrain.bearing.contact_forces import elements, forces
 from fe_drivetrain.bearing.geometry import BallRow, Bearing, RollerRow, Row, angles, pitch_ratio
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 
 _GAUSS_POINTS = 32
 
@@ -37,6 +38,8 @@ class LoadZone:
     total: Floats
     at_deg: Floats
     centre_deg: Floats
+
+    __repr__ = short_repr
 
 
 def by_row(bearing: Bearing, values: Floats) -> list[Floats]:

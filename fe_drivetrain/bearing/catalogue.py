@@ -184,7 +184,7 @@ class Entry(BaseModel):
         return make(name, *body, **more)
 
 
-def read_catalogue(*more: str | Path) -> dict[str, Entry]:
+def read_bearing_catalogue(*more: str | Path) -> dict[str, Entry]:
     """All bearings by name: the package's, and those of files.
 
     Parameters
@@ -276,7 +276,7 @@ def catalogue_entry(name: str, *more: str | Path, **changes: Any) -> Entry:
     InputError
         No such entry, or values that do not fit.
     """
-    entries = read_catalogue(*more)
+    entries = read_bearing_catalogue(*more)
     if name not in entries:
         raise InputError(f"bearing {name!r} is in no catalogue: use one of {', '.join(entries)}")
     entry = entries[name]

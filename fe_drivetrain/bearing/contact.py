@@ -10,7 +10,6 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipkm1
 
-from fe_drivetrain.bearing.kernels import closed
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 
@@ -272,32 +271,6 @@ def lamina_places(length: float, laminae: int) -> Floats:
         Places of the middles, (laminae,) [m].
     """
     return length * ((np.arange(laminae) + 0.5) / laminae - 0.5)
-
-
-def straight_roller(
-    law: ContactLaw, length: float, middle: float, slope: float
-) -> tuple[float, float]:
-    """Load and moment of a straight roller whose approach is linear along it, in closed form.
-
-    Parameters
-    ----------
-    law : ContactLaw
-        Contact law of the roller.
-    length : float
-        Length of the roller [m].
-    middle : float
-        Approach at the middle [m].
-    slope : float
-        Change of the approach along the roller [-].
-
-    Returns
-    -------
-    load, moment : float
-        Integrals of K/L (middle + slope x)_+^n, and of that times x [N, N m].
-    """
-    sums = np.zeros(5)
-    closed(middle, slope, law.stiffness, law.exponent, length, sums)
-    return float(sums[0]), float(sums[1])
 
 
 def _positive(**sizes: float) -> None:

@@ -10,7 +10,6 @@ from math import acos, cos, pi, sin, tan
 
 import numpy as np
 from scipy.integrate import quad
-from scipy.optimize import brentq
 
 from fe_drivetrain.bearing.geometry import Bearing, RollerRow, Row
 from fe_drivetrain.common.arrays import Floats
@@ -52,40 +51,6 @@ def sjovall(epsilon: float, exponent: float) -> tuple[float, float]:
         return float(quad(load, 0.0, 1.0, epsabs=1e-13, epsrel=1e-12)[0]) / pi
 
     return integral(True), integral(False)
-
-
-def load_zone_share(ratio: float, exponent: float) -> float:
-    """epsilon of a single row under a radial and an axial force.
-
-    Parameters
-    ----------
-    ratio : float
-        F_a / (F_r tan(alpha)), above 1.
-    exponent : float
-        Exponent of the contact law.
-
-    Returns
-    -------
-    epsilon : float
-        Load zone epsilon at which J_a / J_r is the ratio.
-
-    Raises
-    ------
-    InputError
-        The ratio is 1 or less, where no load zone balances both, or above 1e4.
-    """
-
-    def excess(log_epsilon: float) -> float:
-        J_r, J_a = sjovall(float(np.exp(log_epsilon)), exponent)
-        return J_a / J_r - ratio
-
-    low, high = np.log(0.01), np.log(5e3)
-    if not (excess(low) < 0.0 < excess(high)):
-        raise InputError(
-            f"F_a / (F_r tan(alpha)) is {ratio:g}: a single row needs 1.002 to 9000 for balance; "
-            "add axial force, or a second row"
-        )
-    return float(np.exp(brentq(excess, low, high, xtol=1e-12)))
 
 
 def superposed_peak(bearing: Bearing, load: Floats) -> Floats:

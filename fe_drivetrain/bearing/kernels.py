@@ -66,6 +66,18 @@ class Packed(NamedTuple):
     tables: Floats
 
 
+class PackedRow(NamedTuple):
+    """One row of a bearing; each field is the row's part of that of `Packed`."""
+
+    data: Floats
+    xi: Floats
+    free: Floats
+    shares: Floats
+    nodes: Floats
+    node_shares: Floats
+    table: Floats
+
+
 NODES = 10
 """Places that stand for the laminae of a roller. Where approaches along it are within half of their
 mean, sums of their powers are those over the laminae to 1e-13."""
@@ -241,35 +253,24 @@ def even_sums(
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def roller_sums(
-    d: Floats,
-    b: float,
-    c: float,
-    xi: Floats,
-    free: Floats,
-    shares: Floats,
-    nodes: Floats,
-    node_shares: Floats,
-    table: Floats,
-    s: Floats,
-) -> None:
+def roller_sums(row: PackedRow, b: float, c: float, s: Floats) -> None:
     """The same along a roller, in the fastest way that is exact."""
+    d = row.data
+    K, n = d[STIFF], d[EXPONENT]
     if d[EVEN] == 1.0 and abs(c) * d[LENGTH] <= b:
-        even_sums(b, c, d[STIFF], d[EXPONENT], nodes, node_shares, table, s)
+        even_sums(b, c, K, n, row.nodes, row.node_shares, row.table, s)
     elif d[KIND] == CLOSED:
-        closed(b, c, d[STIFF], d[EXPONENT], d[LENGTH], s)
+        closed(b, c, K, n, d[LENGTH], s)
     else:
-        lamina_sums(b, c, d[STIFF], d[EXPONENT], xi, free, shares, table, s)
-
-
-Row = tuple[Floats, Floats, Floats, Floats, Floats, Floats]
+        lamina_sums(b, c, K, n, row.xi, row.free, row.shares, row.table, s)
 
 
 @njit(cache=True, error_model="numpy")
-def row_of(bearing: Packed, r: int) -> Row:
-    """Laminae, nodes and table of a row."""
+def row_of(bearing: Packed, r: int) -> PackedRow:
+    """Numbers of one row of a bearing."""
     laminae = slice(bearing.lam[r], bearing.lam[r + 1])
-    return (
+    return PackedRow(
+        bearing.data[r],
         bearing.xi[laminae],
         bearing.free[laminae],
         bearing.shares[laminae],
@@ -280,20 +281,7 @@ def row_of(bearing: Packed, r: int) -> Row:
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _element(
-    d: Floats,
-    xi: Floats,
-    free: Floats,
-    shares: Floats,
-    nodes: Floats,
-    node_shares: Floats,
-    table: Floats,
-    a: float,
-    w: float,
-    t: float,
-    s: Floats,
-    f: Floats,
-) -> float:
+def _element(row: PackedRow, a: float, w: float, t: float, s: Floats, f: Floats) -> float:
     """One rolling element: f becomes its forces and tangent over (a, w, t); returns its load.
 
     Written into its callers: handing the arrays on takes longer than the work.
@@ -301,34 +289,45 @@ def _element(
     f holds three forces, then the tangent's aa, aw, at, ww, wt, tt; untouched where the load is
     zero.
     """
-    if d[KIND] == BALLS:
-        vx = d[AXIAL] + a - d[GROOVE] * t
-        vr = d[RADIAL] + w + d[ARM] * t
-        distance = np.sqrt(vx * vx + vr * vr)
-        z = distance - d[DISTANCE]
-        if z <= 0.0:
-            return 0.0
-        e = d[STIFF] * _power(z, d[EXPONENT] - 1.0)
-        Q, k = e * z, d[EXPONENT] * e
-        vx /= distance
-        vr /= distance
-        # k n n^T + Q / distance (I - n n^T), over the groove centre's motion, then over (a, w, t)
-        turn = Q / distance
-        xx = k * vx * vx + turn * vr * vr
-        xr = (k - turn) * vx * vr
-        rr = k * vr * vr + turn * vx * vx
-        g, x = -d[GROOVE], d[ARM]
-        f[0], f[1], f[2] = Q * vx, Q * vr, Q * (vx * g + vr * x)
-        f[3], f[4], f[5] = xx, xr, xx * g + xr * x
-        f[6], f[7] = rr, xr * g + rr * x
-        f[8] = xx * g * g + 2.0 * xr * g * x + rr * x * x
-        return float(Q)
+    return _ball(row.data, a, w, t, f) if row.data[KIND] == BALLS else _roller(row, a, w, t, s, f)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _ball(d: Floats, a: float, w: float, t: float, f: Floats) -> float:
+    """The same of a ball, whose approach is by how much its groove centres move apart."""
+    vx = d[AXIAL] + a - d[GROOVE] * t
+    vr = d[RADIAL] + w + d[ARM] * t
+    distance = np.sqrt(vx * vx + vr * vr)
+    z = distance - d[DISTANCE]
+    if z <= 0.0:
+        return 0.0
+    e = d[STIFF] * _power(z, d[EXPONENT] - 1.0)
+    Q, k = e * z, d[EXPONENT] * e
+    vx /= distance
+    vr /= distance
+    # k n n^T + Q / distance (I - n n^T), over the groove centre's motion, then over (a, w, t)
+    turn = Q / distance
+    xx = k * vx * vx + turn * vr * vr
+    xr = (k - turn) * vx * vr
+    rr = k * vr * vr + turn * vx * vx
+    g, x = -d[GROOVE], d[ARM]
+    f[0], f[1], f[2] = Q * vx, Q * vr, Q * (vx * g + vr * x)
+    f[3], f[4], f[5] = xx, xr, xx * g + xr * x
+    f[6], f[7] = rr, xr * g + rr * x
+    f[8] = xx * g * g + 2.0 * xr * g * x + rr * x * x
+    return float(Q)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _roller(row: PackedRow, a: float, w: float, t: float, s: Floats, f: Floats) -> float:
+    """The same of a roller; s becomes its sums along it."""
+    d = row.data
     sin, cos, arm, lean = d[SIN], d[COS], d[ARM], d[LEAN]
     b = a * sin + w * cos + t * arm - d[GAP]
     c = t * lean
     if b + 0.5 * abs(c) * d[LENGTH] <= 0.0:
         return 0.0
-    roller_sums(d, b, c, xi, free, shares, nodes, node_shares, table, s)
+    roller_sums(row, b, c, s)
     Q = s[0]
     if Q <= 0.0:
         return 0.0
@@ -358,7 +357,7 @@ def evaluate(
     cosines, sines = bearing.cosines, bearing.sines
     for r in range(len(bearing.data)):
         d = bearing.data[r]
-        xi, free, shares, nodes, node_shares, table = row_of(bearing, r)
+        row = row_of(bearing, r)
         sin, cos, arm, half = d[SIN], d[COS], d[ARM], 0.5 * d[LENGTH] * d[LEAN]
         ball = d[KIND] == BALLS
         for i in range(bearing.first[r], bearing.first[r + 1]):
@@ -368,7 +367,7 @@ def evaluate(
             t = -(si * ty + co * tz)
             if not ball and a * sin + w * cos + t * arm + abs(t) * half <= d[GAP]:
                 continue
-            Q = _element(d, xi, free, shares, nodes, node_shares, table, a, w, t, s, f)
+            Q = _element(row, a, w, t, s, f)
             if Q <= 0.0:
                 continue
             total += Q
@@ -436,12 +435,12 @@ def elements_of(
         a, uy, uz, ty, tz = displacements[i]
         for r in range(len(bearing.data)):
             d = bearing.data[r]
-            xi, free, shares, nodes, node_shares, table = row_of(bearing, r)
+            row = row_of(bearing, r)
             for j in range(bearing.first[r], bearing.first[r + 1]):
                 co, si = bearing.cosines[j], bearing.sines[j]
                 w = si * uz - co * uy
                 t = -(si * ty + co * tz)
-                Q = _element(d, xi, free, shares, nodes, node_shares, table, a, w, t, s, f)
+                Q = _element(row, a, w, t, s, f)
                 loads[i, j] = Q
                 moments[i, j] = s[1] if Q > 0.0 and d[KIND] != BALLS else 0.0
                 angles[i, j] = np.arctan2(d[SIN], d[COS])

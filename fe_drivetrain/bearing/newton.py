@@ -4,6 +4,8 @@ The energy is convex and its tangent exact, so that a step which is damped until
 has fallen leads to the one minimum from any start.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 
@@ -15,6 +17,78 @@ MAX_TRIALS = 80
 
 # Share of the stiffness of all contacts, for what none carries yet, at the first step.
 FIRMEST = 1e-3
+
+
+class Method(NamedTuple):
+    """How the equilibria are searched for.
+
+    Attributes
+    ----------
+    tolerance : float
+        Maximum residual over the load.
+    warm : bool
+        Start each case from the case before it, where that is close.
+    damped : bool
+        Shorten steps until the slope along them has fallen; False is plain Newton.
+    """
+
+    tolerance: float
+    warm: bool
+    damped: bool
+
+
+class Cases(NamedTuple):
+    """Load cases of a bearing, as these loops take them.
+
+    Attributes
+    ----------
+    loads : Floats
+        Loads (n, 5) on the inner ring.
+    bases : Floats
+        Motions (1 or n, 5, m) that are free, as columns.
+    guesses : Floats
+        Unknowns (n, m) to start from where there is no case before.
+    soft, scales : Floats
+        Stiffness (n or 1, m, m) by which singular tangents are held, and its factor (n,).
+    """
+
+    loads: Floats
+    bases: Floats
+    guesses: Floats
+    soft: Floats
+    scales: Floats
+
+    def part(self, cases: slice | Ints) -> "Cases":
+        """Some of the cases."""
+        own = cases if len(self.bases) > 1 else slice(None)
+        loads, guesses, scales = self.loads[cases], self.guesses[cases], self.scales[cases]
+        return Cases(loads, self.bases[own], guesses, self.soft[own], scales)
+
+
+class Found(NamedTuple):
+    """Results of load cases: (n, 5) displacements, and (n,) each of the others.
+
+    A residual is over what is allowed: at most 1 where the case has converged.
+    """
+
+    displacements: Floats
+    steps: Ints
+    evaluations: Ints
+    residuals: Floats
+
+    def part(self, cases: slice) -> "Found":
+        """Results of some of the cases, in the same memory."""
+        return Found(*(values[cases] for values in self))
+
+
+class _Place(NamedTuple):
+    """A displacement u (5,), forces F and tangent K there, and room for one rolling element."""
+
+    u: Floats
+    F: Floats
+    K: Floats
+    s: Floats
+    f: Floats
 
 
 @njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
@@ -126,158 +200,180 @@ def _norm(g: Floats) -> float:
 
 
 @njit(cache=True, error_model="numpy")
+def _unbalanced(B: Floats, F: Floats, target: Floats, g: Floats) -> None:
+    """g = B^T F - target."""
+    _projected(B, F, g)
+    for i in range(len(g)):
+        g[i] -= target[i]
+
+
+@njit(cache=True, error_model="numpy")
+def _direction(
+    B: Floats, K: Floats, soft: Floats, scale: float, held: float, g: Floats, d: Floats
+) -> None:
+    """Newton's direction d where the residual is g, of a tangent held by ``held`` times ``soft``.
+
+    Where that is singular, the direction is that of all contacts as springs.
+    """
+    m = len(g)
+    A = np.empty((m, m))
+    for i in range(m):
+        for j in range(i + 1):
+            A[i, j] = held * soft[i, j]
+            for k in range(5):
+                part = 0.0
+                for p in range(5):
+                    part += K[k, p] * B[p, j]
+                A[i, j] += B[k, i] * part
+    if not solve(A, g, d):
+        for i in range(m):
+            for j in range(i + 1):
+                A[i, j] = scale * soft[i, j]
+        solve(A, g, d)
+    for i in range(m):
+        d[i] = -d[i]
+
+
+@njit(cache=True, error_model="numpy")
+def _search(
+    w: Floats,
+    d: Floats,
+    g: Floats,
+    B: Floats,
+    target: Floats,
+    bearing: Packed,
+    damped: bool,
+    at: _Place,
+) -> tuple[float, int, float]:
+    """Move w along d until the slope has fallen, where damped; g becomes the residual there.
+
+    Returns the step, the evaluations, and the sum of all loads.
+    """
+    m, base = len(w), w.copy()
+    slope = 0.0
+    for i in range(m):
+        slope += g[i] * d[i]
+    low, high, slope_low, slope_high = 0.0, -1.0, slope, 0.0
+    step, trials, total = 1.0, 0, 0.0
+    while trials < MAX_TRIALS:
+        for i in range(m):
+            w[i] = base[i] + step * d[i]
+        _expanded(B, w, at.u)
+        total = evaluate(at.u, bearing, at.F, at.K, at.s, at.f)
+        trials += 1
+        _unbalanced(B, at.F, target, g)
+        here = 0.0
+        for i in range(m):
+            here += g[i] * d[i]
+        if not damped or abs(here) <= 0.6 * abs(slope):
+            break
+        low, high, slope_low, slope_high, step = narrowed(
+            low, high, slope_low, slope_high, step, here
+        )
+        if step in (low, high):
+            break
+    return step, trials, total
+
+
+@njit(cache=True, error_model="numpy")
 def _newton(
     load: Floats,
     B: Floats,
-    start: Floats,
+    w: Floats,
     soft: Floats,
     scale: float,
     bearing: Packed,
-    tolerance: float,
-    damped: bool,
+    method: Method,
     known: float,
-    F: Floats,
-    K: Floats,
-    u: Floats,
+    at: _Place,
 ) -> tuple[int, int, float, float]:
-    """Minimise energy minus work over u = B w, from ``start``; u becomes the minimum.
+    """Minimise energy minus work over u = B w, from w; ``at`` becomes the minimum.
 
-    F and K are forces and tangent at the start where ``known``, the sum of all loads, is not
-    negative; at the end they are those of the minimum. Returns the steps, the evaluations, the
-    residual over what is allowed (at most 1 where it has converged), and the sum of all loads.
+    Forces and tangent are those at the start where ``known``, the sum of all loads, is not
+    negative. Returns the steps, the evaluations, the residual over what is allowed, and the sum of
+    all loads.
     """
     m = B.shape[1]
-    s, f = np.zeros(5), np.zeros(9)
-    g, d, A = np.empty(m), np.empty(m), np.empty((m, m))
-    w, base, target = start.copy(), np.empty(m), np.empty(m)
+    g, d, target = np.empty(m), np.empty(m), np.empty(m)
     _projected(B, load, target)
     size = _norm(target)
     evaluations, steps, total, firm = 0, 0, known, FIRMEST
-    _expanded(B, w, u)
+    _expanded(B, w, at.u)
     if known < 0.0:
-        total = evaluate(u, bearing, F, K, s, f)
+        total = evaluate(at.u, bearing, at.F, at.K, at.s, at.f)
         evaluations += 1
     while True:
-        _projected(B, F, g)
-        for i in range(m):
-            g[i] -= target[i]
+        _unbalanced(B, at.F, target, g)
         norm = _norm(g)
-        allowed = max(tolerance * size, 1e-14 * total)
+        allowed = max(method.tolerance * size, 1e-14 * total)
         if norm <= allowed or steps == MAX_STEPS:
             return steps, evaluations, over_allowed(norm, allowed), total
-        # Newton's direction; what no contact carries yet is as soft as a thousandth of all contacts
-        # and stiffens as the residual goes; softer still where steps turn out too short.
-        mu = scale * (firm * min(1.0, norm / max(size, 1e-300)) if damped else 1e-14)
-        for i in range(m):
-            for j in range(i + 1):
-                A[i, j] = mu * soft[i, j]
-                for k in range(5):
-                    part = 0.0
-                    for p in range(5):
-                        part += K[k, p] * B[p, j]
-                    A[i, j] += B[k, i] * part
-        if not solve(A, g, d):
-            for i in range(m):
-                for j in range(i + 1):
-                    A[i, j] = scale * soft[i, j]
-            solve(A, g, d)
-        slope = 0.0
-        for i in range(m):
-            d[i], base[i] = -d[i], w[i]
-            slope += g[i] * d[i]
-        low, high, slope_low, slope_high = 0.0, -1.0, slope, 0.0
-        step = 1.0
-        for _trial in range(MAX_TRIALS):
-            for i in range(m):
-                w[i] = base[i] + step * d[i]
-            _expanded(B, w, u)
-            total = evaluate(u, bearing, F, K, s, f)
-            evaluations += 1
-            _projected(B, F, g)
-            here = 0.0
-            for i in range(m):
-                g[i] -= target[i]
-                here += g[i] * d[i]
-            if not damped or abs(here) <= 0.6 * abs(slope):
-                break
-            low, high, slope_low, slope_high, step = narrowed(
-                low, high, slope_low, slope_high, step, here
-            )
-            if step in (low, high):
-                break
+        # What no contact carries yet is as soft as a thousandth of all contacts and stiffens as the
+        # residual goes; softer still where steps turn out too short.
+        share = firm * min(1.0, norm / max(size, 1e-300)) if method.damped else 1e-14
+        _direction(B, at.K, soft, scale, scale * share, g, d)
+        step, trials, total = _search(w, d, g, B, target, bearing, method.damped, at)
+        evaluations += trials
         firm = next_firmness(firm, step)
         steps += 1
 
 
+@njit(cache=True, error_model="numpy")
+def _is_near(B: Floats, load: Floats, before: Floats) -> bool:
+    """Whether a load differs from the one before it by less than half of itself."""
+    change, whole = 0.0, 0.0
+    for j in range(B.shape[1]):
+        for k in range(5):
+            change += (B[k, j] * (load[k] - before[k])) ** 2
+            whole += (B[k, j] * load[k]) ** 2
+    return change < 0.25 * whole
+
+
+@njit(cache=True, error_model="numpy")
+def _unknowns_of(B: Floats, u: Floats, w: Floats) -> None:
+    """Unknowns w of a displacement u = B w, whose columns are orthogonal."""
+    for j in range(len(w)):
+        along, size = 0.0, 0.0
+        for k in range(5):
+            along += B[k, j] * u[k]
+            size += B[k, j] ** 2
+        w[j] = along / size
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
-def solve_cases(
-    loads: Floats,
-    bases: Floats,
-    guesses: Floats,
-    soft: Floats,
-    scales: Floats,
-    bearing: Packed,
-    tolerance: float,
-    warm: bool,
-    damped: bool,
-    displacements: Floats,
-    steps: Ints,
-    evaluations: Ints,
-    residuals: Floats,
-) -> None:
+def solve_cases(cases: Cases, bearing: Packed, method: Method, found: Found) -> None:
     """Equilibrium of many load cases, each started from the case before it where that is close.
 
     Parameters
     ----------
-    loads : Floats
-        Loads (n, 5) on the inner ring.
-    bases : Floats
-        Motions (1 or n, 5, m) that are free, as columns.
-    guesses : Floats
-        Unknowns (n, m) to start from where there is no case before.
-    soft, scales : Floats
-        Stiffness (n or 1, m, m) by which singular tangents are held, and its factor (n,).
+    cases : Cases
+        The load cases.
     bearing : Packed
         The bearing.
-    tolerance : float
-        Residual over load.
-    warm, damped : bool
-        Start from the case before; damp the steps.
-    displacements, steps, evaluations, residuals : arrays
-        Results (n, 5), (n,), (n,), (n,), overwritten.
+    method : Method
+        How they are solved.
+    found : Found
+        Results, overwritten.
     """
-    m = bases.shape[2]
-    start, F, K = np.zeros(m), np.empty(5), np.empty((5, 5))
+    loads, u = cases.loads, found.displacements
+    w = np.zeros(cases.bases.shape[2])
+    F, K, s, f = np.empty(5), np.empty((5, 5)), np.zeros(5), np.zeros(9)
     total = -1.0
     for i in range(len(loads)):
-        B = bases[i if len(bases) > 1 else 0]
-        near = False
-        if warm and i > 0:
-            change, whole = 0.0, 0.0
-            for j in range(m):
-                for k in range(5):
-                    change += (B[k, j] * (loads[i, k] - loads[i - 1, k])) ** 2
-                    whole += (B[k, j] * loads[i, k]) ** 2
-            near = change < 0.25 * whole
-        for j in range(m):
-            start[j] = guesses[i, j]
-            if near:
-                along, size = 0.0, 0.0
-                for k in range(5):
-                    along += B[k, j] * displacements[i - 1, k]
-                    size += B[k, j] ** 2
-                start[j] = along / size
-        steps[i], evaluations[i], residuals[i], total = _newton(
+        B = cases.bases[i if len(cases.bases) > 1 else 0]
+        near = method.warm and i > 0 and _is_near(B, loads[i], loads[i - 1])
+        if near:
+            _unknowns_of(B, u[i - 1], w)
+        else:
+            w[:] = cases.guesses[i]
+        found.steps[i], found.evaluations[i], found.residuals[i], total = _newton(
             loads[i],
             B,
-            start,
-            soft[i if len(soft) > 1 else 0],
-            scales[i],
+            w,
+            cases.soft[i if len(cases.soft) > 1 else 0],
+            cases.scales[i],
             bearing,
-            tolerance,
-            damped,
+            method,
             total if near else -1.0,
-            F,
-            K,
-            displacements[i],
+            _Place(u[i], F, K, s, f),
         )

@@ -10,12 +10,11 @@ and their energy is a sum of squares. Nothing else is new: the whole energy stay
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_drivetrain.bearing import kernels, race_newton
+from fe_drivetrain.bearing import kernels, newton, race_newton
 from fe_drivetrain.bearing.contact_forces import checked_loads, in_threads, packed
 from fe_drivetrain.bearing.geometry import Bearing, RollerRow, Row, angles
 from fe_drivetrain.bearing.rolling import (
@@ -27,6 +26,7 @@ from fe_drivetrain.bearing.rolling import (
 )
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 
 TYPICAL_APPROACH = 5e-5
 """An approach at which the stiffness of a contact is compared with that of the races [m]."""
@@ -56,6 +56,8 @@ class Races:
 
     bearing: Bearing
     compliance: Floats
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         size = 2 * sum(self.bearing.counts)
@@ -143,6 +145,8 @@ class RacesEquilibrium:
     converged: Bools
     iterations: Ints
     evaluations: Ints
+
+    __repr__ = short_repr
 
     @property
     def recession(self) -> Floats:
@@ -287,17 +291,6 @@ def equilibrium_on_races(
     )
 
 
-class Solved(NamedTuple):
-    """Results of the compiled loops, see `race_newton.solve_cases`."""
-
-    unknowns: Floats
-    rollers: Floats
-    moments: Floats
-    steps: Ints
-    evaluations: Ints
-    residuals: Floats
-
-
 def _body(bearing: Bearing, B: Floats, shapes: Floats, compliances: Floats) -> race_newton.Body:
     """The motions B of the inner ring, and shapes of the races, as what the rollers touch."""
     total = sum(bearing.counts)
@@ -344,7 +337,7 @@ def solve_on_body(
     *,
     warm: bool = True,
     damped: bool = True,
-) -> Solved:
+) -> race_newton.Solved:
     """Rollers on any body that is linear but for them.
 
     Parameters
@@ -362,7 +355,7 @@ def solve_on_body(
 
     Returns
     -------
-    found : Solved
+    found : race_newton.Solved
         Unknowns, rollers and residuals of each case; what does not converge is followed down from
         larger loads, and has a residual above 1 if that fails.
     """
@@ -384,12 +377,12 @@ def _run(
     warm: bool,
     damped: bool,
     start: Floats | None = None,
-) -> Solved:
+) -> race_newton.Solved:
     """The compiled Newton method over chunks of cases, in threads."""
     n, total = len(targets), sum(bearing.counts)
     # under the load of a preload alone rollers are no springs: start where the rings are concentric
     given = start is not None or all(r.clearance < 0.0 for r in bearing.rows)
-    found = Solved(
+    found = race_newton.Solved(
         np.zeros(targets.shape) if start is None else start.copy(),
         np.empty((n, total)),
         np.empty((n, total)),
@@ -397,26 +390,12 @@ def _run(
         np.empty(n, np.int64),
         np.empty(n),
     )
-    scales = _scales(bearing, targets)
-    targets, pack = np.ascontiguousarray(targets), packed(bearing)
+    scales, loads = _scales(bearing, targets), np.ascontiguousarray(targets)
+    method, pack = newton.Method(tolerance, warm, damped), packed(bearing)
 
-    def solve(cases: slice) -> None:
-        race_newton.solve_cases(
-            targets[cases],
-            scales[cases],
-            body,
-            pack,
-            tolerance,
-            warm,
-            damped,
-            given,
-            found.unknowns[cases],
-            found.rollers[cases],
-            found.moments[cases],
-            found.steps[cases],
-            found.evaluations[cases],
-            found.residuals[cases],
-        )
+    def solve(chunk: slice) -> None:
+        cases = race_newton.Cases(loads[chunk], scales[chunk], given)
+        race_newton.solve_cases(cases, body, pack, method, found.part(chunk))
 
     in_threads(solve, n, kernels.CHUNK)
     return found
@@ -424,7 +403,7 @@ def _run(
 
 def _continued(
     body: race_newton.Body, bearing: Bearing, targets: Floats, tolerance: float
-) -> Solved:
+) -> race_newton.Solved:
     """Solve from larger loads down, as of rigid rings: beside them a clearance is small."""
     free = max(max(abs(r.clearance) for r in bearing.rows), 1e-6)
     exponent = max(r.law.exponent for r in bearing.rows)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,6 +29,7 @@ from fe_drivetrain.bearing.contact_forces import (
 from fe_drivetrain.bearing.geometry import Bearing, RollerRow, angles
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 
 TOLERANCE = 1e-8
 """Residual over load, moments over the pitch radius."""
@@ -71,6 +71,8 @@ class Equilibrium:
     iterations: Ints
     evaluations: Ints
     phases: Floats | None = None
+
+    __repr__ = short_repr
 
     @cached_property
     def unbalanced(self) -> Floats:
@@ -260,13 +262,11 @@ def _solved(
             np.linalg.solve(soft + 1e-9 * _mean_diagonal(soft), targets[..., None])[..., 0]
             / scales[:, None]
         )
-    found = _run(bearing, turned, B, guesses, soft, scales, tolerance, warm, damped)
+    cases = newton.Cases(turned, B, guesses, soft, scales)
+    found = _run(bearing, cases, newton.Method(tolerance, warm, damped))
     lost = np.flatnonzero(found.residuals > 1.0)
     if damped and len(lost):
-        some = lost if len(B) > 1 else np.array([0])
-        again = _continued(
-            bearing, turned[lost], B[some], soft[some], scales[lost], deflection[lost], tolerance
-        )
+        again = _continued(bearing, cases.part(lost), deflection[lost], tolerance)
         for whole, part in zip(found, again, strict=True):
             whole[lost] = part
         refuse_lifted(bearing, loads[found.residuals > 1.0], np.flatnonzero(found.residuals > 1.0))
@@ -285,80 +285,45 @@ def _solved(
     )
 
 
-class _Found(NamedTuple):
-    displacements: Floats
-    steps: Ints
-    evaluations: Ints
-    residuals: Floats
-
-
-def _run(
-    bearing: Bearing,
-    loads: Floats,
-    B: Floats,
-    guesses: Floats,
-    soft: Floats,
-    scales: Floats,
-    tolerance: float,
-    warm: bool,
-    damped: bool,
-) -> _Found:
+def _run(bearing: Bearing, cases: newton.Cases, method: newton.Method) -> newton.Found:
     """The compiled Newton method over chunks of cases, in threads."""
-    n, pack = len(loads), packed(bearing)
-    loads, guesses = np.ascontiguousarray(loads), np.ascontiguousarray(guesses)
-    found = _Found(np.empty((n, 5)), np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n))
+    n, pack = len(cases.loads), packed(bearing)
+    cases = newton.Cases(*(np.ascontiguousarray(values) for values in cases))
+    found = newton.Found(
+        np.empty((n, 5)), np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n)
+    )
 
-    def solve(cases: slice) -> None:
-        own = cases if len(B) > 1 else slice(None)
-        newton.solve_cases(
-            loads[cases],
-            B[own],
-            guesses[cases],
-            soft[own],
-            scales[cases],
-            pack,
-            tolerance,
-            warm,
-            damped,
-            found.displacements[cases],
-            found.steps[cases],
-            found.evaluations[cases],
-            found.residuals[cases],
-        )
+    def solve(chunk: slice) -> None:
+        newton.solve_cases(cases.part(chunk), pack, method, found.part(chunk))
 
     in_threads(solve, n, kernels.CHUNK)
     return found
 
 
 def _continued(
-    bearing: Bearing,
-    loads: Floats,
-    B: Floats,
-    soft: Floats,
-    scales: Floats,
-    deflection: Floats,
-    tolerance: float,
-) -> _Found:
+    bearing: Bearing, cases: newton.Cases, deflection: Floats, tolerance: float
+) -> newton.Found:
     """Solve from larger loads down, under which a clearance is small: each from the one before.
 
     A load that just closes a clearance is nearly a problem of rigid contacts, whose few carrying
     rollers Newton's method alone finds slowly.
     """
-    n, m = len(loads), B.shape[2]
+    n, m = cases.guesses.shape
     row = max(bearing.rows, key=lambda r: r.law.exponent)
     free = max(max(abs(r.clearance) for r in bearing.rows), 1e-6)
     most = max(free / max(float(deflection.min()), 1e-30), 10.0) ** row.law.exponent
     factors = CONTINUED ** np.arange(np.ceil(np.log(most) / np.log(CONTINUED)), -1.0, -1.0)
-    back = np.broadcast_to(np.linalg.pinv(B), (n, m, 5))
+    back = np.broadcast_to(np.linalg.pinv(cases.bases), (n, m, 5))
     at = np.zeros((n, m))
     steps, evaluations = np.zeros(n, np.int64), np.zeros(n, np.int64)
     for factor in factors:
-        stiffer = scales * factor ** (1.0 - 1.0 / row.law.exponent)
-        found = _run(bearing, factor * loads, B, at, soft, stiffer, tolerance, False, True)
+        stiffer = cases.scales * factor ** (1.0 - 1.0 / row.law.exponent)
+        larger = cases._replace(loads=factor * cases.loads, guesses=at, scales=stiffer)
+        found = _run(bearing, larger, newton.Method(tolerance, warm=False, damped=True))
         at = np.einsum("nij,nj->ni", back, found.displacements)
         steps += found.steps
         evaluations += found.evaluations
-    return _Found(found.displacements, steps, evaluations, found.residuals)
+    return found._replace(steps=steps, evaluations=evaluations)
 
 
 def _mean_diagonal(soft: Floats) -> Floats:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fe_drivetrain.bearing.catalogue import Entry
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.errors import InputError
 
 APART = 0.05
@@ -50,7 +51,7 @@ def check_seat(name: str, entry_name: str, entry: Entry, seat: float) -> str | N
         f"{what} of its catalogue entry {entry_name} is {1e3 * hole:.4g} mm, the shaft at its seat "
         f"{1e3 * seat:.4g} mm"
     )
-    fix = f"name another entry with --bearing {name}=ENTRY, or correct the shaft"
+    fix = f"name another entry with {argument('bearings', {name: 'ENTRY'})}, or correct the shaft"
     if seat > most:
         raise InputError(
             f"bearing {name!r}: {both}, which must be at most {1e3 * most:.4g} mm: {fix}"

@@ -54,9 +54,9 @@ def energy_of(bearing: Bearing, displacements: ArrayLike) -> Floats:
             if d[kernels.KIND] == kernels.CLOSED:
                 each = _along(b, c * d[kernels.LENGTH], n + 1)
             else:
-                xi, free, shares, *_ = kernels.row_of(pack, r)
-                near = b[..., None] + c[..., None] * xi - free
-                each = np.maximum(near, 0.0) ** (n + 1) @ shares
+                row = kernels.row_of(pack, r)
+                near = b[..., None] + c[..., None] * row.xi - row.free
+                each = np.maximum(near, 0.0) ** (n + 1) @ row.shares
         found += K / (n + 1) * each.sum(axis=1)
     return found
 

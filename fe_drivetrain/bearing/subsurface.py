@@ -85,42 +85,6 @@ def stresses_below_ellipse(
     return np.column_stack([along(x2, y2), along(y2, x2), normal]) / (2.0 * np.pi)
 
 
-def stresses_below_line(
-    depths: ArrayLike, half_width: float, pressure: float, poisson_ratio: float = STEEL_NU
-) -> Floats:
-    """Normal stresses below the middle of a line contact (Johnson 1985, Eq 4.46).
-
-    Parameters
-    ----------
-    depths : array_like, (n,)
-        Depths [m].
-    half_width : float
-        Half width of the contact [m].
-    pressure : float
-        Maximum pressure [Pa].
-    poisson_ratio : float
-        Poisson ratio of the body.
-
-    Returns
-    -------
-    ndarray, (n, 3)
-        Stresses across the line, along it, along the normal [Pa].
-
-    Raises
-    ------
-    InputError
-        The half width is not above zero.
-    """
-    if half_width <= 0.0:
-        raise InputError(f"a line contact of half width {half_width:g} m: give one above 0")
-    z = np.atleast_1d(np.asarray(depths, dtype=np.float64)) / half_width
-    root = np.sqrt(1.0 + z**2)
-    # (1 + 2 z^2) / root - 2 z, without the difference of large numbers
-    across = -pressure / (root * (1.0 + 2.0 * z**2 + 2.0 * z * root))
-    normal = -pressure / root
-    return np.column_stack([across, poisson_ratio * (across + normal), normal])
-
-
 def largest_shear(stresses: Floats) -> Floats:
     """Half of the maximum difference of the principal stresses [Pa].
 

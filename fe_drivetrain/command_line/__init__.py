@@ -1,4 +1,4 @@
-"""The command line: options, messages and exit statuses of each command, and pages of studies.
+"""The command line: options, messages, files and exit statuses of each command.
 
 In: words typed in a shell. Out: files, lines on a terminal, and an exit status.
 """

@@ -33,13 +33,10 @@ from fe_drivetrain.command_line.run import (
     run_command,
 )
 from fe_drivetrain.command_line.settings import CaseSettings
-from fe_drivetrain.command_line.studies import (
-    advise_command,
-    check_command,
-    study_command,
-    uncertainty_command,
-)
+from fe_drivetrain.command_line.studies import advise_command, check_command
+from fe_drivetrain.command_line.study import study_command
 from fe_drivetrain.command_line.terminal import ended, prepare_streams, write
+from fe_drivetrain.command_line.uncertainty import uncertainty_command
 from fe_drivetrain.command_line.validate import validate_command
 from fe_drivetrain.common.memory import collect_lasting_seldom
 from fe_drivetrain.common.remarks import show_remarks, show_remarks_if_asked

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fe_drivetrain.command_line.options import Scheduler
+from fe_drivetrain.command_line.options import Scheduler, with_options
 from fe_drivetrain.command_line.settings import (
     Loads,
     SceneSettings,
@@ -19,27 +20,30 @@ from fe_drivetrain.command_line.settings import (
 )
 from fe_drivetrain.command_line.showing import shown
 from fe_drivetrain.command_line.studies import OutFolder, run_on_scene
-from fe_drivetrain.command_line.terminal import guarded
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import hold_threads
-from fe_drivetrain.drivetrain_file.named_scenes import named_scene
+from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 
 if TYPE_CHECKING:
     from fe_drivetrain.drivetrain_file.scene import Scene
+    from fe_drivetrain.shafts.fidelity.quantity import Quantity
     from fe_drivetrain.studies.design_comparison import Varied
 
 #: Most designs of one comparison.
 _MOST = 50
 
 
-def compare_command(
+@dataclass(frozen=True)
+class CompareRequest:
+    """Arguments and options of ``compare`` as typed; each help text says what one is."""
+
     scenes: Annotated[
         list[str],
         typer.Argument(
             metavar="SCENE...",
             help="Scene files, or names of the library: the others are compared with the first.",
         ),
-    ],
+    ]
     vary: Annotated[
         str | None,
         typer.Option(
@@ -49,7 +53,7 @@ def compare_command(
             "shaft.sections.0.inner_diameter=0.2,0.3,0.4, or a range and a number of values, as in "
             "0.2:0.4:5.",
         ),
-    ] = None,
+    ] = None
     quantity: Annotated[
         list[str] | None,
         typer.Option(
@@ -58,13 +62,16 @@ def compare_command(
             help="What is compared: a reaction, as in main_bearing.My, or a stiffness, "
             "hub.stiffness.ux to hub.stiffness.rz. May be repeated. Default: all of them.",
         ),
-    ] = None,
-    tolerance: Tolerance = "5%",
-    load: Loads = None,
-    scheduler: Scheduler = None,
-    out: OutFolder = None,
-    set_: SceneSettings = None,
-) -> None:
+    ] = None
+    tolerance: Tolerance = "5%"
+    load: Loads = None
+    scheduler: Scheduler = None
+    out: OutFolder = None
+    set_: SceneSettings = None
+
+
+@with_options(CompareRequest)
+def compare_command(context: typer.Context, asked: CompareRequest) -> int:
     """Compare designs: the differences of their stiffnesses and reactions, ranked.
 
     Each quantity comes from the cheapest level that is enough: its bands in both designs together
@@ -72,39 +79,45 @@ def compare_command(
 
     The exit status is 0 if every change is known within the tolerance, 1 if not.
     """
+    hold_threads()
+    scenes = asked.scenes
+    changes = parse_settings(asked.set_ or ())
+    varied = None if asked.vary is None else parse_values(asked.vary)
+    designs = _designs(scenes, changes, varied)
+    from fe_drivetrain.pages.compare import show_compare
+    from fe_drivetrain.shafts.response.model import scene_loads
+    from fe_drivetrain.studies.design_comparison import compare
 
-    def work() -> int:
-        hold_threads()
-        changes = parse_settings(set_ or ())
-        varied = None if vary is None else parse_values(vary)
-        designs = _designs(scenes, changes, varied)
-        from fe_drivetrain.command_line.design_page import show_compare
-        from fe_drivetrain.shafts.fidelity.quantity import Quantity
-        from fe_drivetrain.shafts.response.model import scene_loads
-        from fe_drivetrain.studies.design_comparison import compare
+    load = parse_loads(asked.load or (), scene_loads(next(iter(designs.values()))))
+    quantities = _quantities(asked.quantity, designs.values())
+    share = parse_tolerance(asked.tolerance)
+    title = f"{' against '.join(reversed(scenes))}: what changes"
+    if varied is not None:
+        title = f"{scenes[0]}: what changes with {varied.key}"
+    return run_on_scene(
+        "compare",
+        scenes,
+        title,
+        asked.out,
+        shown(
+            lambda run: compare(designs, quantities, share, load, varied, report=run.report),
+            show_compare,
+        ),
+        scheduler=asked.scheduler,
+    )
 
-        given = parse_loads(load or (), scene_loads(next(iter(designs.values()))))
-        asked = [Quantity(name) for name in quantity] if quantity else None
-        for one in asked or ():
-            for scene in designs.values():
-                one.check(scene)
-        share = parse_tolerance(tolerance)
-        title = f"{' against '.join(reversed(scenes))}: what changes"
-        if varied is not None:
-            title = f"{scenes[0]}: what changes with {varied.key}"
-        return run_on_scene(
-            "compare",
-            scenes,
-            title,
-            out,
-            shown(
-                lambda run: compare(designs, asked, share, given, varied, report=run.report),
-                show_compare,
-            ),
-            scheduler=scheduler,
-        )
 
-    raise typer.Exit(guarded(work))
+def _quantities(names: Sequence[str] | None, scenes: Collection[Scene]) -> list[Quantity] | None:
+    """Quantities of ``--quantity``, which every scene must have; None for all."""
+    from fe_drivetrain.shafts.fidelity.quantity import Quantity
+
+    if not names:
+        return None
+    found = [Quantity(name) for name in names]
+    for one in found:
+        for scene in scenes:
+            one.check(scene)
+    return found
 
 
 def parse_values(text: str) -> Varied:
@@ -152,7 +165,7 @@ def _designs(
         if len(scenes) > 1:
             raise InputError("--vary changes one scene: give one, or leave --vary out")
         return {
-            f"{value:g}": named_scene(scenes[0], {**changes, varied.key: value})
+            f"{value:g}": read_drivetrain(scenes[0], {**changes, varied.key: value})
             for value in varied.values
         }
     if len(scenes) < 2:
@@ -167,4 +180,4 @@ def _designs(
     names = stems if unique else list(scenes)
     if len(set(names)) < len(names):
         raise InputError(f"{' and '.join(names)}: one scene is given twice; give each of them once")
-    return {name: named_scene(one, changes) for name, one in zip(names, scenes, strict=True)}
+    return {name: read_drivetrain(one, changes) for name, one in zip(names, scenes, strict=True)}

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fe_drivetrain.command_line.options import with_options
 from fe_drivetrain.command_line.progress import show_steps
 from fe_drivetrain.command_line.settings import SceneSettings, parse_settings
-from fe_drivetrain.command_line.terminal import PASSED, guarded, write
+from fe_drivetrain.command_line.terminal import PASSED, write
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import check_writable
 from fe_drivetrain.common.threads import hold_threads
@@ -27,7 +28,10 @@ _ENDINGS = (".inp", ".vtu", ".msh")
 _AUTO, _SHAFT, _SUMMARY = "auto", "shaft", "summary"
 
 
-def export_command(
+@dataclass(frozen=True)
+class ExportRequest:
+    """Arguments and options of ``export`` as typed; each help text says what one is."""
+
     scene: Annotated[
         str | None,
         typer.Argument(
@@ -35,7 +39,7 @@ def export_command(
             help="A scene or component: a file, or a name of the library, such as "
             "main_bearing_bonded, main_bearing_spherical, gearbox_housing, planet_carrier.",
         ),
-    ] = None,
+    ] = None
     out: Annotated[
         Path | None,
         typer.Option(
@@ -45,7 +49,7 @@ def export_command(
             "for CalculiX, with interfaces, supports and unit loads; .vtu (ParaView) and .msh "
             "(gmsh) are the mesh.",
         ),
-    ] = None,
+    ] = None
     format_: Annotated[
         str | None,
         typer.Option(
@@ -54,7 +58,7 @@ def export_command(
             help="Condense to points, and write stiffness and mass in this format; --list shows "
             "the formats.",
         ),
-    ] = None,
+    ] = None
     what: Annotated[
         str | None,
         typer.Option(
@@ -65,7 +69,7 @@ def export_command(
             "(all bearings); or, in json, summary (stiffness of the shaft, K_R, reaction matrices, "
             "masses). Of a component: body (default) or supported.",
         ),
-    ] = None,
+    ] = None
     at: Annotated[
         str | None,
         typer.Option(
@@ -74,7 +78,7 @@ def export_command(
             help="Points to keep, as in hub,gearbox: hub, gearbox, and bearings by name. Default: "
             "all points of the shaft; of the drivetrain the hub.",
         ),
-    ] = None,
+    ] = None
     level: Annotated[
         str | None,
         typer.Option(
@@ -84,7 +88,7 @@ def export_command(
             "the drivetrain at its hub), or auto (default): 4 for bearings, 2 for all else of a "
             "scene, 3 for a component.",
         ),
-    ] = None,
+    ] = None
     modes: Annotated[
         int | None,
         typer.Option(
@@ -93,35 +97,37 @@ def export_command(
             min=0,
             help="Add this many fixed-interface modes to the free shaft (Craig-Bampton), in json.",
         ),
-    ] = None,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Replace an existing file.")
-    ] = False,
-    formats: Annotated[bool, typer.Option("--list", help="List the formats and exit.")] = False,
-    set_: SceneSettings = None,
-) -> None:
+    ] = None
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace an existing file.")] = (
+        False
+    )
+    formats: Annotated[bool, typer.Option("--list", help="List the formats and exit.")] = False
+    set_: SceneSettings = None
+
+
+@with_options(ExportRequest, kept="an existing file of that name is unchanged")
+def export_command(context: typer.Context, asked: ExportRequest) -> int:
     """Write a scene for other programs: condensed matrices, a model for CalculiX, or its mesh."""
-
-    def work() -> int:
-        if formats:
-            write(sys.stdout, formats_table())
-            return PASSED
-        hold_threads()
-        changes = parse_settings(set_ or ())
-        if scene is None or out is None:
-            missing = "SCENE" if scene is None else "--out FILE"
-            raise InputError(f"Missing {missing}: give it, or --list to see the formats")
-        wanted = Export(out, format_, what, at, level, modes, overwrite)
-        wanted.check()
-        found = named_scene_or_component(scene, changes)
-        if out.exists() and not overwrite:
-            raise InputError(f"--out {out} exists: give another file, or add --overwrite")
-        if out.exists() and Path(scene).exists() and out.samefile(scene):
-            raise InputError(f"--out {out} is the scene itself: give another file")
-        write(sys.stdout, f"{out}: {_written(found, wanted)}\n")
+    if asked.formats:
+        write(sys.stdout, formats_table())
         return PASSED
-
-    raise typer.Exit(guarded(work, "an existing file of that name is unchanged"))
+    hold_threads()
+    changes = parse_settings(asked.set_ or ())
+    scene, out = asked.scene, asked.out
+    if scene is None or out is None:
+        missing = "SCENE" if scene is None else "--out FILE"
+        raise InputError(f"Missing {missing}: give it, or --list to see the formats")
+    wanted = Export(
+        out, asked.format_, asked.what, asked.at, asked.level, asked.modes, asked.overwrite
+    )
+    wanted.check()
+    found = named_scene_or_component(scene, changes)
+    if out.exists() and not asked.overwrite:
+        raise InputError(f"--out {out} exists: give another file, or add --overwrite")
+    if out.exists() and Path(scene).exists() and out.samefile(scene):
+        raise InputError(f"--out {out} is the scene itself: give another file")
+    write(sys.stdout, f"{out}: {_written(found, wanted)}\n")
+    return PASSED
 
 
 @dataclass(frozen=True)
@@ -272,7 +278,7 @@ def _write(result: ExportResult, wanted: Export) -> None:
 
     content = result.content
     if isinstance(content, Superelement):
-        export.write(wanted.out, content, wanted.format or "", wanted.overwrite)
+        export.write_superelement(wanted.out, content, wanted.format or "", wanted.overwrite)
     elif isinstance(content, CraigBampton):
         write_craig_bampton(wanted.out, content)
     elif isinstance(content, SummaryFile):

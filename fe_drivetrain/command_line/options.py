@@ -1,14 +1,23 @@
-"""Options that several commands on scenes and load histories share."""
+"""Options that several commands share, and options of a command as one record."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from collections.abc import Mapping as Pairs
+from dataclasses import MISSING, fields
+from inspect import Parameter, Signature
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_type_hints
 
 import typer
 
+from fe_drivetrain.command_line.terminal import KEPT, guarded
 from fe_drivetrain.common.errors import InputError
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+    _Request = TypeVar("_Request", bound=DataclassInstance)
 
 SceneName = Annotated[
     str,
@@ -81,6 +90,48 @@ Scheduler = Annotated[
         "(docs/clusters.md). Default: processes of this machine.",
     ),
 ]
+
+
+def with_options(
+    record: type[_Request], kept: str = KEPT
+) -> Callable[[Callable[[typer.Context, _Request], int]], Callable[..., None]]:
+    """Let a command of typer take its arguments and options as one record.
+
+    Parameters
+    ----------
+    record : type
+        A dataclass, whose fields are annotated as arguments and options of typer.
+    kept : str
+        What a stop by Ctrl-C leaves on disk, for the message.
+
+    Returns
+    -------
+    callable
+        Decorates a function of the context and the record that returns an exit status; a user's
+        mistake in it becomes one sentence.
+    """
+    hints = get_type_hints(record, include_extras=True)
+    parameters = [Parameter("context", Parameter.KEYWORD_ONLY, annotation=typer.Context)]
+    parameters += [
+        Parameter(
+            field.name,
+            Parameter.KEYWORD_ONLY,
+            annotation=hints[field.name],
+            default=Parameter.empty if field.default is MISSING else field.default,
+        )
+        for field in fields(record)
+    ]
+
+    def decorate(work: Callable[[typer.Context, _Request], int]) -> Callable[..., None]:
+        def command(context: typer.Context, **typed: Any) -> None:
+            raise typer.Exit(guarded(lambda: work(context, record(**typed)), kept))
+
+        command.__name__, command.__doc__ = work.__name__, work.__doc__
+        command.__annotations__ = {one.name: one.annotation for one in parameters}
+        command.__signature__ = Signature(parameters)  # type: ignore[attr-defined]
+        return command
+
+    return decorate
 
 
 def require_beside(context: typer.Context, options: Pairs[str, str], beside: str, why: str) -> None:

@@ -20,6 +20,8 @@ from typing import IO, TYPE_CHECKING, cast
 from fe_drivetrain.command_line.terminal import write
 
 if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.progress import Progress as Display
     from rich.progress import TaskID
 
     from fe_drivetrain.common.progress import Progress
@@ -98,43 +100,58 @@ def show_steps() -> Iterator[Progress]:
         transient=True,
         disable=not console.is_terminal,
     )
-    lock = threading.Lock()  # parallel processes report from threads
-    running: dict[int, _Step] = {}
+    steps = _Lanes(console, display)
+    with display:
+        try:
+            yield steps.report
+        except BaseException:
+            steps.end_all("not finished")
+            raise
+        steps.end_all()
 
-    def show(line: str) -> None:
-        console.print(line, markup=False, soft_wrap=True)
 
-    def end(lane: int, outcome: str = "") -> None:
-        if lane in running:
-            step = running.pop(lane)
-            display.remove_task(step.task)
-            show(f"{step.name} ... {outcome or f'{time.perf_counter() - step.began:.1f} s'}")
+class _Lanes:
+    """The step that each lane is at, as lines of a terminal or a log file."""
 
-    def report(step: str, lane: int = 0) -> None:
+    def __init__(self, console: Console, display: Display) -> None:
+        self._console, self._display = console, display
+        self._lock = threading.Lock()  # parallel processes report from threads
+        self._running: dict[int, _Step] = {}
+
+    def report(self, step: str, lane: int = 0) -> None:
+        """Show that a lane is at a step, which ends the one before."""
         found = _COUNT.match(step)
         name, counted = (found[1], int(found[2])) if found else (step, 0)
         now = time.perf_counter()
-        with lock:
-            if lane in running and running[lane].name == name:
-                current = running[lane]
-                text = current.progress(step, now)
-                display.update(current.task, description=text)
-                if not console.is_terminal and now - current.shown > _OFTEN:
-                    show(text)
-                    current.shown = now
+        with self._lock:
+            current = self._running.get(lane)
+            if current is not None and current.name == name:
+                self._go_on(current, step, now)
                 return
-            end(lane)
+            self._end(lane)
             if name:
-                if not console.is_terminal:
-                    show(f"{name} ...")
-                running[lane] = _Step(name, display.add_task(step, total=None), now, counted, now)
+                if not self._console.is_terminal:
+                    self._show(f"{name} ...")
+                task = self._display.add_task(step, total=None)
+                self._running[lane] = _Step(name, task, now, counted, now)
 
-    with display:
-        try:
-            yield report
-        except BaseException:
-            for lane in list(running):
-                end(lane, "not finished")
-            raise
-        for lane in list(running):
-            end(lane)
+    def end_all(self, outcome: str = "") -> None:
+        """End the steps of all lanes."""
+        for lane in list(self._running):
+            self._end(lane, outcome)
+
+    def _go_on(self, current: _Step, step: str, now: float) -> None:
+        text = current.progress(step, now)
+        self._display.update(current.task, description=text)
+        if not self._console.is_terminal and now - current.shown > _OFTEN:
+            self._show(text)
+            current.shown = now
+
+    def _end(self, lane: int, outcome: str = "") -> None:
+        if lane in self._running:
+            step = self._running.pop(lane)
+            self._display.remove_task(step.task)
+            self._show(f"{step.name} ... {outcome or f'{time.perf_counter() - step.began:.1f} s'}")
+
+    def _show(self, line: str) -> None:
+        self._console.print(line, markup=False, soft_wrap=True)

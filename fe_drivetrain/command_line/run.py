@@ -219,41 +219,55 @@ def run_and_print(
         hold_threads()
         values = parse_settings(settings)
         if junit is not None:
-            if not junit.resolve().parent.is_dir():
-                raise InputError(
-                    f"--junit {junit}: there is no folder {junit.parent}: create it first"
-                )
-            from fe_drivetrain.report.junit import check_junit
-
-            check_junit(junit)
-            junit.resolve().unlink(
-                missing_ok=True
-            )  # of an earlier run: it says nothing of this one
+            _prepare_junit(junit)
         cases = find()
         if resume and len(cases) == 1:
             raise InputError(
                 "--resume is for several cases, and a long one goes on by itself: leave it out"
             )
-        if junit is not None:
-            from fe_drivetrain.report.junit import write_junit
-            from fe_drivetrain.report.suite.result_folders import NOT_RUN
-
-            # stays if the run is stopped
-            write_junit(junit, [c.name for c in cases], {}, {c.name: NOT_RUN for c in cases})
         results: dict[str, Results]
         problems: dict[str, Problem] = {}
+        # stays if the run is stopped
+        _write_junit(junit, cases)
         with scheduled_by(scheduler):
             if len(cases) == 1:
                 results = {cases[0].name: _run_one(cases[0], out, values, quick)}
             else:
                 results, problems = _run_several(cases, out, values, quick, resume)
-        if junit is not None:
-            write_junit(junit, [case.name for case in cases], results, problems)
+        _write_junit(junit, cases, results, problems)
         if any(problem.state != "skipped" for problem in problems.values()):
             return MISTAKE
         return PASSED if all(found.passed for found in results.values()) else FAILED
 
     return guarded(work, f"finished cases are kept, {KEPT}")
+
+
+def _prepare_junit(file: Path) -> None:
+    """Refuse a file that cannot be written, and remove that of an earlier run."""
+    from fe_drivetrain.report.junit import check_junit
+
+    if not file.resolve().parent.is_dir():
+        raise InputError(f"--junit {file}: there is no folder {file.parent}: create it first")
+    check_junit(file)
+    # of an earlier run: it says nothing of this one
+    file.resolve().unlink(missing_ok=True)
+
+
+def _write_junit(
+    file: Path | None,
+    cases: Sequence[Case],
+    results: Mapping[str, Results] | None = None,
+    problems: Mapping[str, Problem] | None = None,
+) -> None:
+    """Write the verdicts where a file is given for them; without any, all cases as not run."""
+    if file is None:
+        return
+    from fe_drivetrain.report.junit import write_junit
+    from fe_drivetrain.report.suite.result_folders import NOT_RUN
+
+    names = [case.name for case in cases]
+    missing = dict.fromkeys(names, NOT_RUN) if problems is None else problems
+    write_junit(file, names, results or {}, missing)
 
 
 def _run_one(case: Case, out: Path | None, settings: Mapping[str, Any], quick: bool) -> Results:
@@ -341,6 +355,20 @@ def results_text(results: Results, page: Path) -> str:
     lines += ["", *results.summary[:_SUMMARY_SENTENCES], ""]
     lines += [f"{_count(results)}: {page}"]
     return "".join(f"{line}\n" for line in lines)
+
+
+def say_outcome(results: Results, page: Path) -> int:
+    """Print the outcome of one case; its exit status.
+
+    Parameters
+    ----------
+    results : Results
+        Results of the case.
+    page : Path
+        Its report.
+    """
+    write(sys.stdout, results_text(results, page))
+    return PASSED if results.passed else FAILED
 
 
 def tables_text(results: Results, page: Path) -> str:

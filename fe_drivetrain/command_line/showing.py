@@ -1,9 +1,11 @@
-"""A study and its page as the work of a case: compute, then show."""
+"""A study, its page and its files as the work of a case: compute, show, write."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING, TypeVar
+
+from fe_drivetrain.command_line.option_names import result_with_options, sections_with_options
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.suite.page import Page
@@ -14,9 +16,11 @@ if TYPE_CHECKING:
 
 
 def shown(
-    study: Callable[[Run], _R], show: Callable[[Run, Page, _R], None]
+    study: Callable[[Run], _R],
+    show: Callable[[Run, Page, _R], None],
+    write: Callable[[Run, Page, _R], None] | None = None,
 ) -> Callable[[Run, Page], None]:
-    """The work of a case that makes a study and shows its result.
+    """The work of a case that makes a study, shows its result, and writes its files.
 
     Parameters
     ----------
@@ -24,13 +28,18 @@ def shown(
         Makes the study; it takes whether it is quick, and whom to report to, from the run.
     show : callable
         Adds sections to a page that has answer, figures, checks and cautions of the result
-        already; files go to the folder of the run.
+        already; pictures go to the folder of the run.
+    write : callable, optional
+        Writes files to the folder of the run, and lists them in the last section.
     """
 
     def work(run: Run, page: Page) -> None:
         result = study(run)
         run.take(result)
-        page.take(result)
+        page.take(result_with_options(result))
         show(run, page, result)
+        page.sections = sections_with_options(page.sections)
+        if write is not None:
+            write(run, page, result)
 
     return work

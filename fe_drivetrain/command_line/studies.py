@@ -1,4 +1,4 @@
-"""The commands ``check``, ``study``, ``advise``, ``uncertainty``: one scene, with a report."""
+"""The commands ``check`` and ``advise``, and how a study of scenes is run with a report."""
 
 from __future__ import annotations
 
@@ -11,15 +11,10 @@ import typer
 
 from fe_drivetrain.command_line.options import (
     Catalogues,
-    Mapping,
     SceneName,
-    Scheduler,
-    Skip,
-    Slopes,
-    left_out,
 )
 from fe_drivetrain.command_line.progress import show_steps
-from fe_drivetrain.command_line.run import Quick, results_text, tables_text
+from fe_drivetrain.command_line.run import results_text, tables_text
 from fe_drivetrain.command_line.settings import (
     Loads,
     SceneSettings,
@@ -30,17 +25,14 @@ from fe_drivetrain.command_line.settings import (
 )
 from fe_drivetrain.command_line.showing import shown
 from fe_drivetrain.command_line.terminal import FAILED, PASSED, as_typed, guarded, write
-from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
-from fe_drivetrain.drivetrain_file.named_scenes import named_scene
-from fe_drivetrain.report.suite.ownership import check_result_folder
+from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.results import Results
     from fe_drivetrain.report.suite.page import Page
     from fe_drivetrain.report.suite.run import Run
-    from fe_drivetrain.studies.input_uncertainty import UncertaintyResult
 
 OutFolder = Annotated[
     Path | None,
@@ -64,8 +56,8 @@ def check_command(
 
     def work() -> int:
         hold_threads()
-        found = named_scene(scene, parse_settings(set_ or ()))
-        from fe_drivetrain.command_line.scene_page import show_check
+        found = read_drivetrain(scene, parse_settings(set_ or ()))
+        from fe_drivetrain.pages.check import show_check
         from fe_drivetrain.studies.scene_check import check
 
         title = f"{found.title}: what the scene is, and what it costs"
@@ -78,84 +70,6 @@ def check_command(
         )
         write(sys.stdout, tables_text(results, page))
         return PASSED
-
-    raise typer.Exit(guarded(work))
-
-
-def study_command(
-    scene: SceneName,
-    loads: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--loads",
-            metavar="FILES",
-            help="Hub loads: a file (.out, .outb of OpenFAST, or .csv), a folder, or a pattern in "
-            "quotes, as in 'outputs/*.outb'. May be repeated. Default: a surrogate of a generic "
-            "2 MW rotor.",
-        ),
-    ] = None,
-    skip: Skip = 0.0,
-    mapping: Mapping = None,
-    slope: Slopes = None,
-    weight: Annotated[
-        bool,
-        typer.Option(
-            "--weight/--no-weight",
-            help="Whether reactions have the weight of gearbox, shaft, bearings and housings.",
-        ),
-    ] = True,
-    quick: Quick = False,
-    scheduler: Scheduler = None,
-    out: OutFolder = None,
-    set_: SceneSettings = None,
-) -> None:
-    """Study any scene over hub loads: K_R of its bearing units, reactions, beams against FE.
-
-    Solves the assembly of solids and the cheaper levels for unit loads; the reactions of every load
-    step are then one matrix product, now and for other loads later. Of your own files the reactions
-    are also written as CSV, with the weight of all parts. Histories may differ in length and step.
-
-    The exit status is 0 if every check passes.
-    """
-
-    def work() -> int:
-        hold_threads()
-        check_result_folder(out or Path("reports", "study", _name_of([scene])))
-        found = named_scene(scene, parse_settings(set_ or ()))
-        if skip and loads is None:
-            raise InputError(
-                f"--skip {skip:g} leaves out the beginning of your own files, and there are none: "
-                "give them with --loads, or leave --skip out"
-            )
-        from fe_drivetrain.command_line.study_page import show_study
-        from fe_drivetrain.studies.scene_study import study
-        from fe_drivetrain.studies.study_loads import own_loads
-        from fe_drivetrain.turbine_loads.histories.damage import SLOPES, check_slope
-        from fe_drivetrain.turbine_loads.hub_loads.channel_map import read_channel_map
-
-        for exponent in slope or ():
-            check_slope(exponent)
-        if mapping is not None and loads is None:
-            raise InputError("--mapping says how files call their channels: give --loads, too")
-        names = None if mapping is None else read_channel_map(mapping)
-
-        # before the work: a fault in a file is reported at once
-        own = None if loads is None else own_loads(loads, skip, found, names)
-        histories = () if own is None else own.histories
-        return run_on_scene(
-            "study",
-            [scene],
-            f"{found.title}: stiffness, reactions, and beams against FE",
-            out,
-            shown(
-                lambda run: study(
-                    found, own, slope or SLOPES, weight, run.quick, report=run.report
-                ),
-                lambda run, page, result: show_study(run, page, result, histories),
-            ),
-            quick,
-            scheduler,
-        )
 
     raise typer.Exit(guarded(work))
 
@@ -194,8 +108,8 @@ def advise_command(
 
     def work() -> int:
         hold_threads()
-        found = named_scene(scene, parse_settings(set_ or ()))
-        from fe_drivetrain.pages.advice import show_advise
+        found = read_drivetrain(scene, parse_settings(set_ or ()))
+        from fe_drivetrain.pages.advise import show_advise
         from fe_drivetrain.shafts.fidelity.quantity import Quantity
         from fe_drivetrain.shafts.response.model import scene_loads
         from fe_drivetrain.studies.level_advice import advise
@@ -213,98 +127,6 @@ def advise_command(
                 lambda run: advise(found, name, share, loads, to_the_top, report=run.report),
                 show_advise,
             ),
-        )
-
-    raise typer.Exit(guarded(work))
-
-
-def uncertainty_command(
-    context: typer.Context,
-    scene: SceneName,
-    quantity: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--quantity",
-            metavar="NAME",
-            help="A quantity for which the model level must be accurate, as in main_bearing.My; it "
-            "is reported in addition to every stiffness. May be repeated. Default: "
-            "hub.stiffness.uz.",
-        ),
-    ] = None,
-    load: Loads = None,
-    tolerance: Tolerance = "5%",
-    level: Annotated[
-        int | None,
-        typer.Option(
-            "--level",
-            metavar="LEVEL",
-            help="Sample level 1 (beam) or 2 (meridian) without running the adviser. The assembly "
-            "of solids is then not solved, and the model error is known only as bounds.",
-        ),
-    ] = None,
-    samples: Annotated[
-        int,
-        typer.Option(
-            "--samples",
-            metavar="COUNT",
-            min=40,
-            max=100_000,
-            help="Number of samples of the Latin hypercube.",
-        ),
-    ] = 128,
-    seed: Annotated[
-        int, typer.Option("--seed", metavar="NUMBER", min=0, help="Seed of all random samples.")
-    ] = 0,
-    sobol: Annotated[
-        bool,
-        typer.Option(
-            "--sobol",
-            help="Also estimate Sobol indices (shares of the variance). This takes N (k + 2) "
-            "evaluations, N the largest power of two up to --samples, k the number of uncertain "
-            "values.",
-        ),
-    ] = False,
-    scheduler: Scheduler = None,
-    out: OutFolder = None,
-    set_: SceneSettings = None,
-) -> None:
-    """Propagate the uncertainty of a scene's values to its reactions and stiffnesses.
-
-    The scene states under 'uncertainty' how each uncertain value is distributed. The adviser finds
-    the cheapest model level that is accurate enough; sensitivities and the 95 % band of each
-    result, from a Latin hypercube, are computed at that level and compared with its own error.
-
-    The exit status is 0 if the level is known to be within the tolerance, 1 if not.
-    """
-
-    def work() -> int:
-        hold_threads()
-        found = named_scene(scene, parse_settings(set_ or ()))
-        from fe_drivetrain.pages.uncertainty import show_uncertainty
-        from fe_drivetrain.shafts.response.model import scene_loads
-        from fe_drivetrain.studies.input_uncertainty import uncertainty
-
-        loads = parse_loads(load or (), scene_loads(found))
-        share = parse_tolerance(tolerance)
-        if level is not None and not left_out(context, "tolerance"):
-            raise InputError(
-                f"--tolerance {tolerance} is for the adviser, which --level {level} leaves out: "
-                "give one of the two"
-            )
-        asked = tuple(quantity or ())
-
-        def study(run: Run) -> UncertaintyResult:
-            return uncertainty(
-                found, asked, loads, share, level, samples, seed, sobol, report=run.report
-            )
-
-        return run_on_scene(
-            "uncertainty",
-            [scene],
-            f"{found.title}: uncertainty of the results",
-            out,
-            shown(study, show_uncertainty),
-            scheduler=scheduler,
         )
 
     raise typer.Exit(guarded(work))

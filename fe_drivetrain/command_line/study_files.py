@@ -1,4 +1,4 @@
-"""Files of a study: reactions over time and their statistics as CSV, stiffnesses as JSON."""
+"""Files of a study: reactions as CSV, stiffnesses and summary as JSON, the mesh for ParaView."""
 
 from __future__ import annotations
 
@@ -9,18 +9,74 @@ import numpy as np
 
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.csv_cells import SafeWriter, comment_line, table_row
+from fe_drivetrain.elasticity.mesh.files import write as write_mesh
 from fe_drivetrain.export.formats.stiffness_file import stiffness_matrix, write_stiffness_json
+from fe_drivetrain.export.formats.summary import SummaryFile, write_summary
+from fe_drivetrain.pages.study_reactions import STATISTICS
+from fe_drivetrain.report.suite.page import Page
+from fe_drivetrain.report.suite.run import Run
+from fe_drivetrain.studies.export_content import prepare_export
 from fe_drivetrain.studies.load_facts import channels_of
-from fe_drivetrain.studies.reaction_statistics import COLUMNS
 from fe_drivetrain.studies.scene_study import StudyResult
 from fe_drivetrain.turbine_loads.histories.cycles import RULE
 from fe_drivetrain.turbine_loads.histories.damage import FREQUENCY
+from fe_drivetrain.turbine_loads.histories.windows import COLUMNS
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
 
-STATISTICS = "reaction_statistics.csv"
-STIFFNESS = "stiffness.json"
-
+_STIFFNESS, _SUMMARY, _MESH = "stiffness.json", "summary.json", "mesh.vtu"
 _UNITS = 3 * ("N",) + 3 * ("N m",)
+
+
+def write_study(
+    run: Run, page: Page, result: StudyResult, histories: Sequence[LoadHistory] = ()
+) -> None:
+    """Write all files of a study, and list them on its page.
+
+    Parameters
+    ----------
+    run : Run
+        Its folder takes the files.
+    page : Page
+        Takes the list.
+    result : StudyResult
+        What was found.
+    histories : sequence of LoadHistory
+        Load histories whose reactions are written over time.
+    """
+    folder = run.folder
+    with run.step("files"):
+        files = {STATISTICS: "reactions of each history: statistics, bands, equivalent loads"}
+        write_statistics(folder / STATISTICS, result)
+        if histories:
+            files["reactions_*.csv"] = "reactions over time"
+            write_reactions(folder, result, histories)
+        if result.units:
+            files[_STIFFNESS] = "6x6 stiffness of each bearing unit, two bounds"
+            write_stiffness(folder / _STIFFNESS, result)
+        files[_SUMMARY] = "shaft, bearing units, reactions, masses of a drivetrain model"
+        _write_summary(folder / _SUMMARY, result)
+        files[_MESH] = "the assembly with its unit-load displacements, for ParaView"
+        _write_mesh(folder / _MESH, result)
+    page.section("Files")
+    page.table(
+        "Files of this study",
+        [{"file": name, "content": content} for name, content in files.items()],
+    )
+    page.text("'fe-drivetrain export' writes the model for other programs.")
+
+
+def _write_summary(path: Path, result: StudyResult) -> None:
+    content = prepare_export(result.model.scene, "summary", level=2).content
+    assert isinstance(content, SummaryFile)
+    write_summary(path, content)
+
+
+def _write_mesh(path: Path, result: StudyResult) -> None:
+    displacements = result.response.displacements
+    fields = {
+        f"displacement {load}": displacements[:, :, k] for k, load in enumerate(result.model.loads)
+    }
+    write_mesh(result.model.mesh, path, fields)
 
 
 def write_statistics(path: Path, result: StudyResult) -> None:
@@ -37,7 +93,7 @@ def write_statistics(path: Path, result: StudyResult) -> None:
         **result.stated.facts(),
         "loads": result.loads.statement,
         "DEL": f"range of a sine of {FREQUENCY:g} Hz with the same damage; {RULE}",
-        "mesh band": "by how much the mesh may change least, mean, largest or standard deviation",
+        "mesh band": "by how much the mesh may change min, mean, max or standard deviation",
     }
     histories = result.loads.histories
     if result.loads.own:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TextIO
 
+from fe_drivetrain.command_line.option_names import with_options
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import sentence_about
 from fe_drivetrain.common.stopped import STOPPED, TERMINATED, stop_status
@@ -88,7 +89,7 @@ def ended(command: Callable[[], object]) -> None:
 def _sentence(error: BaseException) -> str | None:
     """What the user can do about an error; None where it is the program's own."""
     if isinstance(error, InputError):
-        return str(error)
+        return with_options(str(error))
     if isinstance(error, OSError):
         return sentence_about(error)
     # what Path.resolve raises before Python 3.13

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -92,7 +93,7 @@ def _begun(path: Path) -> str:
 def _validated(path: Path, out: Path | None) -> int:
     from fe_drivetrain.command_line.showing import shown
     from fe_drivetrain.command_line.validate_commands import ready_commands
-    from fe_drivetrain.command_line.validate_page import show_validate
+    from fe_drivetrain.pages.validate import show_validate
     from fe_drivetrain.procedure.iteration_log import log_file
     from fe_drivetrain.procedure.project import read_project
     from fe_drivetrain.procedure.steps import STEPS
@@ -105,17 +106,17 @@ def _validated(path: Path, out: Path | None) -> int:
     reports = path.parent / project.reports
     folder = (reports / "validate" / path.stem if out is None else out).resolve()
     check_result_folder(folder)
-    result = validate(project, path.parent)
-    log = _logged(result, log_file(path))
-    commands = ready_commands(result, path)
+    found = validate(project, path.parent)
+    result = replace(
+        found,
+        log=_logged(found, log_file(path)),
+        commands=tuple(ready_commands(found, path)),
+    )
     case = Case(
         f"validate/{path.stem}",
         f"{project.subject}: from failure modes to comparison",
         "PROTEST 2010, ECN-E--10-100: six steps; Tables 4.1 to 4.10",
-        shown(
-            lambda run: result,
-            lambda run, page, of: show_validate(page, of, log, reports.resolve(), folder, commands),
-        ),
+        shown(lambda run: result, show_validate),
         command=as_typed(),
     )
     with show_steps() as report:
@@ -126,8 +127,8 @@ def _validated(path: Path, out: Path | None) -> int:
             lines += ["", f"Step {state.number}, {STEPS[state.number - 1]}:"]
             lines += [f"  {text}." for text in reasons(state)]
     lines.append("")
-    if commands:
-        lines += ["Run next:", *(f"  {command}" for command in commands), ""]
+    if result.commands:
+        lines += ["Run next:", *(f"  {command}" for command in result.commands), ""]
     lines += [f"Report: {folder / 'report.html'}"]
     write(sys.stdout, "".join(f"{line}\n" for line in lines))
     return PASSED if results.passed else FAILED

@@ -43,7 +43,7 @@ def exact_sum(values: ArrayLike) -> ExactSum:
     Parameters
     ----------
     values : array_like
-        Of any shape.
+        Values of any shape.
 
     Raises
     ------

@@ -104,7 +104,7 @@ def check_writable(target: Path) -> None:
     Raises
     ------
     InputError
-        As of `atomic_path`.
+        The same as for `atomic_path`.
     """
     file = file_to_write(target)
     try:

@@ -19,7 +19,7 @@ def run_python(
     Parameters
     ----------
     *arguments : str
-        Of the interpreter, as in ``"-m", "fe_drivetrain.cases.group.name", "5.0"``.
+        Arguments of the interpreter, as in ``"-m", "fe_drivetrain.cases.group.name", "5.0"``.
     environment : mapping, optional
         Variables that differ from those of this process.
     timeout : float, optional

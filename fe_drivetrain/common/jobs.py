@@ -80,7 +80,7 @@ def pool(
     report : Progress
         Shows the steps of all jobs; it is called from several threads.
     each_for_itself : bool
-        As of `Processes`.
+        Whether what one job raises ends it alone, see `Processes`.
     """
     if _client is None:
         return Processes(local, report, each_for_itself=each_for_itself)
@@ -100,13 +100,13 @@ def mapped(
     Parameters
     ----------
     function : callable
-        Of a module that can be imported; where this machine has one process for it, any.
+        Function of a module that can be imported; any, where this machine has one process for it.
     items : iterable of tuple
         As many as there may be: few of them, and of their results, are in memory at a time.
     local : int
-        As of `pool`.
+        Number of processes of this machine, see `pool`.
     report : Progress
-        As of `pool`.
+        Called with what is being done, see `pool`.
     """
     upcoming = iter(items)
     with pool(local, report) as workers:

@@ -95,7 +95,7 @@ class Processes:
         Parameters
         ----------
         function : callable
-            Of a module that can be imported.
+            Function of a module that can be imported.
         *arguments : Any
             Anything that can be pickled.
 

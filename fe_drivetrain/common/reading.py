@@ -93,7 +93,7 @@ def require_readable(path: str | Path, kind: str) -> None:
     path : str or Path
         The file.
     kind : str
-        As of `unreadable`.
+        Kind of file, see `unreadable`.
 
     Raises
     ------
@@ -251,7 +251,7 @@ def value_changes(before: Any, after: Any) -> list[tuple[str, Any, Any]]:
     Parameters
     ----------
     before, after : dict or list
-        Of plain data.
+        Plain data.
 
     Returns
     -------

@@ -101,7 +101,7 @@ def content_of(path: str | os.PathLike[str], most: int = MOST_BYTES) -> bytes:
     Raises
     ------
     OSError
-        As of `opened`.
+        The same as for `opened`.
     TooLargeError
         It has more bytes.
     """
@@ -119,7 +119,7 @@ def text_of(path: str | os.PathLike[str], most: int = MOST_BYTES, encoding: str 
     Raises
     ------
     OSError
-        As of `content_of`.
+        The same as for `content_of`.
     UnicodeDecodeError
         It is not text of this encoding.
     """

@@ -21,7 +21,7 @@ def scaled_to_unit_diagonal(matrix: Floats, diagonal: Floats | None = None) -> F
     Parameters
     ----------
     matrix : ndarray, (n, n)
-        Of any unit.
+        Matrix in any unit.
     diagonal : ndarray, (n,), optional
         The diagonal that becomes 1; the matrix's own where not given. Rows and columns in which it
         is not positive are left as they are.

@@ -71,7 +71,7 @@ def point_motions(positions: Floats, centre: ArrayLike = (0.0, 0.0, 0.0)) -> Flo
     Parameters
     ----------
     positions : ndarray, (n, 3)
-        Of the points [m].
+        Positions of the points [m].
     centre : array_like, (3,)
         Point about which the rotations turn [m].
 

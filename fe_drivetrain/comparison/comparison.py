@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.comparison.moments import Moments, moments
 from fe_drivetrain.comparison.statistics import CONSTANT, check_excluded, ratio
 
@@ -32,7 +33,7 @@ class Comparison:
     Attributes
     ----------
     names, units : tuple of str, (k,)
-        Of the quantities.
+        Names and units of the quantities.
     samples : int
         Per history.
     reference_rms, rmse, bias : ndarray
@@ -62,6 +63,8 @@ class Comparison:
     correlation: Floats
     slope: Floats
     cov: Floats
+
+    __repr__ = short_repr
 
     def index(self, name: str) -> int:
         """Column of a quantity.
@@ -149,7 +152,7 @@ def compare_streamed(
         Called twice; gives the same chunks in the same order each time. Twice, because what the
         percentage leaves out, and the residuals of the model uncertainty, depend on sums over all.
     names, units, negligible, exclude_below : see `compare`
-        As for `compare`.
+        The same as for `compare`.
 
     Returns
     -------
@@ -172,41 +175,14 @@ def compare_streamed(
             f"negligible of shape {np.shape(negligible)} must be one value or {k}: give one for "
             "each quantity."
         ) from None
-    total: Moments | None = None
-    for r, m in _blocks(chunks(), k):
-        if total is None:
-            origin = np.array([r[0], m[0], m[0] - r[0]])
-        some = moments(r, m, origin)
-        total = some if total is None else total.merged(some)
-    if total is None or total.count < 2:
-        count = 0 if total is None else total.count
-        raise InputError(f"histories of {count} samples must have at least 2: give longer ones.")
+    total = _total(chunks, k)
     n = total.count
     size_r, size_m, rms = np.sqrt(total.squares)
     mean_product = total.products[0, 1] / n + total.mean[0] * total.mean[1]
     slope = ratio(mean_product, size_m**2)
+    kept, shares, residual = _second_sums(chunks, exclude_below * size_r, slope, n)
 
-    floor = exclude_below * size_r
-    kept, shares, residual, again = np.zeros(k), np.zeros(k), np.zeros(k), 0
-    for r, m in _blocks(chunks(), k):
-        again += len(r)
-        size = np.abs(r)
-        here = size > floor
-        share = np.zeros(r.shape)
-        np.divide(np.abs(m - r), size, out=share, where=here)
-        kept += here.sum(axis=0)
-        shares += share.T.copy().sum(axis=-1)
-        rest = (r - np.nan_to_num(slope) * m).T.copy()
-        residual += np.einsum("kn,kn->k", rest, rest)
-    if again != n:
-        raise InputError(
-            f"chunks gave {n} samples the first time and {again} the second: give the same twice."
-        )
-
-    spread = np.maximum(total.largest - total.mean[:2], total.mean[:2] - total.least)
-    largest = np.maximum(np.abs(total.largest), np.abs(total.least))
-    deviation = np.sqrt(np.einsum("iik->ik", total.products) / n)
-    deviation[:2][spread <= CONSTANT * largest] = 0.0
+    deviation = _deviations(total)
     pearson = np.clip(ratio(total.products[0, 1] / n, deviation[0] * deviation[1]), -1.0, 1.0)
     slope_size = np.abs(mean_product) / np.where(size_m > 0.0, size_m, 1.0)
     correlated = np.where(slope_size > CONSTANT * size_r, slope_size, 0.0)
@@ -241,6 +217,53 @@ def compare_streamed(
         slope=slope,
         cov=cov,
     )
+
+
+def _total(chunks: Callable[[], Iterable[Chunk]], count: int) -> Moments:
+    """Moments of all samples of a number of quantities."""
+    total: Moments | None = None
+    for r, m in _blocks(chunks(), count):
+        if total is None:
+            origin = np.array([r[0], m[0], m[0] - r[0]])
+        some = moments(r, m, origin)
+        total = some if total is None else total.merged(some)
+    if total is None or total.count < 2:
+        n = 0 if total is None else total.count
+        raise InputError(f"histories of {n} samples must have at least 2: give longer ones.")
+    return total
+
+
+def _deviations(total: Moments) -> Floats:
+    """Standard deviations of reference, model and difference; 0 of what is constant."""
+    spread = np.maximum(total.largest - total.mean[:2], total.mean[:2] - total.least)
+    largest = np.maximum(np.abs(total.largest), np.abs(total.least))
+    deviation = np.asarray(np.sqrt(np.einsum("iik->ik", total.products) / total.count))
+    deviation[:2][spread <= CONSTANT * largest] = 0.0
+    return deviation
+
+
+def _second_sums(
+    chunks: Callable[[], Iterable[Chunk]], floor: Floats, slope: Floats, samples: int
+) -> tuple[Floats, Floats, Floats]:
+    """Number of references above a floor, sums of errors over these, and of squared residuals."""
+    k = len(floor)
+    kept, shares, residual, again = np.zeros(k), np.zeros(k), np.zeros(k), 0
+    for r, m in _blocks(chunks(), k):
+        again += len(r)
+        size = np.abs(r)
+        here = size > floor
+        share = np.zeros(r.shape)
+        np.divide(np.abs(m - r), size, out=share, where=here)
+        kept += here.sum(axis=0)
+        shares += share.T.copy().sum(axis=-1)
+        rest = (r - np.nan_to_num(slope) * m).T.copy()
+        residual += np.einsum("kn,kn->k", rest, rest)
+    if again != samples:
+        raise InputError(
+            f"chunks gave {samples} samples the first time and {again} the second: give the same "
+            "twice."
+        )
+    return kept, shares, residual
 
 
 def _whole(reference: Floats, model: Floats) -> list[Chunk]:

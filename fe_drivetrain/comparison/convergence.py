@@ -146,7 +146,7 @@ def grid_convergence(
     safety : float
         Factor on the distance to the limit: 1.25 with three meshes (Roache 1994).
     expected_order : float or None
-        Of the theory. A higher observed order is not believed; where the two are more than a tenth
+        Order of the theory. A higher observed one is not believed; where they are more than a tenth
         apart, the safety factor is 3, as Roache has it where the observed order is unreasonable
         (2011, J. Fluids Eng. 133, 115501); the tenth is recalled of Oberkampf and Roy 2010, 8.7.
     least_order : float or None
@@ -180,17 +180,35 @@ def grid_convergence(
         pairs = (richardson(h[[k, -1]], v[[k, -1]], least_order) for k in coarse)
         slowest = max(pairs, key=lambda limit: abs(limit - fine))
     if np.isnan(order):
-        behaviour: Behaviour = "divergent" if _stands_still(h[-3:], v[-3:]) else "oscillatory"
-        limit = fine if slowest is None else slowest
-        known = max(spread, abs(limit - fine))
-        scatter = 0.0 if slowest is None else scattered_band(h[-3:], v[-3:])
-        band = max(safety * spread, abs(limit - fine), scatter)
-        if behaviour == "divergent" and slowest is None:
-            known = band = float("inf")
-        relative = band / abs(fine) if fine else nan
-        return GridConvergence(*series, behaviour, nan, limit, known, band, relative, nan, nan)
+        return _without_order(h, v, safety, slowest)
+    return _monotone(h, v, order, safety, expected_order, slowest)
 
-    used = order
+
+def _without_order(h: Floats, v: Floats, safety: float, slowest: float | None) -> GridConvergence:
+    """A series that shows no order: its band is how far its values lie apart."""
+    fine, spread, nan = float(v[-1]), float(np.ptp(v[-3:])), float("nan")
+    behaviour: Behaviour = "divergent" if _stands_still(h[-3:], v[-3:]) else "oscillatory"
+    limit = fine if slowest is None else slowest
+    known = max(spread, abs(limit - fine))
+    scatter = 0.0 if slowest is None else scattered_band(h[-3:], v[-3:])
+    band = max(safety * spread, abs(limit - fine), scatter)
+    if behaviour == "divergent" and slowest is None:
+        known = band = float("inf")
+    relative = band / abs(fine) if fine else nan
+    series = tuple(h.tolist()), tuple(v.tolist())
+    return GridConvergence(*series, behaviour, nan, limit, known, band, relative, nan, nan)
+
+
+def _monotone(
+    h: Floats,
+    v: Floats,
+    order: float,
+    safety: float,
+    expected_order: float | None,
+    slowest: float | None,
+) -> GridConvergence:
+    """A series with an order: Roache's grid convergence index about its limit."""
+    fine, nan, used = float(v[-1]), float("nan"), order
     if expected_order is not None:
         used = min(order, expected_order)
         if abs(order / expected_order - 1.0) > _AGREES:
@@ -208,7 +226,8 @@ def grid_convergence(
     gci_coarse = float(safety * coarse_missing / abs(v[-2])) if v[-2] else nan
     ratio = gci_coarse / ((h[-2] / h[-1]) ** used * gci_fine) if gci_fine else nan
     return GridConvergence(
-        *series,
+        tuple(h.tolist()),
+        tuple(v.tolist()),
         "monotone",
         order,
         limit,

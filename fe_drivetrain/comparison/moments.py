@@ -24,7 +24,7 @@ class Moments:
     count : int
         Samples.
     origin : (3, k)
-        Of reference, model and their difference: a value near their means.
+        Origin of reference, model and their difference: a value near their means.
     offset : (3, k)
         Their means less the origin. Kept apart, since a mean of many times the variation is rounded
         by a share of the variation that would tell.
@@ -33,7 +33,7 @@ class Moments:
     absolute : (2, k)
         Sums of |reference| and |difference|.
     least, largest : (2, k)
-        Of reference and model.
+        Minima and maxima of reference and model.
     """
 
     count: int

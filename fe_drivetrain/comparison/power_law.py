@@ -50,7 +50,7 @@ class PowerLaw:
         Returns
         -------
         low, high
-            Of the exponent.
+            Band of the exponent.
         """
         from scipy.stats import t  # slow to load
 
@@ -90,7 +90,7 @@ class PowerLaw:
         Returns
         -------
         low, high
-            Of y.
+            Band of y.
         """
         from scipy.stats import t  # slow to load
 

@@ -34,9 +34,9 @@ def weighted_statistics(samples: Floats, weights: Floats) -> Floats:
     Parameters
     ----------
     samples : ndarray, (n, k)
-        Of k quantities.
+        Samples of k quantities.
     weights : ndarray, (n,)
-        Of the samples; their sum is 1.
+        Weights of the samples; their sum is 1.
 
     Returns
     -------
@@ -54,9 +54,9 @@ def weighted_rms(samples: Floats, weights: Floats) -> Floats:
     Parameters
     ----------
     samples : ndarray, (n, k)
-        Of k quantities.
+        Samples of k quantities.
     weights : ndarray, (n,)
-        Of the samples; their sum is 1.
+        Weights of the samples; their sum is 1.
 
     Returns
     -------

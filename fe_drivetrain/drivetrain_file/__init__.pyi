@@ -17,12 +17,13 @@ from .joint_springs import roller_lines as roller_lines
 from .materials import HIGHEST_POISSON_RATIO as HIGHEST_POISSON_RATIO
 from .materials import MATERIALS as MATERIALS
 from .materials import Material as Material
-from .named_scenes import named_scene as named_scene
+from .named_scenes import read_drivetrain as read_drivetrain
 from .nose import Nose as Nose
 from .nose import NoseBearing as NoseBearing
 from .reading import change_component as change_component
 from .reading import change_scene as change_scene
 from .reading import library_component as library_component
+from .reading import library_names as library_names
 from .reading import library_scene as library_scene
 from .reading import parse_scene as parse_scene
 from .reading import read_component as read_component

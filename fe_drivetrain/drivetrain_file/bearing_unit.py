@@ -223,7 +223,7 @@ _TAKEN = ("housing", "outer", "bore", "seat", "joint", "base", "ground", "bolt",
 
 def _check_parts(unit: "BearingUnit") -> None:
     """Refuse further parts that cannot be distinguished, hang in the air, or hold what stands."""
-    name, parts, housing = unit.bearing.name, {p.name: p for p in unit.parts}, unit.foreign
+    name, parts = unit.bearing.name, {p.name: p for p in unit.parts}
     if unit.condensed is not None and parts:
         raise ValueError(
             f"bearing {name!r} has a housing of a stiffness alone, to which no part can be tied: "
@@ -244,7 +244,13 @@ def _check_parts(unit: "BearingUnit") -> None:
                     f"part {part.name!r} of bearing {name!r} is tied to {tie.to!r}, but must be "
                     f"tied to one of {known}: correct 'to'"
                 )
-    near = {"housing"}
+    _refuse_loose(unit, parts)
+    _check_standing(unit)
+
+
+def _refuse_loose(unit: "BearingUnit", parts: Mapping[str, Any]) -> None:
+    """Refuse parts that no other ties to the housing."""
+    name, near = unit.bearing.name, {"housing"}
     while more := {
         p.name
         for p in unit.parts
@@ -260,6 +266,11 @@ def _check_parts(unit: "BearingUnit") -> None:
             f"part {loose[0]!r} of bearing {name!r} is tied to no part that is tied to the "
             "housing, but all must hang together: tie it to the housing or to one of these"
         )
+
+
+def _check_standing(unit: "BearingUnit") -> None:
+    """Refuse parts, held faces and bolts that contradict what the bearing stands on."""
+    name, parts, housing = unit.bearing.name, unit.parts, unit.foreign
     held = [p.name for p in unit.parts if p.held]
     if unit.stands_on == "parts" and parts and not held:
         raise ValueError(

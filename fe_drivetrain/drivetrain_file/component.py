@@ -14,6 +14,7 @@ import numpy as np
 from pydantic import AfterValidator, Field, model_validator
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.bearing_unit import Keys, within_range
 from fe_drivetrain.drivetrain_file.materials import Material, check_material, known_materials
 from fe_drivetrain.drivetrain_file.scene import HEAVIEST, Coupling
@@ -27,7 +28,7 @@ class Attachment(NamedTuple):
     Attributes
     ----------
     name : str
-        Of the point.
+        Name of the point.
     face : str
         The face that it moves with, by its name in the mesh.
     position : Floats
@@ -77,6 +78,9 @@ class HousingComponent(Keys):
     materials: Mapping[str, Material] = {}
     mesh: BodySizes = BodySizes()
 
+    __repr__ = short_repr
+    __str__ = short_repr
+
     @model_validator(mode="after")
     def _known_material(self) -> HousingComponent:
         check_material(self.gearbox_housing.material, self.materials)
@@ -119,6 +123,9 @@ class CarrierComponent(Keys):
     pins: Reference = Reference()
     materials: Mapping[str, Material] = {}
     mesh: BodySizes = BodySizes()
+
+    __repr__ = short_repr
+    __str__ = short_repr
 
     @model_validator(mode="after")
     def _known_material(self) -> CarrierComponent:

@@ -18,7 +18,7 @@ class Entrance:
     points : tuple of str
         Names of the load points.
     weights : tuple of float
-        Of these, along -z [N].
+        Weights of these, along -z [N].
     """
 
     front: float

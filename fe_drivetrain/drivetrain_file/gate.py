@@ -113,7 +113,7 @@ def check_files(units: Sequence[BearingUnit]) -> None:
     Parameters
     ----------
     units : Sequence[BearingUnit]
-        Of a scene that was read from a file; the names of their files lead somewhere.
+        Bearing units of a scene read from a file; the names of their files lead somewhere.
 
     Raises
     ------

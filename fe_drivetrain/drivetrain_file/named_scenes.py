@@ -11,19 +11,20 @@ if TYPE_CHECKING:
     from fe_drivetrain.drivetrain_file.scene import Scene
 
 
-def named_scene(name: str, changes: Mapping[str, Any]) -> Scene:
-    """The scene in a file or of the library, with changes by the user.
+def read_drivetrain(name: str | Path, changes: Mapping[str, Any] | None = None) -> Scene:
+    """Read a drivetrain: the scene of a file, or one that comes with the package.
 
     Parameters
     ----------
-    name : str
-        A file, or a name of the library.
-    changes : mapping
-        Values by dotted key.
+    name : str or Path
+        A YAML file, or one of `library_names`.
+    changes : mapping or None
+        Values by dotted key, as ``{"shaft.sections.0.inner_diameter": 0.1}``; see `read_scene`.
 
     Returns
     -------
     Scene
+        The drivetrain, checked.
 
     Raises
     ------
@@ -34,19 +35,27 @@ def named_scene(name: str, changes: Mapping[str, Any]) -> Scene:
 
     if _is_file(name):
         return read_scene(name, changes)
-    return parse_scene(library_text(name), changes, name)
+    return parse_scene(library_text(str(name)), changes, str(name))
 
 
-def named_scene_or_component(name: str, changes: Mapping[str, Any]) -> Scene | Component:
-    """The scene or component in a file or of the library; see `named_scene`."""
+def named_scene_or_component(
+    name: str, changes: Mapping[str, Any] | None = None
+) -> Scene | Component:
+    """The scene or component in a file or of the library; see `read_drivetrain`."""
     from fe_drivetrain.common.reading import read_text
-    from fe_drivetrain.drivetrain_file.reading import is_component, library_text, parse_component
-
-    text = read_text(name, "scene") if _is_file(name) else library_text(name)
-    return (
-        parse_component(text, changes, name) if is_component(text) else named_scene(name, changes)
+    from fe_drivetrain.drivetrain_file.reading import (
+        is_component,
+        library_text,
+        parse_component,
+        read_component,
     )
 
+    of_file = _is_file(name)
+    text = read_text(name, "scene") if of_file else library_text(name)
+    if not is_component(text):
+        return read_drivetrain(name, changes)
+    return read_component(name, changes) if of_file else parse_component(text, changes, name)
 
-def _is_file(name: str) -> bool:
+
+def _is_file(name: str | Path) -> bool:
     return Path(name).suffix != "" or Path(name).exists()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from importlib.resources import files
+from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
@@ -143,11 +144,24 @@ def is_component(text: str) -> bool:
 
 def library_text(name: str) -> str:
     """The text of a file of the library, by its name without ending."""
+    known = _library()
+    if name not in known:
+        raise InputError(f"no scene {name!r} in the library: use one of {', '.join(known)}")
+    return known[name].read_text("utf-8")
+
+
+def library_names() -> tuple[str, ...]:
+    """Names of the drivetrains that come with the package, for `read_drivetrain`."""
+    return tuple(name for name in _library() if not is_component(library_text(name)))
+
+
+def _library() -> dict[str, Traversable]:
+    """Files of scenes and components that come with the package, by name."""
     folder = files("fe_drivetrain.geometry") / "library"
-    names = sorted(f.name.removesuffix(".yaml") for f in folder.iterdir())
-    if name not in names:
-        raise InputError(f"no scene {name!r} in the library: use one of {', '.join(names)}")
-    return (folder / f"{name}.yaml").read_text("utf-8")
+    return {
+        file.name.removesuffix(".yaml"): file
+        for file in sorted(folder.iterdir(), key=lambda file: file.name)
+    }
 
 
 def _changed_mapping(text: str, changes: Mapping[str, Any] | None, source: str) -> dict[str, Any]:

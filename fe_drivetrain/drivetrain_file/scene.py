@@ -118,6 +118,14 @@ class Scene(Keys):
         check_spreads(self)
         return self
 
+    def __repr__(self) -> str:
+        """One line: the title, the length of the shaft, and the bearings."""
+        units = [unit.bearing.name for unit in self.bearing_units]
+        names = ", ".join([*units, *(bearing.name for bearing in self.nose_bearings)])
+        return f"<Scene {self.title!r}: shaft of {self.shaft.length:.4g} m, bearings {names}>"
+
+    __str__ = __repr__
+
     def material_of(self, part: str) -> Material:
         """The material of a part, by the part's name in the mesh."""
         return known_materials(self.materials)[self.material_name(part)]
@@ -223,7 +231,7 @@ def nominal_values(scene: Scene, keys: Sequence[str]) -> list[float]:
     scene : Scene
         The scene.
     keys : Sequence[str]
-        As for `fe_drivetrain.drivetrain_file.change_scene`.
+        Keys as `fe_drivetrain.drivetrain_file.change_scene` takes them.
 
     Raises
     ------
@@ -276,7 +284,7 @@ def coarser_scene(scene: Scene, factor: float, elements_per_turn: int) -> Scene:
     scene : Scene
         The scene.
     factor : float
-        Of its mesh sizes; what a thin wall does not allow stays smaller.
+        Factor of its mesh sizes; what a thin wall does not allow stays smaller.
     elements_per_turn : int
         Round any cylinder.
     """

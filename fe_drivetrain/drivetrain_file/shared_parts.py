@@ -18,7 +18,7 @@ def coupled_units(units: Sequence[BearingUnit]) -> tuple[tuple[str, ...], ...]:
     Parameters
     ----------
     units : Sequence[BearingUnit]
-        Of a scene.
+        Bearing units of a scene.
 
     Returns
     -------
@@ -49,7 +49,7 @@ def check_shared(units: Sequence[BearingUnit]) -> None:
     Parameters
     ----------
     units : Sequence[BearingUnit]
-        Of a scene.
+        Bearing units of a scene.
 
     Raises
     ------
@@ -97,9 +97,9 @@ def refuse_coupled(units: Sequence[BearingUnit], name: str) -> None:
     Parameters
     ----------
     units : Sequence[BearingUnit]
-        Of the scene.
+        Bearing units of the scene.
     name : str
-        Of the bearing.
+        Name of the bearing.
 
     Raises
     ------

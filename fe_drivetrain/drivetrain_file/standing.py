@@ -44,7 +44,7 @@ def check_standing(
     gearbox : Floats
         (6,) springs at the gearbox [N/m, N m/rad]; inf where rigid.
     youngs_modulus : float
-        Of the shaft [Pa].
+        Young's modulus of the shaft [Pa].
     on_nose : Sequence[NoseBearing]
         Bearings between the shaft and a nose, which stands.
 
@@ -87,7 +87,7 @@ class RigidBody:
     rim : Floats
         (n, 3) points on its outside, by which the size of a motion is taken [m].
     youngs_modulus : float
-        Of its material [Pa].
+        Young's modulus of its material [Pa].
     """
 
     parts: tuple[str, ...]

@@ -18,7 +18,6 @@ from .bodies import Body as Body
 from .bodies import Superelement as Superelement
 from .bodies import assemble as assemble
 from .bodies import disc as disc
-from .bodies import stretched as stretched
 from .brakes import Brake as Brake
 from .elastic_ring import Rim as Rim
 from .elastic_ring import with_rim as with_rim

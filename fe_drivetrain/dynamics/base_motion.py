@@ -21,6 +21,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import read_text
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import point_motions
 from fe_drivetrain.dynamics.bodies import Body
 from fe_drivetrain.dynamics.equations import Equations, Loads, summed, varying
@@ -49,6 +50,8 @@ class BaseMotion:
     displacements : Floats
         Motion (s, b) of the base [m, rad].
     """
+
+    __repr__ = short_repr
 
     motions: Floats
     times: Floats

@@ -8,6 +8,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.dynamics.springs import Spring
 from fe_drivetrain.dynamics.system import System
@@ -83,6 +84,8 @@ class Superelement:
     mass: Floats | None = field(default=None)
     weight: Floats | None = field(default=None)
 
+    __repr__ = short_repr
+
 
 def assemble(
     bodies: Sequence[Body],
@@ -117,31 +120,8 @@ def assemble(
     _check(bodies, names, springs)
     number = {name: k for k, name in enumerate(names)}
     labels = [f"{b.name} {m}" for b in bodies for m in MOTIONS if m in b.free]
-    T = np.zeros((6 * len(bodies), len(labels)))
-    column = 0
-    for k, body in enumerate(bodies):
-        own = T[6 * k : 6 * k + 6]
-        if body.tied_to is not None:
-            host = number[body.tied_to]
-            arm = np.subtract(body.position, bodies[host].position)
-            own[:] = wrench_transport(arm).T @ T[6 * host : 6 * host + 6]
-        for i, motion in enumerate(MOTIONS):
-            if motion in body.free:
-                own[i] = 0.0
-                own[i, column] = 1.0
-                column += 1
-    M, G, Z = (np.zeros((6 * len(bodies),) * 2) for _ in range(3))
-    for k, body in enumerate(bodies):
-        part = slice(6 * k, 6 * k + 6)
-        J, s, f = body.transverse, body.speed * body.polar, frame_speed
-        M[part, part] = np.diag([body.mass] * 3 + [body.polar, J, J])
-        across = np.diag([1.0, 1.0])
-        turned = np.array([[0.0, -1.0], [1.0, 0.0]])
-        move, tilt = slice(6 * k + 1, 6 * k + 3), slice(6 * k + 4, 6 * k + 6)
-        G[move, move] = 2 * f * body.mass * turned
-        Z[move, move] = f**2 * body.mass * across
-        G[tilt, tilt] = (2 * f * J - s) * turned
-        Z[tilt, tilt] = (f**2 * J - f * s) * across
+    T = _motions(bodies, number, len(labels))
+    M, G, Z = _inertias(bodies, frame_speed)
     extra, weight = np.zeros_like(M), np.zeros((len(M), 3))
     for element in superelements:
         at = np.concatenate([6 * number[name] + np.arange(6) for name in element.bodies])
@@ -169,6 +149,41 @@ def assemble(
         np.array([body.mass for body in bodies]),
         np.asarray(T.T @ weight),
     )
+
+
+def _motions(bodies: Sequence[Body], number: Mapping[str, int], count: int) -> Floats:
+    """(6 bodies, count) motion of all bodies for each free one; tied bodies follow their hosts."""
+    T = np.zeros((6 * len(bodies), count))
+    column = 0
+    for k, body in enumerate(bodies):
+        own = T[6 * k : 6 * k + 6]
+        if body.tied_to is not None:
+            host = number[body.tied_to]
+            arm = np.subtract(body.position, bodies[host].position)
+            own[:] = wrench_transport(arm).T @ T[6 * host : 6 * host + 6]
+        for i, motion in enumerate(MOTIONS):
+            if motion in body.free:
+                own[i] = 0.0
+                own[i, column] = 1.0
+                column += 1
+    return T
+
+
+def _inertias(bodies: Sequence[Body], frame_speed: float) -> tuple[Floats, Floats, Floats]:
+    """Mass, gyroscopic and centripetal matrices of all bodies."""
+    M, G, Z = (np.zeros((6 * len(bodies),) * 2) for _ in range(3))
+    for k, body in enumerate(bodies):
+        part = slice(6 * k, 6 * k + 6)
+        J, s, f = body.transverse, body.speed * body.polar, frame_speed
+        M[part, part] = np.diag([body.mass] * 3 + [body.polar, J, J])
+        across = np.diag([1.0, 1.0])
+        turned = np.array([[0.0, -1.0], [1.0, 0.0]])
+        move, tilt = slice(6 * k + 1, 6 * k + 3), slice(6 * k + 4, 6 * k + 6)
+        G[move, move] = 2 * f * body.mass * turned
+        Z[move, move] = f**2 * body.mass * across
+        G[tilt, tilt] = (2 * f * J - s) * turned
+        Z[tilt, tilt] = (f**2 * J - f * s) * across
+    return M, G, Z
 
 
 def _check(bodies: Sequence[Body], names: Sequence[str], springs: Sequence[Spring]) -> None:
@@ -204,10 +219,3 @@ def _check(bodies: Sequence[Body], names: Sequence[str], springs: Sequence[Sprin
                     f"spring {spring.name!r}: {what} is {value:g} but must be a finite number of "
                     "at least 0: change it"
                 )
-
-
-def stretched(springs: Sequence[Spring], motions: Mapping[str, Floats]) -> Floats:
-    """(m,) elongation of springs by motions (6,) of bodies; those not given stand still."""
-    return np.array(
-        [sum(float(row @ motions[b]) for b, row in s.by.items() if b in motions) for s in springs]
-    )

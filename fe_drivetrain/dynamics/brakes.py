@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.equations import Loads, varying
 
 
@@ -25,6 +26,8 @@ class Brake:
         Time at which it is applied, and time that its torque takes to grow to full size, evenly
         [s].
     """
+
+    __repr__ = short_repr
 
     row: Floats
     torque: float

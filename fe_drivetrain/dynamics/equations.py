@@ -21,6 +21,7 @@ from scipy.interpolate import CubicSpline
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import least_eigenvalue
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.system import System
 
 CONSTANT = -1
@@ -84,6 +85,8 @@ class SpringLaws:
     error_turns: Floats
     errors: Floats
 
+    __repr__ = short_repr
+
     @property
     def special(self) -> Bools:
         """(m,) whether a spring is more than a constant stiffness and damping."""
@@ -95,6 +98,101 @@ class SpringLaws:
             | (self.power != 0.0)
         )
 
+    def in_phase(
+        self, phase: ArrayLike = 0.0, frequency: ArrayLike = 0.0, turns: ArrayLike = 0.0
+    ) -> "SpringLaws":
+        """Springs whose waves and errors have a phase psi = phase + frequency t + turns . q.
+
+        Parameters
+        ----------
+        phase, frequency : array_like
+            Periods at t = 0, and periods a second, of each spring or one for all.
+        turns : array_like
+            (m, n) periods for each degree of freedom, or one number for all.
+
+        Returns
+        -------
+        springs : SpringLaws
+        """
+        m, rows = len(self.rows), self.rows.shape
+        periods = np.array(np.broadcast_to(np.asarray(turns, dtype=np.float64), rows))
+        return replace(self, phase=_each(phase, m), frequency=_each(frequency, m), turns=periods)
+
+    def with_waves(self, waves: ArrayLike, wave: ArrayLike = 0) -> "SpringLaws":
+        """Springs whose stiffness varies with their phase.
+
+        Parameters
+        ----------
+        waves : array_like
+            Waves (w, p, 4), by `wave_table` or `fourier_wave`, stacked.
+        wave : array_like
+            Number of the wave of each spring, or one for all; `CONSTANT` for none.
+
+        Returns
+        -------
+        springs : SpringLaws
+
+        Raises
+        ------
+        InputError
+            There is no wave of that number.
+        """
+        chosen, table = _numbered("wave", wave, waves, len(self.rows))
+        return replace(self, wave=chosen, waves=table)
+
+    def with_errors(
+        self,
+        errors: ArrayLike,
+        error: ArrayLike = 0,
+        *,
+        phase: ArrayLike = 0.0,
+        turns: ArrayLike = 1.0,
+    ) -> "SpringLaws":
+        """Springs whose free place moves with their phase: transmission errors of meshes.
+
+        Parameters
+        ----------
+        errors : array_like
+            Waves (e, p, 4) of errors, by `wave_table` of lengths [m], stacked.
+        error : array_like
+            Number of the error of each spring, or one for all; `CONSTANT` for none.
+        phase, turns : array_like
+            Periods of the error at psi = 0 and for each period of psi, see `SpringLaws`.
+
+        Returns
+        -------
+        springs : SpringLaws
+
+        Raises
+        ------
+        InputError
+            There is no error of that number.
+        """
+        m = len(self.rows)
+        chosen, table = _numbered("error", error, errors, m)
+        return replace(
+            self,
+            error=chosen,
+            errors=table,
+            error_phase=_each(phase, m),
+            error_turns=_each(turns, m),
+        )
+
+    def with_power(self, power: ArrayLike, speed: ArrayLike = 0.0) -> "SpringLaws":
+        """Springs that are machines, too: each draws a power [W] at a speed ``speed + h . q'``.
+
+        Parameters
+        ----------
+        power, speed : array_like
+            Values of each spring, or one for all, see `SpringLaws`.
+
+        Returns
+        -------
+        springs : SpringLaws
+        """
+        m = len(self.rows)
+        return replace(self, power=_each(power, m), speed=_each(speed, m))
+
 
 def spring_laws(
     rows: ArrayLike,
@@ -105,19 +203,11 @@ def spring_laws(
     upper: ArrayLike = 0.0,
     exponent: ArrayLike = 1.0,
     offset: ArrayLike = 0.0,
-    wave: ArrayLike = CONSTANT,
-    phase: ArrayLike = 0.0,
-    frequency: ArrayLike = 0.0,
-    turns: ArrayLike = 0.0,
-    power: ArrayLike = 0.0,
-    speed: ArrayLike = 0.0,
-    waves: ArrayLike | None = None,
-    error: ArrayLike = CONSTANT,
-    error_phase: ArrayLike = 0.0,
-    error_turns: ArrayLike = 1.0,
-    errors: ArrayLike | None = None,
 ) -> SpringLaws:
-    """Springs of rows, what is not given being that of linear ones.
+    """Springs of rows, linear ones where nothing else is given.
+
+    What varies is added by `SpringLaws.in_phase`, `SpringLaws.with_waves`,
+    `SpringLaws.with_errors` and `SpringLaws.with_power`.
 
     Parameters
     ----------
@@ -125,14 +215,8 @@ def spring_laws(
         (m, n) elongation of each spring by the degrees of freedom.
     stiffness, damping : array_like
         (m,), or one for all.
-    lower, upper, exponent, offset, wave, phase, frequency, turns, power, speed : array_like
+    lower, upper, exponent, offset : array_like
         Values of each spring, or one for all, see `SpringLaws`.
-    waves : array_like, optional
-        Waves (w, p, 4), by `wave_table` or `fourier_wave`, stacked.
-    error, error_phase, error_turns : array_like
-        Values of each spring, or one for all, see `SpringLaws`.
-    errors : array_like, optional
-        Waves (e, p, 4) of errors, by `wave_table` of lengths [m], stacked.
 
     Returns
     -------
@@ -145,49 +229,54 @@ def spring_laws(
     """
     H = np.ascontiguousarray(np.atleast_2d(np.asarray(rows, dtype=np.float64)))
     m = len(H)
-
-    def each(values: ArrayLike) -> Floats:
-        return np.array(np.broadcast_to(np.asarray(values, dtype=np.float64), m))
-
-    none = np.zeros((0, 1, 4))
-    table = none if waves is None else np.asarray(waves, dtype=np.float64)
-    moved = none if errors is None else np.asarray(errors, dtype=np.float64)
-    found = SpringLaws(
+    zero, no_table = np.zeros(m), np.zeros((0, 1, 4))
+    springs = SpringLaws(
         H,
-        each(stiffness),
-        each(damping),
-        each(lower),
-        each(upper),
-        each(exponent),
-        each(offset),
-        np.array(np.broadcast_to(np.asarray(wave, dtype=np.int64), m)),
-        each(phase),
-        each(frequency),
-        np.array(np.broadcast_to(np.asarray(turns, dtype=np.float64), H.shape)),
-        each(power),
-        each(speed),
-        np.ascontiguousarray(table),
-        np.array(np.broadcast_to(np.asarray(error, dtype=np.int64), m)),
-        each(error_phase),
-        each(error_turns),
-        np.ascontiguousarray(moved),
+        *(_each(v, m) for v in (stiffness, damping, lower, upper, exponent, offset)),
+        wave=np.full(m, CONSTANT),
+        phase=zero,
+        frequency=zero,
+        turns=np.zeros(H.shape),
+        power=zero,
+        speed=zero,
+        waves=no_table,
+        error=np.full(m, CONSTANT),
+        error_phase=zero,
+        error_turns=np.ones(m),
+        errors=no_table,
     )
-    for name, bad, allowed in (
-        ("stiffness", ~(found.stiffness >= 0.0), "a number of at least 0 N/m"),
-        ("damping", ~(found.damping >= 0.0), "a number of at least 0 N s/m"),
-        ("lower", ~(found.lower <= 0.0), "at most 0 m"),
-        ("upper", ~(found.upper >= 0.0), "at least 0 m"),
-        ("exponent", ~(found.exponent >= 1.0), "at least 1"),
-        ("wave", (found.wave < -1) | (found.wave >= len(table)), f"-1 to {len(table) - 1}"),
-        ("error", (found.error < -1) | (found.error >= len(moved)), f"-1 to {len(moved) - 1}"),
+    for name, good, allowed in (
+        ("stiffness", springs.stiffness >= 0.0, "a number of at least 0 N/m"),
+        ("damping", springs.damping >= 0.0, "a number of at least 0 N s/m"),
+        ("lower", springs.lower <= 0.0, "at most 0 m"),
+        ("upper", springs.upper >= 0.0, "at least 0 m"),
+        ("exponent", springs.exponent >= 1.0, "at least 1"),
     ):
-        if bad.any():
-            at = int(np.flatnonzero(bad)[0])
-            raise InputError(
-                f"{name} of spring {at + 1} is {getattr(found, name)[at]:g} but must be {allowed}: "
-                "change it"
-            )
-    return found
+        _require(name, getattr(springs, name), good, allowed)
+    return springs
+
+
+def _each(values: ArrayLike, count: int) -> Floats:
+    """Values of each spring, from as many or from one for all."""
+    return np.array(np.broadcast_to(np.asarray(values, dtype=np.float64), count))
+
+
+def _numbered(name: str, numbers: ArrayLike, table: ArrayLike, count: int) -> tuple[Ints, Floats]:
+    """Numbers (m,) of waves in a table (w, p, 4), checked, and the table."""
+    waves = np.ascontiguousarray(np.asarray(table, dtype=np.float64))
+    chosen = np.array(np.broadcast_to(np.asarray(numbers, dtype=np.int64), count))
+    good = (chosen >= CONSTANT) & (chosen < len(waves))
+    _require(name, chosen, good, f"-1 to {len(waves) - 1}")
+    return chosen, waves
+
+
+def _require(name: str, values: Floats | Ints, good: Bools, allowed: str) -> None:
+    """Refuse a value of a spring that is out of its range."""
+    if not good.all():
+        at = int(np.flatnonzero(~good)[0])
+        raise InputError(
+            f"{name} of spring {at + 1} is {values[at]:g} but must be {allowed}: change it"
+        )
 
 
 def joined_laws(*parts: SpringLaws) -> SpringLaws:
@@ -274,6 +363,8 @@ class Loads:
     times: Floats
     histories: Floats
 
+    __repr__ = short_repr
+
     def at(self, t: ArrayLike) -> Floats:
         """(..., n) loads at times."""
         when = np.asarray(t, dtype=np.float64)
@@ -334,6 +425,8 @@ class Equations:
     springs: SpringLaws
     damping: Floats
     extra: Floats
+
+    __repr__ = short_repr
 
     @property
     def K(self) -> Floats:

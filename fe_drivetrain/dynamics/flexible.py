@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import along_x, wrench_transport
 from fe_drivetrain.dynamics.bodies import Body, Superelement
 from fe_drivetrain.dynamics.elastic_ring import Rim
@@ -47,6 +48,8 @@ class Housing:
     polar: float
     transverse: float
 
+    __repr__ = short_repr
+
 
 @dataclass(frozen=True)
 class ElasticHousing:
@@ -69,6 +72,8 @@ class ElasticHousing:
     positions: Floats
     stiffness: Floats
     mass: Floats | None = None
+
+    __repr__ = short_repr
 
     def holds(self, name: str, at: ArrayLike) -> Place:
         """Place that holds a ring or bearing of a name at a place (3,) [m]."""

@@ -10,7 +10,7 @@ from fe_drivetrain.dynamics.stage_gears import stage_pairs
 from fe_drivetrain.dynamics.tables import Machine
 from fe_drivetrain.gear.flank_stress import LineContact, reduced_modulus
 from fe_drivetrain.gear.involute import Pair
-from fe_drivetrain.gear.iso import iso_stiffness
+from fe_drivetrain.gear.iso import iso_gear_stiffness
 from fe_drivetrain.gear.load_factors import LoadFactors
 from fe_drivetrain.gear.meshes import StiffnessTable, mesh_stiffness
 from fe_drivetrain.gear.pair_stiffness import Law
@@ -99,7 +99,7 @@ def with_iso_stiffness(machine: Machine) -> Machine:
         _, number, mesh = name.split(" ")
         stage = data["stages"][int(number) - 1]
         stage["stiffness_of"] = "line"
-        stage[keys[mesh]] = iso_stiffness(pair, blank=stage["blank"]).mesh * pair.face_width
+        stage[keys[mesh]] = iso_gear_stiffness(pair, blank=stage["blank"]).mesh * pair.face_width
     return Machine.model_validate(data)
 
 

@@ -4,10 +4,9 @@ All levels are of one table, with the same inertias, meshes and bearings, and of
 that a level differs from the one below by nothing but the degrees of freedom that it lets move.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from itertools import pairwise
 from math import cos, pi, radians, sin
 
 import numpy as np
@@ -18,15 +17,15 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.bodies import ALL, Body, Superelement, assemble
 from fe_drivetrain.dynamics.elastic_ring import Rim, with_rim
 from fe_drivetrain.dynamics.flexible import (
-    PLACED,
+    ElasticHousing,
     Flexible,
+    Housing,
     carrier_element,
     held_by,
     housing_bodies,
-    shaft_element,
 )
-from fe_drivetrain.dynamics.machine_parts import STEEL, ShaftData
 from fe_drivetrain.dynamics.machine_rows import MachineTable, ParallelData, PlanetaryData
+from fe_drivetrain.dynamics.machine_shafts import beam_shaft, solid_shaft
 from fe_drivetrain.dynamics.planetary import (
     Inertias,
     PinBearing,
@@ -40,11 +39,9 @@ from fe_drivetrain.dynamics.springs import (
     Spring,
     bushing,
     gear_mesh,
-    uniform_shaft,
 )
 from fe_drivetrain.dynamics.system import System, without_massless
 from fe_drivetrain.dynamics.torsion.system import Element, Inertia, Torsional
-from fe_drivetrain.elasticity.solve.condensation import Condensed
 
 TURNS = frozenset({"rx"})
 """Degree of freedom of a body in a torsional model."""
@@ -131,80 +128,119 @@ def assembly(
     """Bodies and springs of a machine; arguments as in `machine_system`."""
     free = TURNS if level is Level.TORSIONAL else ALL
     gives = flexible or Flexible()
-    bodies: list[Body] = []
-    springs: list[Spring] = []
-    superelements: list[Superelement] = []
-    housing = None if level is Level.TORSIONAL else gives.housing
-    if housing is not None:
-        of_housing, element = housing_bodies(housing)
-        bodies += of_housing
-        superelements.append(element)
+    if level is Level.TORSIONAL:
+        gives = Flexible()
+    built = Assembly([], [], {}, [])
+    if gives.housing is not None:
+        of_housing, element = housing_bodies(gives.housing)
+        built.bodies.extend(of_housing)
+        built.superelements.append(element)
     mass, across = machine.rotor.apart
-    bodies.append(Body("rotor", (0.0, 0.0, 0.0), mass, machine.rotor.inertia, across, 1.0, free))
+    built.bodies.append(
+        Body("rotor", (0.0, 0.0, 0.0), mass, machine.rotor.inertia, across, 1.0, free)
+    )
     driving, ends = "rotor", []
-    for number, stage in enumerate(machine.stages, start=1):
-        name = f"stage {number}"
-        turned = (
-            azimuth.get(number, 0.0)
-            if isinstance(azimuth, Mapping)
-            else azimuth * machine.speeds[number - 1]
-        )
-        if isinstance(stage, PlanetaryData):
-            carrier = None if level is Level.TORSIONAL else gives.carriers.get(number)
-            built = planetary_set(machine, number, free, turned)
-            if carrier is not None:
-                pins, element, places = carrier_element(carrier, built, f"{name} carrier")
-                built = replace(built, pins=places)
-                superelements.append(element)
-            ground = held_by(housing, f"{name} ring", built.position)
-            rim = None if level is Level.TORSIONAL else gives.rims.get(number)
-            made, rows = _planetary(machine, stage, number, built, ground, rim)
-            if carrier is not None:
-                made += pins
-            front, rear = f"{name} carrier", f"{name} sun"
-        else:
-            made, rows = _parallel(machine, stage, number, free)
-            front, rear = f"{name} gear", f"{name} pinion"
-        bodies += made
-        springs += rows
+    for number in range(1, len(machine.stages) + 1):
+        front, rear = _add_stage(machine, number, free, azimuth, gives, built)
         ends.append((driving, front))
         driving = rear
+    _add_generator(machine, free, held_generator, built)
+    ends.append((driving, "generator"))
+    _add_shafts(machine, ends, level, elements, gives, built)
+    _add_bearings(machine, gives.housing, built)
+    return built
+
+
+def _add_stage(
+    machine: MachineTable,
+    number: int,
+    free: frozenset[str],
+    azimuth: float | Mapping[int, float],
+    gives: Flexible,
+    built: Assembly,
+) -> tuple[str, str]:
+    """Add a stage's bodies and springs; the names of what the shafts before and behind it hold."""
+    stage, name = machine.stages[number - 1], f"stage {number}"
+    if not isinstance(stage, PlanetaryData):
+        made, rows = _parallel(machine, stage, number, free)
+        built.bodies.extend(made)
+        built.springs.extend(rows)
+        return f"{name} gear", f"{name} pinion"
+    turned = (
+        azimuth.get(number, 0.0)
+        if isinstance(azimuth, Mapping)
+        else azimuth * machine.speeds[number - 1]
+    )
+    planets, carrier = planetary_set(machine, number, free, turned), gives.carriers.get(number)
+    pins: list[Body] = []
+    if carrier is not None:
+        pins, element, places = carrier_element(carrier, planets, f"{name} carrier")
+        planets = replace(planets, pins=places)
+        built.superelements.append(element)
+    ground = held_by(gives.housing, f"{name} ring", planets.position)
+    made, rows = _planetary(machine, stage, number, planets, ground, gives.rims.get(number))
+    built.bodies.extend([*made, *pins])
+    built.springs.extend(rows)
+    return f"{name} carrier", f"{name} sun"
+
+
+def _add_generator(
+    machine: MachineTable, free: frozenset[str], held: bool, built: Assembly
+) -> None:
+    """Add the generator, and its spring to the grid."""
     x, y, z = machine.axes[-1]
     own = machine.generator
     moves = TURNS if own.mass is None else free
     at = (x + machine.shafts[-1].length, y, z)
     mass, across = own.apart
-    moves = moves - TURNS if held_generator else moves
-    bodies.append(Body("generator", at, mass, own.inertia, across, machine.speeds[-1], moves))
-    ends.append((driving, "generator"))
+    moves = moves - TURNS if held else moves
+    built.bodies.append(Body("generator", at, mass, own.inertia, across, machine.speeds[-1], moves))
     if own.stiffness > 0:
         grid = (0, 0, 0, own.stiffness, 0, 0)
-        springs += bushing("grid", Place("generator", at), None, at, grid)
-    seats: dict[str, tuple[str, tuple[float, float, float]]] = {}
-    solid = {} if level is Level.TORSIONAL else gives.shafts
-    for name in solid.keys() - {shaft.name for shaft in machine.shafts if shaft.kind == "shaft"}:
+        built.springs.extend(bushing("grid", Place("generator", at), None, at, grid))
+
+
+def _add_shafts(
+    machine: MachineTable,
+    ends: Sequence[tuple[str, str]],
+    level: Level,
+    elements: int,
+    gives: Flexible,
+    built: Assembly,
+) -> None:
+    """Add shafts between the bodies that they hold, as beams or as solids."""
+    bends = level is Level.FLEXIBLE
+    for name in gives.shafts.keys() - {s.name for s in machine.shafts if s.kind == "shaft"}:
         raise InputError(
             f"no shaft {name!r} that bends is in {machine.title!r}: name another, or leave it out"
         )
+    bodies = list(built.bodies)
     for k, shaft in enumerate(machine.shafts):
-        if shaft.name in solid:
-            bodies, element = _solid_shaft(machine, k, ends[k], bodies, solid[shaft.name], seats)
-            superelements.append(element)
-            continue
-        bodies, rows = _shaft(machine, k, ends[k], bodies, level, elements, seats)
-        springs += rows
-    centres = {body.name: body.position for body in bodies}
+        if shaft.name in gives.shafts:
+            solid = gives.shafts[shaft.name]
+            bodies, element = solid_shaft(machine, k, ends[k], bodies, solid, built.seats)
+            built.superelements.append(element)
+        else:
+            bodies, rows = beam_shaft(machine, k, ends[k], bodies, bends, elements, built.seats)
+            built.springs.extend(rows)
+    built.bodies[:] = bodies
+
+
+def _add_bearings(
+    machine: MachineTable, housing: Housing | ElasticHousing | None, built: Assembly
+) -> None:
+    """Add the bearings, each between a body and what holds it."""
+    centres = {body.name: body.position for body in built.bodies}
     shafts = {shaft.name for shaft in machine.shafts}
-    holders: dict[str, Place | None] = {}
     for bearing in machine.bearings:
         if bearing.holds not in shafts:
             c = centres[bearing.holds]
-            seats[bearing.name] = (bearing.holds, (c[0] + bearing.at, c[1], c[2]))
-        body, at = seats[bearing.name]
-        holders[bearing.name] = held_by(housing, bearing.name, at)
+            built.seats[bearing.name] = (bearing.holds, (c[0] + bearing.at, c[1], c[2]))
+        body, at = built.seats[bearing.name]
+        holder = held_by(housing, bearing.name, at)
+        built.holders[bearing.name] = holder
         place = Place(body, centres[body])
-        springs += bushing(bearing.name, place, holders[bearing.name], at, bearing.stiffness)
-    return Assembly(bodies, springs, seats, superelements, holders)
+        built.springs.extend(bushing(bearing.name, place, holder, at, bearing.stiffness))
 
 
 def planetary_set(
@@ -317,133 +353,6 @@ def _parallel(
         stage.slices,
     )
     return bodies, springs
-
-
-def _shaft(
-    machine: MachineTable,
-    k: int,
-    ends: tuple[str, str],
-    bodies: list[Body],
-    level: Level,
-    elements: int,
-    seats: dict[str, tuple[str, tuple[float, float, float]]],
-) -> tuple[list[Body], list[Spring]]:
-    """The shaft's nodes and springs, its mass, and what its bearings hold."""
-    shaft = machine.shafts[k]
-    x, y, z = machine.axes[k]
-    on = [b for b in machine.bearings if b.holds == shaft.name]
-    stations = [0.0, shaft.length]
-    if level is Level.FLEXIBLE and shaft.kind == "shaft":
-        own = {*np.linspace(0.0, shaft.length, elements + 1), *(b.at for b in on)}
-        inside = [s for s in own if 0 <= s <= shaft.length]
-        stations = sorted({round(s, 9) for s in inside} | {0.0, shaft.length})
-    names = [ends[0], *(f"{shaft.name} node {i}" for i in range(1, len(stations) - 1)), ends[1]]
-    speed = machine.speeds[k]
-    if shaft.kind == "rigid":
-        bodies = [
-            replace(b, free=frozenset(), tied_to=ends[0]) if b.name == ends[1] else b
-            for b in bodies
-        ]
-        seats.update({b.name: (ends[0], (x + b.at, y, z)) for b in on})
-        return bodies, []
-    bodies = [
-        *bodies,
-        *(
-            Body(n, (x + s, y, z), speed=speed)
-            for n, s in zip(names, stations, strict=True)
-            if n not in ends
-        ),
-    ]
-    index = {body.name: i for i, body in enumerate(bodies)}
-    springs: list[Spring] = []
-    for i, (start, stop) in enumerate(pairwise(stations)):
-        pair = names[i], names[i + 1]
-        label = shaft.name if len(stations) == 2 else f"{shaft.name} element {i + 1}"
-        springs += _element(label, shaft, pair, (x + start, x + stop), (y, z), bodies, index)
-        if shaft.has_mass:
-            for name in pair:
-                place = index[name]
-                bodies[place] = _heavier(bodies[place], shaft, stop - start)
-    for bearing in on:
-        where = x + bearing.at
-        nearest = min(range(len(stations)), key=lambda i: abs(stations[i] - bearing.at))
-        seats[bearing.name] = (names[nearest], (where, y, z))
-    return bodies, springs
-
-
-def _solid_shaft(
-    machine: MachineTable,
-    k: int,
-    ends: tuple[str, str],
-    bodies: list[Body],
-    body: Condensed,
-    seats: dict[str, tuple[str, tuple[float, float, float]]],
-) -> tuple[list[Body], Superelement]:
-    """A condensed shaft's points, what joins them, and what its bearings hold."""
-    shaft, begin = machine.shafts[k], machine.axes[k]
-    centres = {one.name: one.position for one in bodies}
-    first, last = (Place(name, centres[name]) for name in ends)
-    points, element = shaft_element(
-        shaft.name, body, begin, shaft.length, (first, last), shaft.has_mass
-    )
-    speed = machine.speeds[k]
-    bodies = [*bodies, *(Body(p.body, p.centre, speed=speed) for p in points[1:-1])]
-    along = np.sort(body.positions[:, 0]) - body.positions[:, 0].min()
-    if shaft.has_mass and element.mass is None:
-        index = {one.name: i for i, one in enumerate(bodies)}
-        for pair, length in zip(pairwise(points), np.diff(along), strict=True):
-            for point in pair:
-                place = index[point.body]
-                bodies[place] = _heavier(bodies[place], shaft, float(length))
-    for bearing in machine.bearings:
-        if bearing.holds == shaft.name:
-            nearest = int(np.abs(along - bearing.at).argmin())
-            if abs(along[nearest] - bearing.at) > PLACED * shaft.length:
-                raise InputError(
-                    f"shaft {shaft.name!r}: no point of its condensed body is at the bearing "
-                    f"{bearing.name!r}, {bearing.at:g} m from its begin: condense it there, too"
-                )
-            x, y, z = begin
-            seats[bearing.name] = (points[nearest].body, (x + bearing.at, y, z))
-    return bodies, element
-
-
-def _element(
-    label: str,
-    shaft: ShaftData,
-    pair: tuple[str, str],
-    span: tuple[float, float],
-    axis: tuple[float, float],
-    bodies: list[Body],
-    index: dict[str, int],
-) -> list[Spring]:
-    ends = ((span[0], *axis), (span[1], *axis))
-    places = [Place(name, bodies[index[name]].position) for name in pair]
-    found = uniform_shaft(label, places[0], places[1], ends, shaft.section, STEEL)
-    torsion = shaft.section.torsion * STEEL.shear_modulus / (span[1] - span[0])
-    if shaft.kind == "coupling":
-        middle = ((span[0] + span[1]) / 2, *axis)
-        return bushing(label, places[0], places[1], middle, (0, 0, 0, torsion, 0, 0))
-    if shaft.bending is not None:
-        # a hinge of given stiffness at the middle, between links that are rigid
-        length = span[1] - span[0]
-        bent = shaft.bending * shaft.length / length
-        stiff = [s.stiffness for s in found]
-        k = (stiff[0], stiff[1], stiff[2], torsion, bent, bent)
-        middle = ((span[0] + span[1]) / 2, *axis)
-        return bushing(label, places[0], places[1], middle, k)
-    return found
-
-
-def _heavier(body: Body, shaft: ShaftData, length: float) -> Body:
-    """A body with half of an element of the shaft on it."""
-    section, half = shaft.section, STEEL.density * length / 2
-    return replace(
-        body,
-        mass=body.mass + half * section.area,
-        polar=body.polar + half * section.torsion,
-        transverse=body.transverse + half * section.inertias[0],
-    )
 
 
 def torsional(machine: MachineTable) -> Torsional:

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.machine_parts import (
     LARGEST_GEAR,
     MOST_DAMPING,
@@ -347,6 +348,9 @@ class MachineTable(Part):
     stages: tuple[StageData, ...] = Field(default=(), description="gear stages from the rotor on")
     generator: GeneratorBody = Field(description="the generator")
     bearings: tuple[BearingData, ...] = Field(default=(), description="bearings in the housing")
+
+    __repr__ = short_repr
+    __str__ = short_repr
 
     _ends = field_validator("rotor", "generator", mode="wrap")(in_its_field)
     _shafts = field_validator("shafts", mode="before")(rows_of("shaft", ShaftData))

@@ -33,7 +33,7 @@ def slip_line(
 
 def constant_power(row: ArrayLike, power: float, speed: float = 0.0) -> SpringLaws:
     """A machine that draws a power [W] whatever its speed ``speed + row . q'`` [rad/s]."""
-    return spring_laws(np.asarray(row, dtype=np.float64)[None], 0.0, power=power, speed=speed)
+    return spring_laws(np.asarray(row, dtype=np.float64)[None], 0.0).with_power(power, speed)
 
 
 def grid_spring(

@@ -9,6 +9,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.base_motion import BaseMotion
 from fe_drivetrain.dynamics.brakes import Brake
 from fe_drivetrain.dynamics.equations import Equations, Loads, SpringLaws, joined_laws, summed
@@ -38,6 +39,8 @@ class Rows:
         Rows (b, 5, n) of the rolling bearings.
     """
 
+    __repr__ = short_repr
+
     springs: Floats
     spring_slopes: Floats
     extra: Floats
@@ -66,6 +69,8 @@ class Mechanism:
     driven : bool
         Whether a stiffness that varies with an angle acts on that angle.
     """
+
+    __repr__ = short_repr
 
     equations: Equations
     loads: Loads

@@ -14,6 +14,7 @@ from scipy.interpolate import CubicSpline
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.equations import wave_table
 from fe_drivetrain.gear.loaded_error import TransmissionError
 
@@ -39,6 +40,8 @@ class MeshError:
     values: Floats
     turns: float = 1.0
     phase: float = 0.0
+
+    __repr__ = short_repr
 
     @property
     def table(self) -> Floats:

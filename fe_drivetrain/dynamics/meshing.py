@@ -222,21 +222,13 @@ def varying_equations(
             errors.append(mesh.error.table)
             error[of] = len(errors) - 1
             error_phase[of], error_turns[of] = mesh.error.phase, mesh.error.turns
-    springs = spring_laws(
-        system.rows,
-        system.stiffness,
-        system.damping + damping * system.stiffness,
-        lower=-half,
-        upper=half,
-        wave=wave,
-        phase=phase,
-        frequency=frequency,
-        waves=np.stack(waves) if waves else None,
-        error=error,
-        error_phase=error_phase,
-        error_turns=error_turns,
-        errors=np.stack(errors) if errors else None,
-    )
+    dampers = system.damping + damping * system.stiffness
+    springs = spring_laws(system.rows, system.stiffness, dampers, lower=-half, upper=half)
+    springs = springs.in_phase(phase, frequency)
+    if waves:
+        springs = springs.with_waves(np.stack(waves), wave)
+    if errors:
+        springs = springs.with_errors(np.stack(errors), error, phase=error_phase, turns=error_turns)
     return equations_of_motion(
         system.mass,
         springs,

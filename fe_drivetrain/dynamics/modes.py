@@ -11,6 +11,7 @@ from fe_drivetrain.common.arrays import Bools, Floats
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.system import System
 from fe_drivetrain.dynamics.torsion.system import Oscillations
 
@@ -46,6 +47,13 @@ class SystemModes:
     shapes: Floats
     strain_shares: Floats
     kinetic_shares: Floats
+
+    def __repr__(self) -> str:
+        """One line: how many, and the lowest and the highest of those that are not free."""
+        stiff = self.frequencies[self.frequencies > 0]
+        free = self.frequencies.size - stiff.size
+        span = f"{stiff[0]:.4g} to {stiff[-1]:.4g} Hz" if stiff.size else "none"
+        return f"<{stiff.size} modes of {len(self.bodies)} bodies: {span}; free motions: {free}>"
 
     @property
     def energy_shares(self) -> dict[str, Floats]:
@@ -171,6 +179,8 @@ class TurningModes(Oscillations):
 
     shapes: Complex
     growing: Floats
+
+    __repr__ = short_repr
 
 
 def turning_modes(system: System, speed: float = 0.0, damped: bool = True) -> TurningModes:

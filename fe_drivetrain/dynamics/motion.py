@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.energy_account import CLOCK, DISSIPATED, KINETIC, STRAIN, WORK
 from fe_drivetrain.dynamics.equations import Equations
 from fe_drivetrain.dynamics.roller_seats import Seat, seat_number
@@ -28,6 +29,8 @@ class State:
     time : float
         Time [s].
     """
+
+    __repr__ = short_repr
 
     q: Floats
     velocity: Floats
@@ -47,6 +50,8 @@ class BearingHistory:
         Motion (k, b, 5) of each inner ring against the outer one [m, rad], and the load that it
         carries there, with its damper [N, N m], along and about the axes of its seat.
     """
+
+    __repr__ = short_repr
 
     seats: tuple[Seat, ...]
     motions: Floats
@@ -84,6 +89,8 @@ class Braking:
         Number of the brake of each event.
     """
 
+    __repr__ = short_repr
+
     torque: Floats
     held: Bools
     events: tuple[tuple[float, str], ...]
@@ -104,6 +111,8 @@ class StepHistory:
     matrices : int
         Lengths for which a matrix was inverted.
     """
+
+    __repr__ = short_repr
 
     steps: Floats
     errors: Floats
@@ -151,6 +160,8 @@ class Motion:
     azimuth : Floats
         Angle (k,) that the ratios of travelling carriers refer to [rad]; (0,) where none travel.
     """
+
+    __repr__ = short_repr
 
     times: Floats
     q: Floats

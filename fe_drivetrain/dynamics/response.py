@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.mesh_errors import harmonic_of
 from fe_drivetrain.dynamics.meshing import Meshing
 from fe_drivetrain.dynamics.modes import Complex, SystemModes, turning_modes
@@ -87,6 +88,8 @@ class MeshResponse:
     frequencies: Floats
     motions: Complex
     forces: Complex
+
+    __repr__ = short_repr
 
 
 def mesh_response(

@@ -21,6 +21,7 @@ from fe_drivetrain.bearing.stored_energy import energy_of
 from fe_drivetrain.common.arrays import Bools, Floats, chunks
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.flexible import Flexible
 from fe_drivetrain.dynamics.levels import Assembly, planetary_set
 from fe_drivetrain.dynamics.springs import Place, Spring, directed
@@ -208,6 +209,8 @@ class OnRollers:
     residual: float
     converged: bool
     iterations: int
+
+    __repr__ = short_repr
 
     def of(self, name: str) -> int:
         """Number of a bearing.

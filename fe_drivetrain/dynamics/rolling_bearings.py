@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.roller_seats import Rollers, Seat, rollers_of
 from fe_drivetrain.dynamics.system import System
 
@@ -27,6 +28,8 @@ class RollingBearings:
     seconds : Floats
         Damping (b,) of each: this time [s] times its tangent stiffness at the beginning of a step.
     """
+
+    __repr__ = short_repr
 
     seats: tuple[Seat, ...]
     rows: Floats

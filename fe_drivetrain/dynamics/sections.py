@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from fe_drivetrain.common.arrays import Bools, Floats
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.equations import Loads, summed
 from fe_drivetrain.dynamics.loop_forms import Stop
 from fe_drivetrain.dynamics.mechanism import Mechanism
@@ -30,6 +31,8 @@ class Section:
     begin, end : float
         Times between which it is asked for [s].
     """
+
+    __repr__ = short_repr
 
     mechanism: Mechanism
     slipping: dict[int, float]

@@ -8,6 +8,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Bools, Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.system import System, springs_named
 
 #: Eigenvalue of the stiffness on a unit diagonal below which a motion is free.
@@ -35,6 +36,8 @@ class Static:
     q: Floats
     forces: Floats
     closed: Bools
+
+    __repr__ = short_repr
 
     def force(self, name: str) -> float:
         """Force of a spring, or of all slices of a mesh.
@@ -143,6 +146,8 @@ class Turn:
     azimuths: Floats
     spring_names: tuple[str, ...]
     forces: Floats
+
+    __repr__ = short_repr
 
     def of(self, name: str) -> Floats:
         """(s,) force of a spring, or of all slices of a mesh.

@@ -9,6 +9,7 @@ from scipy import linalg
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.equations import Equations
 
 
@@ -200,6 +201,8 @@ class WoundUp:
     acceleration: Floats
     residual: float
     iterations: int
+
+    __repr__ = short_repr
 
 
 def wind_up(

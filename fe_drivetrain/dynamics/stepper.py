@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.bearing_loops import Rolling, rolling_of
 from fe_drivetrain.dynamics.energy_account import STRAIN
 from fe_drivetrain.dynamics.equations import Loads
@@ -55,6 +56,8 @@ class Stepper:
         Rows that turn, where there are some.
     """
 
+    __repr__ = short_repr
+
     mechanism: Mechanism
     model: Model
     rolling: Rolling
@@ -76,6 +79,8 @@ class Piece:
     gripped : Floats
         Accelerations (k, h) along held motions that all forces would give, were they free.
     """
+
+    __repr__ = short_repr
 
     motion: Motion
     before: State

@@ -28,7 +28,7 @@ from fe_drivetrain.dynamics.torsion.damping import shaft_damping
 from fe_drivetrain.dynamics.torsion.gear_table import (
     GENERATOR,
     ROTOR,
-    Drivetrain,
+    GearTable,
     gear_masses,
     gear_speeds,
     two_masses,
@@ -146,7 +146,7 @@ def torsional_equations(system: Torsional) -> Equations:
 
 
 def shutdown(
-    table: Drivetrain,
+    table: GearTable,
     torque: float,
     rotor_speed: float,
     brake: float,
@@ -162,7 +162,7 @@ def shutdown(
 
     Parameters
     ----------
-    table : Drivetrain
+    table : GearTable
         Inertias and stiffnesses.
     torque, rotor_speed : float
         Rated torque and speed of the rotor [N m, rad/s].

@@ -14,6 +14,7 @@ from scipy import linalg
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.equations import Equations, Loads
 from fe_drivetrain.dynamics.motion import State, at_rest
 
@@ -39,6 +40,8 @@ class Superposed:
     velocity: Floats
     frequencies: Floats
     coupling: float
+
+    __repr__ = short_repr
 
 
 def modal_superposition(

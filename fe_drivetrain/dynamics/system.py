@@ -17,6 +17,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import scaled_solve
+from fe_drivetrain.common.short_repr import short_repr
 
 
 def springs_named(names: Sequence[str], name: str, what: str = "spring") -> list[int]:
@@ -93,6 +94,8 @@ class System:
     body_mass: Floats
     weight: Floats
     unchangeable: tuple[str, ...] = ()
+
+    __repr__ = short_repr
 
     @property
     def K(self) -> Floats:

@@ -25,6 +25,7 @@ import numpy as np
 from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.flexible import Flexible
 from fe_drivetrain.dynamics.levels import Level, machine_system
 from fe_drivetrain.dynamics.machine_rows import PlanetaryData
@@ -263,6 +264,8 @@ class TravellingCarriers:
     damping : float
         Damping of its rolling bearings, see `rolling_bearings` [s].
     """
+
+    __repr__ = short_repr
 
     carriers: Travelling
     speed: float

@@ -11,8 +11,8 @@ from .craig_bampton import craig_bampton_shaft as craig_bampton_shaft
 from .craig_bampton import free_frequencies as free_frequencies
 from .files import FORMATS as FORMATS
 from .files import format_module as format_module
-from .files import read as read
-from .files import write as write
+from .files import read_superelement as read_superelement
+from .files import write_superelement as write_superelement
 from .formats.craig_bampton_json import read_craig_bampton as read_craig_bampton
 from .formats.elastodyn import Torsion as Torsion
 from .formats.extptfm import read_release_4 as read_release_4

@@ -49,7 +49,7 @@ def write_inp(
     loads : Sequence[str] or None
         Which unit loads, a step each, all where not given: ccx factorises again for every step.
     solver : str
-        Of CalculiX, as in "SPOOLES"; its own choice where not given.
+        Solver of CalculiX, as in "SPOOLES"; its own choice where not given.
     fields : bool
         Whether displacements and stresses go to a .frd file, too, to look at.
 

@@ -45,7 +45,7 @@ def four_point_stiffness(
     lame : tuple of float
         Lame's constants (lambda, mu) [Pa].
     n_dofs : int
-        Of the result, three a node or more.
+        Number of degrees of freedom of the result, three a node or more.
 
     Returns
     -------

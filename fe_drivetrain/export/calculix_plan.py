@@ -8,7 +8,7 @@ chained.
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -59,13 +59,7 @@ class DeckPlan:
 
 def plan_deck(model: Model, loads: Sequence[str]) -> DeckPlan:
     """Number the degrees of freedom of the deck, and solve all constraints for those they give."""
-    known = model.loads
-    unknown = [load for load in loads if load not in known]
-    if unknown or not loads:
-        raise InputError(
-            f"{f'load {unknown[0]!r} is unknown' if unknown else 'there is no load'}: use some of "
-            f"{', '.join(known)}"
-        )
+    _check_loads(model, loads)
     n_mesh = len(model.mesh.points)
     rigid = {c.name for c in model.constraints if c.name in model.points}
     averaged = [point for name, point in model.points.items() if name not in rigid]
@@ -79,19 +73,7 @@ def plan_deck(model: Model, loads: Sequence[str]) -> DeckPlan:
     n_dofs = along + 3 * math.ceil(len(coupled) / 3)
     first = {p.name: model.n_dofs + 6 * k for k, p in enumerate(averaged)}
     first |= {name: int(model.points[name].motion.indices.min()) for name in rigid}
-    reactions = {f"{name} reaction": name for name in model.held}
-
-    constraints = []
-    for constraint in model.constraints:
-        if constraint.name in reactions:
-            # The reference point's own degree of freedom is held, and a degree of freedom of the
-            # face follows it.
-            name = reactions[constraint.name]
-            if name not in rigid:
-                own = first[name] + np.array(model.held[name])
-                constraints.append(_tied(constraint, own, n_dofs))
-        elif constraint.name not in fixed_bases(model):
-            constraints.append(replace(constraint, rows=_widened(constraint.rows, n_dofs)))
+    constraints = _of_model(model, rigid, first, n_dofs)
     for point in averaged:
         free = [c for c in range(6) if c not in model.held.get(point.name, ())]
         own = first[point.name] + np.array(free, dtype=np.int64)
@@ -107,12 +89,6 @@ def plan_deck(model: Model, loads: Sequence[str]) -> DeckPlan:
 
     references = {name: (first[name] // 3, first[name] // 3 + 1) for name in model.points}
     names, positions = _extra_nodes(model, references, n_dofs // 3)
-    F = np.zeros((n_dofs, len(known)))
-    F[: model.n_dofs, 6:9] = model.unit_loads()[:, 6:9]
-    F[first["hub"] + np.arange(6), np.arange(6)] = 1.0
-    F[first["gearbox"] + 2, 9] = -1.0
-    for k, name in enumerate(model.scene.bands):
-        F[first[name] + np.arange(6), len(LOADS) + 6 * k + np.arange(6)] = 1.0
     return DeckPlan(
         positions=np.vstack([model.mesh.points, positions]),
         names={n_mesh + k: name for k, name in enumerate(names)},
@@ -123,8 +99,48 @@ def plan_deck(model: Model, loads: Sequence[str]) -> DeckPlan:
             [first[name] + c for name, some in model.held.items() for c in some], dtype=np.int64
         ),
         springs=springs,
-        loads=F[:, [known.index(load) for load in loads]],
+        loads=_unit_loads(model, first, n_dofs)[:, [model.loads.index(load) for load in loads]],
     )
+
+
+def _check_loads(model: Model, loads: Sequence[str]) -> None:
+    known = model.loads
+    unknown = [load for load in loads if load not in known]
+    if unknown or not loads:
+        raise InputError(
+            f"{f'load {unknown[0]!r} is unknown' if unknown else 'there is no load'}: use some of "
+            f"{', '.join(known)}"
+        )
+
+
+def _of_model(
+    model: Model, rigid: Container[str], first: Mapping[str, int], n_dofs: int
+) -> list[Constraint]:
+    """The model's own constraints, but for those of bases that are fixed."""
+    reactions = {f"{name} reaction": name for name in model.held}
+    constraints = []
+    for constraint in model.constraints:
+        if constraint.name in reactions:
+            # The reference point's own degree of freedom is held, and a degree of freedom of the
+            # face follows it.
+            name = reactions[constraint.name]
+            if name not in rigid:
+                own = first[name] + np.array(model.held[name])
+                constraints.append(_tied(constraint, own, n_dofs))
+        elif constraint.name not in fixed_bases(model):
+            constraints.append(replace(constraint, rows=_widened(constraint.rows, n_dofs)))
+    return constraints
+
+
+def _unit_loads(model: Model, first: Mapping[str, int], n_dofs: int) -> Floats:
+    """(n_dofs, n_loads) unit loads of the model, on the degrees of freedom of the deck."""
+    F = np.zeros((n_dofs, len(model.loads)))
+    F[: model.n_dofs, 6:9] = model.unit_loads()[:, 6:9]
+    F[first["hub"] + np.arange(6), np.arange(6)] = 1.0
+    F[first["gearbox"] + 2, 9] = -1.0
+    for k, name in enumerate(model.scene.bands):
+        F[first[name] + np.arange(6), len(LOADS) + 6 * k + np.arange(6)] = 1.0
+    return F
 
 
 def _widened(rows: sparse.csr_array, n_dofs: int) -> sparse.csr_array:

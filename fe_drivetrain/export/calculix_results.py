@@ -10,6 +10,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.regular_files import text_of
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import resultant, wrench_transport
 from fe_drivetrain.export.calculix_plan import DeckPlan, deck_label, plan_deck
 from fe_drivetrain.shafts.response.model import Model
@@ -36,7 +37,7 @@ class Printed:
     quantity : str
         "displacements", "forces" or "total internal energy".
     set_name : str
-        Of the nodes or elements.
+        Name of the set of nodes or elements.
     time : float
         Total time, which counts the steps.
     nodes : Ints
@@ -79,6 +80,8 @@ class DeckResponse:
     reactions: Mapping[str, Floats]
     base_forces: Mapping[str, Floats]
     strain_energy: Mapping[str, Floats]
+
+    __repr__ = short_repr
 
 
 def read_dat(path: str | Path) -> list[Printed]:

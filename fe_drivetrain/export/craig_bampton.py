@@ -25,6 +25,7 @@ from scipy.sparse.linalg import splu
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.materials import Material
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.elasticity.revolution import harmonics
@@ -69,6 +70,8 @@ class CraigBampton:
     omega: Floats
     coupling: Floats
     origin: Origin = field(default_factory=Origin)
+
+    __repr__ = short_repr
 
     @property
     def stiffness(self) -> Floats:
@@ -132,7 +135,7 @@ def craig_bampton_shaft(
     at : Sequence[str] or None
         Points that are kept, and stand still; all where not given.
     size, order, rings : float or None, int or None, bool
-        As for `fe_drivetrain.shafts.fidelity.shafts.meridian_shaft`.
+        The same as for `fe_drivetrain.shafts.fidelity.shafts.meridian_shaft`.
 
     Raises
     ------
@@ -201,7 +204,7 @@ def free_frequencies(
     Parameters
     ----------
     scene, size, order, rings : Scene, float or None, int or None, bool
-        As for `craig_bampton_shaft`.
+        The same as for `craig_bampton_shaft`.
     count : int
         How many of each harmonic, 0 and 1, rigid motions not counted.
 

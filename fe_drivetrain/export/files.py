@@ -1,4 +1,4 @@
-"""Superelements out, and back in: one module a format, all behind `write` and `read`."""
+"""Superelements out, and back in: one module a format, all behind one reader and one writer."""
 
 from __future__ import annotations
 
@@ -48,7 +48,9 @@ FORMATS: dict[str, Format] = {
 }
 
 
-def write(path: str | Path, element: Superelement, format: str, overwrite: bool = False) -> None:
+def write_superelement(
+    path: str | Path, element: Superelement, format: str, overwrite: bool = False
+) -> None:
     """Write a superelement; the file appears whole or not at all.
 
     Parameters
@@ -75,7 +77,7 @@ def write(path: str | Path, element: Superelement, format: str, overwrite: bool 
         writer(unfinished, element)
 
 
-def read(path: str | Path, format: str) -> Superelement:
+def read_superelement(path: str | Path, format: str) -> Superelement:
     """Read a superelement back.
 
     Raises

@@ -115,7 +115,7 @@ def unit_superelement(scene: Scene, name: str, mass: bool = False) -> Supereleme
     scene : Scene
         The scene.
     name : str
-        Of the bearing.
+        Name of the bearing.
     mass : bool
         Whether it has its mass, see `fe_drivetrain.shafts.fidelity.unit_matrices`.
 

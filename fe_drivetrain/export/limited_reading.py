@@ -10,7 +10,7 @@ import numpy as np
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.stiffness_bands import StiffnessBands
-from fe_drivetrain.export.files import format_module, read
+from fe_drivetrain.export.files import format_module, read_superelement
 from fe_drivetrain.export.superelement import Origin, Superelement
 from fe_drivetrain.foreign.reading import LIMITS, Limits, read_in_process
 
@@ -18,7 +18,7 @@ _MATRICES = ("positions", "stiffness", "mass")
 
 
 def read_limited(path: str | Path, format: str, limits: Limits = LIMITS) -> Superelement:
-    """`read` in a process of its own: a damaged or huge file ends there in one sentence.
+    """Read a superelement in a process of its own: a damaged or huge file ends in one sentence.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ def read_limited(path: str | Path, format: str, limits: Limits = LIMITS) -> Supe
     Raises
     ------
     InputError
-        As `read`, or reading takes more than the limits.
+        As `read_superelement`, or reading takes more than the limits.
     """
     format_module(format)
     action = f"{__name__}:arrays_of"
@@ -54,7 +54,7 @@ def read_limited(path: str | Path, format: str, limits: Limits = LIMITS) -> Supe
 def arrays_of(request: dict[str, Any]) -> dict[str, Any]:
     """What the limited process does: a superelement as arrays, and all else as JSON."""
     try:
-        element = read(request["file"], request["format"])
+        element = read_superelement(request["file"], request["format"])
     except InputError as error:
         # of links the process knows what they lead to, the user the name that was given
         raise InputError(str(error).replace(request["file"], request["named"])) from error

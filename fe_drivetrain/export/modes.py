@@ -30,9 +30,9 @@ def natural_frequencies(
     Parameters
     ----------
     points, stiffness, supports : Sequence[str], Floats, Mapping[str, Floats] or None
-        As of `condensation.on_supports`.
+        The same as for `condensation.on_supports`.
     mass : Floats
-        Of the same degrees of freedom as the stiffness.
+        Mass of the same degrees of freedom as the stiffness.
     inertia : Mapping[str, Floats] or None
         (6, 6) mass of supports that moves with a point [kg, kg m, kg m^2], by point, as of
         `fe_drivetrain.shafts.fidelity.unit_matrices`.

@@ -46,7 +46,7 @@ def superelement_of(
         Names of points: "hub", "gearbox", those of bearings. Where not given, all points of the
         shaft, and the hub of the drivetrain.
     level : int or str
-        Of the ladder, or "auto": 2 of shaft and drivetrain, 4 of a bearing.
+        Level of the ladder, or "auto": 2 of shaft and drivetrain, 4 of a bearing.
 
     Raises
     ------

@@ -8,9 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import least_eigenvalue, symmetry_error
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import point_motions
 from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.plots.figures import stiffness_map
@@ -43,7 +45,7 @@ def refuse_one_point(part: str, at: Sequence[str], points: Sequence[str], held: 
     at, points : Sequence[str]
         Points that are kept, and all there are.
     held : str
-        What has its supports: the name for ``--what``.
+        What has its supports: the name that asks for it.
 
     Raises
     ------
@@ -54,7 +56,8 @@ def refuse_one_point(part: str, at: Sequence[str], points: Sequence[str], held: 
     others = [name for name in points if name != at[0]]
     raise InputError(
         f"a free {part} has no stiffness at one point, {at[0]}, for nothing holds it: add a point "
-        f"to --at ({', '.join(others)}), or export it on its supports with --what {held}"
+        f"to {argument('at')} ({', '.join(others)}), or export it on its supports with "
+        f"{argument('what', held)}"
     )
 
 
@@ -69,7 +72,7 @@ class Origin:
     scene_hash : str
         SHA-256 of the scene's values.
     level : str
-        Of the ladder, with its name.
+        Level of the ladder, with its name.
     mesh : str
         In words.
     program : str
@@ -116,6 +119,8 @@ class Superelement:
     supported: bool = False
     band: StiffnessBands | None = None
     origin: Origin = field(default_factory=Origin)
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         """Refuse what is no superelement.

@@ -25,6 +25,7 @@ from scipy import sparse
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import scaled_solve
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.elasticity.interfaces.constraints import ReferencePoint
 from fe_drivetrain.elasticity.mesh.facets import MEANS, face_weights
 from fe_drivetrain.elasticity.mesh.mesh import Mesh
@@ -212,6 +213,8 @@ class ClampedFoot:
     axes: Floats
     preload: Floats
     ground: float = float("inf")
+
+    __repr__ = short_repr
 
     @cached_property
     def _freely(self) -> Floats:

@@ -31,65 +31,15 @@ def read(path: str) -> dict[str, Any]:
     Tetrahedra of four nodes get straight edges. Returns "points" (n, 3), "cells" (ne, 10), and for
     each label "solid LABEL" (cells), "face LABEL" (k, 3) corners, or "nodes LABEL".
     """
-    import meshio
-
-    file = Path(path)
-    name, suffix = file.name, file.suffix.lower()
-    if suffix == ".inp" and re.search(rb"(?im)^\*include\b", file.read_bytes()):
-        raise InputError(f"{name} includes other files: write the mesh into one file")
-    try:
-        with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
-            warnings.simplefilter("ignore")
-            mesh = meshio.read(path, file_format=_FORMATS[suffix])
-    except MemoryError:
-        raise
-    except (Exception, SystemExit) as error:
-        said = "" if isinstance(error, SystemExit) else " ".join(str(error).split())
-        reason = said[:150].rstrip(".") or "it is damaged, or no such file"
-        raise InputError(
-            f"{name} cannot be read as a mesh ({reason}): write it again, whole, as "
-            f"{_FORMATS[suffix]}"
-        ) from None
-    points = np.asarray(mesh.points, dtype=float)
-    if points.ndim != 2 or points.shape[1] != 3 or not 4 <= len(points) <= MOST_NODES:
-        raise InputError(
-            f"{name} has nodes of shape {points.shape} but must have x, y and z of at most "
-            f"{MOST_NODES} nodes"
-        )
-    others = {
-        block.type
-        for block in mesh.cells
-        if block.type not in ("tetra", "tetra10", "vertex", "line", "line3", *_TRIANGLES)
-    }
-    solids = [k for k, block in enumerate(mesh.cells) if block.type in ("tetra", "tetra10")]
-    if others or not solids:
-        raise InputError(
-            f"{name} has elements of kind {', '.join(sorted(others)) or 'none'} but must have "
-            "tetrahedra of 4 or 10 nodes alone (faces and edges of them beside): mesh the part so"
-        )
+    name, mesh = Path(path).name, _opened(path)
+    points = _positions(name, mesh)
+    solids = _solid_blocks(name, mesh)
     blocks = [np.asarray(block.data, dtype=np.int64) for block in mesh.cells]
-    for block in blocks:
-        if block.size and (block.min() < 0 or block.max() >= len(points)):
-            raise InputError(
-                f"{name} has an element with node number {block.max()}, but there are "
-                f"{len(points)} nodes: write it again, whole"
-            )
+    _refuse_unknown_nodes(name, points, blocks)
     kinds = {mesh.cells[k].type for k in solids}
     if len(kinds) > 1:
         raise InputError(f"{name} has tetrahedra of 4 and of 10 nodes: mesh all of it with 10")
-    used = np.unique(np.concatenate([blocks[k].ravel() for k in solids]))
-    lost = used[~np.isfinite(points[used]).all(axis=1)]
-    if len(lost):
-        raise InputError(
-            f"{name}: {len(lost)} nodes have no finite position, the first node {lost[0]}: write "
-            "the mesh again"
-        )
-    far = used[np.abs(points[used]).max(axis=1) > _FARTHEST]
-    if len(far):
-        raise InputError(
-            f"{name}: node {far[0]} is at ({', '.join(f'{x:.3g}' for x in points[far[0]])}), but "
-            f"coordinates must be at most {_FARTHEST:g}: write the mesh again"
-        )
+    _refuse_lost_nodes(name, points, np.unique(np.concatenate([blocks[k].ravel() for k in solids])))
     first = np.cumsum([0, *(len(blocks[k]) for k in solids)])
     cells = np.concatenate([blocks[k] for k in solids])
     _refuse_doubles(name, points, cells)
@@ -107,6 +57,82 @@ def read(path: str) -> dict[str, Any]:
     if linear:
         points, cells = _with_middles(points, cells)
     return {"points": points, "cells": cells, "linear": np.array(linear), **found}
+
+
+def _opened(path: str) -> Any:
+    """The mesh as meshio has it."""
+    import meshio
+
+    file = Path(path)
+    name, suffix = file.name, file.suffix.lower()
+    if suffix == ".inp" and re.search(rb"(?im)^\*include\b", file.read_bytes()):
+        raise InputError(f"{name} includes other files: write the mesh into one file")
+    try:
+        with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
+            warnings.simplefilter("ignore")
+            return meshio.read(path, file_format=_FORMATS[suffix])
+    except MemoryError:
+        raise
+    except (Exception, SystemExit) as error:
+        said = "" if isinstance(error, SystemExit) else " ".join(str(error).split())
+        reason = said[:150].rstrip(".") or "it is damaged, or no such file"
+        raise InputError(
+            f"{name} cannot be read as a mesh ({reason}): write it again, whole, as "
+            f"{_FORMATS[suffix]}"
+        ) from None
+
+
+def _positions(name: str, mesh: Any) -> Any:
+    """Positions (n, 3) of the nodes."""
+    points = np.asarray(mesh.points, dtype=float)
+    if points.ndim != 2 or points.shape[1] != 3 or not 4 <= len(points) <= MOST_NODES:
+        raise InputError(
+            f"{name} has nodes of shape {points.shape} but must have x, y and z of at most "
+            f"{MOST_NODES} nodes"
+        )
+    return points
+
+
+def _solid_blocks(name: str, mesh: Any) -> list[int]:
+    """Numbers of the blocks of tetrahedra, beside which there are faces and edges alone."""
+    others = {
+        block.type
+        for block in mesh.cells
+        if block.type not in ("tetra", "tetra10", "vertex", "line", "line3", *_TRIANGLES)
+    }
+    solids = [k for k, block in enumerate(mesh.cells) if block.type in ("tetra", "tetra10")]
+    if others or not solids:
+        raise InputError(
+            f"{name} has elements of kind {', '.join(sorted(others)) or 'none'} but must have "
+            "tetrahedra of 4 or 10 nodes alone (faces and edges of them beside): mesh the part so"
+        )
+    return solids
+
+
+def _refuse_unknown_nodes(name: str, points: Any, blocks: list[Any]) -> None:
+    """Refuse elements with numbers of nodes that there are not."""
+    for block in blocks:
+        if block.size and (block.min() < 0 or block.max() >= len(points)):
+            raise InputError(
+                f"{name} has an element with node number {block.max()}, but there are "
+                f"{len(points)} nodes: write it again, whole"
+            )
+
+
+def _refuse_lost_nodes(name: str, points: Any, used: Any) -> None:
+    """Refuse nodes of elements that have no position, or one far away."""
+    lost = used[~np.isfinite(points[used]).all(axis=1)]
+    if len(lost):
+        raise InputError(
+            f"{name}: {len(lost)} nodes have no finite position, the first node {lost[0]}: write "
+            "the mesh again"
+        )
+    far = used[np.abs(points[used]).max(axis=1) > _FARTHEST]
+    if len(far):
+        raise InputError(
+            f"{name}: node {far[0]} is at ({', '.join(f'{x:.3g}' for x in points[far[0]])}), but "
+            f"coordinates must be at most {_FARTHEST:g}: write the mesh again"
+        )
 
 
 def _refuse_doubles(name: str, points: Any, cells: Any) -> None:

@@ -61,40 +61,96 @@ def cut(survey: dict[str, Any], request: dict[str, Any]) -> dict[str, list[int]]
         raise InputError(f"{name}: a face of the seat is held, too: hold another face")
     holes = bolt_holes(survey, request, base_tags) if request.get("bolts") else []
 
-    along, centre, radius = np.array(request["along"]), np.array(seat["centre"]), seat["radius"]
+    along, centre = np.array(request["along"]), np.array(seat["centre"])
     if request["centre"] is not None:  # of the bearing
         centre = np.array(request["centre"])
     _check_seat(name, seat, request, along, centre)
-    low, high = request["low"], request["high"]
-    start = centre + low * along
+    within = _between_sides(survey, seat, request, along, centre)
+    rings, groups = _washers(holes, request)
+    joint: list[int] = []
+    if request.get("bolted"):
+        joint = rings_round_bolts(survey, request["bolted"], common(), "a face between two solids")
+    cutters = [*rings, *joint]
+    heads = dict.fromkeys(hole["head face"] for hole in holes if _has_heads(request))
+    were = [(float(occ.getMass(2, r)), occ.getCenterOfMass(2, r)) for r in cutters]  # planes
+    objects = [*within, *((2, t) for t in (*cutters, *seat["tags"], *base_tags, *heads))]
+    bodies, pieces = _divided(survey, solids, objects, seat["radius"])
+    surface, now = set(outside()), all_placed()
+    was = {face["tag"]: face for face in survey["faces"]}
+    at = len(solids) + len(within) + len(cutters)
+    cut_faces = [*seat["tags"], *base_tags]
+    after = [
+        _left(was[tag], piece, surface, survey["size"], now)
+        for tag, piece in zip(cut_faces, pieces[at : at + len(cut_faces)], strict=True)
+    ]
+    n = len(seat["tags"])
+    on_seat, on_base = set().union(*after[:n]), set().union(*after[n:])
+    pieces_of_rings = [
+        became(ring, piece, survey["size"], now)
+        for ring, piece in zip(were, pieces[at - len(cutters) : at], strict=True)
+    ]
+    faces: dict[str, list[int]] = {"seat": sorted(on_seat)}
+    faces["bore"] = sorted(_between(on_seat, request, along, centre))
+    if request.get("bolts"):
+        on_ring = [tags & surface for tags in pieces_of_rings[: len(rings)]]
+        under = dict(zip(groups, on_ring, strict=True))
+        if request["bolts"]["hold"] != "clamped":
+            on_base &= set().union(*(r for group, r in under.items() if group.startswith("foot")))
+        if _has_heads(request):
+            faces |= {group: sorted(tags) for group, tags in under.items()}
+    if base_tags:
+        faces["base"] = sorted(on_base)
+    if joint:
+        faces |= open_joint(name, set().union(*pieces_of_rings[len(rings) :]))
+    _refuse_lost(name, faces, request, along)
+    drop_loose_faces()
+    gmsh.model.addPhysicalGroup(3, bodies, name="body")
+    for key, tags in faces.items():
+        if tags:
+            gmsh.model.addPhysicalGroup(2, tags, name=f"body.{key}")
+    return faces
+
+
+def _between_sides(
+    survey: dict[str, Any], seat: dict[str, Any], request: dict[str, Any], along: Any, centre: Any
+) -> list[tuple[int, int]]:
+    """What divides the seat at the sides of the bearing."""
+    occ, radius, low, high = gmsh.model.occ, seat["radius"], request["low"], request["high"]
+    start, across = centre + low * along, (high - low) * along
     reach = 1.1 * radius if seat["kind"] == "Sphere" else radius
     was = {face["tag"]: face for face in survey["faces"]}
     if any("described" in was[t] for t in seat["tags"]):
-        within = _pieces_at(seat["tags"], [start, start + (high - low) * along], along, reach)
-    else:
-        slab = occ.addCylinder(*start, *((high - low) * along), reach)
-        if seat["kind"] == "Sphere":
-            ball = occ.addSphere(*seat["centre"], radius)
-            ((_, slab),), _ = occ.intersect([(3, ball)], [(3, slab)])
-        within = [(3, slab)]
+        return _pieces_at(seat["tags"], [start, start + across], along, reach)
+    slab = occ.addCylinder(*start, *across, reach)
+    if seat["kind"] == "Sphere":
+        ball = occ.addSphere(*seat["centre"], radius)
+        ((_, slab),), _ = occ.intersect([(3, ball)], [(3, slab)])
+    return [(3, slab)]
+
+
+def _washers(
+    holes: Sequence[dict[str, Any]], request: dict[str, Any]
+) -> tuple[list[int], list[str]]:
+    """Rings under washers at the foot, and under heads, and the names of their faces."""
     rings, groups = [], []
     for hole in holes:
         for which in ("foot", "head") if _has_heads(request) else ("foot",):
             outer, inner = request["bolts"]["washer_diameter"] / 2, request["bolts"]["hole_radius"]
-            ring = annulus(hole[which], hole["axis"], inner, outer)
-            rings.append(ring)
+            rings.append(annulus(hole[which], hole["axis"], inner, outer))
             groups.append(f"{which} {hole['number']}")
-    joint: list[int] = []
-    if request.get("bolted"):
-        joint = rings_round_bolts(survey, request["bolted"], common(), "a face between two solids")
-    n_rings = len(rings)
-    rings += joint
-    objects = [(2, t) for t in seat["tags"]] + [(2, t) for t in base_tags]
-    heads = [hole["head face"] for hole in holes if _has_heads(request)]
-    objects += [(2, t) for t in dict.fromkeys(heads)]
-    were = [(float(occ.getMass(2, r)), occ.getCenterOfMass(2, r)) for r in rings]  # planes
+    return rings, groups
+
+
+def _divided(
+    survey: dict[str, Any],
+    solids: Sequence[tuple[int, int]],
+    objects: Sequence[tuple[int, int]],
+    radius: float,
+) -> tuple[list[int], list[list[tuple[int, int]]]]:
+    """Divide the solids, which stay whole; their tags, and what each thing has become."""
+    occ = gmsh.model.occ
     mass = math.fsum(occ.getMass(3, t) for _, t in solids)
-    _, pieces = occ.fragment(solids, [*within, *((2, r) for r in rings), *objects])
+    _, pieces = occ.fragment(solids, objects)
     occ.synchronize()
     bodies = [t for piece in pieces[: len(solids)] for d, t in piece if d == 3]
     left = math.fsum(occ.getMass(3, t) for t in bodies)
@@ -102,60 +158,40 @@ def cut(survey: dict[str, Any], request: dict[str, Any]) -> dict[str, list[int]]
     lost = not has_splines(survey) and abs(left / mass - 1) > VOLUME_TOLERANCE
     if len(bodies) != len(solids) or lost:
         raise InputError(
-            f"{name}: the solid does not stay whole where the bearing's sides cut its seat: the "
-            f"bearing overlaps it there, or the seat of radius {radius:.6g} mm is not round"
+            f"{survey['name']}: the solid does not stay whole where the bearing's sides cut its "
+            f"seat: the bearing overlaps it there, or the seat of radius {radius:.6g} mm is not "
+            "round"
         )
     gmsh.model.removeEntities([e for e in gmsh.model.getEntities(3) if e[1] not in bodies])
-    surface, now = set(outside()), all_placed()
-    n = len(seat["tags"])
-    at = len(solids) + len(within) + len(rings)
-    cut_faces = [*seat["tags"], *base_tags]
-    after = [
-        _left(was[tag], piece, surface, survey["size"], now)
-        for tag, piece in zip(cut_faces, pieces[at : at + len(cut_faces)], strict=True)
-    ]
-    on_seat, on_base = set().union(*after[:n]), set().union(*after[n:])
-    pieces_of_rings = [
-        became(ring, piece, survey["size"], now)
-        for ring, piece in zip(were, pieces[at - len(rings) : at], strict=True)
-    ]
-    on_ring = [tags & surface for tags in pieces_of_rings[:n_rings]]
-    faces: dict[str, list[int]] = {"seat": sorted(on_seat)}
+    return bodies, pieces
+
+
+def _between(on_seat: set[int], request: dict[str, Any], along: Any, centre: Any) -> list[int]:
+    """Faces of the seat between the sides of the bearing."""
     bore = []
     for t in on_seat:
-        x = (np.array(occ.getCenterOfMass(2, t)) - centre) @ along
-        if low < x < high:
+        x = (np.array(gmsh.model.occ.getCenterOfMass(2, t)) - centre) @ along
+        if request["low"] < x < request["high"]:
             bore.append(t)
-    faces["bore"] = sorted(bore)
-    if request.get("bolts"):
-        feet = [r for r, g in zip(on_ring, groups, strict=True) if g.startswith("foot")]
-        if request["bolts"]["hold"] != "clamped":
-            on_base &= set().union(*feet)
-        for under, group in zip(on_ring, groups, strict=True):
-            if _has_heads(request):
-                faces[group] = sorted(under)
-    if base_tags:
-        faces["base"] = sorted(on_base)
-    if joint:
-        faces |= open_joint(name, set().union(*pieces_of_rings[n_rings:]))
+    return bore
+
+
+def _refuse_lost(
+    name: str, faces: dict[str, list[int]], request: dict[str, Any], along: Any
+) -> None:
+    """Refuse a part of which a face is lost, or whose seat is narrower than the bearing."""
     for key, tags in faces.items():
         if not tags and key != "open":  # where bolts press all of the joint
             raise InputError(
                 f"{name}: nothing is left of the {key} where it is cut at the bearing's sides and "
                 "round the bolts: check the washers' diameter and the placement"
             )
-    width, length = high - low, _length(faces["bore"], along)
+    width, length = request["high"] - request["low"], _length(faces["bore"], along)
     if length < width * (1 - 1e-4):
         raise InputError(
             f"{name}: its seat covers {length:.6g} mm of the bearing's width of {width:.6g} mm, "
             "but must cover all of it: move the part, or make the bearing narrower"
         )
-    drop_loose_faces()
-    gmsh.model.addPhysicalGroup(3, bodies, name="body")
-    for key, tags in faces.items():
-        if tags:
-            gmsh.model.addPhysicalGroup(2, tags, name=f"body.{key}")
-    return faces
 
 
 def seat_of(survey: dict[str, Any], request: dict[str, Any]) -> dict[str, Any]:

@@ -62,16 +62,7 @@ def opened(
     gmsh.option.setNumber("Geometry.OCCAutoFix", 0)
     gmsh.option.setNumber("Geometry.OCCImportLabels", 1)
     _read(path)
-    faces, closed = [t for _, t in gmsh.model.getEntities(2)], ""
-    if faces and not gmsh.model.getEntities(3):
-        _refuse_many_faces(name, len(faces))
-        if not (closed := sewn(lambda: _read(path), sound=known is not None)):
-            open_at = free_edges(faces)
-            raise InputError(
-                f"{name} has {len(faces)} faces that enclose no solid"
-                f"{f'; {open_at}' if open_at else ''}: close the shell in the CAD program, and "
-                "save it as a solid"
-            )
+    closed = _closed(path, sound=known is not None)
     if not 1 <= (n := len(gmsh.model.getEntities(3))) <= MOST_SOLIDS:
         raise InputError(
             f"{name} has {n} solids but must have 1 to {MOST_SOLIDS}: save the "
@@ -81,13 +72,7 @@ def opened(
         keep(name, part)
     _refuse_many_faces(name, len(gmsh.model.getEntities(2)))
     box, before = _box(), counted()
-    if abs(before["volume"]) < _LEAST_VOLUME * math.dist(box[:3], box[3:]) ** 3:
-        x, y, z = ((a + b) / 2 for a, b in zip(box[:3], box[3:], strict=True))
-        raise InputError(
-            f"{name}: its solid round ({x:.4g}, {y:.4g}, {z:.4g}) mm encloses "
-            f"{before['volume']:.3g} mm^3, next to nothing for its size: it is flat, or its faces "
-            "cross; repair it in the CAD program"
-        )
+    _refuse_flat(name, box, before["volume"])
     colours = {t: _colour(t) for _, t in gmsh.model.getEntities(2)}
     labels = _labels(path)
 
@@ -102,18 +87,7 @@ def opened(
     kept = after["faces"] == before["faces"]
     if after["solids"] > 1:
         colours = glue(name, math.dist(_box()[:3], _box()[3:]), colours if kept else {})
-    faces = [face_data(t) for t in outside()]
-    for number, face in enumerate(faces):
-        face["colour"] = colours.get(face["tag"], "") if kept else ""
-        same = (
-            kept
-            and len(labels) == len(faces)
-            and all(
-                _SURFACES.get(kind, f["kind"]) == f["kind"]
-                for (_, kind), f in zip(labels, faces, strict=True)
-            )
-        )
-        face["label"] = labels[number][0] if same else ""
+    faces = _named_faces(labels, colours, kept)
     return {
         "name": name,
         "before": before,
@@ -125,6 +99,52 @@ def opened(
         "faces": faces,
         "size": math.dist(_box()[:3], _box()[3:]),
     }
+
+
+def _closed(path: str, sound: bool) -> str:
+    """How faces without a solid were sewn to one; empty where there is a solid."""
+    name, faces = Path(path).name, [t for _, t in gmsh.model.getEntities(2)]
+    if not faces or gmsh.model.getEntities(3):
+        return ""
+    _refuse_many_faces(name, len(faces))
+    if closed := sewn(lambda: _read(path), sound=sound):
+        return closed
+    open_at = free_edges(faces)
+    raise InputError(
+        f"{name} has {len(faces)} faces that enclose no solid"
+        f"{f'; {open_at}' if open_at else ''}: close the shell in the CAD program, and "
+        "save it as a solid"
+    )
+
+
+def _refuse_flat(name: str, box: Sequence[float], volume: float) -> None:
+    """Refuse a solid that encloses next to nothing."""
+    if abs(volume) < _LEAST_VOLUME * math.dist(box[:3], box[3:]) ** 3:
+        x, y, z = ((a + b) / 2 for a, b in zip(box[:3], box[3:], strict=True))
+        raise InputError(
+            f"{name}: its solid round ({x:.4g}, {y:.4g}, {z:.4g}) mm encloses "
+            f"{volume:.3g} mm^3, next to nothing for its size: it is flat, or its faces "
+            "cross; repair it in the CAD program"
+        )
+
+
+def _named_faces(
+    labels: Sequence[tuple[str, str]], colours: Mapping[int, str], kept: bool
+) -> list[dict[str, Any]]:
+    """Faces of the outside, with labels and colours where healing has kept them."""
+    faces = [face_data(t) for t in outside()]
+    same = (
+        kept
+        and len(labels) == len(faces)
+        and all(
+            _SURFACES.get(kind, f["kind"]) == f["kind"]
+            for (_, kind), f in zip(labels, faces, strict=True)
+        )
+    )
+    for number, face in enumerate(faces):
+        face["colour"] = colours.get(face["tag"], "") if kept else ""
+        face["label"] = labels[number][0] if same else ""
+    return faces
 
 
 def _read(path: str) -> None:

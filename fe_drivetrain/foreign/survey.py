@@ -11,10 +11,11 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.elasticity.mesh.facets import facet_points
 from fe_drivetrain.elasticity.mesh.measures import enclosed_volume, mass_moments, scaled_jacobians
 from fe_drivetrain.elasticity.mesh.mesh import Mesh, boundary
-from fe_drivetrain.foreign.holes import cylinders, planes
+from fe_drivetrain.foreign.holes import Cylinder, cylinders, planes
 from fe_drivetrain.foreign.known_healing import read_step
 from fe_drivetrain.foreign.picking import Surface
 from fe_drivetrain.foreign.reading import read_in_process
@@ -126,6 +127,10 @@ class Survey(NamedTuple):
     bores: tuple[Bore, ...]
     planes: tuple[Plane, ...]
 
+    def __repr__(self) -> str:
+        """One line, without the points of its surface."""
+        return short_repr(self)
+
 
 def surveyed(path: str | Path) -> Survey:
     """Read a file, and describe what a scene may pick of it.
@@ -157,28 +162,62 @@ def surveyed(path: str | Path) -> Survey:
 def _of_step(path: Path) -> Survey:
     found = read_step("look", path, {"smallest_detail": 0.0})
     data = json.loads(str(found["survey"]))
+    volume, area, apart = _size(found, data["after"])
+    bores, bore_marks = _bore_lines(data)
+    planes = sorted(_planes(data["faces"]), key=lambda p: -p["area"])
+    flat, plane_marks = _plane_lines(planes)
+    lines = [*_solid_lines(path, found, data, (volume, area, apart)), *bores, *flat]
+    if data["seats"] and planes:
+        lines += _proposal(path, data["seats"], planes)
+    return Survey(
+        "\n".join(lines) + "\n",
+        found["points"],
+        found["triangles"],
+        (*bore_marks, *plane_marks),
+        "mm",
+        float(volume),
+        apart,
+        tuple(_bore(f"S{k}", seat) for k, seat in enumerate(data["seats"], 1)),
+        tuple(_plane(f"P{k}", plane) for k, plane in enumerate(planes[:_MOST_ROWS], 1)),
+    )
+
+
+def _size(found: Mapping[str, Any], after: Mapping[str, Any]) -> tuple[float, float, float | None]:
+    """Volume [mm^3] and area [mm^2], and how far OpenCASCADE's volume is from it with splines.
+
+    Of splines OpenCASCADE's integrals are inexact, so that curved facets enclose the volume.
+    """
+    if "curved_triangles" not in found:
+        return after["volume"], after["area"], None
+    curved = found["curved_points"], found["curved_triangles"]
+    volume, area = enclosed_volume(*curved), facet_points(*curved).areas.sum()
+    return volume, area, float(abs(volume - after["volume"]))
+
+
+def _solid_lines(
+    path: Path,
+    found: Mapping[str, Any],
+    data: Mapping[str, Any],
+    size: tuple[float, float, float | None],
+) -> list[str]:
+    """What the file holds, before and after healing, and its solids."""
     before, after = data["before"], data["after"]
     low, high = np.reshape(data["box"], (2, 3))
     if len(found["triangles"]):
         low, high = found["points"].min(axis=0), found["points"].max(axis=0)
-    rows: list[tuple[str, ...]]
-    volume, area, apart = after["volume"], after["area"], None
-    size = f"{volume / 1e6:.6g} dm^3"
-    splines = "curved_triangles" in found  # of which OpenCASCADE's integrals are inexact
-    if splines:
-        curved = found["curved_points"], found["curved_triangles"]
-        volume, area = enclosed_volume(*curved), facet_points(*curved).areas.sum()
-        apart = float(abs(volume - after["volume"]))
-        size = f"{volume / 1e6:.5g} +- {apart / 1e6:.2g} dm^3"
+    volume, area, apart = size
+    large = f"{volume / 1e6:.6g} dm^3"
+    if apart is not None:
+        large = f"{volume / 1e6:.5g} +- {apart / 1e6:.2g} dm^3"
     lines = [
         f"{path.name}: {after['words']}, {after['faces']} faces, {after['edges']} edges, "
-        f"{size}, {area / 1e6:.4g} m^2",
+        f"{large}, {area / 1e6:.4g} m^2",
         f"box: {_xyz(low)} to {_xyz(high)} mm",
         data["healing"],
         f"before healing: {before['words']}, {before['faces']} faces, "
         f"{before['volume'] / 1e6:.6g} dm^3",
     ]
-    if splines:
+    if apart is not None:
         lines[-1] += f", after it {after['volume'] / 1e6:.6g} dm^3 in the same way"
         lines.append(
             "faces are splines: the volume is that within curved facets, and its band how far "
@@ -198,9 +237,13 @@ def _of_step(path: Path) -> Survey:
         lines += _table(rows, after["solids"])
     if "unmeshed" in data:
         lines.append(f"gmsh cannot mesh it: {data['unmeshed']}")
-    lines += ["", "Bores, the widest first; one of them is the seat [mm]:"]
+    return lines
+
+
+def _bore_lines(data: Mapping[str, Any]) -> tuple[list[str], list[Mark]]:
+    """Bores of a STEP file, which may be seats, and marks at them."""
     marks: list[Mark] = []
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for number, seat in enumerate(data["seats"][:_MOST_ROWS], 1):
         x, y, z = (seat["length"] / 2 * np.array(seat["axis"])).tolist()
         marks.append(Mark(f"S{number}", tuple(seat["centre"]), (x, y, z)))
@@ -217,12 +260,16 @@ def _of_step(path: Path) -> Survey:
                 *_tags(seat),
             )
         )
+    lines = ["", "Bores, the widest first; one of them is the seat [mm]:"]
     lines += _table(rows, len(data["seats"]))
     almost = [face for face in data["faces"] if "nearly" in face]
-    lines += [f"  no bore: {nearly(face)}" for face in almost[:_MOST_ROWS]]
-    planes = sorted(_planes(data["faces"]), key=lambda p: -p["area"])
-    lines += ["", "Planes, the largest first; the part is held by one or more of them [mm]:"]
-    rows = []
+    return lines + [f"  no bore: {nearly(face)}" for face in almost[:_MOST_ROWS]], marks
+
+
+def _plane_lines(planes: Sequence[Mapping[str, Any]]) -> tuple[list[str], list[Mark]]:
+    """Planes of a STEP file, which may hold the part, and marks at them."""
+    marks: list[Mark] = []
+    rows: list[tuple[str, ...]] = []
     for number, plane in enumerate(planes[:_MOST_ROWS], 1):
         marks.append(Mark(f"P{number}", tuple(plane["middle"]), normal=tuple(plane["normal"])))
         rows.append(
@@ -234,20 +281,8 @@ def _of_step(path: Path) -> Survey:
                 *_tags(plane),
             )
         )
-    lines += _table(rows, len(planes))
-    if data["seats"] and planes:
-        lines += _proposal(path, data["seats"], planes)
-    return Survey(
-        "\n".join(lines) + "\n",
-        found["points"],
-        found["triangles"],
-        tuple(marks),
-        "mm",
-        float(volume),
-        apart,
-        tuple(_bore(f"S{k}", seat) for k, seat in enumerate(data["seats"], 1)),
-        tuple(_plane(f"P{k}", plane) for k, plane in enumerate(planes[:_MOST_ROWS], 1)),
-    )
+    title = "Planes, the largest first; the part is held by one or more of them [mm]:"
+    return ["", title, *_table(rows, len(planes))], marks
 
 
 def _bore(name: str, seat: Mapping[str, Any]) -> Bore:
@@ -323,41 +358,18 @@ def _of_mesh(path: Path) -> Survey:
         f"worst scaled Jacobian: {worst:.3g}" + (": elements fold over" if worst <= 0 else ""),
     ]
     surface = Surface(path.name, points, outside, {})
-    marks: list[Mark] = []
-    lines += ["", "Cylinders, holes first, the widest first, in the file's unit:"]
-    rows: list[tuple[str, ...]] = []
-    round_faces = cylinders(surface) if sound else []
-    for number, one in enumerate(round_faces[:_MOST_ROWS], 1):
-        x, y, z = (one.length / 2 * one.axis).tolist()
-        marks.append(Mark(f"S{number}", _triple(one.centre), (x, y, z)))
-        rows.append(
-            (
-                f"S{number}",
-                "hole" if one.hole else "outside",
-                f"radius: {one.radius:.7g}",
-                f"axis: {_list(one.axis)}",
-                f"point: {_list(one.centre)}",
-                f"length {one.length:.6g}",
-            )
-        )
-    lines += _table(rows, len(round_faces))
-    lines += ["", "Planes, the largest first; the part is held by one or more of them:"]
-    rows, flat = [], planes(surface) if sound else []
-    for number, (size, middle, normal) in enumerate(flat[:_MOST_ROWS], 1):
-        marks.append(Mark(f"P{number}", _triple(middle), normal=_triple(normal)))
-        rows.append(
-            (
-                f"P{number}",
-                f"area {size:.4g}",
-                f"point: {_list(middle)}",
-                f"normal: {_list(normal)}",
-            )
-        )
-    lines += [*_table(rows, len(flat)), ""]
+    round_faces, flat = (cylinders(surface), planes(surface)) if sound else ([], [])
+    lines += [*_cylinder_lines(round_faces), *_flat_lines(flat), ""]
     for what, prefix in (("solids", "solid "), ("faces", "face "), ("sets of nodes", "nodes ")):
         names = sorted(key.removeprefix(prefix) for key in found if key.startswith(prefix))
         more = f" and {len(names) - _MOST_ROWS} more" if len(names) > _MOST_ROWS else ""
         lines.append(f"{what} by label: {', '.join(names[:_MOST_ROWS]) or 'none'}{more}")
+    bores, faces = _bores_of(round_faces), _planes_of(flat)
+    marks = [
+        Mark(bore.name, bore.centre, _triple(one.length / 2 * one.axis))
+        for bore, one in zip(bores[:_MOST_ROWS], round_faces, strict=False)
+    ]
+    marks += [Mark(face.name, face.point, normal=face.normal) for face in faces]
     return Survey(
         "\n".join(lines) + "\n",
         points,
@@ -366,22 +378,60 @@ def _of_mesh(path: Path) -> Survey:
         "",
         volume,
         None,
-        tuple(
-            Bore(
-                f"S{number}",
-                "cylinder",
-                one.hole,
-                float(one.radius),
-                float(one.length),
-                _triple(one.centre),
-                _triple(one.axis),
-            )
-            for number, one in enumerate(round_faces, 1)
-        ),
-        tuple(
-            Plane(f"P{number}", float(size), _triple(middle), _triple(normal))
-            for number, (size, middle, normal) in enumerate(flat[:_MOST_ROWS], 1)
-        ),
+        bores,
+        faces,
+    )
+
+
+def _cylinder_lines(round_faces: Sequence[Cylinder]) -> list[str]:
+    rows = [
+        (
+            f"S{number}",
+            "hole" if one.hole else "outside",
+            f"radius: {one.radius:.7g}",
+            f"axis: {_list(one.axis)}",
+            f"point: {_list(one.centre)}",
+            f"length {one.length:.6g}",
+        )
+        for number, one in enumerate(round_faces[:_MOST_ROWS], 1)
+    ]
+    title = "Cylinders, holes first, the widest first, in the file's unit:"
+    return ["", title, *_table(rows, len(round_faces))]
+
+
+def _flat_lines(flat: Sequence[tuple[float, Floats, Floats]]) -> list[str]:
+    rows = [
+        (
+            f"P{number}",
+            f"area {size:.4g}",
+            f"point: {_list(middle)}",
+            f"normal: {_list(normal)}",
+        )
+        for number, (size, middle, normal) in enumerate(flat[:_MOST_ROWS], 1)
+    ]
+    title = "Planes, the largest first; the part is held by one or more of them:"
+    return ["", title, *_table(rows, len(flat))]
+
+
+def _bores_of(round_faces: Sequence[Cylinder]) -> tuple[Bore, ...]:
+    return tuple(
+        Bore(
+            f"S{number}",
+            "cylinder",
+            one.hole,
+            float(one.radius),
+            float(one.length),
+            _triple(one.centre),
+            _triple(one.axis),
+        )
+        for number, one in enumerate(round_faces, 1)
+    )
+
+
+def _planes_of(flat: Sequence[tuple[float, Floats, Floats]]) -> tuple[Plane, ...]:
+    return tuple(
+        Plane(f"P{number}", float(size), _triple(middle), _triple(normal))
+        for number, (size, middle, normal) in enumerate(flat[:_MOST_ROWS], 1)
     )
 
 

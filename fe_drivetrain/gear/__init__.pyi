@@ -30,7 +30,7 @@ from .involute import Rack as Rack
 from .involute import meshing_without_backlash as meshing_without_backlash
 from .iso import IsoStiffness as IsoStiffness
 from .iso import blank_factor as blank_factor
-from .iso import iso_stiffness as iso_stiffness
+from .iso import iso_gear_stiffness as iso_gear_stiffness
 from .iso import rack_factor as rack_factor
 from .iso import theoretical_stiffness as theoretical_stiffness
 from .load_distribution import Loaded as Loaded

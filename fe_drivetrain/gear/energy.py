@@ -14,6 +14,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.gear.flank_stress import half_width, reduced_modulus
 from fe_drivetrain.gear.involute import Gear, Pair
 from fe_drivetrain.gear.pair_stiffness import Law
@@ -71,6 +72,8 @@ class ToothCompliance:
     shear: Floats
     axial: Floats
     body: Floats
+
+    __repr__ = short_repr
 
     @property
     def total(self) -> Floats:

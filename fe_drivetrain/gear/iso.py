@@ -127,7 +127,7 @@ def rack_factor(gear: Gear) -> float:
     return height * (1.0 - 0.02 * (20.0 - degrees(gear.pressure_angle)))
 
 
-def iso_stiffness(
+def iso_gear_stiffness(
     pair: Pair,
     specific_load: float | None = None,
     blank: float = 1.0,

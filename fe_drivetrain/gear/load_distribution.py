@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.gear.slices import Contacts, SlicedMesh, contacts
 
 
@@ -36,6 +37,8 @@ class Loaded:
     forces: Floats
     slices: int
     converged: bool
+
+    __repr__ = short_repr
 
     @property
     def over_face(self) -> Floats:
@@ -158,6 +161,8 @@ class Period:
     over_face: Floats
     wrenches: Floats
     converged: bool
+
+    __repr__ = short_repr
 
     @property
     def face_factor(self) -> float:

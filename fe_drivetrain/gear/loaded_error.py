@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.gear.load_distribution import loaded
 from fe_drivetrain.gear.meshes import StiffnessTable
 from fe_drivetrain.gear.slices import SlicedMesh
@@ -41,6 +42,8 @@ class TransmissionError:
     static: Floats
     stiffness: StiffnessTable
     unloaded: Floats
+
+    __repr__ = short_repr
 
     @property
     def ripple(self) -> float:

@@ -15,6 +15,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.gear.involute import Pair
 from fe_drivetrain.gear.pair_stiffness import Law
 
@@ -37,6 +38,8 @@ class MeshStiffness:
     contact_ratio: float
     cosines: Floats
     sines: Floats
+
+    __repr__ = short_repr
 
     def at(self, phase: float | Floats) -> Floats:
         """Stiffness.
@@ -112,6 +115,8 @@ class StiffnessTable:
 
     values: Floats
     contact_ratio: float
+
+    __repr__ = short_repr
 
     @property
     def mean(self) -> float:

@@ -20,6 +20,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.gear.involute import Pair
 from fe_drivetrain.gear.pair_stiffness import Law
 
@@ -164,6 +165,8 @@ class Contacts:
     slice: Ints
     tooth: Ints
     driving: Bools
+
+    __repr__ = short_repr
 
 
 def contacts(mesh: SlicedMesh, phase: float) -> Contacts:

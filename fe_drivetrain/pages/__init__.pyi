@@ -1,4 +1,4 @@
-from .advice import QUICK_BAND as QUICK_BAND
-from .advice import show_advise as show_advise
+from .advise import QUICK_BAND as QUICK_BAND
+from .advise import show_advise as show_advise
 from .uncertainty import bands as bands
 from .uncertainty import show_uncertainty as show_uncertainty

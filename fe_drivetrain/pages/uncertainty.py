@@ -5,27 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-import numpy as np
-
 from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.drivetrain_file.scene import Spread
 from fe_drivetrain.report.charts import chart
 from fe_drivetrain.report.results import Cell, Chart, Section, Table, Text
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.run import Run
-from fe_drivetrain.shafts.fidelity.quantities import Number
-from fe_drivetrain.shafts.uncertainty.input_study import Study, result_at
-from fe_drivetrain.shafts.uncertainty.numbers import first_order, half_band, relative_spread
-from fe_drivetrain.shafts.uncertainty.sampling import SHARE, Samples, distribution, nominal_value
-from fe_drivetrain.studies.input_uncertainty import (
-    UncertaintyResult,
-    charted,
-    half_bands,
-    horizontal_bars,
-    sample_count,
-)
+from fe_drivetrain.shafts.uncertainty.input_study import result_at
+from fe_drivetrain.shafts.uncertainty.sampling import SHARE
+from fe_drivetrain.studies.input_effects import InputEffects, QuantityEffects, Scatter
+from fe_drivetrain.studies.input_uncertainty import UncertaintyResult, half_bands, horizontal_bars
 
-_BINS = 16
 _LEAST = 1e-4  # smaller numbers in tables are round-off
 _SEEN = 0.01  # smallest total Sobol index in the table
 
@@ -36,27 +26,32 @@ def show_uncertainty(run: Run, page: Page, result: UncertaintyResult) -> None:
     Parameters
     ----------
     run : Run
-        Not used: the page needs no files.
+        Not used: the page has no pictures.
     page : Page
         Takes charts and tables.
     result : UncertaintyResult
         What was found.
     """
-    found = result.study
-    page.sections += [bands(found), inputs(found), slopes(found), variance(found)]
+    found = result.effects
+    page.sections += [bands(found), inputs(found), slopes(found), _variance(found)]
     if found.advices:
-        page.sections.append(ladder(found))
+        page.sections.append(_ladder(found))
 
 
-def inputs(found: Study) -> Section:
+def inputs(found: InputEffects) -> Section:
     """The uncertain values and their distributions."""
-    rows: list[list[Cell]] = []
-    for k, (key, spread) in enumerate(found.scene.uncertainty.items(), 1):
-        nominal = nominal_value(found.scene, key)
-        known = distribution(spread, nominal)
-        low, high = (float(known.ppf(q)) for q in ((1 - SHARE) / 2, (1 + SHARE) / 2))
-        share = _short(100 * relative_spread(spread))
-        rows.append([k, key, nominal, _words(spread), low, high, share])
+    rows: list[list[Cell]] = [
+        [
+            k,
+            value.key,
+            value.nominal,
+            _words(value.spread),
+            value.low,
+            value.high,
+            _short(100 * value.deviation),
+        ]
+        for k, value in enumerate(found.values, 1)
+    ]
     table = Table(
         caption="Uncertain values",
         columns=[
@@ -76,29 +71,10 @@ def inputs(found: Study) -> Section:
     return Section(title="Uncertain values", items=items)
 
 
-def bands(found: Study) -> Section:
+def bands(found: InputEffects) -> Section:
     """The band of every quantity, next to the error of the model level."""
-    rows: list[list[Cell]] = []
-    for number in found.numbers:
-        samples, error = found.samples[number.name], found.errors[number.name]
-        band, size = samples.band(), abs(samples.nominal)
-        half = half_band(samples)
-        sure = math.hypot(band.low_error, band.high_error) / 2 / size
-        soft = found.soft_samples.get(number.name)
-        rows.append(
-            [
-                number.name,
-                number.unit,
-                *(_short(v, 5) for v in (samples.nominal, band.low, band.high)),
-                _short(100 * half),
-                _short(100 * sure, 2),
-                None if soft is None else _short(100 * half_band(soft)),
-                _small(100 * error.share, 2),
-                "inputs" if half > error.share else "model",
-            ]
-        )
     table = Table(
-        caption=f"Bands of {100 * SHARE:g} % from {sample_count(found)} samples at level "
+        caption=f"Bands of {100 * SHARE:g} % from {found.samples} samples at level "
         f"{found.level}, next to the error of the model",
         columns=[
             "quantity",
@@ -112,67 +88,80 @@ def bands(found: Study) -> Section:
             "model: error [%]",
             "larger",
         ],
-        rows=rows,
+        rows=[_band_row(one) for one in found.quantities],
     )
     sources: dict[str, list[str]] = {}
-    for number in found.numbers:
-        sources.setdefault(found.errors[number.name].source, []).append(number.name)
+    for one in found.quantities:
+        sources.setdefault(one.error.source, []).append(one.name)
     origins = "; ".join(f"for {', '.join(names)}: {source}" for source, names in sources.items())
     items: list[Table | Text | Chart] = [half_bands(found), table, Text(text=_BAND)]
     items.append(Text(text=f"The model error is, {origins}."))
-    items += [_histogram(n, found.samples[n.name]) for n in charted(found) if _varies(found, n)]
+    items += [_histogram(one, one.scatter) for one in found.charted if one.scatter]
     return Section(title="Uncertainty of the results", items=items)
 
 
-def slopes(found: Study) -> Section:
+def _band_row(one: QuantityEffects) -> list[Cell]:
+    return [
+        one.name,
+        one.unit,
+        *(_short(value, 5) for value in (one.nominal, one.band.low, one.band.high)),
+        _short(100 * one.half),
+        _short(100 * one.half_error, 2),
+        None if one.soft_half is None else _short(100 * one.soft_half),
+        _small(100 * one.error.share, 2),
+        "inputs" if one.half > one.error.share else "model",
+    ]
+
+
+def slopes(found: InputEffects) -> Section:
     """First-order sensitivities of every quantity."""
-    keys = list(found.scene.uncertainty)
     table = Table(
         caption="Relative change of each quantity per relative change of each value; columns are "
         "numbered as the uncertain values",
-        columns=["quantity", *_numbered(keys)],
+        columns=["quantity", *_numbered(found.keys)],
         rows=[
-            [n.name, *(_small(found.slopes[n.name][key]) for key in keys)] for n in found.numbers
+            [one.name, *(_small(one.sensitivities[key]) for key in found.keys)]
+            for one in found.quantities
         ],
     )
-    items: list[Table | Text | Chart] = [
-        _tornado(found, number) for number in charted(found) if _varies(found, number)
-    ]
+    items: list[Table | Text | Chart] = [_tornado(one) for one in found.charted if one.scatter]
     return Section(title="Influence of each value", items=[*items, table, Text(text=_SLOPE)])
 
 
-def variance(found: Study) -> Section:
+def _variance(found: InputEffects) -> Section:
     """Shares of the variance: of a linear fit to the samples, and Sobol indices if requested."""
-    varying = [n for n in found.numbers if _varies(found, n)]
-    keys = list(found.scene.uncertainty)
-    rows: list[list[Cell]] = []
-    for number in varying:
-        samples = found.samples[number.name]
-        first = first_order(found, number)
-        rows.append(
-            [
-                number.name,
-                _short(100 * float(samples.values.std(ddof=1)) / abs(samples.nominal)),
-                _short(100 * first),
-                _short(samples.linear_share, 4),
-                *(round(100 * share, 1) for share in samples.contributions().tolist()),
-            ]
-        )
+    rows: list[list[Cell]] = [
+        [
+            one.name,
+            _short(100 * one.scatter.deviation),
+            _short(100 * one.scatter.first_order),
+            _short(one.scatter.linear_share, 4),
+            *(round(100 * share, 1) for share in one.scatter.contributions.tolist()),
+        ]
+        for one in found.quantities
+        if one.scatter
+    ]
     items: list[Table | Text] = [
         Table(
             caption="Standard deviation of the samples and of first order, share of the variance "
             "that a linear fit to the samples explains (R²), and the contribution of each value "
             "[%]; columns are numbered as the uncertain values",
-            columns=["quantity", "sampled [%]", "first order [%]", "R² [-]", *_numbered(keys)],
+            columns=[
+                "quantity",
+                "sampled [%]",
+                "first order [%]",
+                "R² [-]",
+                *_numbered(found.keys),
+            ],
             rows=rows,
         )
     ]
-    if found.shares:
-        items += [_sobol(found, varying), Text(text=_SOBOL)]
+    if any(one.shares for one in found.quantities):
+        items += [_sobol(found), Text(text=_SOBOL)]
     return Section(title="Contributions to the variance", items=items)
 
 
-def ladder(found: Study) -> Section:
+def _ladder(found: InputEffects) -> Section:
     """The errors of the model levels, and the level that was chosen."""
     rows: list[list[Cell]] = []
     for advice in found.advices:
@@ -228,7 +217,7 @@ _SURFACE = (
 )
 
 
-def _surfaces(found: Study) -> Table:
+def _surfaces(found: InputEffects) -> Table:
     return Table(
         caption="Bearing units as response surfaces",
         columns=[
@@ -253,23 +242,17 @@ def _surfaces(found: Study) -> Table:
     )
 
 
-def _tornado(found: Study, number: Number) -> Chart:
-    moved = {
-        key: 100 * found.slopes[number.name][key] * relative_spread(spread)
-        for key, spread in found.scene.uncertainty.items()
-    }
-    order = sorted(moved, key=lambda key: abs(moved[key]))
+def _tornado(one: QuantityEffects) -> Chart:
     return horizontal_bars(
-        f"Change of {number.name} for one standard deviation of each value",
-        {"": [moved[key] for key in order]},
-        order,
+        f"Change of {one.name} for one standard deviation of each value",
+        {"": [100 * change for change in one.changes.values()]},
+        list(one.changes),
         "change [%]",
     )
 
 
-def _histogram(number: Number, samples: Samples) -> Chart:
-    counts, edges = np.histogram(samples.values, bins=_BINS)
-    band = samples.band()
+def _histogram(one: QuantityEffects, scatter: Scatter) -> Chart:
+    counts, edges = scatter.counts, scatter.edges
     bars = {
         "type": "bar",
         "name": "samples",
@@ -288,37 +271,32 @@ def _histogram(number: Number, samples: Samples) -> Chart:
             "line": {"dash": dash},
         }
         for name, x, dash in (
-            ("nominal", samples.nominal, "solid"),
-            ("2.5 %", band.low, "dash"),
-            ("97.5 %", band.high, "dash"),
+            ("nominal", one.nominal, "solid"),
+            ("2.5 %", one.band.low, "dash"),
+            ("97.5 %", one.band.high, "dash"),
         )
     ]
     return chart(
-        f"{number.name} over the samples",
-        [bars, *lines],
-        x=f"{number.name} [{number.unit}]",
-        y="samples",
+        f"{one.name} over the samples", [bars, *lines], x=f"{one.name} [{one.unit}]", y="samples"
     )
 
 
-def _sobol(found: Study, varying: Sequence[Number]) -> Table:
+def _sobol(found: InputEffects) -> Table:
     rows: list[list[Cell]] = []
-    for number in varying:
-        shares = found.shares[number.name]
+    for one in found.quantities:
+        shares = one.shares
+        if shares is None or not one.scatter:
+            continue
         for k, key in enumerate(shares.keys):
             if shares.total[k] < _SEEN:
                 continue
             values = (shares.first, shares.first_error, shares.total, shares.total_error)
-            rows.append([number.name, key, *(_small(float(v[k])) for v in values)])
+            rows.append([one.name, key, *(_small(float(v[k])) for v in values)])
     return Table(
         caption=f"Sobol indices (shares of the variance) with a total of at least {_SEEN:g}",
         columns=["quantity", "value", "first [-]", "±", "total [-]", "± "],
         rows=rows,
     )
-
-
-def _varies(found: Study, number: Number) -> bool:
-    return found.samples[number.name].varies
 
 
 def _words(spread: Spread) -> str:

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.arrays import Floats, rounded
 from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.plots.style import LEGEND, PALETTE, styled
 
-LEAST = 1e-6
+LEAST = 1e-8
 """Relative errors that are smaller are drawn here: a logarithmic axis has no zero."""
 
 _NOTHING = 1e-9  # share of the diagonal: round-off, of what symmetry makes zero
@@ -139,46 +139,88 @@ def stiffness_map(points: Sequence[str], stiffness: Floats, title: str = "") -> 
             f"the stiffness has shape {K.shape} for {n} points: give {6 * n} rows and columns"
         )
     before = [f"{point} " if n > 1 else "" for point in points]
-    rows = [f"{point}{force}" for point in before for force in FORCES]
-    columns = [f"{point}{motion}" for point in before for motion in MOTIONS]
-    roots = np.sqrt(np.clip(K.diagonal(), 0.0, None))
-    sizes = np.outer(roots, roots)
-    share = np.divide(np.abs(K), sizes, out=np.zeros_like(K), where=sizes > 0)
+    share = _coupling(K)
     block = np.kron([[0, 1], [1, 2]], np.ones((3, 3), dtype=int))
     units = np.array(["N/m", "N", "N m/rad"])[np.tile(block, (n, n))]
-    written = [
-        [
-            "0" if coupling < _NOTHING else f"{value:.3g}"
-            for value, coupling in zip(*row, strict=True)
-        ]
-        for row in zip(K, share, strict=True)
-    ]
     trace: dict[str, Any] = {
         "type": "heatmap",
-        "x": columns,
-        "y": rows,
+        "x": [f"{point}{motion}" for point in before for motion in MOTIONS],
+        "y": [f"{point}{force}" for point in before for force in FORCES],
         "z": share.tolist(),
         "zmin": 0.0,
         "zmax": 1.0,
-        "text": written,
+        "text": _written(K, share),
         "customdata": units.tolist(),
         "hovertemplate": "%{y} to %{x}: %{text} %{customdata}<extra></extra>",
         "colorbar": {"title": {"text": "coupling", "side": "right"}, "thickness": 12},
     }
     if 6 * n <= _READABLE:
         trace["texttemplate"] = "%{text}"
-    layout = {
-        **_titled(title),
-        "xaxis": {"title": {"text": "motion"}, "constrain": "domain"},
-        "yaxis": {
-            "title": {"text": "force"},
-            "autorange": "reversed",
-            "scaleanchor": "x",
-            "constrain": "domain",
-        },
-        "height": 560,
+    return figure([trace], {**_titled(title), **_MATRIX_LAYOUT})
+
+
+_MATRIX_LAYOUT = {
+    "xaxis": {"title": {"text": "motion"}, "constrain": "domain"},
+    "yaxis": {
+        "title": {"text": "force"},
+        "autorange": "reversed",
+        "scaleanchor": "x",
+        "constrain": "domain",
+    },
+    "height": 560,
+}
+
+
+def _coupling(stiffness: Floats) -> Floats:
+    """Each entry over the root of the product of its two diagonal entries."""
+    roots = np.sqrt(np.clip(stiffness.diagonal(), 0.0, None))
+    sizes = np.outer(roots, roots)
+    share = np.zeros_like(stiffness)
+    np.divide(np.abs(stiffness), sizes, out=share, where=sizes > 0)
+    return share
+
+
+def _written(stiffness: Floats, coupling: Floats) -> list[list[str]]:
+    """Entries as text, round-off as zero."""
+    return [
+        ["0" if share < _NOTHING else f"{value:.3g}" for value, share in zip(*row, strict=True)]
+        for row in zip(stiffness, coupling, strict=True)
+    ]
+
+
+def error_traces(
+    names: Sequence[str],
+    seconds: Sequence[float],
+    errors: Sequence[float],
+    tolerance: float,
+    chosen: int | None = None,
+) -> list[dict[str, Any]]:
+    """Traces of `error_against_time`, for a figure of one's own; the arguments are its.
+
+    Returns
+    -------
+    list of dict
+        A point for each model whose error is known, and the tolerance as a line.
+    """
+    known = [k for k, error in enumerate(errors) if np.isfinite(error)]
+    traces: list[dict[str, Any]] = [
+        {
+            "type": "scatter",
+            "mode": "markers",
+            "name": names[k],
+            "x": rounded([seconds[k]]),
+            "y": rounded([100.0 * max(errors[k], LEAST)]),
+            "marker": {"size": 14 if k == chosen else 9},
+        }
+        for k in known
+    ]
+    reach = [seconds[k] for k in known] or [1.0]
+    limit = {
+        "x": rounded([min(reach), max(reach)]),
+        "y": [100.0 * tolerance] * 2,
+        "line": {"dash": "dash"},
     }
-    return figure([trace], layout)
+    return [*traces, {"type": "scatter", "mode": "lines", "name": "tolerance", **limit}]
 
 
 def error_against_time(
@@ -212,21 +254,7 @@ def error_against_time(
     plotly.graph_objects.Figure
         Figure with both axes logarithmic, the tolerance as a line.
     """
-    known = [k for k, error in enumerate(errors) if np.isfinite(error)]
-    traces: list[dict[str, Any]] = [
-        {
-            "type": "scatter",
-            "mode": "markers",
-            "name": names[k],
-            "x": [seconds[k]],
-            "y": [100.0 * max(errors[k], LEAST)],
-            "marker": {"size": 14 if k == chosen else 9},
-        }
-        for k in known
-    ]
-    reach = [seconds[k] for k in known] or [1.0]
-    limit = {"x": [min(reach), max(reach)], "y": [100.0 * tolerance] * 2, "line": {"dash": "dash"}}
-    traces.append({"type": "scatter", "mode": "lines", "name": "tolerance", **limit})
+    traces = error_traces(names, seconds, errors, tolerance, chosen)
     axes = {
         "xaxis": {"title": {"text": "time [s]"}, "type": "log"},
         "yaxis": {"title": {"text": "error [%]"}, "type": "log"},

@@ -121,10 +121,6 @@ from .ring_shapes import FittedShape as FittedShape
 from .ring_shapes import RingShape as RingShape
 from .ring_shapes import fitted_shape as fitted_shape
 from .ring_shapes import ring_under_forces as ring_under_forces
-from .run_up import RunUpPeak as RunUpPeak
-from .run_up import Sweep as Sweep
-from .run_up import run_up_peak as run_up_peak
-from .run_up import swept_response as swept_response
 from .sensors import Sensor as Sensor
 from .sensors import counted_angle as counted_angle
 from .sensors import measured as measured

@@ -66,7 +66,7 @@ def quantities_of(results: Results, drivetrain: str) -> list[Figure | Verdict]:
     Parameters
     ----------
     results : Results
-        Of one drivetrain or of several.
+        Results of one drivetrain or of several.
     drivetrain : str
         Its hash. What states no drivetrain is of the only one that there is.
     """
@@ -83,7 +83,7 @@ def answer_of(link: EvidenceLink, results: Results, drivetrain: str) -> Answer |
     link : EvidenceLink
         With a quantity.
     results : Results
-        Of the case that it names.
+        Results of the case that it names.
     drivetrain : str
         Hash of the project's.
     """

@@ -122,9 +122,9 @@ def assessed(
     catalogue : Catalogue
         Design loads.
     evidence : mapping of Claim to Found
-        Of all `claims_of` the project.
+        Evidence of all `claims_of` the project.
     measured : Measured
-        Of its files.
+        Measurements in its files.
 
     Returns
     -------
@@ -247,7 +247,7 @@ def needed_of(
     Parameters
     ----------
     results : Results
-        Of ``fe-drivetrain advise``, or of the case of levels of a machine.
+        Results of ``fe-drivetrain advise``, or of the case of levels of a machine.
     record : DrivetrainRecord
         How the results call the drivetrain.
     need : Need

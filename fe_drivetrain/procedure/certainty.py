@@ -39,7 +39,7 @@ def row_of(name: str) -> str:
     Parameters
     ----------
     name : str
-        Of an input of a project.
+        Name of an input of a project.
     """
     return name.partition(":")[0].strip()
 

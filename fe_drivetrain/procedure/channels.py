@@ -18,6 +18,7 @@ from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.csv_cells import SafeWriter
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.hub_loads.recorded import csv_channels
 
 _TURN = np.pi / 180.0
@@ -93,13 +94,15 @@ class Channels:
     values: Mapping[str, Floats]
     units: Mapping[str, str]
 
+    __repr__ = short_repr
+
     def of(self, name: str) -> Floats:
         """Samples of a channel.
 
         Parameters
         ----------
         name : str
-            Of the mapping, or of the file.
+            Name in the mapping, or in the file.
 
         Raises
         ------

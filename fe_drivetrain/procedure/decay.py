@@ -19,7 +19,7 @@ class Decay:
     decrement : float
         Logarithm of a peak over the next of the same sign (PROTEST 2010, Eq 3).
     frequency : float
-        Of the damped oscillation [Hz].
+        Frequency of the damped oscillation [Hz].
     band : float
         Half width of the decrement that holds the truth 19 times of 20, from the scatter of the
         peaks about a straight line; NaN of fewer than three.

@@ -8,6 +8,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.histories.levels import Levels
 
 THERMAL = 600.0
@@ -27,7 +28,7 @@ class Moves:
     step : float
         Between two samples [s].
     samples : int
-        Of the whole history.
+        Number of samples of the whole history.
     """
 
     first: Ints
@@ -35,6 +36,8 @@ class Moves:
     angle: Floats
     step: float
     samples: int
+
+    __repr__ = short_repr
 
     @property
     def durations(self) -> Floats:
@@ -63,7 +66,7 @@ def moves(speed: Floats, step: float, threshold: float) -> Moves:
     Parameters
     ----------
     speed : ndarray, (n,)
-        Of the part or the motor [rad/s].
+        Speed of the part or the motor [rad/s].
     step : float
         Between two samples [s].
     threshold : float
@@ -83,9 +86,9 @@ def peak_times(torque: Floats, found: Moves) -> Floats:
     Parameters
     ----------
     torque : ndarray, (n,)
-        Of the motor.
+        Torque of the motor.
     found : Moves
-        Of the same history.
+        Moves of the same history.
     """
     size = np.abs(np.asarray(torque))
     ends = zip(found.first, found.last, strict=True)
@@ -98,7 +101,7 @@ def thermal_torque(torque: Floats, step: float, seconds: float = THERMAL) -> flo
     Parameters
     ----------
     torque : ndarray, (n,)
-        Of the motor [N m].
+        Torque of the motor [N m].
     step : float
         Between two samples [s].
     seconds : float
@@ -131,9 +134,9 @@ def tooth_counts(angle: Floats, teeth: int, weights: Floats | None = None) -> Fl
     Parameters
     ----------
     angle : ndarray, (n,)
-        Of the ring [rad]; it goes straight from sample to sample.
+        Angle of the ring [rad]; it goes straight from sample to sample.
     teeth : int
-        Of the whole ring.
+        Number of teeth of the whole ring.
     weights : ndarray, (n - 1,), optional
         Factor of what each sample's way counts, as a torque to the power of a gear's exponent.
 
@@ -170,11 +173,11 @@ def with_transients(levels: Levels, torque: float, starts: int, seconds: float =
     levels : Levels
         Without transients [s].
     torque : float
-        Of the transient, in the unit of the levels.
+        Torque of the transient, in the unit of the levels.
     starts : int
         How many.
     seconds : float
-        Of each [s].
+        Duration of each [s].
 
     Raises
     ------

@@ -79,7 +79,7 @@ class Subject:
     record : DrivetrainRecord
         Its title and hash.
     scene : Scene or None
-        Of a project that is of one: in which values another one differs is said.
+        Scene of a project that has one: in which values another one differs is said.
     """
 
     record: DrivetrainRecord
@@ -101,7 +101,7 @@ class Found:
     counts : bool
         Whether a decision may rest on it.
     verdicts : tuple of Verdict
-        Of the checks.
+        Verdicts of the checks.
     results : Results or None
         None where there are none.
     answer : Answer or None
@@ -198,7 +198,7 @@ def each_for_one(evidence: Iterable[Found]) -> tuple[Found, ...]:
     Parameters
     ----------
     evidence : iterable of Found
-        Of a step.
+        Evidence of a step.
     """
     found = tuple(evidence)
     uses: dict[tuple[str, str], set[str]] = {}

@@ -121,7 +121,7 @@ class Catalogue(_Row):
         Parameters
         ----------
         system : str
-            Of the breakdown.
+            System of the breakdown.
 
         Raises
         ------

@@ -17,6 +17,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Bools, Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +39,8 @@ class Twist:
     angle: Floats
     speed: Floats
     acceleration: Floats
+
+    __repr__ = short_repr
 
 
 def reduced_torque(
@@ -77,6 +80,8 @@ class Solutions:
 
     inertia: Floats
     damping: Floats
+
+    __repr__ = short_repr
 
     @property
     def plausible(self) -> Bools:
@@ -240,11 +245,13 @@ class Fit:
     values : ndarray, (3,)
         [kg m^2], [N m s/rad], [N m/rad].
     covariance : ndarray, (3, 3)
-        Of these, from the residual.
+        Covariance of these, from the residual.
     """
 
     values: Floats
     covariance: Floats
+
+    __repr__ = short_repr
 
     @property
     def bands(self) -> Floats:

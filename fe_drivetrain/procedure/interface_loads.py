@@ -22,6 +22,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.common.reading import unreadable
 from fe_drivetrain.common.regular_files import text_of
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.turbine_loads.histories.cycles import Cycles, rainflow_cycles
 from fe_drivetrain.turbine_loads.histories.damage import damage_equivalent_load
@@ -47,11 +48,11 @@ class Interface:
         Body, or `GROUND`, that gives the loads, and body that takes them; it takes them reversed
         the other way.
     position : ndarray, (3,)
-        Of the loads [m].
+        Place of the loads [m].
     loads : ndarray, (n, 6)
         Forces [N] and moments [N m] on `on`.
     displacements, accelerations : ndarray, (n, 6), optional
-        Of the interface [m, rad], [m/s^2, rad/s^2].
+        Motion of the interface [m, rad], [m/s^2, rad/s^2].
     source : str
         "measured", "simulated", "estimated".
     """
@@ -65,6 +66,8 @@ class Interface:
     accelerations: Floats | None = None
     source: Source = "simulated"
 
+    __repr__ = short_repr
+
 
 @dataclass(frozen=True, eq=False)
 class Body:
@@ -75,7 +78,7 @@ class Body:
     name : str
         Unique in a table.
     centre : ndarray, (3,)
-        Of mass [m].
+        Centre of mass [m].
     own : ndarray, (6,) or (n, 6)
         Weight and inertia, mass times gravity less acceleration, about the centre [N, N m].
     """
@@ -83,6 +86,8 @@ class Body:
     name: str
     centre: Floats
     own: Floats
+
+    __repr__ = short_repr
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +97,7 @@ class LoadTable:
     Attributes
     ----------
     time : ndarray, (n,)
-        Of uniform step [s].
+        Times of uniform step [s].
     interfaces : tuple of Interface
     bodies : tuple of Body
 
@@ -105,6 +110,8 @@ class LoadTable:
     time: Floats
     interfaces: tuple[Interface, ...]
     bodies: tuple[Body, ...]
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         names = [*(i.name for i in self.interfaces), *(b.name for b in self.bodies)]
@@ -132,7 +139,7 @@ class LoadTable:
         Parameters
         ----------
         name : str
-            Of an interface.
+            Name of an interface.
 
         Raises
         ------
@@ -214,7 +221,7 @@ def analysed(table: LoadTable, slopes: Sequence[float] = (4.0, 10.0)) -> list[di
     Parameters
     ----------
     table : LoadTable
-        Of uniform step.
+        Table of uniform step.
     slopes : sequence of float
         Exponents of damage-equivalent loads at 1 Hz.
 
@@ -306,7 +313,7 @@ def write_load_json(table: LoadTable, path: str | Path) -> None:
     Parameters
     ----------
     table : LoadTable
-        Of uniform step.
+        Table of uniform step.
     path : str or Path
         File, which appears whole.
     """

@@ -75,7 +75,7 @@ def read_log(path: Path) -> tuple[Entry, ...]:
     Parameters
     ----------
     path : Path
-        Of `log_file`.
+        Path from `log_file`.
 
     Raises
     ------
@@ -119,7 +119,7 @@ def next_entry(
     states : sequence of StepState
         Its six steps.
     date, version : str
-        Of this run.
+        Date and version of this run.
 
     Returns
     -------
@@ -155,7 +155,7 @@ def write_log(path: Path, entries: Sequence[Entry]) -> None:
     Parameters
     ----------
     path : Path
-        Of `log_file`.
+        Path from `log_file`.
     entries : sequence of Entry
         All runs.
     """
@@ -172,7 +172,7 @@ def procedure_of(subject: str, entries: Sequence[Entry]) -> Procedure:
     Parameters
     ----------
     subject : str
-        Of the project.
+        Subject of the project.
     entries : sequence of Entry
         The log.
     """

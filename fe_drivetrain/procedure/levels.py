@@ -27,7 +27,7 @@ def level_loads(scene: Scene, model: LevelModel, time: Floats, hub: Loads) -> Lo
     model : LevelModel
         A level of it, from 1 on.
     time : ndarray, (n,)
-        Of uniform step [s].
+        Times of uniform step [s].
     hub : LoadHistory, PointLoads or array_like
         (n, 6) of the rotor on the shaft, as `shafts.response.entering` takes them [N, N m]; those
         at load points are left out.

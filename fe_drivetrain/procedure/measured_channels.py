@@ -125,9 +125,9 @@ def faults_of_files(
     Parameters
     ----------
     capture : Capture or None
-        Of step 5.
+        Capture of step 5.
     comparison : Comparison
-        Of step 6, whose file is there.
+        Comparison of step 6, whose file is there.
     drivetrain : str
         Hash of the project's.
     folder : Path

@@ -20,6 +20,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.bodies import assemble
 from fe_drivetrain.dynamics.levels import Level, assembly
 from fe_drivetrain.dynamics.tables import Machine
@@ -34,13 +35,15 @@ class Misalignment:
     Attributes
     ----------
     names : tuple of str
-        Of the supports' rows.
+        Names of the supports' rows.
     influence : ndarray, (m, m)
         Force of each row on the structure, by offset of each [N/m, N/rad, N m/rad]; symmetric.
     """
 
     names: tuple[str, ...]
     influence: Floats
+
+    __repr__ = short_repr
 
     @property
     def degree(self) -> int:
@@ -88,13 +91,13 @@ def influence_of_offsets(
     Parameters
     ----------
     stiffness : ndarray, (n, n)
-        Of the free structure, in any degrees of freedom.
+        Stiffness of the free structure, in any degrees of freedom.
     rows : ndarray, (m, n)
         H: the motion that each support holds.
     supports : ndarray, (m,)
         Stiffness of each; infinite of a rigid one.
     names : tuple of str
-        Of the rows.
+        Names of the rows.
 
     Raises
     ------

@@ -14,6 +14,7 @@ from scipy.linalg import expm
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.equations import varying
 from fe_drivetrain.dynamics.stopping import torsional_equations
 from fe_drivetrain.dynamics.superposition import energy_error
@@ -37,6 +38,8 @@ class Motions:
     speed: Floats
     acceleration: Floats
 
+    __repr__ = short_repr
+
     @property
     def time(self) -> Floats:
         """(samples,) from 0 [s]."""
@@ -58,7 +61,7 @@ def periodic_motions(system: Torsional, torques: Floats, step: float) -> Motions
     Returns
     -------
     Motions
-        Of a system that turns freely, without its free turning.
+        Motions of a system that turns freely, without its free turning.
 
     Raises
     ------
@@ -154,12 +157,12 @@ def motions_energy_error(system: Torsional, torques: Floats, motions: Motions) -
     torques : ndarray, (n, samples)
         On each inertia, straight between samples [N m].
     motions : Motions
-        As of `driven_motions`.
+        Motions from `driven_motions`.
 
     Returns
     -------
     float
-        As of `fe_drivetrain.dynamics.energy_error`.
+        Energy error, as `fe_drivetrain.dynamics.energy_error` defines it.
     """
     loads = varying(np.eye(len(torques)), motions.time, torques.T)
     equations = torsional_equations(system)
@@ -174,7 +177,7 @@ def element_torques(system: Torsional, motions: Motions) -> Floats:
     system : Torsional
         Whose motions they are.
     motions : Motions
-        Of all its inertias.
+        Motions of all its inertias.
 
     Returns
     -------
@@ -204,7 +207,7 @@ def band_torque(
     deviation : float
         Standard deviation [N m].
     seed : int
-        Of the random phases and amplitudes.
+        Seed of the random phases and amplitudes.
 
     Returns
     -------

@@ -43,9 +43,9 @@ class Mounts:
     supports : tuple of float
         Generator on its frame: along x, y, z, about y, z [N/m, N m/rad].
     torsion : float
-        Of all that winds up, referred to the high-speed shaft [N m/rad].
+        Torsional stiffness of all that winds up, referred to the high-speed shaft [N m/rad].
     grid : float
-        Of the generator's torque against turning from steady turning [N m/rad].
+        Stiffness of the generator's torque against turning from steady turning [N m/rad].
     shaft, gearbox, generator : tuple of float
         Inertia about x and across it, about the centre of mass [kg m^2]; of the generator about x
         that of its rotor.
@@ -90,9 +90,9 @@ def moving_three_points(
     mounts : Mounts
         Stiffness, inertia, damping.
     time : ndarray, (n,)
-        Of uniform step [s].
+        Times of uniform step [s].
     hub : ndarray, (n, 6)
-        Of the rotor on the shaft, at the hub [N, N m].
+        Loads of the rotor on the shaft, at the hub [N, N m].
     weight : bool
         Whether the bodies have weight.
 
@@ -155,7 +155,7 @@ def moving_energy_error(
     Parameters
     ----------
     places, mounts : ThreePoints, Mounts
-        As for `moving_three_points`.
+        The same as for `moving_three_points`.
     time, hub, weight : ndarray, ndarray, bool
         As there.
 

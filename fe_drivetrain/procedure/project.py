@@ -14,6 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, field_validator, model_valida
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import parse_mapping, read_text, validated
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.strict_yaml import no_truth_value
 from fe_drivetrain.procedure.channels import ChannelFile
 
@@ -292,6 +293,9 @@ class Project(_Part):
     campaign: Campaign | None = None
     comparison: Comparison | None = None
     signed: tuple[Signature, ...] = Field(default=(), description="signatures, when it is complete")
+
+    __repr__ = short_repr
+    __str__ = short_repr
 
     @field_validator("subject", mode="before")
     @classmethod

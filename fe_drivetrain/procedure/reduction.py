@@ -43,7 +43,7 @@ def spring_groups(system: System) -> dict[str, list[int]]:
     Parameters
     ----------
     system : System
-        Of a machine.
+        System of a machine.
     """
     found: dict[str, list[int]] = {}
     for number, name in enumerate(system.spring_names):
@@ -89,9 +89,9 @@ def frequencies_on(system: System, basis: Floats) -> Floats:
     Parameters
     ----------
     system : System
-        Of which the basis is.
+        System that the basis belongs to.
     basis : ndarray, (n, r)
-        Of `locked_basis`.
+        Basis from `locked_basis`.
     """
     size = np.sqrt(system.stiffness)[:, None]
     wound = size * (system.rows @ basis)
@@ -214,11 +214,11 @@ def frequency_that_holds(signal: Floats, step: float, share: float = 0.999) -> f
     Parameters
     ----------
     signal : ndarray, (n,)
-        Of the full model.
+        Signal of the full model.
     step : float
         Between two samples [s].
     share : float
-        Of the power.
+        Share of the power.
 
     Raises
     ------
@@ -303,7 +303,7 @@ class Trial:
     stays : bool
         Whether it stays locked: the signal changed by no more than the tolerance.
     degrees : int
-        Of freedom that are left with it.
+        Number of degrees of freedom that are left with it.
     signal_error : float
         Root mean square of the signal's difference from the full model's over that of the signal.
     seconds : float

@@ -83,10 +83,11 @@ def drivetrain_excitations(stages: Iterable[Geared], blades: int = 3) -> tuple[E
     Parameters
     ----------
     stages : iterable of Geared
-        Rows of a gear table (`torsion.Drivetrain`) or of a machine (`dynamics.Machine`). Those
-        without teeth have no mesh frequency, and are left out of the register.
+        Rows of a gear table (`dynamics.torsion.GearTable`) or of a machine
+        (`dynamics.Machine`). Those without teeth have no mesh frequency, and are left out of the
+        register.
     blades : int
-        Of the rotor.
+        Number of blades of the rotor.
 
     Returns
     -------
@@ -153,13 +154,13 @@ class Meeting:
     mode : int
         From 1, free turning left out.
     frequency : float
-        Of the mode [Hz].
+        Frequency of the mode [Hz].
     crossing : float
         Speed of the rotor at which they meet [rad/s]; infinite of a fixed frequency.
     margin : float
         Least distance of both frequencies over that of the mode, within the range of speeds.
     share : float
-        Of the parts at which the excitation acts in the energy of the mode: kinetic of inertias,
+        Share of the parts at which the excitation acts in the mode's energy: kinetic of inertias,
         strain of elements.
     verdict : str
         "resonance" where they meet in the range, "near", "clear"; "not excited" of a small share.
@@ -188,7 +189,7 @@ def resonances(
     excitations : iterable of Excitation
         Register.
     modes : SharedModes
-        Of a model with the parts at which they act: `torsion.natural_modes`, or
+        Modes of a model with the parts at which they act: `torsion.natural_modes`, or
         `dynamics.system_modes` of bodies with six degrees of freedom.
     speeds : tuple of float
         Least and largest speed of the rotor in operation [rad/s].

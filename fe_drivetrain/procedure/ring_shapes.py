@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 
 GAUGES = tuple(np.radians([-6.1, 13.2, 17.2, 39.1, 84.37, 129.6, 168.0, 187.0]).tolist())
 """Places of eight strain gauges, from the leading edge [rad] (PROTEST 2010, Table 5.4)."""
@@ -28,7 +29,7 @@ class RingShape:
     Attributes
     ----------
     radius : float
-        Of the neutral line [m].
+        Radius of the neutral line [m].
     orders : ndarray, (n,)
         Waves round the ring, from 2 on.
     cosine, sine : ndarray, (n,)
@@ -44,6 +45,8 @@ class RingShape:
     orders: Ints
     cosine: Floats
     sine: Floats
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         if self.radius <= 0.0 or np.min(self.orders, initial=2) < 2:
@@ -103,7 +106,7 @@ class RingShape:
         Parameters
         ----------
         angle : array_like
-            Of one of its ends [rad].
+            Angle of one of its ends [rad].
         """
         return self.radial(angle) + self.radial(np.asarray(angle) + np.pi)
 
@@ -116,7 +119,7 @@ def ring_under_forces(
     Parameters
     ----------
     radius : float
-        Of the neutral line [m].
+        Radius of the neutral line [m].
     bending : float
         Bending stiffness E I in the plane of the ring [N m^2].
     angles, forces : array_like, (m,)
@@ -152,7 +155,7 @@ class FittedShape:
     Attributes
     ----------
     shape : RingShape
-        Of least squares.
+        Shape of least squares.
     offset : float
         Constant strain, as of gauges that are not calibrated, or of stretching.
     residual : float
@@ -176,9 +179,9 @@ def fitted_shape(
     Parameters
     ----------
     radius, outside : float
-        As of `RingShape.strain` [m].
+        Radii as for `RingShape.strain` [m].
     angles, strains : array_like, (m,)
-        Of the gauges [rad], [-].
+        Angles and strains of the gauges [rad], [-].
     orders : array_like of int, (n,)
         Which waves there are; 2 n + 1 unknowns.
 

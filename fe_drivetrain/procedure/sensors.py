@@ -60,7 +60,7 @@ def measured(sensor: Sensor, signal: Floats, seed: int) -> Floats:
     signal : ndarray, (n,)
         The truth.
     seed : int
-        Of the noise.
+        Seed of the noise.
 
     Returns
     -------
@@ -85,7 +85,7 @@ def counted_angle(angle: Floats, pulses: int) -> Floats:
     angle : ndarray, (n,)
         True angle of the shaft [rad].
     pulses : int
-        Of one turn.
+        Number of pulses of one turn.
 
     Returns
     -------
@@ -104,9 +104,9 @@ def timed_angle(
     Parameters
     ----------
     time, angle : ndarray, (n,)
-        Of a shaft that turns forward [s], [rad].
+        Times and angles of a shaft that turns forward [s], [rad].
     pulses : int
-        Of one turn.
+        Number of pulses of one turn.
     samples : ndarray, (m,)
         When the angle is asked for [s].
     clock : float
@@ -144,7 +144,7 @@ def scaled_to_power(torque: Floats, speed: Floats, power: Floats, efficiency: fl
     Parameters
     ----------
     torque, speed : ndarray, (n,)
-        Of one shaft, torque as recorded [N m], [rad/s].
+        Torque and speed of one shaft, torque as recorded [N m], [rad/s].
     power : ndarray, (n,)
         Electrical [W].
     efficiency : float

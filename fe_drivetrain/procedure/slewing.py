@@ -88,9 +88,9 @@ def friction_torque(
     moment, axial, radial : ndarray or float
         Tilting moment [N m] and forces [N]; their signs do not matter.
     diameter : float
-        Of the raceway [m].
+        Diameter of the raceway [m].
     coefficient : float
-        Of friction, mu.
+        Coefficient of friction, mu.
     rolling : str
         "ball" or "roller".
     constant : float
@@ -139,9 +139,9 @@ def ring_torque(
     load : ndarray, (n,)
         Torque about the axis that resists a positive speed [N m].
     friction : ndarray, (n,)
-        Of the bearing, of a size from zero [N m]; it counts while there is a speed.
+        Friction of the bearing, of a size from zero [N m]; it counts while there is a speed.
     speed, acceleration : ndarray, (n,)
-        Of the part [rad/s], [rad/s^2].
+        Speed and acceleration of the part [rad/s], [rad/s^2].
     """
     return np.asarray(load + np.sign(speed) * friction + drive.part * acceleration)
 
@@ -156,7 +156,7 @@ def drive_torque(
     drive : SlewingDrive
         Inertias and ratio.
     load, friction, speed, acceleration : ndarray, (n,)
-        As of `ring_torque`.
+        The same as for `ring_torque`.
     """
     ring = ring_torque(drive, load, friction, speed, acceleration)
     return np.asarray((ring + drive.ratio**2 * drive.drive * acceleration) / drive.ratio)
@@ -172,7 +172,7 @@ def printed_drive_torque(
     drive : SlewingDrive
         Inertias and ratio.
     load, friction, speed, acceleration : ndarray, (n,)
-        As of `ring_torque`.
+        The same as for `ring_torque`.
     """
     ring = load - np.sign(speed) * friction + drive.part * acceleration
     return np.asarray((ring - drive.ratio**2 * drive.drive * acceleration) / drive.ratio)
@@ -186,7 +186,7 @@ def holding_torque(load: Floats, friction: Floats) -> Floats:
     Parameters
     ----------
     load, friction : ndarray, (n,)
-        As of `ring_torque`.
+        The same as for `ring_torque`.
     """
     return np.asarray(np.sign(load) * np.maximum(np.abs(load) - friction, 0.0))
 
@@ -202,7 +202,7 @@ def gyroscopic_torque(inertia: float, spin: Floats, turning: Floats) -> Floats:
     inertia : float
         About the axis of spin [kg m^2].
     spin, turning : ndarray, (3,)
-        Of the rotor against the frame, and of the frame [rad/s].
+        Angular velocity of the rotor against the frame, and of the frame [rad/s].
 
     Returns
     -------

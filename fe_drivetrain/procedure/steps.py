@@ -30,7 +30,7 @@ class Evidence:
     case : str
         As in "procedure/identification".
     quantity : str
-        Of one of its checks.
+        Quantity of one of its checks.
     passed : bool
         Its verdict.
     band : float or None
@@ -92,7 +92,7 @@ class Procedure:
         Parameters
         ----------
         visit : Visit
-            Of any step.
+            Visit of any step.
         """
         return replace(self, visits=(*self.visits, visit))
 

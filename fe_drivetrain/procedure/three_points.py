@@ -108,7 +108,7 @@ def three_point_loads(places: ThreePoints, time: Floats, hub: Floats) -> LoadTab
     time : ndarray, (n,)
         [s].
     hub : ndarray, (n, 6)
-        Of the rotor on the shaft, at the hub [N, N m].
+        Loads of the rotor on the shaft, at the hub [N, N m].
     """
     n = len(time)
     zero = np.zeros(n)

@@ -99,7 +99,7 @@ def why_no_limit(value: float, unit: str, at_most: float | None, at_least: float
     value : float
         What is held against it.
     unit : str
-        Of both; a margin has none.
+        Unit of both; a margin has none.
     at_most, at_least : float or None
         The limit.
     """

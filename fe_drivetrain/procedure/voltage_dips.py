@@ -22,7 +22,7 @@ class TorqueTable:
     Attributes
     ----------
     times : tuple of float
-        Of the corners, in order; two at the same time are a jump [s].
+        Times of the corners, in order; two at the same time are a jump [s].
     values : tuple of float
         Share of the torque before at each; the first and the last hold on outside.
     """

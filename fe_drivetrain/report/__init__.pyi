@@ -3,6 +3,7 @@ from .charts import chart as chart
 from .charts import crosses as crosses
 from .charts import density_chart as density_chart
 from .charts import heat_map as heat_map
+from .charts import marked as marked
 from .charts import trace as trace
 from .environment import environment as environment
 from .history import PastRun as PastRun
@@ -42,5 +43,6 @@ from .results import read_results as read_results
 from .results import results_below as results_below
 from .solid_view import Parts as Parts
 from .solid_view import deformed_shape as deformed_shape
+from .solid_view import model_pictures as model_pictures
 from .solid_view import solid_or_picture as solid_or_picture
 from .solid_view import write_solid_view as write_solid_view

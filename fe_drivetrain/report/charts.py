@@ -24,11 +24,16 @@ def trace(name: str, x: ArrayLike, y: ArrayLike, points: bool = False, **more: A
     }
 
 
+def marked(name: str, x: ArrayLike, y: ArrayLike) -> Any:
+    """A line with its points marked."""
+    return trace(name, x, y, mode="lines+markers")
+
+
 def crosses(name: str, x: ArrayLike, y: ArrayLike | None = None) -> Any:
     """Points without an answer, at 1 where there is not even a wrong one."""
     at = np.asarray(x, dtype=float)
     shown = np.ones(len(at)) if y is None else np.nan_to_num(np.asarray(y, dtype=float), nan=1.0)
-    return trace(name, at, shown, True, marker={"symbol": "x"})
+    return trace(name, at, shown, True, marker={"symbol": "x", "size": 11, "color": "#c62828"})
 
 
 def chart(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -20,6 +20,7 @@ from fe_drivetrain.report.history import Point, points_over_runs
 from fe_drivetrain.report.rendering import policy_hash, read_template, templates
 from fe_drivetrain.report.results import (
     Figure,
+    Limit,
     Problem,
     Results,
     Verdict,
@@ -124,30 +125,8 @@ def write_index(
     folder = Path(folder)
     rows = sorted(_rows(folder, problems or {}), key=lambda row: (row.badness, row.name))
     _keep_problems(folder, problems or {})
-    with_results = [(row, row.results) for row in rows if row.results]
-    verdicts = [v for _, results in with_results for v in results.verdicts]
-    limits = [
-        (limit, row.name)
-        for row, results in sorted(with_results, key=lambda pair: pair[0].name)
-        for limit in results.limits
-    ]
-    quick = sorted(row.name for row in rows if row.quick)
-    states = Counter(row.state for row in rows)
-    _write(
-        folder / "index.html",
-        "index.html",
-        rows=rows,
-        missing=sorted(set(known) - {row.name for row in rows}),
-        words=WORDS,
-        states={state: states[state] for state in WORDS if states[state]},
-        groups=Counter(sorted(row.group for row in rows)),
-        quick=len(quick),
-        unfinished=sum(states[state] for state in ("not run", "running", "planned")),
-        total=len(rows) - states["skipped"],
-        verdicts=verdicts,
-        statistics=bias_and_scatter(verdicts),
-        has_atlas=bool(limits),
-    )
+    limits = _limits(rows)
+    _write_list(folder, rows, set(known) - {row.name for row in rows}, bool(limits))
     checks = [check for row in rows for check in row.checks]
     checks.sort(key=lambda check: (check[0].passed, -share_of_tolerance(check[0])))
     _write(folder / "checks.html", "checks.html", checks=checks)
@@ -157,11 +136,44 @@ def write_index(
             "atlas.html",
             limits=[limit for limit, _ in limits],
             pages=[name for _, name in limits],
-            quick=sorted({name for _, name in limits} & set(quick)),
+            quick=sorted({name for _, name in limits} & {row.name for row in rows if row.quick}),
         )
     else:
         remove_sealed(folder / "atlas.html")
     return folder / "index.html"
+
+
+def _limits(rows: Iterable[Row]) -> list[tuple[Limit, str]]:
+    """Limits of methods, each with the case that found it, by the cases' names."""
+    return [
+        (limit, row.name)
+        for row in sorted(rows, key=lambda row: row.name)
+        if row.results
+        for limit in row.results.limits
+    ]
+
+
+def _write_list(
+    folder: Path, rows: Sequence[Row], missing: Collection[str], has_atlas: bool
+) -> None:
+    """Write index.html: a row for each case, and the names of those that are not there."""
+    verdicts = [v for row in rows if row.results for v in row.results.verdicts]
+    states = Counter(row.state for row in rows)
+    _write(
+        folder / "index.html",
+        "index.html",
+        rows=rows,
+        missing=sorted(missing),
+        words=WORDS,
+        states={state: states[state] for state in WORDS if states[state]},
+        groups=Counter(sorted(row.group for row in rows)),
+        quick=sum(row.quick for row in rows),
+        unfinished=sum(states[state] for state in ("not run", "running", "planned")),
+        total=len(rows) - states["skipped"],
+        verdicts=verdicts,
+        statistics=bias_and_scatter(verdicts),
+        has_atlas=has_atlas,
+    )
 
 
 def problems_before(folder: Path) -> dict[str, Problem]:

@@ -5,7 +5,7 @@ import statistics
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple, TypedDict, Unpack
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -134,6 +134,23 @@ def expectation(verdict: Verdict) -> str:
     return f"reference {verdict.reference:.5g}{unit}, tolerance {allowed}"
 
 
+class ValueFacts(TypedDict, total=False):
+    """What is known of a computed value; see the fields of `Verdict`."""
+
+    unit: str
+    measure: Measure | None
+    basis: Basis
+    band: float | None
+
+
+class JudgedFacts(ValueFacts, total=False):
+    """How a value is judged, beside what is known of it; see the fields of `Verdict`."""
+
+    check: Check
+    upper: float | None
+    relative: bool
+
+
 def judge(
     quantity: str,
     computed: float,
@@ -142,32 +159,27 @@ def judge(
     tolerance: float,
     reason: str,
     source: str,
-    check: Check = "equals",
-    upper: float | None = None,
-    unit: str = "",
-    relative: bool = True,
-    measure: Measure | None = None,
-    basis: Basis = "independent",
-    band: float | None = None,
     of: str = "",
+    **more: Unpack[JudgedFacts],
 ) -> Verdict:
     """Judge one quantity; a NaN never passes. For the arguments see `Verdict`."""
-    verdict = Verdict(
-        quantity=quantity,
-        unit=unit,
-        check=check,
-        computed=float(computed),
-        reference=float(reference),
-        upper=None if upper is None else float(upper),
-        source=source,
-        tolerance=tolerance,
-        relative=relative,
-        reason=reason,
-        measure=measure,
-        basis=basis,
-        band=None if band is None else float(band),
-        of=of,
-        passed=False,
+    upper, band = more.get("upper"), more.get("band")
+    verdict = Verdict.model_validate(
+        {
+            "unit": "",
+            "relative": True,
+            **more,
+            "quantity": quantity,
+            "computed": float(computed),
+            "reference": float(reference),
+            "upper": None if upper is None else float(upper),
+            "band": None if band is None else float(band),
+            "tolerance": tolerance,
+            "reason": reason,
+            "source": source,
+            "of": of,
+            "passed": False,
+        }
     )
     return verdict.model_copy(update={"passed": is_met(verdict)})
 

@@ -11,17 +11,20 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.elasticity.mesh.facets import outside
 from fe_drivetrain.elasticity.mesh.mesh import Mesh
 from fe_drivetrain.elasticity.operator.stress import nodal_stresses, von_mises
 from fe_drivetrain.report.pictures.deformation import exaggeration, picture_of_deformation
-from fe_drivetrain.report.results import Image, Solid
+from fe_drivetrain.report.pictures.model import picture_of_model
+from fe_drivetrain.report.pictures.off_screen import NoPictureError
+from fe_drivetrain.report.results import Image, Solid, Text
 
 if TYPE_CHECKING:
     from fe_drivetrain.shafts.response.model import Model
@@ -69,6 +72,8 @@ class Parts:
     points: Floats
     cells: Mapping[str, Ints]
 
+    __repr__ = short_repr
+
 
 def deformed_shape(
     model: Model, response: Response, load_factors: Floats, folder: Path, what: str
@@ -106,6 +111,36 @@ def deformed_shape(
         fields[f"{name} at the hub"] = _MEGA * response.displacements[..., column]
     caption = f"Deformed shape, displacements times {factor:,.0f}, under {what}"
     return solid_or_picture(caption, mesh, fields, lame, folder, picture)
+
+
+def model_pictures(
+    model: Model, response: Response, load_factors: Floats, folder: Path, what: str
+) -> Sequence[Image | Solid | Text]:
+    """Draw a model and its deformed shape; where nothing can be drawn, say why.
+
+    Parameters
+    ----------
+    model, response : Model, Response
+        A model and its response to the unit loads.
+    load_factors : Floats
+        (10,) multiples of the unit loads.
+    folder : Path
+        Takes model.png, deformed.png and deformed.3d.json.
+    what : str
+        The loads in words.
+
+    Returns
+    -------
+    items : sequence of Image, Solid or Text
+        For the page.
+    """
+    try:
+        picture_of_model(model, folder / "model.png")
+        shape = deformed_shape(model, response, load_factors, folder, what)
+    except NoPictureError as reason:
+        return [Text(text=f"No picture: {reason}")]
+    caption = f"{model.scene.title}: parts, loads and supports"
+    return [Image(caption=caption, file="model.png"), shape]
 
 
 def solid_or_picture(
@@ -166,14 +201,48 @@ def write_solid_view(
         False, and nothing written, where the surface has more than `MOST_TRIANGLES`.
     """
     bodies = mesh if isinstance(mesh, Parts) else _parts_of(mesh)
-    points = bodies.points
+    surface = _surface(bodies)
+    if surface is None:
+        return False
+    nodes = np.concatenate(surface.nodes)
+    low, high = bodies.points[nodes].min(axis=0), bodies.points[nodes].max(axis=0)
+    middle, reach = 0.5 * (low + high), 0.5 * float((high - low).max())
+    # in letters of 6 bits: positions and triangles; then displacements and stresses of each load
+    count, vertices = len(surface.triangles), len(nodes)
+    shape, field = (8 / 6 * size for size in (6 * vertices + 12 * count, 8 * vertices))
+    most = max(1, int((MOST_BYTES - shape) / max(field, 1.0)))
+    content = {
+        "middle": middle.tolist(),
+        "reach": reach,
+        "positions": _units(bodies.points[nodes] - middle, reach),
+        "parts": surface.parts,
+        "triangles": _packed(surface.triangles, "<u4"),
+        "loads": [
+            {"name": name, **_field(bodies, u, surface.nodes, lame, reach)}
+            for name, u in list(fields.items())[:most]
+        ],
+    }
+    path.write_text(json.dumps(content), encoding="utf-8")
+    return True
+
+
+class _Surface(NamedTuple):
+    """The outside of parts: name, first triangle and how many; nodes; triangles (n, 3)."""
+
+    parts: list[dict[str, Any]]
+    nodes: list[Ints]
+    triangles: Ints
+
+
+def _surface(bodies: Parts) -> _Surface | None:
+    """The outside in flat triangles, as fine as a browser takes; None where it is too fine."""
     facets = {part: outside(cells) for part, cells in bodies.cells.items()}
     fine, least = (
         sum(len(of) * len(pieces[of.shape[1]]) for of in facets.values())
         for pieces in (_FINE, _COARSE)
     )
     if least > MOST_TRIANGLES:
-        return False
+        return None
     pieces = _FINE if fine <= MOST_TRIANGLES else _COARSE
     parts, shown, triangles = [], [], []
     first = vertices = 0
@@ -184,25 +253,7 @@ def write_solid_view(
         triangles.append(numbers.reshape(-1, 3) + vertices)
         parts.append({"name": part, "first": first, "count": len(corners)})
         first, vertices = first + len(corners), vertices + len(nodes)
-    nodes = np.concatenate(shown)
-    low, high = points[nodes].min(axis=0), points[nodes].max(axis=0)
-    middle, reach = 0.5 * (low + high), 0.5 * float((high - low).max())
-    # in letters of 6 bits: positions and triangles; then displacements and stresses of each load
-    surface, field = (8 / 6 * size for size in (6 * vertices + 12 * first, 8 * vertices))
-    count = max(1, int((MOST_BYTES - surface) / max(field, 1.0)))
-    content = {
-        "middle": middle.tolist(),
-        "reach": reach,
-        "positions": _units(points[nodes] - middle, reach),
-        "parts": parts,
-        "triangles": _packed(np.concatenate(triangles), "<u4"),
-        "loads": [
-            {"name": name, **_field(bodies, u, shown, lame, reach)}
-            for name, u in list(fields.items())[:count]
-        ],
-    }
-    path.write_text(json.dumps(content), encoding="utf-8")
-    return True
+    return _Surface(parts, shown, np.concatenate(triangles))
 
 
 def _parts_of(mesh: Mesh) -> Parts:

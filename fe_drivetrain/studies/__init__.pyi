@@ -31,5 +31,9 @@ from .scene_check import CheckResult as CheckResult
 from .scene_check import check as check
 from .scene_study import StudyResult as StudyResult
 from .scene_study import study as study
+from .seat_stiffness import SeatStiffness as SeatStiffness
+from .seat_stiffness import seat_stiffness as seat_stiffness
+from .solved_assembly import Assembly as Assembly
+from .solved_assembly import solved_assembly as solved_assembly
 from .study_loads import StudyLoads as StudyLoads
 from .tilt_secants import TiltSecant as TiltSecant

@@ -32,7 +32,7 @@ from fe_drivetrain.studies.life_tables import limit_rows, long_tables, result_ta
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.rolling_bearings import bearings_of
 from fe_drivetrain.turbine_loads.histories.sites import Site
-from fe_drivetrain.turbine_loads.hub_loads.recorded import Files, recorded_files
+from fe_drivetrain.turbine_loads.hub_loads.recorded import Files, recorded_files, short_name
 
 _MANY = 8  # files, each of every bearing, for which it pays to start processes
 
@@ -50,12 +50,13 @@ class LifeResult(Result):
     bearings : Mapping[str, BearingLife]
         Life by bearing, in the scene's order.
     site : Site or None
-        Whose winds are weighted; None where files follow each other for ever.
+        Whose winds are weighted; None where files repeat for ever.
     rules : LifeRules
         Choices that change lives.
     """
 
     STUDY: ClassVar[str] = "life"
+    SCHEMA_VERSION: ClassVar[int] = 2
 
     bearings: Mapping[str, BearingLife]
     site: Site | None
@@ -108,7 +109,7 @@ def life(
         Hub loads: files (.out, .outb of OpenFAST, or .csv), folders, or patterns as
         ``"outputs/*.outb"``.
     site : Site or None
-        Whose winds weight the files; without one they follow each other for ever.
+        Whose winds weight the files; without one they repeat for ever.
     options : LifeOptions or None
         Bearings, lubricant, models and how files are read; None takes all defaults.
     resume : bool
@@ -238,6 +239,6 @@ def _stated(files: Sequence[Path], site: Site | None, options: LifeOptions) -> d
     return asked | {
         "catalogues": [Path(path).name for path in options.catalogues],
         "channels": None if channels is None else channels.model_dump(mode="json"),
-        "files": [file.name for file in files],
+        "files": [short_name(file, files) for file in files],
         "site": None if site is None else asdict(site),
     }

@@ -13,17 +13,24 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.comparison import statistics
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.report.suite.records import Record
-from fe_drivetrain.shafts.beam import closed_forms
+from fe_drivetrain.shafts.beam import closed_forms, shaft
 from fe_drivetrain.shafts.beam.closed_forms import MainBearingBeam
-from fe_drivetrain.shafts.beam.of_scene import main_bearing_beam
+from fe_drivetrain.shafts.beam.of_scene import beam_of_scene, main_bearing_beam
 from fe_drivetrain.shafts.fidelity.bearing_units import UnitBounds
 from fe_drivetrain.shafts.fidelity.quantities import unit_numbers
 from fe_drivetrain.shafts.response.unit_loads import Response
+from fe_drivetrain.studies.seat_stiffness import SeatStiffness
 from fe_drivetrain.studies.study_loads import EnteredLoads
 from fe_drivetrain.turbine_loads.hub_loads.point_loads import PointLoads
+
+PINNED = "pinned beam"
+SPRUNG = "torsional-spring beam, {}"
+"""Name of a beam on torsional springs, with the source of its K_R."""
+SIXBYSIX = "beam on the 6x6"
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +47,8 @@ class LinearModel:
 
     matrix: Floats
     constant: Floats
+
+    __repr__ = short_repr
 
     @classmethod
     def of_fe(cls, scene: Scene, response: Response, gravity: float = 0.0) -> LinearModel:
@@ -59,6 +68,26 @@ class LinearModel:
         # loads as large as the weight in the constant, which would swallow digits of a unit load's
         size = 1e6
         return cls((model(size * np.eye(6), beam) - constant) / size, constant)
+
+    @classmethod
+    def on_springs(cls, scene: Scene, vertical: float, horizontal: float) -> LinearModel:
+        """The beam on torsional springs, with K_R of both planes [N m/rad]."""
+        beam = main_bearing_beam(scene, vertical, horizontal)
+        return cls.of_beam(closed_forms.torsional_spring_model, beam)
+
+    @classmethod
+    def on_matrix(cls, scene: Scene, stiffness: Floats) -> LinearModel:
+        """A Bernoulli beam on the (6, 6) stiffness of the bearing unit [N/m, N, N m/rad]."""
+        name = scene.bearing_units[0].bearing.name
+        unit = shaft.unit_load_response(
+            beam_of_scene(scene, {name: stiffness}, shear=False),
+            [scene.shaft.front, scene.shaft.rear],
+        )
+        down = np.array([0.0, 0.0, -scene.gearbox.weight, 0.0, 0.0, 0.0])
+        return cls(
+            unit.reaction_matrix(name)[:, 0, :].T,
+            unit.solution([np.zeros(6), down]).reaction(name),
+        )
 
     @classmethod
     def of_reactions(cls, matrix: Floats, weight: float) -> LinearModel:
@@ -104,15 +133,61 @@ class ForceErrors:
         Mean |F_model - F_FE| over mean |F_FE|, which zero crossings do no harm [%].
     correlation : float
         Pearson's coefficient; NaN where a load never changes.
+    left_out_percent : float
+        Samples near a zero of F_FE, which the mean error leaves out [%].
     """
 
     mean_error_percent: float
     relative_error_percent: float
     correlation: float
+    left_out_percent: float
+
+
+def closed_form_models(
+    scene: Scene, units: Mapping[str, UnitBounds], seat: SeatStiffness | None = None
+) -> dict[str, LinearModel]:
+    """Closed forms of one bearing on a uniform shaft.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    units : Mapping[str, UnitBounds]
+        Stiffness of the bearing unit by itself, a source of K_R; may be empty.
+    seat : SeatStiffness, optional
+        Stiffness of the bearing unit in the assembly, a further source of K_R.
+
+    Returns
+    -------
+    dict of str to LinearModel
+        By beam: the pinned one, one on torsional springs for each K_R, and with `seat` one on the
+        full 6x6; empty where the closed forms do not apply: they need one bearing on a uniform
+        shaft, loads at the hub alone, and a gearbox that is the same along y and z.
+    """
+    try:
+        pinned = main_bearing_beam(scene)
+    except InputError:
+        return {}
+    models = {PINNED: LinearModel.of_beam(closed_forms.pinned_model, pinned)}
+    for bound in ("stiff", "soft"):
+        for unit in units.values():
+            found = unit_numbers(getattr(unit, bound))
+            if found["tilt"] > 0.0 and found["yaw"] > 0.0:
+                models[SPRUNG.format(f"{bound} housing")] = LinearModel.on_springs(
+                    scene, found["tilt"], found["yaw"]
+                )
+    if seat is not None:
+        for estimator in seat.by_plane["vertical"]:
+            models[SPRUNG.format(estimator)] = LinearModel.on_springs(scene, *seat.both(estimator))
+        models[SIXBYSIX] = LinearModel.on_matrix(scene, seat.matrix)
+    return models
 
 
 def closed_form_errors(
-    scene: Scene, response: Response, units: Mapping[str, UnitBounds], loads: EnteredLoads
+    scene: Scene,
+    response: Response,
+    models: Mapping[str, LinearModel],
+    loads: EnteredLoads,
 ) -> dict[str, ForceErrors]:
     """Errors of the closed forms over load histories, each by the time that it lasts.
 
@@ -123,53 +198,57 @@ def closed_form_errors(
     response : Response
         Unit loads on its assembly, taken without the weight of shaft, bearing and housing, which
         the closed forms do not have.
-    units : Mapping[str, UnitBounds]
-        Stiffness of the bearing unit, the source of K_R.
+    models : Mapping[str, LinearModel]
+        Closed forms; none where they do not apply.
     loads : EnteredLoads
         Hub loads.
 
     Returns
     -------
     dict of str to ForceErrors
-        By beam; empty where the closed forms do not apply: they need one bearing on a uniform
-        shaft, loads at the hub alone, and a gearbox that is the same along y and z.
+        By beam.
     """
-    try:
-        pinned = main_bearing_beam(scene)
-    except InputError:
+    if not models:
         return {}
-    beams = {"pinned beam": LinearModel.of_beam(closed_forms.pinned_model, pinned)}
-    for bound in ("stiff", "soft"):
-        (unit,) = units.values()
-        found = unit_numbers(getattr(unit, bound))
-        if found["tilt"] > 0.0 and found["yaw"] > 0.0:
-            beam = main_bearing_beam(scene, found["tilt"], found["yaw"])
-            beams[f"torsional-spring beam, {bound} housing"] = LinearModel.of_beam(
-                closed_forms.torsional_spring_model, beam
-            )
     solid = LinearModel.of_fe(scene, response)
     seconds = np.array([len(h) * h.step for h in loads.given.histories])
+    histories = [history.values for history in loads.each]
     return {
-        name: _errors(solid, beam, loads.each, seconds / seconds.sum())
-        for name, beam in beams.items()
+        name: force_errors(solid, beam, histories, seconds / seconds.sum())
+        for name, beam in models.items()
     }
 
 
-def _errors(
-    solid: LinearModel, beam: LinearModel, histories: Sequence[PointLoads], share: Floats
+def force_errors(
+    solid: LinearModel,
+    beam: LinearModel,
+    histories: Sequence[Floats],
+    share: Floats | None = None,
 ) -> ForceErrors:
-    """Errors of a beam, histories counting by their share of the time."""
+    """Errors of a beam's resultant radial force.
+
+    Parameters
+    ----------
+    solid, beam : LinearModel
+        The reference and the model.
+    histories : sequence of ndarray, (n, 6)
+        Hub loads [N, N m].
+    share : ndarray, (m,), optional
+        What each history counts, their sum 1; all the same where not given.
+    """
     found = []
     for history in histories:
-        both = solid.radial(history.values), beam.radial(history.values)
+        both = solid.radial(history), beam.radial(history)
         found.append(
             [
                 float(statistics.mean_percentage_error(*both)),
                 100.0 * float(statistics.relative_error(*both)),
                 float(statistics.correlation(*both)),
+                100.0 * float(statistics.excluded_share(both[0])),
             ]
         )
-    return ForceErrors(*(share @ np.array(found)).tolist())
+    weights = np.full(len(found), 1.0 / len(found)) if share is None else share
+    return ForceErrors(*(weights @ np.array(found)).tolist())
 
 
 def closed_form_rows(found: Mapping[str, ForceErrors]) -> list[Record]:

@@ -27,6 +27,8 @@ _NAMED, _CURVES = 3, 6
 _FROM_ZERO = 0.9
 #: Share of the largest value that is round-off.
 _NOTHING = 1e-6
+#: The level of the assembly of solids.
+_ASSEMBLY = 4
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,36 @@ class Varied:
 
     key: str
     values: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class LevelTwoError:
+    """Error bounds of level 2 in a quantity that needs the assembly, relative [%].
+
+    Attributes
+    ----------
+    quantity : str
+        Name of the quantity.
+    design : str
+        The design in which the bound of level 2 is largest.
+    housing : float
+        Half of what two bounds of the housings' seats differ by there.
+    shaft : float
+        What beam and meridian of the shaft differ by there.
+    assembly : float
+        Largest error bound of level 4, of designs whose value is more than round-off.
+    """
+
+    quantity: str
+    design: str
+    housing: float
+    shaft: float
+    assembly: float
+
+    @property
+    def whole(self) -> float:
+        """Error bound of level 2."""
+        return self.housing + self.shaft
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -62,6 +94,7 @@ class CompareResult(Result):
     """
 
     STUDY: ClassVar[str] = "compare"
+    SCHEMA_VERSION: ClassVar[int] = 2
 
     designs: Mapping[str, Scene]
     differences: Sequence[Difference]
@@ -78,6 +111,15 @@ class CompareResult(Result):
         """Values in which each further design differs from the first: key, first, its own."""
         first, *others = self.designs.items()
         return {name: scene_changes(first[1], scene) for name, scene in others}
+
+    @property
+    def level_two_errors(self) -> list[LevelTwoError]:
+        """Error bounds of level 2 in each quantity that comes from the assembly."""
+        return [
+            level_two_error(one, self.names)
+            for one in self.differences
+            if one.values[0].level == _ASSEMBLY
+        ]
 
     def rows(self) -> list[Record]:
         """Values, changes and bands of each quantity, with units in the keys."""
@@ -134,37 +176,9 @@ def compare(
         differences = compare_designs(designs, quantities, tolerance, load, report)
     for name, scene in designs.items():
         found.concerns(scene, name)
-    names = list(designs)
-    known = [one for one in differences if one.is_known]
-    for one in known[:_NAMED]:
-        found.answer(_sentence(one, names))
-    if not known:
-        found.answer(f"No change from {names[0]} is larger than its band.")
-    elif unknown := [one.quantity.name for one in differences if not one.is_known]:
-        found.answer(_within_bands(unknown))
-    _found(found, known, names)
-    largest = float(max(one.rank_bands.max() for one in differences))
-    found.at_most(
-        "largest band of a change, relative to the larger value [%]",
-        100 * largest,
-        100 * tolerance,
-        why="the tolerance that was requested, relative to the larger of the two values",
-        source="the adviser's rule, applied to the change: half of what two bounds of the housings "
-        "differ by and the change from beam to meridian; of the assembly, its discretization error",
-    )
-    found.data(
-        "changes",
-        [
-            {
-                "quantity": one.quantity.name,
-                "values": [value.values for value in one.values],
-                "levels": [value.level for value in one.values],
-                "changes": _sensible(one),
-                "bands": one.rank_bands,
-            }
-            for one in differences
-        ],
-    )
+    _answer(found, differences, list(designs))
+    _judge(found, differences, tolerance)
+    found.data("changes", [_change(one) for one in differences])
     options = {
         "quantities": None if quantities is None else [one.name for one in quantities],
         "tolerance": tolerance,
@@ -178,6 +192,42 @@ def compare(
         varied=varied,
         **found.frozen(steps.times, **options),
     )
+
+
+def _answer(found: Findings, differences: Sequence[Difference], names: Sequence[str]) -> None:
+    """The largest changes, and those that are smaller than their bands."""
+    known = [one for one in differences if one.is_known]
+    for one in known[:_NAMED]:
+        found.answer(_sentence(one, names))
+    if not known:
+        found.answer(f"No change from {names[0]} is larger than its band.")
+    elif unknown := [one.quantity.name for one in differences if not one.is_known]:
+        found.answer(_within_bands(unknown))
+    _found(found, known, names)
+
+
+def _judge(found: Findings, differences: Sequence[Difference], tolerance: float) -> None:
+    """Check the widest band against the tolerance."""
+    found.at_most(
+        "largest band of a change, relative to the larger value [%]",
+        100 * float(max(one.rank_bands.max() for one in differences)),
+        100 * tolerance,
+        why="the tolerance that was requested, relative to the larger of the two values",
+        source="the adviser's rule, applied to the change: half of what two bounds of the housings "
+        "differ by and the change from beam to meridian; of the assembly, its discretization error",
+    )
+
+
+def _change(one: Difference) -> Record:
+    """A quantity of all designs as a record."""
+    return {
+        "quantity": one.quantity.name,
+        "unit": one.quantity.unit,
+        "values": [value.values for value in one.values],
+        "levels": [value.level for value in one.values],
+        "changes [-]": _sensible(one),
+        "bands [-]": one.rank_bands,
+    }
 
 
 def _sentence(one: Difference, names: Sequence[str]) -> str:
@@ -196,11 +246,11 @@ def _sentence(one: Difference, names: Sequence[str]) -> str:
 
 
 def _within_bands(names: Sequence[str]) -> str:
-    """What is said of changes that may be none."""
+    """A sentence on changes that may be zero."""
     if len(names) == 1:
-        return f"The change of {names[0]} is smaller than its band: it may be none."
+        return f"The change of {names[0]} is smaller than its band: it may be zero."
     listed = f" ({', '.join(names)})" if len(names) <= _NAMED else ""
-    return f"{len(names)} further changes{listed} are smaller than their bands: they may be none."
+    return f"{len(names)} further changes{listed} are smaller than their bands: they may be zero."
 
 
 def _found(found: Findings, known: Sequence[Difference], names: Sequence[str]) -> None:
@@ -219,12 +269,39 @@ def sizes(one: Difference) -> list[float]:
     return [0.0 if abs(size) < least else size for size in found]
 
 
+def level_two_error(one: Difference, names: Sequence[str]) -> LevelTwoError:
+    """Error bounds of level 2 in a quantity that comes from the assembly.
+
+    Parameters
+    ----------
+    one : Difference
+        At level 4.
+    names : sequence of str
+        Names of the designs.
+    """
+    parts = [value.cheaper or (0.0, 0.0) for value in one.values]
+    worst = max(range(len(parts)), key=lambda k: sum(parts[k]))
+    housing, shaft = parts[worst]
+    bands = (value.band for value, size in zip(one.values, sizes(one), strict=True) if size)
+    return LevelTwoError(
+        one.quantity.name,
+        names[worst],
+        100 * housing,
+        100 * shaft,
+        100 * max(bands, default=0.0),
+    )
+
+
 def _number(value: float) -> str:
-    return f"{value:.3g}" if value else "nothing"
+    return f"{value:.3g}"
 
 
 def _unit(one: Difference) -> str:
-    return one.quantity.unit if len(one.values[0].values) == 1 else "for the six hub loads"
+    return (
+        one.quantity.unit
+        if len(one.values[0].values) == 1
+        else "(norm over the six unit hub loads)"
+    )
 
 
 def _rows(found: Sequence[Difference], names: Sequence[str]) -> list[Record]:

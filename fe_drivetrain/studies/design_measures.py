@@ -20,7 +20,6 @@ from fe_drivetrain.shafts.fidelity.over_loads import (
 from fe_drivetrain.studies.study_loads import EnteredLoads
 from fe_drivetrain.turbine_loads.histories.model_errors import (
     USES,
-    Measured,
     damage_ratio,
     good_enough_for,
     measured,
@@ -128,11 +127,12 @@ def design_measures(
             c = _varying(reference, first) if f"{name}, {kind}" in judged else None
             if c is None:
                 continue
-            truth = _counted(reference, c, steps, slopes)
-            for level, own in levels.bounds.items():
-                errors = _larger(
-                    [model_errors(_counted(models[m], c, steps, slopes), truth) for m in own]
-                )
+            of_levels = {
+                level: [[h[:, c] for h in models[m]] for m in own]
+                for level, own in levels.bounds.items()
+            }
+            found = load_errors([h[:, c] for h in reference], of_levels, steps, slopes)
+            for level, errors in found.items():
                 worst[level] = _larger([worst[level], errors])
                 seen[level][f"{name}, {FORCES[c]}"] = errors
     return DesignMeasures(seen, good_enough_for(worst, within), within, len(chosen))
@@ -145,10 +145,35 @@ def _varying(reference: Sequence[Floats], first: int) -> int | None:
     return None if spread.max() <= ROUND_OFF * np.abs(whole).max() else first + int(spread.argmax())
 
 
-def _counted(
-    histories: Sequence[Floats], component: int, steps: Sequence[float], slopes: Sequence[float]
-) -> Measured:
-    return measured([h[:, component] for h in histories], steps, slopes)
+def load_errors(
+    reference: Sequence[Floats],
+    models: Mapping[str, Sequence[Sequence[Floats]]],
+    steps: Sequence[float],
+    slopes: Sequence[float],
+) -> dict[str, dict[str, float]]:
+    """Errors of models of one load by what a part is designed for.
+
+    Parameters
+    ----------
+    reference : sequence of ndarray, (n,)
+        The load in each history.
+    models : mapping
+        By level: the same histories by each of its models, the worst of which counts.
+    steps : sequence of float
+        Step of each history [s].
+    slopes : sequence of float
+        Slopes of S-N curves.
+
+    Returns
+    -------
+    dict
+        By level and measure, as shares; see `fe_drivetrain.turbine_loads.histories.model_errors`.
+    """
+    truth = measured(reference, steps, slopes)
+    return {
+        level: _larger([model_errors(measured(m, steps, slopes), truth) for m in own])
+        for level, own in models.items()
+    }
 
 
 def failure(seen: Mapping[str, Mapping[str, Mapping[str, float]]], use: str) -> str:
@@ -193,13 +218,13 @@ def sentence(found: Mapping[str, str | None], failures: Mapping[str, str], withi
     share = f"{100 * within:g} %"
     if not any(found.values()):
         return (
-            "Of the component across the shaft that varies most in each reaction, no level below "
+            "For the component across the shaft that varies most in each reaction, no level below "
             f"the assembly has the mean, extreme, or damage-equivalent load within {share}: none "
             f"is good enough for means, extremes or fatigue ({failures['fatigue']})."
         )
     words = [f"for {use} {model or f'none ({failures[use]})'}" for use, model in found.items()]
     return (
-        f"Of the component across the shaft that varies most in each reaction, the cheapest level "
+        f"For the component across the shaft that varies most in each reaction, the cheapest level "
         f"within {share} of the assembly is {'; '.join(words)} (fatigue: damage-equivalent loads "
         "of every slope)."
     )

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal, get_args
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.errors import InputError, require_known
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
@@ -130,16 +131,8 @@ def prepare_export(
     content: Content
     if kind in ("model", "mesh"):
         content = _model_or_mesh(found, steps, drivetrain, kind)
-    elif kind == "modes":
-        scene = _scene_of_modes(drivetrain, what, level)
-        content = steps.timed("condense", craig_bampton_shaft, scene, modes, at)
-    elif kind == "summary":
-        scene = _require_scene(drivetrain, "a summary is")
-        content = steps.timed(
-            "condense", summary, scene, _SUMMARY_LEVEL if level is None else level
-        )
     else:
-        content = steps.timed("condense", _superelement, drivetrain, what, at, level)
+        content = _condensed(steps, drivetrain, kind, what, at, level, modes)
     found.answer(_description(content))
     _data(found, content)
     return ExportResult(
@@ -153,21 +146,43 @@ def prepare_export(
     )
 
 
+def _condensed(
+    steps: Steps,
+    drivetrain: Scene | Component,
+    kind: Kind,
+    what: str,
+    at: Sequence[str] | None,
+    level: int | None,
+    modes: int,
+) -> Content:
+    """A superelement, with modes or without, or a summary."""
+    if kind == "modes":
+        scene = _scene_of_modes(drivetrain, what, level)
+        return steps.timed("condense", craig_bampton_shaft, scene, modes, at)
+    if kind == "summary":
+        scene = _require_scene(drivetrain, "a summary is")
+        number = _SUMMARY_LEVEL if level is None else level
+        return steps.timed("condense", summary, scene, number)
+    return steps.timed("condense", _superelement, drivetrain, what, at, level)
+
+
 def _refuse_unused(
     kind: Kind, what: str, at: Sequence[str] | None, level: int | None, modes: int
 ) -> None:
     """Refuse arguments that a kind of export does not use."""
     if kind == "summary" and at is not None:
         raise InputError(
-            f"--at {','.join(at)} is not used by --what summary, which has all points of the "
-            "scene: leave --at out"
+            f"{argument('at', list(at))} is not used by {argument('kind', kind)}, which has all "
+            f"points of the scene: leave {argument('at')} out"
         )
     given = {"what": what, "at": at, "level": level, "modes": modes}
     used = {"superelement": ("what", "at", "level"), "summary": ("level",)}
     used["modes"] = ("what", "at", "level", "modes")
     unused = [name for name, value in given.items() if value and name not in used.get(kind, ())]
     if unused:
-        raise InputError(f"{unused[0]} is not used by an export of kind {kind!r}: leave it out")
+        raise InputError(
+            f"{argument(unused[0])} is not used by an export of kind {kind!r}: leave it out"
+        )
 
 
 def _superelement(
@@ -212,14 +227,18 @@ def _scene_of_modes(drivetrain: Scene | Component, what: str, level: int | None)
     InputError
         It is another part, at another level, or of a component.
     """
+    modes = argument("kind", "modes")
     if not isinstance(drivetrain, Scene):
-        raise InputError("--modes is for the shaft of a scene, not for a component: leave it out")
+        raise InputError(f"{modes} is for the shaft of a scene, not for a component: leave it out")
     if what not in ("", SHAFT):
-        raise InputError(f"--modes is for the free shaft, not for --what {what}: leave --what out")
+        raise InputError(
+            f"{modes} is for the free shaft, not for {argument('what', what)}: leave "
+            f"{argument('what')} out"
+        )
     if level not in (None, _MODES_LEVEL):
         raise InputError(
-            f"--modes is for the shaft of level {_MODES_LEVEL}, not --level {level}: leave "
-            "--level out"
+            f"{modes} is for the shaft of level {_MODES_LEVEL}, not "
+            f"{argument('level', level)}: leave {argument('level')} out"
         )
     return drivetrain
 

@@ -15,7 +15,6 @@ from fe_drivetrain.report.charts import chart
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
-from fe_drivetrain.shafts.fidelity.quantities import Number
 from fe_drivetrain.shafts.fidelity.quantity import named_load
 from fe_drivetrain.shafts.uncertainty.input_study import (
     ModelError,
@@ -24,11 +23,10 @@ from fe_drivetrain.shafts.uncertainty.input_study import (
     result_at,
     study,
 )
-from fe_drivetrain.shafts.uncertainty.numbers import figures, half_band
+from fe_drivetrain.shafts.uncertainty.numbers import figures
 from fe_drivetrain.shafts.uncertainty.sampling import SHARE, Band, Shares
+from fe_drivetrain.studies.input_effects import InputEffects, input_effects
 from fe_drivetrain.studies.result import Result
-
-_CHARTED = 6  # quantities with their own charts; the tables have all of them
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -37,49 +35,64 @@ class UncertaintyResult(Result):
 
     Attributes
     ----------
-    level : int
-        Model level that was sampled: 1 beam, 2 meridian.
-    units : Mapping[str, str]
-        Unit of each quantity; the mappings below have the same keys, those asked for first.
-    nominal : Mapping[str, float]
-        Value of each quantity without uncertainty.
-    bands : Mapping[str, Band]
-        Between which values 95 % of the samples of each quantity are, with standard errors.
-    errors : Mapping[str, ModelError]
-        Error of the level itself in each quantity, relative.
-    sensitivities : Mapping[str, Mapping[str, float]]
-        Relative change of each quantity for the relative change of each uncertain value, by key.
-    shares : Mapping[str, Shares]
-        Sobol indices of the quantities that vary; empty where they were not asked for.
-    study : Study
-        Samples and surfaces that all this comes from, of which pages draw histograms; not part of
-        the JSON but for the samples.
+    effects : InputEffects
+        What the uncertain values do to each quantity: digests of the samples, no samples.
     """
 
     STUDY: ClassVar[str] = "uncertainty"
+    SCHEMA_VERSION: ClassVar[int] = 2
 
-    level: int
-    units: Mapping[str, str]
-    nominal: Mapping[str, float]
-    bands: Mapping[str, Band]
-    errors: Mapping[str, ModelError]
-    sensitivities: Mapping[str, Mapping[str, float]]
-    shares: Mapping[str, Shares]
-    study: Study = field(repr=False)
+    effects: InputEffects = field(repr=False)
+
+    @property
+    def level(self) -> int:
+        """Model level that was sampled: 1 beam, 2 meridian."""
+        return self.effects.level
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of each quantity; the mappings below have the same keys, those asked for first."""
+        return {one.name: one.unit for one in self.effects.quantities}
+
+    @property
+    def nominal(self) -> dict[str, float]:
+        """Value of each quantity without uncertainty."""
+        return {one.name: one.nominal for one in self.effects.quantities}
+
+    @property
+    def bands(self) -> dict[str, Band]:
+        """Between which values 95 % of the samples of each quantity are, with standard errors."""
+        return {one.name: one.band for one in self.effects.quantities}
+
+    @property
+    def errors(self) -> dict[str, ModelError]:
+        """Error of the level itself in each quantity, relative."""
+        return {one.name: one.error for one in self.effects.quantities}
+
+    @property
+    def sensitivities(self) -> dict[str, Mapping[str, float]]:
+        """Relative change of each quantity for the relative change of each uncertain value."""
+        return {one.name: one.sensitivities for one in self.effects.quantities}
+
+    @property
+    def shares(self) -> dict[str, Shares]:
+        """Sobol indices of the quantities that vary; empty where they were not asked for."""
+        every = self.effects.quantities
+        return {one.name: one.shares for one in every if one.shares is not None}
 
     def rows(self) -> list[Record]:
         """Nominal value, band and errors of each quantity, with units in the keys."""
         return [
             {
-                "quantity": name,
-                "unit": self.units[name],
-                "nominal": self.nominal[name],
-                "2.5 %": band.low,
-                "97.5 %": band.high,
-                "inputs: half the band [%]": 100 * half_band(self.study.samples[name]),
-                "model: error [%]": 100 * self.errors[name].share,
+                "quantity": one.name,
+                "unit": one.unit,
+                "nominal": one.nominal,
+                "2.5 %": one.band.low,
+                "97.5 %": one.band.high,
+                "inputs: half the band [%]": 100 * one.half,
+                "model: error [%]": 100 * one.error.share,
             }
-            for name, band in self.bands.items()
+            for one in self.effects.quantities
         ]
 
     def all_tables(self) -> Mapping[str, Any]:
@@ -88,7 +101,7 @@ class UncertaintyResult(Result):
 
     def chart(self) -> Chart:
         """Half of each band beside the error of the level."""
-        return half_bands(self.study)
+        return half_bands(self.effects)
 
 
 MIN_SAMPLES = 40
@@ -139,10 +152,7 @@ def uncertainty(
         See `fe_drivetrain.shafts.uncertainty.input_study.study`; the load has an unknown name, or
         there are too few samples for a band.
     """
-    if samples < MIN_SAMPLES:
-        raise InputError(
-            f"uncertainty: {samples} samples show no band of 95 %: take {MIN_SAMPLES} or more"
-        )
+    _require_samples(samples)
     found, steps = Findings(), Steps(report)
     found.about(scene)
     found.seed = seed
@@ -152,51 +162,40 @@ def uncertainty(
         known = study(
             scene, quantities, factors, tolerance, level, samples, seed, base, steps.report
         )
-    found.answer(*_sentences(known))
+    effects = _digested(found, known, tolerance)
+    options = {"quantities": quantities, "load": load, "tolerance": tolerance, "level": level}
+    options |= {"samples": samples, "sobol": sobol}
+    return UncertaintyResult(effects=effects, **found.frozen(steps.times, **options))
+
+
+def _digested(found: Findings, known: Study, tolerance: float) -> InputEffects:
+    """State answer, checks and numbers of the samples; what is kept of them."""
+    effects = input_effects(known)
+    found.answer(*_sentences(effects))
     _judge(found, known, tolerance)
     for name, value in figures(known).items():
         found.data(name, value)
-    options = {
-        "quantities": quantities,
-        "load": load,
-        "tolerance": tolerance,
-        "level": level,
-        "samples": samples,
-        "sobol": sobol,
-    }
-    return UncertaintyResult(
-        level=known.level,
-        units={number.name: number.unit for number in known.numbers},
-        nominal={number.name: known.samples[number.name].nominal for number in known.numbers},
-        bands={number.name: known.samples[number.name].band() for number in known.numbers},
-        errors=known.errors,
-        sensitivities=known.slopes,
-        shares=known.shares,
-        study=known,
-        **found.frozen(steps.times, **options),
-    )
+    return effects
 
 
-def charted(found: Study) -> list[Number]:
-    """Quantities that have charts of their own: those requested, else stiffnesses at the hub."""
-    asked = [number for number in found.numbers if found.is_asked(number)]
-    return (asked or [n for n in found.numbers if n.name.startswith("hub.stiffness.")])[:_CHARTED]
+def _require_samples(samples: int) -> None:
+    """Refuse fewer samples than a band needs."""
+    if samples < MIN_SAMPLES:
+        raise InputError(
+            f"uncertainty: {samples} samples show no band of 95 %: take {MIN_SAMPLES} or more"
+        )
 
 
-def sample_count(found: Study) -> int:
-    """Samples of the hypercube."""
-    return len(next(iter(found.samples.values())).values)
-
-
-def half_bands(found: Study) -> Chart:
+def half_bands(found: InputEffects) -> Chart:
     """Half bands and model errors, a pair of bars for each quantity."""
-    shown = [number.name for number in reversed(found.numbers)]
-    halves = [100 * half_band(found.samples[name]) for name in shown]
-    errors = [100 * found.errors[name].share for name in shown]
+    shown = list(reversed(found.quantities))
     return horizontal_bars(
         "Uncertainty from the inputs, and error of the model",
-        {"model: error of the level": errors, "inputs: half the band": halves},
-        shown,
+        {
+            "model: error of the level": [100 * one.error.share for one in shown],
+            "inputs: half the band": [100 * one.half for one in shown],
+        },
+        [one.name for one in shown],
         "± [%]",
     )
 
@@ -217,17 +216,15 @@ def horizontal_bars(
     return figure
 
 
-def _sentences(found: Study) -> list[str]:
+def _sentences(found: InputEffects) -> list[str]:
     """The answer: the band of each quantity that was asked for, and the error of the model."""
     sentences = []
-    for number in charted(found):
-        samples, error = found.samples[number.name], found.errors[number.name]
-        band = samples.band()
-        low, high = (100 * (end / samples.nominal - 1.0) for end in (band.low, band.high))
+    for one in found.charted:
+        low, high = (100 * (end / one.nominal - 1.0) for end in (one.band.low, one.band.high))
         sentences.append(
-            f"{number.name}: {samples.nominal:.4g} {number.unit}, {min(low, high):+.2g} to "
-            f"{max(low, high):+.2g} % from the inputs ({100 * SHARE:g} % of {sample_count(found)} "
-            f"samples), ± {100 * error.share:.2g} % from the model at level {found.level}."
+            f"{one.name}: {one.nominal:.4g} {one.unit}, {min(low, high):+.2g} to "
+            f"{max(low, high):+.2g} % from the inputs ({100 * SHARE:g} % of {found.samples} "
+            f"samples), ± {100 * one.error.share:.2g} % from the model at level {found.level}."
         )
     return sentences
 

@@ -12,7 +12,8 @@ from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.scene import Scene
-from fe_drivetrain.report.charts import chart, trace
+from fe_drivetrain.plots.figures import LEAST, error_traces
+from fe_drivetrain.report.charts import chart
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
@@ -21,8 +22,6 @@ from fe_drivetrain.shafts.fidelity.adviser import Advice, LevelResult
 from fe_drivetrain.shafts.fidelity.adviser import advise as run_levels
 from fe_drivetrain.shafts.fidelity.quantity import Quantity, named_load
 from fe_drivetrain.studies.result import Result
-
-_LEAST = 1e-6  # in percent; statics has no error, but a logarithmic axis needs one
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -43,6 +42,7 @@ class AdviseResult(Result):
     """
 
     STUDY: ClassVar[str] = "advise"
+    SCHEMA_VERSION: ClassVar[int] = 2
 
     drivetrain: Scene
     advice: Advice = field(repr=False)
@@ -177,42 +177,27 @@ def _judge(found: Findings, advice: Advice, known: LevelResult) -> None:
 def _data(found: Findings, advice: Advice) -> None:
     """Keep the levels for other programs."""
     found.data("quantity", advice.quantity.name)
-    found.data("levels", [_level(result) for result in advice.results])
+    found.data("levels", [_level(result, advice.quantity.unit) for result in advice.results])
 
 
-def _level(result: LevelResult) -> Record:
+def _level(result: LevelResult, unit: str) -> Record:
     return {
         "level": result.model.level,
         "title": result.model.title,
+        "unit": unit,
         "values": result.values,
-        "seconds": result.seconds,
-        "waited": result.waited,
-        "estimate": None if np.isnan(result.estimate) else result.estimate,
-        "error": None if np.isnan(result.error) else result.error,
+        "time [s]": result.seconds,
+        "time since the first level began [s]": result.waited,
+        "own error [-]": None if np.isnan(result.estimate) else result.estimate,
+        "error against the last level [-]": None if np.isnan(result.error) else result.error,
     }
 
 
 def _against_time(advice: Advice) -> Chart:
-    known = [result for result in advice.results if np.isfinite(result.error)]
-    chosen = None if advice.chosen is None else advice.results[advice.chosen]
-    traces: list[Any] = [
-        trace(
-            f"level {result.model.level}, {result.model.title}",
-            [result.seconds],
-            [max(100 * (result.error if result is not advice.top else result.estimate), _LEAST)],
-            points=True,
-            marker={"size": 14 if result is chosen else 9},
-        )
-        for result in known
-    ]
-    times = [result.seconds for result in known]
-    limit = 100 * advice.tolerance
-    traces.append(
-        trace("tolerance", [min(times), max(times)], [limit, limit], line={"dash": "dash"})
-    )
+    traces = error_traces(*advice.ladder, advice.tolerance, advice.chosen)
     return chart(
         "Error over time; for the last level its estimated own error. The largest marker is the "
-        f"level that is accurate enough. Errors of zero are drawn at {_LEAST:g} %",
+        f"level that is accurate enough. Errors of zero are drawn at {100 * LEAST:g} %",
         traces,
         x="time [s]",
         y="error [%]",

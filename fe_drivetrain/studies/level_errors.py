@@ -19,7 +19,7 @@ from fe_drivetrain.shafts.fidelity.over_loads import (
     reaction_history,
     relative_errors,
 )
-from fe_drivetrain.studies.reaction_statistics import SHOWN_UNITS
+from fe_drivetrain.studies.shown_units import SHOWN_UNITS
 from fe_drivetrain.studies.study_loads import EnteredLoads
 
 ENOUGH = 0.05
@@ -29,21 +29,77 @@ _KINDS = ("force", "moment")
 
 
 @dataclass(frozen=True)
+class ComponentError:
+    """Error of each model in one component of a reaction.
+
+    Attributes
+    ----------
+    reaction, component : str
+        Name of a bearing, or "gearbox", and "Fx" to "Mz".
+    rms : float
+        Root mean square of the assembly's [N, N m].
+    rmse : Mapping[str, float]
+        Root mean square of the difference to the assembly's, by model [N, N m].
+    """
+
+    reaction: str
+    component: str
+    rms: float
+    rmse: Mapping[str, float]
+
+    def row(self) -> Record:
+        """A row of a table [kN, kN m]."""
+        unit = SHOWN_UNITS[FORCES.index(self.component)]
+        return {
+            "reaction": f"{self.reaction}, {self.component} [{unit}]",
+            "rms of FE": self.rms / 1e3,
+            **{model: error / 1e3 for model, error in self.rmse.items()},
+        }
+
+
+@dataclass(frozen=True)
+class VectorError:
+    """Error of each model in the force or the moment of a reaction, as a vector.
+
+    Attributes
+    ----------
+    reaction, kind : str
+        Name of a bearing, or "gearbox", and "force" or "moment".
+    shares : Mapping[str, float]
+        Error over the assembly's, by model.
+    """
+
+    reaction: str
+    kind: str
+    shares: Mapping[str, float]
+
+    @property
+    def name(self) -> str:
+        """What it is of, as tables have it."""
+        return f"{self.reaction}, {self.kind}"
+
+    def row(self) -> Record:
+        """A row of a table [%]."""
+        shares = {model: 100.0 * share for model, share in self.shares.items()}
+        return {"reaction": self.name, **shares}
+
+
+@dataclass(frozen=True)
 class LevelErrors:
     """Errors of all levels over load histories.
 
     Attributes
     ----------
-    components : Sequence[Record]
-        RMSE of each component of each reaction.
-    shares : Mapping[str, Mapping[str, float]]
-        By reaction and model: error of the force or moment as a vector, relative.
+    components : tuple of ComponentError
+        Each component of each reaction that is more than round-off.
+    vectors : tuple of VectorError
+        Force and moment of each reaction, where they are more than round-off.
     judged : Sequence[Judged]
         Each reaction at the levels below the assembly, the worse bound of the housings counting.
     """
 
-    components: Sequence[Record]
-    shares: Mapping[str, Mapping[str, float]]
+    components: tuple[ComponentError, ...]
+    vectors: tuple[VectorError, ...]
     judged: Sequence[Judged]
 
 
@@ -60,8 +116,8 @@ def level_errors(scene: Scene, levels: Levels, loads: EnteredLoads) -> LevelErro
         Hub loads.
     """
     others, weights = list(levels.models)[:-1], loads.given.weights
-    components: list[Record] = []
-    shares: dict[str, dict[str, float]] = {}
+    components: list[ComponentError] = []
+    vectors: list[VectorError] = []
     judged: list[Judged] = []
     for name in levels.reference.reaction_matrices:
         histories = {
@@ -79,31 +135,27 @@ def level_errors(scene: Scene, levels: Levels, loads: EnteredLoads) -> LevelErro
         for k, kind in enumerate(_KINDS):
             if np.isnan(relative[others[0]][k]):
                 continue
-            of = {m: float(relative[m][k]) for m in others}
-            shares[f"{name}, {kind}"] = of
+            of = VectorError(name, kind, {m: float(relative[m][k]) for m in others})
             own = size[3 * k : 3 * k + 3]
-            judged.append(_judged(f"{name}, {kind}", kind, float(np.linalg.norm(own)), of, levels))
+            vectors.append(of)
+            judged.append(_judged(of, float(np.linalg.norm(own)), levels))
             components += [
-                {
-                    "reaction": f"{name}, {FORCES[c]} [{SHOWN_UNITS[c]}]",
-                    "rms of FE": size[c] / 1e3,
-                    **{m: rmse[m][c] / 1e3 for m in others},
-                }
+                ComponentError(
+                    name, FORCES[c], float(size[c]), {m: float(rmse[m][c]) for m in others}
+                )
                 for c in range(3 * k, 3 * k + 3)
                 if size[c] > ROUND_OFF * own.max()
             ]
-    return LevelErrors(components, shares, judged)
+    return LevelErrors(tuple(components), tuple(vectors), judged)
 
 
-def _judged(
-    name: str, kind: str, size: float, shares: Mapping[str, float], levels: Levels
-) -> Judged:
+def _judged(of: VectorError, size: float, levels: Levels) -> Judged:
     """A reaction at each level below the assembly: the worse of both bounds of the housings."""
-    by_level = {level: max(shares[m] for m in models) for level, models in levels.bounds.items()}
+    by_level = {level: max(of.shares[m] for m in models) for level, models in levels.bounds.items()}
     band = 0.0
     if levels.coarser is not None:
-        band = float(levels.band(np.array(shares[COARSER_ASSEMBLY])))
-    return Judged(name, kind, size, by_level, band)
+        band = float(levels.band(np.array(of.shares[COARSER_ASSEMBLY])))
+    return Judged(of.name, of.kind, size, by_level, band)
 
 
 def needed_levels(judged: Sequence[Judged], with_band: bool) -> list[Record]:

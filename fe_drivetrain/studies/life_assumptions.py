@@ -208,8 +208,8 @@ def in_words(name: str, years: float, assumptions: Sequence[Assumption]) -> str 
         f"{one.assumed} ({one.instead}: {in_years(float(f'{one.years:.2g}'))})" for one in matter
     ]
     return (
-        f"Bearing {name}: its L10mr of {in_years(years)} holds for what was not stated and is "
-        "taken as follows, in brackets what it would be with another value: "
+        f"Bearing {name}: its L10mr of {in_years(years)} assumes what was not stated, in "
+        "brackets what it would be with another value: "
         f"{'; '.join(parts)}."
     )
 

@@ -13,6 +13,7 @@ from fe_drivetrain.bearing.geometry import RollerRow
 from fe_drivetrain.bearing_life.life.limits import check_speed
 from fe_drivetrain.bearing_life.life.roller_damage import Damage, LifeRules, damage_of_steps
 from fe_drivetrain.bearing_life.life.steps import Steps
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
@@ -26,7 +27,7 @@ from fe_drivetrain.studies.rolling_bearings import Choices, OneBearing
 from fe_drivetrain.studies.unused import RPM, own_speeds, require_samples
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.turbine_loads.hub_loads.histories import MIN_SAMPLES
-from fe_drivetrain.turbine_loads.hub_loads.recorded import read_recorded
+from fe_drivetrain.turbine_loads.hub_loads.recorded import Recorded, read_recorded
 from fe_drivetrain.turbine_loads.hub_loads.turbines import vertical_forces
 
 WINDOWS = 60
@@ -179,16 +180,7 @@ def digest(
         The file cannot be read, has no rotor speed, or too few samples are taken.
     """
     found = read_recorded(file, reading.names, reading.skip)
-    history = found.history
-    if found.rotor_speed is not None:
-        speed = found.rotor_speed * RPM
-    elif reading.rotor_speed is not None:
-        speed = np.full(len(history), reading.rotor_speed)
-    else:
-        raise InputError(
-            f"hub loads '{file}': there is no rotor speed, by which lives count turns: give "
-            "--rotor-speed in 1/min, or --channel 'rotor speed=COLUMN'"
-        )
+    history, speed = found.history, _speed_rpm(file, found, reading)
     require_samples(file, len(history), reading.every, MIN_SAMPLES)
     loads, speed = entering(scene, history)[:: reading.every], speed[:: reading.every]
     check_speed(one.rated, speed)
@@ -209,6 +201,19 @@ def digest(
         vertical=vertical_forces([history])[history.name],
         own_speeds=own_speeds(found.rotor_speed),
         ratios=changed,
+    )
+
+
+def _speed_rpm(file: Path, found: Recorded, reading: Reading) -> Floats:
+    """Rotor speed (n,) of a file, or the one that is given for files without [1/min]."""
+    if found.rotor_speed is not None:
+        return np.asarray(found.rotor_speed * RPM)
+    if reading.rotor_speed is not None:
+        return np.full(len(found.history), reading.rotor_speed)
+    raise InputError(
+        f"hub loads '{file}': there is no rotor speed, by which lives count turns: give "
+        f"{argument('LifeOptions.rotor_speed_rpm')} in 1/min, or its channel, as in "
+        "`ChannelMap(channels={'rotor speed': 'RotSpeed'})`"
     )
 
 

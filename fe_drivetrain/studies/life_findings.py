@@ -10,6 +10,7 @@ import numpy as np
 from fe_drivetrain.bearing_life.life.limits import centrifugal_load
 from fe_drivetrain.bearing_life.life.reference_life import RINGS
 from fe_drivetrain.bearing_life.life.roller_damage import LifeRules
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.procedure.failure_modes import TORQUE_AND_BENDING
 from fe_drivetrain.report.answer import value_with_band
@@ -58,7 +59,7 @@ def answers(
             which = f"L10mr of bearing {life.name} [years]"
             found.found(which, years["L10mr"], band, (TORQUE_AND_BENDING,))
         if band is not None:
-            shown = value_with_band(found.answers[-1])
+            shown = value_with_band(found.figures[-1])
             words = f"Bearing {life.name} lives {shown} {_under(life, site)} (L10mr, ± two "
             words += "standard errors of files of the same wind"
         words += f"; L10r {in_years(years['L10r'])}, L10 {in_years(years['L10'])})"
@@ -68,7 +69,7 @@ def answers(
 def _under(life: BearingLife, site: Site | None) -> str:
     """Under what the bearing lives."""
     if site is None or life.site is None:
-        return "if these files followed each other for ever"
+        return "if these files repeat for ever"
     return (
         f"at a mean wind of {site.mean_wind:g} m/s, where the winds of these files blow "
         f"{100 * life.site.covered:.3g} % of the time and the rest is taken to do no damage"
@@ -211,25 +212,36 @@ def assumptions(found: Findings, lives: Sequence[BearingLife], options: LifeOpti
         _of_entry(found, life, rules)
     oil = rules.lubricant
     if oil is not None:
-        found.assume("temperature", oil.temperature, "degC", "--temperature")
-        found.assume("viscosity there", oil.viscosity, "mm2/s", "--lubricant, by ASTM D341")
-        found.assume("lubrication", oil.supply, "", "--supply")
-        found.assume("cleanliness", oil.cleanliness, "", "--cleanliness")
+        found.assume("temperature", oil.temperature, "degC", _option("temperature"))
+        found.assume(
+            "viscosity there", oil.viscosity, "mm2/s", f"{_option('lubricant')}, by ASTM D341"
+        )
+        found.assume("lubrication", oil.supply, "", _option("supply"))
+        found.assume("cleanliness", oil.cleanliness, "", _option("cleanliness"))
     found.assume(
         "lambda nu taken out of C", rules.reduction, "-", "0.83 with a stress riser, else 1"
     )
-    found.assume("a_1", rules.reliability, "-", "--reliability, as public code has it")
+    found.assume(
+        "a_1", rules.reliability, "-", f"{_option('reliability_percent')}, as public code has it"
+    )
     share = "C_u over the number of rows" if rules.limit_per_row else "the whole C_u"
     found.assume("fatigue limit of a row", share, "", "loads P_ks are those of a row")
-    found.assume("ring that turns against the load", rules.turning, "", "--turning")
+    found.assume("ring that turns against the load", rules.turning, "", _option("turning"))
     words = {
         "rollers": "bearings in equilibrium with the shaft, a beam",
         "pinned": "pinned bearings: no moment on them",
     }.get(str(options.support), f"springs with K_R of {options.support} N m/rad")
-    found.assume("shaft", words, "", "--support")
-    found.assume("rings", options.rings, "", "--rings; housings are rigid but for 'housing'")
+    found.assume("shaft", words, "", _option("support"))
+    found.assume(
+        "rings", options.rings, "", f"{_option('rings')}; housings are rigid but for 'housing'"
+    )
     files = len(lives[0].files)
-    found.assume("samples", f"one of {options.every}", "", f"--every; {files} files")
+    found.assume("samples", f"one of {options.every}", "", f"{_option('every')}; {files} files")
+
+
+def _option(name: str) -> str:
+    """The option that a value comes from."""
+    return argument(f"LifeOptions.{name}")
 
 
 def _of_entry(found: Findings, life: BearingLife, rules: LifeRules) -> None:
@@ -244,7 +256,9 @@ def _of_entry(found: Findings, life: BearingLife, rules: LifeRules) -> None:
     if "clearance" not in entry.model_fields_set:
         found.assume(f"{name}: clearance", 0.0, "m", "not stated in its catalogue entry")
     words = rollers_in_words(life.bearing, rules.riser)
-    found.assume(f"{name}: rolling elements", words, "", "--profile and --riser")
+    found.assume(
+        f"{name}: rolling elements", words, "", f"{_option('profile')} and {_option('riser')}"
+    )
 
 
 def checks(found: Findings, lives: Sequence[BearingLife]) -> None:

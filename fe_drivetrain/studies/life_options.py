@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.errors import InputError, require_known
+from fe_drivetrain.studies.history_options import HistoryOptions
 
 if TYPE_CHECKING:
     from fe_drivetrain.bearing_life.life.lubricants import Lubricant, Supply
@@ -16,14 +17,13 @@ if TYPE_CHECKING:
     from fe_drivetrain.bearing_life.life.roller_damage import LifeRules
     from fe_drivetrain.studies.life_digest import Reading
     from fe_drivetrain.studies.rolling_bearings import Choices
-    from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
 
 #: Options whose defaults change lives, though the user may never have thought of them.
 ASSUMED = ("lubricant", "temperature", "cleanliness", "profile", "riser", "turning")
 
 
 @dataclass(frozen=True, kw_only=True)
-class LifeOptions:
+class LifeOptions(HistoryOptions):
     """Choices of a life, each with its default.
 
     Attributes
@@ -55,13 +55,8 @@ class LifeOptions:
         How the rings share the load among the rollers.
     reliability_percent : float
         Reliability of modified lives, one of `fe_drivetrain.bearing_life.life.RELIABILITY` [%].
-    channels : ChannelMap or None
-        How files call their channels, and their frame and origin; None takes OpenFAST's names, and
-        those of the program's own tables.
-    rotor_speed_rpm : float or None
-        Rotor speed of files that state none [1/min].
-    skip : float
-        Time that is left out at the beginning of each file [s].
+    channels, rotor_speed_rpm, skip
+        How files are read, see `HistoryOptions`.
     every : int
         Use every n-th sample.
     weight : bool
@@ -89,22 +84,16 @@ class LifeOptions:
     support: str | float = "rollers"
     rings: str = "rigid"
     reliability_percent: float = 90.0
-    channels: ChannelMap | None = None
-    rotor_speed_rpm: float | None = None
-    skip: float = 0.0
     every: int = 1
     weight: bool = True
     stated: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         for name in self.stated:
             require_known("an option that is stated", name, ASSUMED)
         if not (isinstance(self.every, int) and self.every >= 1):
             raise InputError(f"every is {self.every}: give a whole number of samples from 1 on")
-        for name, unit in (("skip", "s"), ("rotor_speed_rpm", "1/min")):
-            value = getattr(self, name)
-            if value is not None and not 0.0 <= value < inf:
-                raise InputError(f"{name} is {value:g} {unit}: give a finite number, 0 or more")
         _ = self.rules  # checks lubricant, ring and reliability
 
     @property
@@ -120,7 +109,8 @@ class LifeOptions:
 
         if self.reliability_percent not in RELIABILITY:
             known = ", ".join(f"{value:g}" for value in RELIABILITY)
-            raise InputError(f"--reliability {self.reliability_percent:g}: choose one of {known} %")
+            given = argument("LifeOptions.reliability_percent", self.reliability_percent)
+            raise InputError(f"{given}: choose one of {known} %")
         return LifeRules(
             self._oil,
             "standard" if self.riser else "none",
@@ -132,10 +122,8 @@ class LifeOptions:
     def reading(self) -> Reading:
         """How files are read."""
         from fe_drivetrain.studies.life_digest import Reading
-        from fe_drivetrain.turbine_loads.hub_loads.recorded import OWN_NAMES
 
-        names = OWN_NAMES if self.channels is None else self.channels
-        return Reading(names, self.skip, self.every, self.rotor_speed_rpm)
+        return Reading(self.names, self.skip, self.every, self.rotor_speed_rpm)
 
     @property
     def choices(self) -> Choices:
@@ -161,9 +149,10 @@ class LifeOptions:
             return None
         if isinstance(self.lubricant, str):
             if self.lubricant not in GRADES:
+                name = "LifeOptions.lubricant"
                 raise InputError(
-                    f"--lubricant {self.lubricant}: choose {', '.join(GRADES)}, or give the "
-                    "viscosity at 40 and at 100 degC in mm2/s, as 460,30.5"
+                    f"{argument(name, self.lubricant)}: choose {', '.join(GRADES)}, or give the "
+                    f"viscosity at 40 and at 100 degC in mm2/s, as {argument(name, (460.0, 30.5))}"
                 )
             at_40, at_100 = GRADES[self.lubricant]
         else:

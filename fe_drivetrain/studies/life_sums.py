@@ -13,6 +13,7 @@ from fe_drivetrain.bearing_life.life.at_site import SiteLife, site_lives
 from fe_drivetrain.bearing_life.life.limits import Limits
 from fe_drivetrain.bearing_life.life.roller_damage import KINDS, Damage, LifeRules
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.studies.life_assumptions import Assumption, what_ifs
 from fe_drivetrain.studies.life_digest import LifeDigest, worse
 from fe_drivetrain.studies.rolling_bearings import Choices, OneBearing
@@ -52,6 +53,8 @@ class FileLife:
     own_speeds: Floats
     ratios: Floats
 
+    __repr__ = short_repr
+
 
 @dataclass(frozen=True, eq=False)
 class DamageOverTime:
@@ -73,6 +76,8 @@ class DamageOverTime:
     rate: float
     times: Floats
     values: Floats
+
+    __repr__ = short_repr
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +117,11 @@ class BearingLife:
     pressures: Floats
     worst: DamageOverTime
     assumptions: tuple[Assumption, ...]
+
+    def __repr__(self) -> str:
+        """One line: the bearing, and its life of each kind."""
+        years = ", ".join(f"{kind} {value:.3g}" for kind, value in self.years.items())
+        return f"<life of bearing {self.name} [years]: {years}>"
 
     @property
     def name(self) -> str:

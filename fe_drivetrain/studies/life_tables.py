@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.life_sums import BearingLife, row_names
 from fe_drivetrain.turbine_loads.histories.sites import HOURS_A_YEAR
+from fe_drivetrain.turbine_loads.hub_loads.recorded import short_name
 
 
 def life_rows(lives: Sequence[BearingLife]) -> list[Record]:
@@ -43,12 +44,12 @@ def limit_rows(lives: Sequence[BearingLife]) -> list[Record]:
         rows.append(
             {
                 "bearing": life.name,
-                "least S0": of.static_safety,
-                "largest pressure [MPa]": 1e-6 * of.largest_pressure,
-                "largest roller load [kN]": 1e-3 * of.largest_roller,
-                "largest P0 / C0": of.largest_static / rated.static,
-                "largest P / C": of.largest_load / rated.dynamic,
-                "largest P / C of the rollers": of.largest_reference / rated.dynamic,
+                "min S0": of.static_safety,
+                "max pressure [MPa]": 1e-6 * of.largest_pressure,
+                "max roller load [kN]": 1e-3 * of.largest_roller,
+                "max P0 / C0": of.largest_static / rated.static,
+                "max P / C": of.largest_load / rated.dynamic,
+                "max P / C of the rollers": of.largest_reference / rated.dynamic,
                 "load above C/2 [% of time]": share * of.heavy,
                 "S0 below 1 [% of time]": share * of.weak,
                 "kappa below 0.1 [% of time]": share * of.thin,
@@ -83,11 +84,12 @@ def file_rows(lives: Sequence[BearingLife]) -> list[Record]:
     """Lives and limits of each bearing under each file alone."""
     rows: list[Record] = []
     for life in lives:
+        files = [one.file for one in life.files]
         for one in life.files:
             of = one.damage.limits
             row: Record = {
                 "bearing": life.name,
-                "file": one.file.name,
+                "file": short_name(one.file, files),
                 "mean wind [m/s]": one.wind,
                 "mean speed [1/min]": one.speed,
                 "time [s]": one.damage.seconds,
@@ -95,11 +97,11 @@ def file_rows(lives: Sequence[BearingLife]) -> list[Record]:
             }
             row |= {f"{kind} [years]": v for kind, v in one.damage.lives("years").items()}
             row |= {
-                "largest P [kN]": 1e-3 * of.largest_load,
-                "largest P0 [kN]": 1e-3 * of.largest_static,
-                "largest roller load [kN]": 1e-3 * of.largest_roller,
-                "largest pressure [MPa]": 1e-6 * of.largest_pressure,
-                "least S0": of.static_safety,
+                "max P [kN]": 1e-3 * of.largest_load,
+                "max P0 [kN]": 1e-3 * of.largest_static,
+                "max roller load [kN]": 1e-3 * of.largest_roller,
+                "max pressure [MPa]": 1e-6 * of.largest_pressure,
+                "min S0": of.static_safety,
                 "standing [s]": of.standing,
             }
             rows.append(row)
@@ -130,7 +132,7 @@ def ring_rows(life: BearingLife) -> list[Record]:
     rows: list[Record] = []
     for r, word in enumerate(row_names(len(life.rows))):
         for ring, race in enumerate(RINGS):
-            row: Record = {"row": word, "ring": race}
+            row: Record = {"bearing": life.name, "row": word, "ring": race}
             for kind, values, alone in zip(("L10r", "L10mr"), both, damage.alone, strict=True):
                 whole = values.sum()
                 row[f"share of {kind}'s damage [%]"] = (
@@ -155,7 +157,7 @@ def place_rows(life: BearingLife) -> list[Record]:
                 "row": word,
                 "place [deg]": float(at[j]),
                 "mean load [kN]": 1e-3 * float(life.mean_load[r, j]),
-                "largest load [kN]": 1e-3 * float(life.peak_load[r, j]),
+                "max load [kN]": 1e-3 * float(life.peak_load[r, j]),
                 **{
                     f"{ring} ring, damage by {kind}": float(values[i, j])
                     for kind, values in (("L10r", basic), ("L10mr", modified))
@@ -193,19 +195,34 @@ def has_rollers(life: BearingLife) -> bool:
     return all(isinstance(row, RollerRow) for row in life.rows)
 
 
-def site_maps(life: BearingLife) -> Iterator[tuple[str, Row, Floats, Floats]]:
-    """Damage over wind and place of rollers at the site, row by row; none without a site.
+class SiteMap(NamedTuple):
+    """Damage of a row over wind and place of its rolling elements at a site.
 
-    Yields
-    ------
-    caption : str
-        What it shows.
+    Attributes
+    ----------
+    row_name : str
+        What the row is called.
     row : Row
         The row.
     speeds : ndarray, (winds,)
         Winds [m/s].
     values : ndarray, (winds, elements)
         Damage by L10r of both rings over time [1/s].
+    """
+
+    row_name: str
+    row: Row
+    speeds: Floats
+    values: Floats
+
+
+def site_maps(life: BearingLife) -> Iterator[SiteMap]:
+    """Damage over wind and place of rolling elements, row by row; none without a site.
+
+    Yields
+    ------
+    SiteMap
+        That of a row.
     """
     if life.site is None:
         return
@@ -216,8 +233,7 @@ def site_maps(life: BearingLife) -> Iterator[tuple[str, Row, Floats, Floats]]:
                 for one, share in zip(life.site.at_winds, life.site.shares, strict=True)
             ]
         )
-        caption = f"{life.name}, {word}: damage by L10r at the site over wind and place of rollers"
-        yield caption, row, life.site.speeds, values
+        yield SiteMap(word, row, life.site.speeds, values)
 
 
 def result_tables(lives: Sequence[BearingLife]) -> dict[str, Any]:
@@ -225,16 +241,23 @@ def result_tables(lives: Sequence[BearingLife]) -> dict[str, Any]:
     tables: dict[str, Any] = {"lives": life_rows(lives), "limits": limit_rows(lives)}
     if rows := assumption_rows(lives):
         tables["assumed"] = rows
-    for life in lives:
-        tables[f"{life.name}: load zone [N]"] = {
-            "mean": life.mean_load,
-            "largest": life.peak_load,
-        }
-        tables[f"{life.name}: rows and rings"] = ring_rows(life)
-        for caption, _, speeds, values in site_maps(life):
-            tables[caption] = {"wind [m/s]": speeds, "damage [1/s]": values}
-        if has_rollers(life):
-            tables[f"{life.name}: pressure along rollers [Pa]"] = life.pressures
+    tables["load_zones"] = [
+        {"bearing": life.name, "mean load [N]": life.mean_load, "max load [N]": life.peak_load}
+        for life in lives
+    ]
+    tables["rings"] = [row for life in lives for row in ring_rows(life)]
+    if any(life.site is not None for life in lives):
+        tables["winds_and_places"] = [
+            {"bearing": life.name, "row": one.row_name, "wind [m/s]": one.speeds}
+            | {"damage by L10r [1/s]": one.values}
+            for life in lives
+            for one in site_maps(life)
+        ]
+    tables["pressures"] = [
+        {"bearing": life.name, "pressure along rollers [Pa]": life.pressures}
+        for life in lives
+        if has_rollers(life)
+    ]
     return tables
 
 

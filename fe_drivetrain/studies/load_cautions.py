@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.studies.load_digest import LOADS, LoadOptions
 from fe_drivetrain.studies.load_totals import LoadTotals, Suspects
@@ -34,8 +35,8 @@ def cautions(found: LoadTotals, options: LoadOptions) -> list[str]:
     said += _lone(found.suspects)
     count = len(names)
     said += [
-        f"{channel} does not vary in {number} of {count} files: it counts no cycles, as of a "
-        "turbine at rest, or of a channel that was not recorded."
+        f"{channel} does not vary in {number} of {count} files: no cycles are "
+        "counted. The turbine may be at rest, or the channel not recorded."
         for channel, number in found.suspects.still.items()
     ]
     short = sum(span.seconds < 0.99 * TEN_MINUTES for span in found.files.spans)
@@ -84,6 +85,7 @@ def _residue(found: LoadTotals, options: LoadOptions) -> list[str]:
     more = 100.0 * ((1.0 + share[c, k]) ** (1.0 / slope) - 1.0)
     return [
         f"{LOADS[int(c)]}, m = {slope:g}: {100 * share[c, k]:.3g} % of the damage is of half "
-        f"cycles that the ends of files leave open; counted as whole ones (--residue closed) "
+        f"cycles that the ends of files leave open; counted as whole ones "
+        f"({argument('LoadOptions.residue', 'closed')}) "
         f"they make its equivalent load {more:.2g} % larger."
     ]

@@ -4,23 +4,51 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.studies.load_digest import LOADS, UNITS, Digest
 from fe_drivetrain.studies.load_planes import PLANES
 from fe_drivetrain.studies.load_reactions import ALONE, FileDigest
-from fe_drivetrain.studies.load_records import shown_unit
+from fe_drivetrain.studies.shown_units import shown_unit
 from fe_drivetrain.turbine_loads.histories.sets import CHANCE, Difference, differences
 from fe_drivetrain.turbine_loads.histories.sites import WIND_BIN, rounded_wind
 from fe_drivetrain.turbine_loads.histories.spectra import MULTIPLES
 from fe_drivetrain.turbine_loads.histories.windows import COLUMNS
 
 
-def features(found: Digest, slopes: Sequence[float]) -> dict[str, float]:
-    """Quantities of one history that are compared, by name with unit [kN, kN m].
+class Feature(NamedTuple):
+    """A quantity of a history.
+
+    Attributes
+    ----------
+    source : str
+        Reaction, as "main_bearing", or another channel of the files; empty for hub loads.
+    load : str
+        One of `LOADS`, or loops of a plane; empty for another channel, which is one.
+    what : str
+        Statistic, equivalent load or multiple.
+    unit : str
+        Its unit; empty for another channel, which has that of the files.
+    """
+
+    source: str
+    load: str
+    what: str
+    unit: str
+
+    def __str__(self) -> str:
+        """The quantity as tables have it: "main_bearing: My, mean [kN m]"."""
+        of = ": ".join(filter(None, (self.source, self.load)))
+        return f"{of}, {self.what}" + (f" [{self.unit}]" if self.unit else "")
+
+
+def features(found: Digest, slopes: Sequence[float], source: str = "") -> dict[Feature, float]:
+    """Quantities of one history that are compared [kN, kN m].
 
     Parameters
     ----------
@@ -28,32 +56,39 @@ def features(found: Digest, slopes: Sequence[float]) -> dict[str, float]:
         The history.
     slopes : sequence of float
         With which it was counted.
+    source : str
+        Reaction that it is of; empty for hub loads.
     """
-    seconds = found.span.seconds
-    table = found.windows.together()
-    amplitudes = None if found.spectra is None else found.spectra.multiples
-    result: dict[str, float] = {}
-    for c, (name, unit) in enumerate(zip(LOADS, UNITS, strict=False)):
-        shown = shown_unit(unit)
-        for k, what in enumerate(COLUMNS):
-            result[f"{name}, {what} [{shown}]"] = float(table[c, k]) / 1e3
-        for k, slope in enumerate(slopes):
-            load = (float(found.cycles.damage[c, k]) / seconds) ** (1.0 / slope)
-            result[f"{name}, DEL of m = {slope:g} at 1 Hz [{shown}]"] = load / 1e3
-        if amplitudes is not None:
-            for k, number in enumerate(MULTIPLES):
-                result[f"{name}, {number}P [{shown}]"] = float(amplitudes[c, k]) / 1e3
+    result: dict[Feature, float] = {}
+    for name, unit in zip(LOADS, UNITS, strict=False):
+        for what, value in _of_load(found, name, slopes).items():
+            result[Feature(source, name, what, shown_unit(unit))] = value / 1e3
     for name, _ in PLANES:
-        plane = found.planes[name]
-        result[f"loops of {name}, share of time [%]"] = 100.0 * plane.loop_seconds / seconds
+        plane, loops = found.planes[name], f"loops of {name}"
+        share = 100.0 * plane.loop_seconds / found.span.seconds
+        result[Feature(source, loops, "share of time", "%")] = share
         if not np.isnan(plane.over_passing):
-            result[f"loops of {name}, over blade passages [-]"] = plane.over_passing
-    torque = found.torque.equivalent_over_time(seconds)
-    result["Mx, equivalent over time [kN m]"] = torque / 1e3
+            result[Feature(source, loops, "over blade passages", "-")] = plane.over_passing
+    torque = found.torque.equivalent_over_time(found.span.seconds)
+    result[Feature(source, "Mx", "equivalent over time", shown_unit("N m"))] = torque / 1e3
     return result
 
 
-def all_features(found: FileDigest, slopes: Sequence[float]) -> dict[str, float]:
+def _of_load(found: Digest, load: str, slopes: Sequence[float]) -> dict[str, float]:
+    """Statistics, equivalent loads and multiples of one load, in its own unit."""
+    place, seconds = LOADS.index(load), found.span.seconds
+    result = dict(zip(COLUMNS, found.windows.together()[place].tolist(), strict=True))
+    for k, slope in enumerate(slopes):
+        rate = float(found.cycles.damage[place, k]) / seconds
+        result[f"DEL of m = {slope:g} at 1 Hz"] = rate ** (1.0 / slope)
+    amplitudes = None if found.spectra is None else found.spectra.multiples
+    if amplitudes is not None:
+        values = zip(MULTIPLES, amplitudes[place].tolist(), strict=True)
+        result |= {f"{n}P": value for n, value in values}
+    return result
+
+
+def all_features(found: FileDigest, slopes: Sequence[float]) -> dict[Feature, float]:
     """Quantities of one history, of each reaction to it, and of its other channels.
 
     Parameters
@@ -65,12 +100,10 @@ def all_features(found: FileDigest, slopes: Sequence[float]) -> dict[str, float]
     """
     result = features(found.hub, slopes)
     for name, part in found.reactions.items():
-        result |= {f"{name}: {key}": value for key, value in features(part, slopes).items()}
-    for name, part in found.others.items():  # one channel, in its own unit
-        for key, value in features(part, slopes).items():
-            if key.startswith(f"{ALONE}, "):
-                what = key.removeprefix(f"{ALONE}, ").removesuffix(" [kN]")
-                result[f"{name}, {what}"] = 1e3 * value
+        result |= features(part, slopes, name)
+    for name, part in found.others.items():
+        for what, value in _of_load(part, ALONE, slopes).items():
+            result[Feature(name, "", what, "")] = value
     return result
 
 
@@ -150,7 +183,7 @@ class LoadSet:
 
     def __init__(self, slopes: Sequence[float]) -> None:
         self._slopes = slopes
-        self.features: dict[str, list[dict[str, float]]] = {}
+        self.features: dict[str, list[dict[Feature, float]]] = {}
         self.own_speeds: list[Floats] = []
         self._spectra: dict[str, dict[str, Floats] | None] = {}
 
@@ -221,7 +254,7 @@ def compare_sets(
         )
     if not winds:
         raise InputError(
-            f"--against: no mean wind speed, to {WIND_BIN:g} m/s, has histories of both sets and "
-            "three or more together: give more histories of the same winds"
+            f"{argument('against')}: no mean wind speed, to {WIND_BIN:g} m/s, has histories of "
+            "both sets and three or more together: give more histories of the same winds"
         )
     return Comparison(names, tuple(winds), tuple(alone))

@@ -13,6 +13,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError, require_known
 from fe_drivetrain.common.made_by import file_digest, program_hash
+from fe_drivetrain.studies.history_options import HistoryOptions, require_between
 from fe_drivetrain.studies.load_planes import PLANES, PlaneDigest, plane_digest
 from fe_drivetrain.studies.unused import own_speeds
 from fe_drivetrain.turbine_loads.histories.cycle_sums import CycleRule, CycleSums, count_cycles
@@ -28,8 +29,7 @@ from fe_drivetrain.turbine_loads.histories.level_sums import (
 )
 from fe_drivetrain.turbine_loads.histories.spectrum_sums import HistorySpectra, history_spectra
 from fe_drivetrain.turbine_loads.histories.windows import Windows, window_statistics
-from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
-from fe_drivetrain.turbine_loads.hub_loads.recorded import OWN_NAMES, Recorded
+from fe_drivetrain.turbine_loads.hub_loads.recorded import Recorded
 
 LOADS = (*FORCES, "radial force", "bending moment")
 """Channels that are counted; the last two are sizes across the shaft."""
@@ -42,28 +42,14 @@ MOMENTS_BY_MEAN = ("Mx", "My")
 """Loads whose cycles are counted by range and mean."""
 
 
-def _require(
-    name: str, value: float, unit: str, low: float, high: float, lowest: bool = False
-) -> None:
-    """Refuse a value that is not between two bounds, or at the lower one where that is allowed."""
-    if not (low < value < high or (lowest and value == low)):
-        least = f"at least {low:g}" if lowest else f"above {low:g}"
-        most = f" and below {high:g}" if np.isfinite(high) else ""
-        raise InputError(
-            f"load histories: {name} is {value:g} {unit} but must be {least}{most}: change it"
-        )
-
-
-@dataclass(frozen=True)
-class LoadOptions:
+@dataclass(frozen=True, kw_only=True)
+class LoadOptions(HistoryOptions):
     """How histories are read and counted.
 
     Attributes
     ----------
-    columns : Mapping[str, str]
-        What a channel is, and how files call it, before what the mapping says.
-    skip : float
-        Left out at the beginning of each file [s].
+    channels, rotor_speed_rpm, skip
+        How files are read, see `HistoryOptions`.
     slopes : Sequence[float]
         Exponents of S-N curves.
     residue : str
@@ -71,15 +57,11 @@ class LoadOptions:
     gate : float
         Cycles of a smaller range are left out, as a share of the largest one of the channel in
         its file.
-    rotor_speed : float or None
-        [rad/s], for files that have none.
     ultimate : Mapping[str, float]
         Loads that break the part, by channel [N, N m]: cycles of these are counted about zero mean,
         too, by Goodman's line.
     frequency : float
         Frequency of damage-equivalent loads [Hz]; what is kept of a file does not depend on it.
-    mapping : ChannelMap
-        How files call their channels, and their frame and origin.
     also : Sequence[str]
         Further channels, as files call them, of which there are statistics and cycles, too.
 
@@ -90,18 +72,15 @@ class LoadOptions:
         is out of its range.
     """
 
-    columns: Mapping[str, str] = field(default_factory=dict)
-    skip: float = 0.0
     slopes: Sequence[float] = SLOPES
     residue: Residue = "half"
     gate: float = 0.0
-    rotor_speed: float | None = None
     ultimate: Mapping[str, float] = field(default_factory=dict)
     frequency: float = FREQUENCY
-    mapping: ChannelMap = OWN_NAMES
     also: Sequence[str] = ()
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         if not self.slopes:
             raise InputError("load histories: there is no slope of an S-N curve: give one or more")
         for slope in self.slopes:
@@ -109,17 +88,16 @@ class LoadOptions:
         require_known("residue of cycles", self.residue, RESIDUES)
         for name, size in self.ultimate.items():
             require_known("channel with an ultimate load", name, LOADS)
-            _require(f"ultimate load of {name}", size, "N or N m", 0.0, np.inf)
-        _require("skip", self.skip, "s", 0.0, np.inf, lowest=True)
-        _require("gate", self.gate, "of the largest range", 0.0, 1.0, lowest=True)
-        _require("frequency of equivalent loads", self.frequency, "Hz", 0.0, np.inf)
-        if self.rotor_speed is not None:
-            _require("rotor speed", self.rotor_speed, "rad/s", 0.0, np.inf)
+            require_between(f"ultimate load of {name}", size, "N or N m", 0.0, np.inf)
+        require_between("gate", self.gate, "of the largest range", 0.0, 1.0, with_low=True)
+        require_between("frequency of equivalent loads", self.frequency, "Hz", 0.0, np.inf)
+        if self.rotor_speed_rpm is not None:
+            require_between("rotor speed", self.rotor_speed_rpm, "1/min", 0.0, np.inf)
 
     @property
-    def names(self) -> ChannelMap:
-        """The mapping, with the columns."""
-        return self.mapping.with_columns(self.columns)
+    def rotor_speed(self) -> float | None:
+        """Rotor speed of files that state none [rad/s]."""
+        return None if self.rotor_speed_rpm is None else self.rotor_speed_rpm * np.pi / 30.0
 
     @property
     def cycle_rule(self) -> CycleRule:

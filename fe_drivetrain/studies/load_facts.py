@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.comparison.time_weighted import weighted_statistics
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.report.suite.records import Record
-from fe_drivetrain.studies.reaction_statistics import COLUMNS, SHOWN_UNITS
+from fe_drivetrain.studies.shown_units import SHOWN_UNITS
 from fe_drivetrain.studies.study_loads import EnteredLoads
+from fe_drivetrain.turbine_loads.histories.windows import COLUMNS
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
-from fe_drivetrain.turbine_loads.hub_loads.point_loads import PointLoads
-
-_SHOWN = 60.0  # seconds of the history whose beginning is kept
 
 
 @dataclass(frozen=True)
@@ -47,25 +47,6 @@ class HistoryFacts:
 
 
 @dataclass(frozen=True, eq=False)
-class Beginning:
-    """The first minute of a history, for a chart.
-
-    Attributes
-    ----------
-    name : str
-        Name of the history.
-    time : Floats
-        (n,) [s].
-    loads : PointLoads
-        (n, 6 + 6 m) as they enter the scene [N, N m].
-    """
-
-    name: str
-    time: Floats
-    loads: PointLoads
-
-
-@dataclass(frozen=True, eq=False)
 class LoadFacts:
     """Hub loads of a study.
 
@@ -84,8 +65,6 @@ class LoadFacts:
         Factors of the unit loads of the mean load with all weights.
     histories : tuple of HistoryFacts
         Each history.
-    beginning : Beginning
-        The first minute of the middle history.
     """
 
     statement: str
@@ -94,7 +73,8 @@ class LoadFacts:
     statistics: Floats
     mean: Floats
     histories: tuple[HistoryFacts, ...]
-    beginning: Beginning
+
+    __repr__ = short_repr
 
 
 def load_facts(scene: Scene, loads: EnteredLoads) -> LoadFacts:
@@ -118,8 +98,22 @@ def load_facts(scene: Scene, loads: EnteredLoads) -> LoadFacts:
         statistics,
         np.concatenate([mean[:6], weights, mean[6:]]),
         tuple(_facts(history, given.seconds) for history in given.histories),
-        _beginning(loads),
     )
+
+
+def history_rows(histories: Sequence[HistoryFacts]) -> list[Record]:
+    """Records of histories: when each is, and its share of the time."""
+    return [
+        {
+            "history": one.name,
+            "from [s]": one.start,
+            "to [s]": one.end,
+            "step [s]": one.step,
+            "samples": one.samples,
+            "share of the time [%]": 100.0 * one.share,
+        }
+        for one in histories
+    ]
 
 
 def channels_of(history: LoadHistory) -> str:
@@ -137,13 +131,6 @@ def _facts(history: LoadHistory, whole: float) -> HistoryFacts:
         history.seconds / whole,
         channels_of(history),
     )
-
-
-def _beginning(loads: EnteredLoads) -> Beginning:
-    middle = len(loads.each) // 2
-    history = loads.given.histories[middle]
-    shown = history.time - history.time[0] <= _SHOWN
-    return Beginning(history.name, history.time[shown], loads.each[middle][shown])
 
 
 def hub_load_rows(statistics: Floats) -> list[Record]:

@@ -5,48 +5,36 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
-import numpy as np
-
-from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.scene import Scene
-from fe_drivetrain.procedure.failure_modes import ROTOR_TORQUE
-from fe_drivetrain.report.answer import value_with_band
 from fe_drivetrain.report.charts import chart, trace
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.shafts.response.stated import Stated, stated_hub_loads
 from fe_drivetrain.studies import load_tables as rows
-from fe_drivetrain.studies.load_cautions import cautions
 from fe_drivetrain.studies.load_comparison import Comparison, LoadSet, compare_sets
-from fe_drivetrain.studies.load_digest import CHANNELS, LOADS, LoadOptions
+from fe_drivetrain.studies.load_digest import LOADS, UNIT_OF, LoadOptions
+from fe_drivetrain.studies.load_findings import check_classes, hub_findings, note_unused_speed
 from fe_drivetrain.studies.load_lifetime import Event, Lifetime, event, lifetime
 from fe_drivetrain.studies.load_reactions import SceneReactions, digests, scene_reactions
 from fe_drivetrain.studies.load_records import (
-    by_slope,
     lifetime_rows,
-    loop_rows,
     other_rows,
     reaction_loop_rows,
     reaction_rows,
-    torque_rows,
 )
 from fe_drivetrain.studies.load_totals import EquivalentLoad, LoadSums, LoadTotals
-from fe_drivetrain.studies.load_winds import Capture, CaptureTarget, captured, winds_not_used
+from fe_drivetrain.studies.load_winds import Capture, CaptureTarget, captured
 from fe_drivetrain.studies.result import Result
-from fe_drivetrain.studies.unused import RPM, speed_not_used
+from fe_drivetrain.studies.shown_units import shown_unit
 from fe_drivetrain.turbine_loads.histories.sites import Site, require_winds
-from fe_drivetrain.turbine_loads.histories.spectra import MULTIPLES
 from fe_drivetrain.turbine_loads.hub_loads.recorded import Files, recorded_files, short_name
-
-if TYPE_CHECKING:
-    pass
-
-_NAMED = 3  # files that are sampled too slowly
 
 Transients = Sequence[tuple[float, Files]]
 """Events of a lifetime: how many a year, and histories of one each."""
@@ -79,6 +67,7 @@ class LoadsResult(Result):
     """
 
     STUDY: ClassVar[str] = "loads"
+    SCHEMA_VERSION: ClassVar[int] = 2
 
     asked: LoadOptions
     hub: LoadTotals
@@ -88,6 +77,12 @@ class LoadsResult(Result):
     lifetime: Lifetime | None
     comparison: Comparison | None
     scene_reactions: SceneReactions | None
+
+    @property
+    def stated(self) -> Stated:
+        """What the hub loads are: sign, frame, origin."""
+        of = self.scene_reactions
+        return stated_hub_loads(None if of is None else of.scene)
 
     @property
     def equivalent_loads(self) -> dict[str, dict[float, EquivalentLoad]]:
@@ -139,7 +134,7 @@ class LoadsResult(Result):
         for name in loads:
             classes = self.hub.cycles.ranges[name]
             traces.append(trace(name, classes.edges()[:-1] / 1e3, classes.at_least))
-        unit = "kN" if loads[0].startswith("F") else "kN m"
+        unit = shown_unit(UNIT_OF[loads[0]])
         caption = f"Cycles of a range or a larger one; {self.asked.counted}"
         return caption, traces, f"range [{unit}]", "cycles", "y"
 
@@ -192,132 +187,184 @@ def loads(
         There is no file, one cannot be read, all hold zeros alone, a site is given and files have
         no wind speed, transients are given without a site, or no wind has histories of both sets.
     """
-    paths, others_of = recorded_files(files), recorded_files(against)
-    events = [(a_year, recorded_files(of)) for a_year, of in transients]
-    if not paths:
-        raise InputError("load histories: there are no files: give one or more")
-    if events and site is None:
-        raise InputError("load histories: transients count events of a lifetime: give a site, too")
-    asked, aim = options or LoadOptions(), target or CaptureTarget()
-    found, steps = Findings(), Steps(report)
-    found.seed = None
-    reactions = None
-    if scene is not None:
-        found.about(scene)
-        reactions = steps.timed("scene", scene_reactions, scene, level)
-    mine, its = LoadSet(asked.slopes), LoadSet(asked.slopes)
-    hub, of_scene, others = _added_up(
-        paths, asked, resume, steps, reactions, mine if others_of else None
+    asked = _Asked(
+        recorded_files(files),
+        options or LoadOptions(),
+        target or CaptureTarget(),
+        site,
+        [(a_year, recorded_files(of)) for a_year, of in transients],
+        recorded_files(against),
+        scene,
+        level,
+        resume,
     )
-    if not hub.has_loads:
+    return _counted(asked, Steps(report))
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """What is asked of load histories."""
+
+    files: Sequence[Path]
+    options: LoadOptions
+    target: CaptureTarget
+    site: Site | None
+    transients: Sequence[_Event]
+    against: Sequence[Path]
+    scene: Scene | None
+    level: int
+    resume: bool
+
+    def __post_init__(self) -> None:
+        if not self.files:
+            raise InputError("load histories: there are no files: give one or more")
+        if self.transients and self.site is None:
+            raise InputError(
+                f"load histories: {argument('transients')} count events of a lifetime: give "
+                f"{argument('site')}, too"
+            )
+
+    def plain(self) -> dict[str, Any]:
+        """All of it as plain data, files by their names."""
+        options = self.options
+        return {
+            "files": [short_name(path, self.files) for path in self.files],
+            "skip": options.skip,
+            "slopes": [float(slope) for slope in options.slopes],
+            "residue": options.residue,
+            "gate": options.gate,
+            "rotor_speed_rpm": options.rotor_speed_rpm,
+            "ultimate": dict(options.ultimate),
+            "frequency": options.frequency,
+            "channels": options.names.content(),
+            "also": list(options.also),
+            "target": asdict(self.target),
+            "site": None if self.site is None else asdict(self.site),
+            "transients": [
+                [a_year, [short_name(path, of) for path in of]] for a_year, of in self.transients
+            ],
+            "against": [short_name(path, self.against) for path in self.against],
+            "level": None if self.scene is None else self.level,
+        }
+
+
+def _counted(asked: _Asked, steps: Steps) -> LoadsResult:
+    """Count the files, weight them over a lifetime, and compare them, as far as that is asked."""
+    found, options, scene = Findings(), asked.options, asked.scene
+    found.seed = None
+    reactions = None if scene is None else _reactions(found, steps, scene, asked.level)
+    mine, its = LoadSet(options.slopes), LoadSet(options.slopes)
+    sums = _added_up(asked, steps, reactions, mine)
+    if not sums.hub.has_loads:
         raise InputError("all hub loads of all files are zero: give histories with loads")
-    capture = captured(hub.statistics, aim)
-    _hub_findings(found, hub, asked, aim, capture)
+    capture = captured(sums.hub.statistics, asked.target)
+    hub_findings(found, sums.hub, options, asked.target, capture)
+    found.data("hub_loads_stated", stated_hub_loads(scene).facts())
     if reactions is not None:
-        found.data("reactions", reaction_rows(of_scene, asked))
+        found.data("reactions", reaction_rows(sums.reactions, options))
         found.data("reactions_stated", reactions.stated.facts())
-    if others:
-        found.data("other_channels", other_rows(others, asked))
-    life = comparison = None
-    if site is not None:
-        require_winds(paths, hub.statistics.mean_of("wind speed").tolist())
-        with steps.step("transients"):
-            life = lifetime(hub, site, _events(events, asked, resume, report))
-        found.data("lifetime", lifetime_rows(life, asked))
-    if others_of:
-        with steps.step("the others"):
-            for _, one in digests(others_of, asked, resume, "the others", report, reactions):
-                its.add(one)
-            comparison = compare_sets(mine, its)
-        found.answer(*comparison.sentences)
+    if sums.others:
+        found.data("other_channels", other_rows(sums.others, options))
+    life = None if asked.site is None else _lifetime(found, steps, asked, asked.site, sums.hub)
+    comparison = _compared(found, steps, asked, reactions, mine, its) if asked.against else None
     of_events = [] if life is None else [one.own_speeds for one in life.events]
-    _speed_not_used(found, asked, [hub.files.own_speeds, *of_events, its.own_speeds])
-    _checks(found, hub)
+    note_unused_speed(found, options, [sums.hub.files.own_speeds, *of_events, its.own_speeds])
+    check_classes(found, sums.hub)
     return LoadsResult(
-        asked=asked,
-        hub=hub,
-        reactions=of_scene,
-        others=others,
+        asked=options,
+        hub=sums.hub,
+        reactions=sums.reactions,
+        others=sums.others,
         capture=capture,
         lifetime=life,
         comparison=comparison,
         scene_reactions=reactions,
-        **found.frozen(
-            steps.times,
-            level=None if scene is None else level,
-            **_options(paths, asked, aim, site, events, others_of),
-        ),
+        **found.frozen(steps.times, **asked.plain()),
     )
 
 
-def _hub_findings(
+def _reactions(found: Findings, steps: Steps, scene: Scene, level: int) -> SceneReactions:
+    """The scene, solved for unit loads."""
+    found.about(scene)
+    return steps.timed("scene", scene_reactions, scene, level)
+
+
+def _lifetime(
+    found: Findings, steps: Steps, asked: _Asked, site: Site, hub: LoadTotals
+) -> Lifetime:
+    """Loads weighted by the winds of the site, and by the number of events."""
+    require_winds(asked.files, hub.statistics.mean_of("wind speed").tolist())
+    with steps.step("transients"):
+        life = lifetime(hub, site, _events(asked, steps.report))
+    found.data("lifetime", lifetime_rows(life, asked.options))
+    return life
+
+
+def _compared(
     found: Findings,
-    hub: LoadTotals,
-    options: LoadOptions,
-    target: CaptureTarget,
-    capture: Capture | None,
-) -> None:
-    """Answer, cautions and numbers of the hub loads."""
-    _answer(found, hub, options)
-    if capture is not None:
-        found.answer(capture.sentence)
-    for sentence in cautions(hub, options):
-        found.note(sentence)
-    for sentence in winds_not_used(target, capture):
-        found.note(sentence)
-    for sentence in _aliased(hub):
-        found.note(sentence)
-    _data(found, hub, options, capture)
+    steps: Steps,
+    asked: _Asked,
+    reactions: SceneReactions | None,
+    mine: LoadSet,
+    its: LoadSet,
+) -> Comparison:
+    """The files beside another set, which is read into `its`."""
+    with steps.step("the others"):
+        for _, one in digests(
+            asked.against, asked.options, asked.resume, "the others", steps.report, reactions
+        ):
+            its.add(one)
+        comparison = compare_sets(mine, its)
+    found.answer(*comparison.sentences)
+    return comparison
 
 
-def _speed_not_used(
-    found: Findings, options: LoadOptions, stated: Sequence[Sequence[Floats]]
-) -> None:
-    """Note files that state a speed of their own where another one is given."""
-    given = None if options.rotor_speed is None else options.rotor_speed * RPM
-    if unused := speed_not_used(given, [speeds for own in stated for speeds in own]):
-        found.note(unused)
+@dataclass(frozen=True, eq=False)
+class _Totals:
+    """Totals of hub loads, of each reaction, and of other channels."""
+
+    hub: LoadTotals
+    reactions: dict[str, LoadTotals]
+    others: dict[str, LoadTotals]
 
 
 def _added_up(
-    files: Sequence[Path],
-    options: LoadOptions,
-    resume: bool,
-    steps: Steps,
-    reactions: SceneReactions | None,
-    mine: LoadSet | None,
-) -> tuple[LoadTotals, dict[str, LoadTotals], dict[str, LoadTotals]]:
-    """Totals of hub loads, of each reaction, and of other channels; files are added to `mine`."""
+    asked: _Asked, steps: Steps, reactions: SceneReactions | None, mine: LoadSet
+) -> _Totals:
+    """Totals of all files; each is added to `mine` where another set is compared."""
     hub = LoadSums()
     of_scene = {name: LoadSums() for name in (reactions.names if reactions else ())}
     others: dict[str, LoadSums] = {}
     with steps.step("files"):
-        for file, one in digests(files, options, resume, "files", steps.report, reactions):
-            name = short_name(file, files)
+        for file, one in digests(
+            asked.files, asked.options, asked.resume, "files", steps.report, reactions
+        ):
+            name = short_name(file, asked.files)
             hub.add(name, one.hub)
             for reaction, sums in of_scene.items():
                 sums.add(name, one.reactions[reaction])
             for channel, part in one.others.items():
                 others.setdefault(channel, LoadSums()).add(name, part)
-            if mine is not None:
+            if asked.against:
                 mine.add(one)
-    return (
+    return _Totals(
         hub.totals(),
         {name: sums.totals() for name, sums in of_scene.items()},
         {name: sums.totals() for name, sums in others.items()},
     )
 
 
-def _events(
-    transients: Sequence[_Event], options: LoadOptions, resume: bool, report: Progress
-) -> list[Event]:
+def _events(asked: _Asked, report: Progress) -> list[Event]:
     return [
         event(
             a_year,
             files,
-            (one.hub for _, one in digests(files, options, resume, "transients", report)),
+            (
+                one.hub
+                for _, one in digests(files, asked.options, asked.resume, "transients", report)
+            ),
         )
-        for a_year, files in transients
+        for a_year, files in asked.transients
     ]
 
 
@@ -325,122 +372,4 @@ def _equivalents(found: LoadTotals, options: LoadOptions) -> dict[str, dict[floa
     return {
         name: {slope: found.equivalent_load(name, slope, options) for slope in options.slopes}
         for name in LOADS
-    }
-
-
-def _answer(found: Findings, hub: LoadTotals, options: LoadOptions) -> None:
-    """The equivalent tilting moment and torque, with what the residue leaves open."""
-    slope, hertz = options.slopes[0], options.frequency
-    words = []
-    for name in ("My", "Mx"):
-        one = hub.equivalent_load(name, slope, options)
-        if not one.load:
-            continue
-        band = None if one.band is None else one.band / 1e3
-        quantity = f"equivalent load of {name}, slope {slope:g} [kN m]"
-        found.found(quantity, one.load / 1e3, band, (ROTOR_TORQUE,) if name == "Mx" else ())
-        words.append(f"{value_with_band(found.answers[-1])} in {name}")
-    open_ends = " (± what whole cycles in place of half ones would add)"
-    rule = open_ends if options.residue == "half" else ""
-    said = (
-        f"These loads do the damage of a sine of {hertz:g} Hz with a range of "
-        f"{' and '.join(words)} at a slope of {slope:g}{rule}: "
-    )
-    files = hub.files
-    count = len(files.names)
-    found.answer(
-        f"{said if words else ''}{count} file{'s' * (count > 1)}, {files.samples:,} samples over "
-        f"{files.seconds:,.6g} s; {options.counted}."
-    )
-
-
-def _aliased(hub: LoadTotals) -> list[str]:
-    """Sentences on files that are sampled too slowly for multiples of their rotor's speed."""
-    turning = dict(zip(hub.files.names, hub.statistics.mean_of("rotor speed"), strict=True))
-    said = []
-    for one in hub.spectra.aliased[:_NAMED]:
-        # less a little for round-off
-        hertz = float(turning[one.file]) / (2.0 * np.pi) * (1.0 - 1e-6)
-        shown = ", ".join(
-            f"{n}P appears at {at:.3g} Hz"
-            for n, at in zip(MULTIPLES, one.appears_at.tolist(), strict=True)
-            if at < hertz * n
-        )
-        said.append(
-            f"{one.file} is sampled every {one.step:g} s, too slowly for its multiples of rotor "
-            f"speed: {shown}. What stands there in its spectra is not there in the load; sample "
-            "faster."
-        )
-    return said
-
-
-def _data(found: Findings, hub: LoadTotals, options: LoadOptions, capture: Capture | None) -> None:
-    """Numbers of the hub loads for other programs."""
-    overall = hub.statistics.overall
-    found.data("statistics", dict(zip(CHANNELS, overall.tolist(), strict=True)))
-    if capture is not None:
-        found.data(
-            "capture",
-            {
-                "wind": capture.matrix.wind,
-                "turbulence": capture.matrix.turbulence,
-                "counts": capture.matrix.counts,
-                "missing": capture.missing,
-            },
-        )
-    found.data("loops", loop_rows(hub))
-    found.data("equivalent_loads", by_slope(hub.equivalent_loads(options), options))
-    if options.ultimate:
-        about_zero = by_slope(hub.equivalent_loads_about_zero(options), options)
-        found.data(
-            "equivalent_loads_about_zero",
-            {name: row for name, row in about_zero.items() if name in options.ultimate},
-        )
-    found.data("torque", {row["quantity"]: row["value"] for row in torque_rows(hub)})
-
-
-def _checks(found: Findings, hub: LoadTotals) -> None:
-    for what, classes in (
-        ("time at the levels", list(hub.levels.seconds.values())),
-        (
-            "time in the planes of force and moment",
-            [plane.positions for plane in hub.planes.values()],
-        ),
-    ):
-        worst = max(abs(one.amount.sum() / hub.files.seconds - 1.0) for one in classes)
-        found.vanishes(
-            f"{what}, less that of all samples, as a share",
-            worst,
-            within=1e-9,
-            why="each sample is in one class: rounding of the sums",
-            source="number of samples times their step",
-            basis="self-consistency",
-        )
-
-
-def _options(
-    files: Sequence[Path],
-    options: LoadOptions,
-    target: CaptureTarget,
-    site: Site | None,
-    transients: Sequence[_Event],
-    against: Sequence[Path],
-) -> dict[str, Any]:
-    """What was asked for, as plain data."""
-    return {
-        "files": [path.name for path in files],
-        "columns": dict(options.columns),
-        "skip": options.skip,
-        "slopes": [float(slope) for slope in options.slopes],
-        "residue": options.residue,
-        "gate": options.gate,
-        "rotor_speed": options.rotor_speed,
-        "ultimate": dict(options.ultimate),
-        "frequency": options.frequency,
-        "mapping": options.mapping.content(),
-        "also": list(options.also),
-        "target": asdict(target),
-        "site": None if site is None else asdict(site),
-        "transients": [[a_year, [path.name for path in of]] for a_year, of in transients],
-        "against": [path.name for path in against],
     }

@@ -9,26 +9,38 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.report.suite.records import Record
-from fe_drivetrain.studies.load_digest import LOADS, UNITS, LoadOptions
+from fe_drivetrain.studies.load_digest import CHANNELS, LOADS, UNIT_OF, UNITS, LoadOptions
 from fe_drivetrain.studies.load_lifetime import Lifetime
 from fe_drivetrain.studies.load_reactions import ALONE
 from fe_drivetrain.studies.load_totals import LoadTotals
+from fe_drivetrain.studies.shown_units import shown_unit
 from fe_drivetrain.turbine_loads.histories.level_sums import POWER
 from fe_drivetrain.turbine_loads.histories.spectra import MULTIPLES
 from fe_drivetrain.turbine_loads.histories.windows import COLUMNS
 
 
-def shown_unit(unit: str) -> str:
-    """The unit in which a load of that unit is shown."""
-    return "kN" if unit == "N" else "kN m"
+def statistics_rows(found: LoadTotals) -> list[Record]:
+    """Statistics of all samples of each channel that the files have."""
+    return [
+        {"channel": name, "unit": UNIT_OF[name], **dict(zip(COLUMNS, row, strict=True))}
+        for name, row in zip(CHANNELS, found.statistics.overall.tolist(), strict=True)
+        if not np.isnan(row).any()
+    ]
 
 
-def by_slope(loads: Floats, options: LoadOptions) -> dict[str, dict[str, float]]:
-    """Loads (loads, slopes) by name and slope."""
-    return {
-        name: dict(zip(map(str, options.slopes), row, strict=True))
-        for name, row in zip(LOADS, loads.tolist(), strict=True)
-    }
+def slope_rows(loads: Floats, options: LoadOptions) -> list[Record]:
+    """Damage-equivalent loads (loads, slopes) of each load and slope; none where not a number."""
+    return [
+        {
+            "channel": name,
+            "unit": unit,
+            "slope": float(slope),
+            f"DEL at {options.frequency:g} Hz": value,
+        }
+        for name, unit, row in zip(LOADS, UNITS, loads.tolist(), strict=False)
+        for slope, value in zip(options.slopes, row, strict=True)
+        if not np.isnan(value)
+    ]
 
 
 def torque_rows(found: LoadTotals) -> list[Record]:
@@ -71,9 +83,9 @@ def loop_rows(found: LoadTotals) -> list[Record]:
                 "loops over blade passages (3P)": plane.over_passing,
                 "median duration [s]": _median(durations),
                 "median angle [deg]": _median(swept),
-                "largest angle [deg]": float(swept.max()) if plane.count else None,
-                "median range [kN, kN\u00a0m]": _median(ranges / 1e3),
-                "largest range [kN, kN\u00a0m]": float(ranges.max()) / 1e3 if plane.count else None,
+                "max angle [deg]": float(swept.max()) if plane.count else None,
+                "median range [kN, kN m]": _median(ranges / 1e3),
+                "max range [kN, kN m]": float(ranges.max()) / 1e3 if plane.count else None,
             }
         )
     return rows

@@ -249,6 +249,18 @@ def damage_rows(found: Lifetime, options: LoadOptions) -> list[Record]:
     ]
 
 
+def leading_damage_rows(found: Lifetime, options: LoadOptions) -> list[Record]:
+    """The wind or event that does most of the damage of each main load and slope."""
+    shares = damage_rows(found, options)
+    rows: list[Record] = []
+    for name in ("Mx", "radial force", "bending moment"):
+        for slope in dict.fromkeys(row["slope"] for row in shares):
+            own = [r for r in shares if r["channel"] == name and r["slope"] == slope]
+            if own:
+                rows.append(max(own, key=lambda r: float(r["share of damage [%]"])))
+    return rows
+
+
 def transient_rows(found: Lifetime) -> list[Record]:
     """Each kind of event."""
     return [

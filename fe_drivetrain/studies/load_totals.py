@@ -72,8 +72,12 @@ class LoadStatistics:
 
     @property
     def overall(self) -> Floats:
-        """(channels, 4) least, mean, largest, standard deviation of all samples."""
+        """(channels, 4) min, mean, max, standard deviation of all samples."""
         return self.joined.together()
+
+    def of_windows(self, channel: str) -> Floats:
+        """(windows, 4) min, mean, max, standard deviation of one of `CHANNELS`."""
+        return np.asarray(self.joined.values[:, CHANNELS.index(channel)])
 
     def mean_of(self, channel: str) -> Floats:
         """(files,) means of one of `CHANNELS`."""

@@ -46,7 +46,7 @@ class Condition:
     windows : int
         How many windows.
     statistics : ndarray, (channels, 4)
-        Least, mean, largest, standard deviation.
+        Min, mean, max, standard deviation.
     """
 
     wind: float
@@ -157,6 +157,6 @@ def winds_not_used(target: CaptureTarget, capture: Capture | None) -> list[str]:
     if target.low is None or capture is not None:
         return []
     return [
-        f"--winds {target.low:g}:{target.high:g} m/s is not used: no file has a wind speed. Name "
-        "its channel, as in --channel 'wind speed=Vhub'."
+        f"`CaptureTarget(low={target.low}, high={target.high})` m/s is not used: no file has a "
+        "wind speed. Name its channel, as in `ChannelMap(channels={'wind speed': 'Vhub'})`."
     ]

@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.drivetrain_file.scene import Scene
@@ -68,10 +69,10 @@ def named_bearings(
     if not entries and not catalogues:
         return {}
     # late, since it loads the compiled loops of bearings
-    from fe_drivetrain.bearing.catalogue import read_catalogue
+    from fe_drivetrain.bearing.catalogue import read_bearing_catalogue
     from fe_drivetrain.bearing.seats import check_seat
 
-    known, found = read_catalogue(*catalogues), {}
+    known, found = read_bearing_catalogue(*catalogues), {}
     for name in (unit.bearing.name for unit in scene.bearing_units):
         entry = entries.get(name)
         if entry is None:
@@ -79,7 +80,8 @@ def named_bearings(
         if entry not in known:
             raise InputError(
                 f"catalogue entry {shown(entry)} of bearing {name!r} is in no catalogue: give a "
-                f"file that has it with --catalogue FILE, or use one of {', '.join(known)}"
+                f"file that has it with {argument('catalogues', ['FILE'])}, or use one of "
+                f"{', '.join(known)}"
             )
         seat = scene.seat_diameter(name)
         misfit = check_seat(name, entry, known[entry], seat)

@@ -9,6 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
@@ -86,7 +87,7 @@ def part(
     found.seed = None
     survey, element, housing = None, None, None
     if file.suffix.lower() not in SUPERELEMENTS:
-        _refuse_points(file, {"--bore": bore, "--held": ",".join(held)})
+        _refuse_points(file, {"bore": bore, "held": list(held)})
     with steps.step("read"):
         if file.suffix.lower() in SUPERELEMENTS:
             element = read_limited(file, SUPERELEMENTS[file.suffix.lower()])
@@ -105,13 +106,14 @@ def part(
     )
 
 
-def _refuse_points(file: Path, options: Mapping[str, str]) -> None:
+def _refuse_points(file: Path, given: Mapping[str, str | list[str]]) -> None:
     """Refuse points of a file that is no superelement, and so has none."""
-    for option, value in options.items():
+    for name, value in given.items():
         if value:
             raise InputError(
-                f"{option} {value} names points of a superelement, and {file} is none: leave "
-                f"{option} out, or give a file that ends in {', '.join(SUPERELEMENTS)}"
+                f"{argument(name, value)} names points of a superelement, and {file} is none: "
+                f"leave {argument(name)} out, or give a file that ends in "
+                f"{', '.join(SUPERELEMENTS)}"
             )
 
 

@@ -9,7 +9,7 @@ from typing import ClassVar
 
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
-from fe_drivetrain.drivetrain_file.named_scenes import named_scene
+from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.dynamics.tables import Machine, named_machine
 from fe_drivetrain.procedure.assessment import Measured, StepState, assessed, claims_of
@@ -23,6 +23,7 @@ from fe_drivetrain.procedure.evidence import (
 )
 from fe_drivetrain.procedure.evidence import Found as FoundEvidence
 from fe_drivetrain.procedure.failure_modes import Catalogue, protest_catalogue, read_catalogue
+from fe_drivetrain.procedure.iteration_log import Entry
 from fe_drivetrain.procedure.measured_channels import (
     Outcome,
     captured,
@@ -62,6 +63,12 @@ class ValidateResult(Result):
         What it is of; None before step 2.
     digest : str
         What a signature is for, 16 hexadecimal digits; empty where a step is not complete.
+    reports : Path
+        Folder of the evidence.
+    log : tuple[Entry, ...]
+        Runs that changed something, this one included, where a log is kept; else empty.
+    commands : tuple[str, ...]
+        What to type next, where the command line says so; else empty.
     """
 
     STUDY: ClassVar[str] = "validate"
@@ -73,6 +80,9 @@ class ValidateResult(Result):
     matrix: CaptureMatrix | None = field(repr=False)
     drivetrain: DrivetrainRecord | None
     digest: str
+    reports: Path
+    log: tuple[Entry, ...] = ()
+    commands: tuple[str, ...] = ()
 
     @property
     def complete(self) -> bool:
@@ -141,6 +151,7 @@ def validate(project: Project, folder: Path, *, report: Progress = silent) -> Va
         matrix=matrix,
         drivetrain=record,
         digest=digest,
+        reports=(folder / project.reports).resolve(),
         **found.frozen(steps.times, subject=project.subject),
     )
 
@@ -205,7 +216,7 @@ def _drivetrain(project: Project, folder: Path) -> Scene | Machine | None:
     name = project.model.scene or project.model.machine
     file = folder / name
     given = str(file) if file.is_file() else name
-    return named_scene(given, {}) if project.model.scene else named_machine(given)
+    return read_drivetrain(given, {}) if project.model.scene else named_machine(given)
 
 
 def _evidence(
@@ -294,7 +305,7 @@ def _judge(
             why="; ".join(state.lacks) or "decision, evidence and rules of the step",
             source="PROTEST 2010, section 3: each step is taken once, whatever the order",
         )
-    found.verdicts += measured.verdicts
+    found.checks += measured.verdicts
     for one in project.signed:
         found.holds(
             f"signature of {one.name}: of these six steps, complete",

@@ -9,21 +9,19 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.comparison.time_weighted import weighted_statistics
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.shafts.fidelity.ladder import LevelModel
 from fe_drivetrain.shafts.fidelity.over_loads import Levels, reaction_history
+from fe_drivetrain.studies.shown_units import SHOWN_UNITS
 from fe_drivetrain.studies.study_loads import EnteredLoads
 from fe_drivetrain.turbine_loads.histories.cycles import Cycles, rainflow_cycles
 from fe_drivetrain.turbine_loads.histories.damage import damage_equivalent_load
-
-COLUMNS = ("least", "mean", "largest", "standard deviation")
-"""Columns of `Statistics.values`."""
+from fe_drivetrain.turbine_loads.histories.windows import COLUMNS
 
 _ROUND_OFF = 1e-9  # of a reaction's largest component: shown as zero
-SHOWN_UNITS = 3 * ("kN",) + 3 * ("kN\u00a0m",)
-"""Units in which the components of a load are shown."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +41,8 @@ class Statistics:
     values: Floats
     band: Floats | None
     equivalent: Floats
+
+    __repr__ = short_repr
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from fe_drivetrain.bearing.catalogue import Entry, read_catalogue
+from fe_drivetrain.bearing.catalogue import Entry, read_bearing_catalogue
 from fe_drivetrain.bearing.geometry import Bearing, RollerRow
 from fe_drivetrain.bearing.races import Races
 from fe_drivetrain.bearing_life.coupled.load_paths import PINNED, LoadPath
@@ -20,10 +20,11 @@ from fe_drivetrain.bearing_life.life.roller_models import (
     rigid_rings,
     three_degree_rings,
 )
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.scene import Scene
-from fe_drivetrain.studies.named_bearings import named_bearings
+from fe_drivetrain.studies.named_bearings import NamedBearing, named_bearings
 
 SUPPORTS = ("rollers", "pinned")
 """How the shaft stands on its bearings; a number is K_R [N m/rad] of springs."""
@@ -129,25 +130,8 @@ def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
         none.
     """
     stiffness = _stiffness(choices.support)
-    if choices.rings not in RINGS_OF:
-        raise InputError(f"--rings {choices.rings}: choose one of {', '.join(RINGS_OF)}")
-    units = {unit.bearing.name: unit for unit in scene.bearing_units}
-    if wrong := [name for name in choices.named if name not in units]:
-        raise InputError(
-            f"--bearing {wrong[0]}={choices.named[wrong[0]]}: the scene has no bearing "
-            f"{wrong[0]!r}; name one of {', '.join(units)}"
-        )
-    if choices.only is not None and choices.only not in units:
-        raise InputError(
-            f"--only {choices.only}: the scene has no such bearing; name one of {', '.join(units)}"
-        )
-    named = named_bearings(scene, choices.catalogues, choices.named)
-    if nameless := [name for name in units if name not in named]:
-        raise InputError(
-            f"bearing {nameless[0]!r} of the scene has no rollers: name its entry of the catalogue "
-            f"with --bearing {nameless[0]}=ENTRY, or under 'catalogue' in the scene; there are "
-            f"{', '.join(read_catalogue(*choices.catalogues))}"
-        )
+    _require_choices(scene, choices)
+    named = _all_named(scene, choices)
     rated = {
         name: rated_from_catalogue(
             one.name, *choices.catalogues, **_profile(one.entry, choices.profiled)
@@ -172,6 +156,43 @@ def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
         )
         result.append(OneBearing(name, entry_name, entry, rated[name], path, seat, rollers, misfit))
     return result
+
+
+def _require_choices(scene: Scene, choices: Choices) -> None:
+    """Refuse a model of rings, or bearings, that there are not."""
+    if choices.rings not in RINGS_OF:
+        raise InputError(
+            f"{argument('LifeOptions.rings', choices.rings)}: choose one of {', '.join(RINGS_OF)}"
+        )
+    units = [unit.bearing.name for unit in scene.bearing_units]
+    if wrong := [name for name in choices.named if name not in units]:
+        raise InputError(
+            f"{_named(wrong[0], choices.named[wrong[0]])}: the scene has no bearing {wrong[0]!r}; "
+            f"name one of {', '.join(units)}"
+        )
+    if choices.only is not None and choices.only not in units:
+        raise InputError(
+            f"{argument('LifeOptions.only', choices.only)}: the scene has no such bearing; name "
+            f"one of {', '.join(units)}"
+        )
+
+
+def _all_named(scene: Scene, choices: Choices) -> dict[str, NamedBearing]:
+    """The catalogue entry of every bearing of the scene."""
+    named = named_bearings(scene, choices.catalogues, choices.named)
+    units = [unit.bearing.name for unit in scene.bearing_units]
+    if nameless := [name for name in units if name not in named]:
+        raise InputError(
+            f"bearing {nameless[0]!r} of the scene has no rollers: name its entry of the catalogue "
+            f"with {_named(nameless[0], 'ENTRY')}, or under 'catalogue' in the scene; there are "
+            f"{', '.join(read_bearing_catalogue(*choices.catalogues))}"
+        )
+    return named
+
+
+def _named(bearing: str, entry: str) -> str:
+    """The option that names a bearing's entry."""
+    return argument("LifeOptions.bearings", {bearing: entry})
 
 
 def _rollers(
@@ -234,6 +255,7 @@ def _stiffness(support: str | float) -> float | None:
         value = -1.0
     if not 0.0 <= value < 1e16:
         raise InputError(
-            f"--support {support}: choose {', '.join(SUPPORTS)}, or K_R in N m/rad, as 145e6"
+            f"{argument('LifeOptions.support', support)}: choose {', '.join(SUPPORTS)}, or K_R in "
+            "N m/rad, as 145e6"
         )
     return value

@@ -19,7 +19,8 @@ from fe_drivetrain.shafts.fidelity.level_costs import Forecast, forecast
 from fe_drivetrain.shafts.response.model import Model
 from fe_drivetrain.studies.named_bearings import named_bearings
 from fe_drivetrain.studies.result import Result
-from fe_drivetrain.studies.scene_description import checked_model, description
+from fe_drivetrain.studies.scene_description import description
+from fe_drivetrain.studies.solved_assembly import checked_model
 from fe_drivetrain.studies.unused import catalogues_not_used
 
 
@@ -113,7 +114,7 @@ def _held(scene: Scene, mass: float, n_dofs: int) -> str:
     return (
         f"{scene.title}: a shaft of {scene.shaft.length:g} m on {count} "
         f"bearing{'s' if count > 1 else ''}{on_nose}, {mass:,.0f} kg in all, "
-        f"{n_dofs:,} degrees of freedom; it is held, and can be solved."
+        f"{n_dofs:,} degrees of freedom. Its supports hold it: it can be solved."
     )
 
 

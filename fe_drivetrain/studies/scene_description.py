@@ -1,18 +1,17 @@
-"""What a scene is: its model with all that is checked of it, and tables of parts and bearings."""
+"""What a scene is: tables of its parts, bearings and load points."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 from fe_drivetrain.common.components import MOTIONS
-from fe_drivetrain.common.steps import Clock
 from fe_drivetrain.common.typeset import with_prefix
 from fe_drivetrain.drivetrain_file.bearing_unit import SPHERICAL_JOINTS, BearingUnit, Springs
 from fe_drivetrain.drivetrain_file.nose import NoseBearing
 from fe_drivetrain.drivetrain_file.scene import Scene, coarser_scene
 from fe_drivetrain.geometry import FurtherPart
 from fe_drivetrain.report.suite.records import Record
-from fe_drivetrain.shafts.response.model import Model, build_model, mesh_scene
+from fe_drivetrain.shafts.response.model import Model
 
 #: Coarsening of the mesh of a quick study: factor of the sizes, and elements a turn.
 _QUICK = (2.0, 8)
@@ -23,28 +22,6 @@ _UNITS = (*3 * ("N/m",), *3 * ("N m/rad",))
 def quick_scene(scene: Scene) -> Scene:
     """The scene on a coarser mesh, for a first look."""
     return coarser_scene(scene, *_QUICK)
-
-
-def checked_model(steps: Clock, scene: Scene) -> Model:
-    """The assembled model of a scene, with all that is checked of a scene before any level.
-
-    Parameters
-    ----------
-    steps : Clock
-        Times its two steps.
-    scene : Scene
-        The scene.
-
-    Raises
-    ------
-    InputError
-        The scene cannot be built, or is a mechanism; see
-        `fe_drivetrain.shafts.response.build_model`.
-    """
-    with steps.step("mesh"):
-        mesh = mesh_scene(scene)
-    with steps.step("assembly"):
-        return build_model(scene, mesh)
 
 
 def description(model: Model) -> dict[str, list[Record]]:
@@ -76,6 +53,12 @@ def description(model: Model) -> dict[str, list[Record]]:
             "Bearings between the shaft and its nose: springs between the mean motions of both "
             "faces"
         ] = [_nose_bearing_row(scene, bearing) for bearing in scene.nose_bearings]
+    tables["Where loads enter the shaft"] = _point_rows(scene)
+    return tables
+
+
+def _point_rows(scene: Scene) -> list[Record]:
+    """Points at which loads enter the shaft."""
     points: list[Record] = [
         {
             "point": "hub (front face), where the hub loads act",
@@ -113,8 +96,7 @@ def description(model: Model) -> dict[str, list[Record]]:
                 "held by": "nothing",
             },
         )
-    tables["Where loads enter the shaft"] = points
-    return tables
+    return points
 
 
 def _size(scene: Scene, part: str) -> str:

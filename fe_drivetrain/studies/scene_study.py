@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import ClassVar
-
-import numpy as np
+from typing import Any, ClassVar
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
@@ -22,18 +20,25 @@ from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.shafts.fidelity.bearing_units import UnitBounds
 from fe_drivetrain.shafts.fidelity.foot_opening import foot_warnings
 from fe_drivetrain.shafts.fidelity.judgement import Judgement, judge_levels
-from fe_drivetrain.shafts.fidelity.ladder import statics_level
-from fe_drivetrain.shafts.fidelity.over_loads import Levels, imbalance, levels_of, reaction_history
+from fe_drivetrain.shafts.fidelity.over_loads import Levels, levels_of, reaction_history
 from fe_drivetrain.shafts.fidelity.quantities import UNIT, unit_numbers
-from fe_drivetrain.shafts.response.cached import cached_response
+from fe_drivetrain.shafts.response.bearing_stiffness import check_one_tilting_bearing
 from fe_drivetrain.shafts.response.entering import Factors, Loads
 from fe_drivetrain.shafts.response.model import Model
 from fe_drivetrain.shafts.response.stated import Stated, stated_reactions
 from fe_drivetrain.shafts.response.unit_loads import Response
 from fe_drivetrain.shafts.uncertainty import input_study
 from fe_drivetrain.shafts.uncertainty.numbers import figures
-from fe_drivetrain.studies.closed_forms import ForceErrors, closed_form_errors, closed_form_rows
+from fe_drivetrain.studies.closed_forms import (
+    ForceErrors,
+    LinearModel,
+    closed_form_errors,
+    closed_form_models,
+    closed_form_rows,
+)
 from fe_drivetrain.studies.design_measures import DesignMeasures, design_measures
+from fe_drivetrain.studies.history_beginning import ASSEMBLY, Beginning, history_beginning
+from fe_drivetrain.studies.input_effects import InputEffects, input_effects
 from fe_drivetrain.studies.level_errors import (
     ENOUGH,
     LevelErrors,
@@ -41,7 +46,8 @@ from fe_drivetrain.studies.level_errors import (
     level_errors,
     needed_levels,
 )
-from fe_drivetrain.studies.load_facts import LoadFacts, load_facts
+from fe_drivetrain.studies.load_facts import LoadFacts, history_rows, load_facts
+from fe_drivetrain.studies.model_checks import check_models
 from fe_drivetrain.studies.reaction_statistics import (
     ReactionStatistics,
     peak_across,
@@ -49,7 +55,9 @@ from fe_drivetrain.studies.reaction_statistics import (
     statistics_rows,
 )
 from fe_drivetrain.studies.result import Result
-from fe_drivetrain.studies.scene_description import checked_model, description, quick_scene
+from fe_drivetrain.studies.scene_description import description, quick_scene
+from fe_drivetrain.studies.seat_stiffness import SeatStiffness, seat_stiffness
+from fe_drivetrain.studies.solved_assembly import checked_model, solved_model
 from fe_drivetrain.studies.study_loads import (
     EnteredLoads,
     StudyLoads,
@@ -60,10 +68,9 @@ from fe_drivetrain.studies.tilt_secants import TiltSecant, secant_rows, tilt_sec
 from fe_drivetrain.turbine_loads.histories.damage import SLOPES, check_slope
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
 
-ASSEMBLY = "assembly"
-"""Name of the assembly of solids among the models."""
-
 _SAMPLES, _QUICK_SAMPLES = 128, 40
+_SEED = 0  # of the samples; that of made wind is the surrogate's
+_QUICK_SEEDS = 1
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -85,12 +92,19 @@ class StudyResult(Result):
         The cheapest level that is enough for all reactions that count.
     measures : DesignMeasures
         Errors of each level by what a part is designed for.
+    seat : SeatStiffness or None
+        K_R as the seat shows it in the assembly with its gearbox springs removed, by three
+        estimators; None where it was not asked for.
     closed_forms : Mapping[str, ForceErrors]
         Errors of the closed forms of one bearing on a uniform shaft; empty where they do not apply.
-    uncertainty : Study or None
+    closed_form_models : Mapping[str, LinearModel]
+        These closed forms, for further hub loads; not part of the JSON.
+    uncertainty : InputEffects or None
         Effect of the spreads that the scene states; None where it states none.
     loads : LoadFacts
         What the hub loads are; not their samples.
+    beginning : Beginning
+        Radial force of each bearing over the first minute of the middle history, FE and beams.
     stated : Stated
         What the reactions are: sign, frame, origin, weights.
     slopes : tuple of float
@@ -104,6 +118,7 @@ class StudyResult(Result):
     """
 
     STUDY: ClassVar[str] = "study"
+    SCHEMA_VERSION: ClassVar[int] = 2
 
     units: Mapping[str, UnitBounds]
     secants: tuple[TiltSecant, ...]
@@ -111,15 +126,28 @@ class StudyResult(Result):
     errors: LevelErrors
     judgement: Judgement
     measures: DesignMeasures
+    seat: SeatStiffness | None
     closed_forms: Mapping[str, ForceErrors]
-    uncertainty: input_study.Study | None
+    closed_form_models: Mapping[str, LinearModel] = field(repr=False)
+    uncertainty: InputEffects | None
     loads: LoadFacts
+    beginning: Beginning
     stated: Stated
     slopes: tuple[float, ...]
     described: Mapping[str, Sequence[Record]]
     model: Model = field(repr=False)
     response: Response = field(repr=False)
     levels: Levels = field(repr=False)
+
+    @property
+    def aligning(self) -> list[str]:
+        """Bearings that give way to tilt: they have no K_R."""
+        return [name for name, of in _stiff(self.units).items() if of["tilt"] == of["yaw"] == 0.0]
+
+    @property
+    def floating(self) -> list[str]:
+        """Bearings without axial stiffness, which leave axial force to the others."""
+        return [name for name, of in _stiff(self.units).items() if of["axial"] == 0.0]
 
     def reactions(self, loads: Loads, model: str = ASSEMBLY) -> dict[str, Floats]:
         """Reactions to further loads, with the weights that the study has.
@@ -155,7 +183,7 @@ class StudyResult(Result):
         others = list(self.levels.models)[:-1]
         return bars(
             "Error of each reaction against the assembly over all load steps",
-            {m: {of: 100.0 * share[m] for of, share in self.errors.shares.items()} for m in others},
+            {m: {of.name: 100.0 * of.shares[m] for of in self.errors.vectors} for m in others},
             "error [%]",
         )
 
@@ -167,6 +195,7 @@ def study(
     weight: bool = True,
     quick: bool = False,
     *,
+    seat: bool = False,
     report: Progress = silent,
 ) -> StudyResult:
     """Study a scene over load histories: K_R, reactions, and every level against the assembly.
@@ -185,148 +214,134 @@ def study(
         Whether the reactions have the weight of all parts.
     quick : bool
         Whether a coarser mesh, fewer made histories and fewer samples are enough.
+    seat : bool
+        Whether K_R is also measured at the seat in the assembly, its gearbox springs removed. This
+        takes a second solution, and one bearing unit, which carries moments.
     report : Progress
         Called with the name of each step as it begins.
 
     Raises
     ------
     InputError
-        The scene cannot be solved, a slope is out of range, or the loads are refused.
+        The scene cannot be solved, a slope is out of range, the loads are refused, or the scene
+        has no K_R at a seat.
     """
     for slope in slopes:
         check_slope(slope)
+    if seat:
+        check_one_tilting_bearing(scene)
     found, steps = Findings(), Steps(report)
-    scene = quick_scene(scene) if quick else scene
-    scene = scene if weight else weightless(scene)
-    found.about(scene)
-    given = loads if loads is None or isinstance(loads, StudyLoads) else given_loads(loads, scene)
-    model = checked_model(steps, scene)
-    given = surrogate_loads(steps, quick) if given is None else given
-    entered = (given if weight else replace(given, gravity=0.0)).entering(scene)
-    with steps.step("assembly of solids") as step:
-        response = cached_response(model)
-        if response.kept:
-            step.name += ", from the cache"
-    with steps.step("levels 1 and 2"):
-        levels = levels_of(scene, response, report)
-    units = levels.units
-    _check(found, scene, response, levels)
-    _answer(found, model, response, entered, quick)
-    _stiffness(found, units)
+    at = _solved(found, steps, scene, loads, weight, quick, seat)
+    _answer(found, at, quick)
+    _stiffness(found, at.levels.units)
     with steps.step("reactions of all load steps"):
-        reactions = _reactions(found, scene, levels, entered, slopes, report)
-        secants = tilt_secants(scene, response, units, entered)
-        found.data("secants", secant_rows(secants))
+        reactions, secants = _reactions(found, at, slopes, report)
     with steps.step("beams against FE"):
-        errors, judgement, measures = _errors(found, scene, levels, entered, slopes)
-        forms = closed_form_errors(scene, response, units, entered)
-        found.data("closed_forms", closed_form_rows(forms))
-    facts = load_facts(scene, entered)
-    found.seed = None if given.own else 1
+        errors, judgement, measures = _errors(found, at, slopes)
+        models, forms = _closed_forms(found, at)
+    facts = load_facts(at.scene, at.entered)
     level = int(judgement.nearest[0])
-    uncertainty = _uncertainty(found, steps, scene, level, facts.mean, quick)
-    found.assume_all(left_out(scene))
-    found.assume_all(given.assumptions)
-    options = {"loads": given.statement, "slopes": slopes, "weight": weight, "quick": quick}
+    uncertainty = _uncertainty(found, steps, at.scene, level, facts.mean, quick)
+    stated = _stated(at.model, facts.gravity)
+    _state(found, at, facts, stated)
+    options = {**at.entered.given.asked(), "slopes": slopes, "weight": weight, "quick": quick}
+    options["seat"] = seat
     return StudyResult(
-        units=units,
         secants=secants,
         reaction_statistics=reactions,
         errors=errors,
         judgement=judgement,
         measures=measures,
         closed_forms=forms,
+        closed_form_models=models,
         uncertainty=uncertainty,
         loads=facts,
-        stated=_stated(model, facts.gravity),
+        stated=stated,
         slopes=tuple(slopes),
-        described=description(model),
-        model=model,
-        response=response,
-        levels=levels,
+        **at.fields(),
         **found.frozen(steps.times, **options),
     )
 
 
-def _check(found: Findings, scene: Scene, response: Response, levels: Levels) -> None:
-    """Equilibrium and linearity of the assembly, and balance of every level."""
-    found.vanishes(
-        "assembly: total equilibrium, applied less reacted",
-        response.equilibrium_error,
-        within=1e-8,
-        why="reactions come from the residual on constrained degrees of freedom: solver accuracy",
-        source="exact",
-    )
-    found.vanishes(
-        "assembly: linearity, a random load solved directly against superposed",
-        response.superposition_error,
-        within=1e-8,
-        why="the scene is linear: solver accuracy",
-        source="exact",
-    )
-    found.vanishes(
-        "every level: reactions to unit hub loads balance the load, the worst",
-        max(imbalance(scene, model) for model in levels.models.values()),
-        within=1e-6,
-        why="each level must be in equilibrium, whatever its stiffness",
-        source="statics",
-    )
-    worst, count = statics_error(scene, response)
-    if count:
-        found.vanishes(
-            f"{count} reactions to unit hub loads that statics decides, assembly against statics",
-            worst,
-            within=1e-6,
-            why="solver accuracy; the nodes of a curved raceway meet at its centre to the mesh's "
-            "order",
-            source="statics: what has no stiffness in it",
-        )
+@dataclass(frozen=True, eq=False)
+class _Solved:
+    """A scene whose models are solved for unit loads, and the loads that enter it."""
+
+    scene: Scene
+    model: Model
+    response: Response
+    levels: Levels
+    entered: EnteredLoads
+    seat: SeatStiffness | None
+
+    def fields(self) -> dict[str, Any]:
+        """Those of the result that need no more than this."""
+        return {
+            "units": self.levels.units,
+            "seat": self.seat,
+            "beginning": history_beginning(self.scene, self.levels, self.entered),
+            "described": description(self.model),
+            "model": self.model,
+            "response": self.response,
+            "levels": self.levels,
+        }
 
 
-def statics_error(scene: Scene, response: Response) -> tuple[float, int]:
-    """Largest error of the reactions to unit hub loads that equilibrium alone decides.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    response : Response
-        Unit loads on its assembly.
-
-    Returns
-    -------
-    worst, count : float, int
-        Error, relative to a unit load with moments divided by the length of the shaft, and how
-        many of these reactions are not zero.
-    """
-    worst, count = 0.0, 0
-    size = np.array([1.0, 1.0, 1.0, *3 * (scene.shaft.length,)])
-    for name, matrix in statics_level(scene).reaction_matrices.items():
-        exact = matrix[:, :6]
-        known = np.isfinite(exact)
-        count += int((known & (exact != 0.0)).sum())
-        error = np.abs(response.reactions[name][:, :6] - exact)[known]
-        scale = np.outer(size, 1.0 / size)[known]
-        worst = max(worst, float((error / scale).max(initial=0.0)))
-    return worst, count
+def _solved(
+    found: Findings,
+    steps: Steps,
+    scene: Scene,
+    loads: StudyLoads | Sequence[LoadHistory] | None,
+    weight: bool,
+    quick: bool,
+    seat: bool,
+) -> _Solved:
+    """Every model of the scene as it is asked for, checked, and the loads that enter it."""
+    scene = quick_scene(scene) if quick else scene
+    scene = scene if weight else weightless(scene)
+    found.about(scene)
+    given = loads if loads is None or isinstance(loads, StudyLoads) else given_loads(loads, scene)
+    model = checked_model(steps, scene)
+    given = surrogate_loads(steps, _QUICK_SEEDS if quick else None) if given is None else given
+    entered = (given if weight else replace(given, gravity=0.0)).entering(scene)
+    response = solved_model(steps, model).response
+    with_seat = seat_stiffness(steps, scene, "without gearbox", model.mesh) if seat else None
+    with steps.step("levels 1 and 2"):
+        levels = levels_of(scene, response, steps.report)
+    check_models(found, scene, response, levels)
+    return _Solved(scene, model, response, levels, entered, with_seat)
 
 
-def _answer(
-    found: Findings, model: Model, response: Response, loads: EnteredLoads, quick: bool
-) -> None:
+def _state(found: Findings, at: _Solved, facts: LoadFacts, stated: Stated) -> None:
+    """State what nobody gave, which histories were studied, and what the reactions are."""
+    given = at.entered.given
+    found.assume_all(left_out(at.scene))
+    found.assume_all(given.assumptions)
+    found.data("histories", history_rows(facts.histories))
+    found.data("reactions_stated", stated.facts())
+    if at.seat is not None:
+        found.data("seat_stiffness", at.seat.rows())
+
+
+def _answer(found: Findings, at: _Solved, quick: bool) -> None:
     """What the loads are, and what the model warns of."""
     if quick:
         found.answer(
             "Quick: on a coarser mesh than the scene's, for a first look; figures will change."
         )
-    given = loads.given
-    opening = foot_warnings(model.scene, response, loads.together, given.weights, given.gravity)
-    found.answer(given.statement, *model.warnings, *opening)
+    given, together = at.entered.given, at.entered.together
+    opening = foot_warnings(at.scene, at.response, together, given.weights, given.gravity)
+    found.answer(given.statement, *at.model.warnings, *opening)
 
 
 def _stated(model: Model, gravity: float) -> Stated:
     masses = {part: float(mass.sum()) for part, mass in model.part_mass.items()}
     return stated_reactions(model.scene, masses, gravity)
+
+
+def _stiff(units: Mapping[str, UnitBounds]) -> dict[str, dict[str, float]]:
+    """Stiffnesses of each unit with its face in shape."""
+    return {name: unit_numbers(bounds.stiff) for name, bounds in units.items()}
 
 
 def _stiffness(found: Findings, units: Mapping[str, UnitBounds]) -> None:
@@ -344,7 +359,7 @@ def _stiffness(found: Findings, units: Mapping[str, UnitBounds]) -> None:
                 {
                     "bearing": name,
                     "quantity": words,
-                    "unit": "MN/m" if component < 3 else "MN\u00a0m/rad",
+                    "unit": "MN/m" if component < 3 else "MN m/rad",
                     "face on average (soft)": low[quantity] / 1e6,
                     "face in shape (stiff)": high[quantity] / 1e6,
                     "range [%]": 100.0 * (high[quantity] / low[quantity] - 1.0),
@@ -359,44 +374,32 @@ def _stiffness(found: Findings, units: Mapping[str, UnitBounds]) -> None:
 
 
 def _reactions(
-    found: Findings,
-    scene: Scene,
-    levels: Levels,
-    loads: EnteredLoads,
-    slopes: Sequence[float],
-    report: Progress,
-) -> dict[str, ReactionStatistics]:
-    """Statistics of each reaction of the assembly."""
-    names = list(levels.reference.reaction_matrices)
+    found: Findings, at: _Solved, slopes: Sequence[float], report: Progress
+) -> tuple[dict[str, ReactionStatistics], tuple[TiltSecant, ...]]:
+    """Statistics of each reaction of the assembly, and K_R as a secant."""
+    names = list(at.levels.reference.reaction_matrices)
     every = {}
     for number, name in enumerate(names, 1):
         report(f"reactions of all load steps ({number} of {len(names)})")
-        every[name] = reaction_statistics(name, scene, levels, loads, slopes)
-    for name in (bearing for bearing in scene.bearing_names if bearing in every):
+        every[name] = reaction_statistics(name, at.scene, at.levels, at.entered, slopes)
+    for name in (bearing for bearing in at.scene.bearing_names if bearing in every):
         found.found(*peak_across(name, every[name].whole))
     rows = [row for name, of in every.items() for row in statistics_rows(name, of.whole, slopes)]
     found.data("reactions_kN", rows)
-    return every
+    secants = tilt_secants(at.scene, at.response, at.levels.units, at.entered)
+    found.data("secants", secant_rows(secants))
+    return every, secants
 
 
 def _errors(
-    found: Findings,
-    scene: Scene,
-    levels: Levels,
-    loads: EnteredLoads,
-    slopes: Sequence[float],
+    found: Findings, at: _Solved, slopes: Sequence[float]
 ) -> tuple[LevelErrors, Judgement, DesignMeasures]:
     """Each level against the assembly, and which one is enough."""
+    scene, levels, loads = at.scene, at.levels, at.entered
     errors = level_errors(scene, levels, loads)
     judgement = judge_levels(errors.judged, ENOUGH, scene.shaft.length)
-    found.data(
-        "error_percent",
-        [
-            {"reaction": reaction, **{label: 100.0 * share for label, share in of.items()}}
-            for reaction, of in errors.shares.items()
-        ],
-    )
-    found.data("rmse_kN", list(errors.components))
+    found.data("error_percent", [one.row() for one in errors.vectors])
+    found.data("rmse_kN", [one.row() for one in errors.components])
     found.answer(enough(judgement, levels.bounds))
     found.data("advice", needed_levels(errors.judged, levels.coarser is not None))
     judged = [q.name for q in errors.judged if q not in judgement.slight]
@@ -406,10 +409,21 @@ def _errors(
     return errors, judgement, measures
 
 
+def _closed_forms(
+    found: Findings, at: _Solved
+) -> tuple[Mapping[str, LinearModel], Mapping[str, ForceErrors]]:
+    """Closed forms of one bearing on a uniform shaft, and their errors."""
+    models = closed_form_models(at.scene, at.levels.units, at.seat)
+    forms = closed_form_errors(at.scene, at.response, models, at.entered)
+    found.data("closed_forms", closed_form_rows(forms))
+    return models, forms
+
+
 def _uncertainty(
     found: Findings, steps: Steps, scene: Scene, level: int, mean_load: Floats, quick: bool
-) -> input_study.Study | None:
+) -> InputEffects | None:
     """Effect of the spreads that the scene states on stiffnesses and bearing forces."""
+    found.seed = None
     if not scene.uncertainty:
         return None
     with steps.step("uncertainty"):
@@ -419,8 +433,9 @@ def _uncertainty(
             Factors(mean_load),
             level=level,
             count=_QUICK_SAMPLES if quick else _SAMPLES,
+            seed=_SEED,
             report=steps.report,
         )
     found.data("uncertainty", figures(spreads))
-    found.seed = 0 if found.seed is None else found.seed
-    return spreads
+    found.seed = _SEED
+    return input_effects(spreads)

@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from typing import Any
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.steps import Clock
@@ -19,10 +22,14 @@ from fe_drivetrain.turbine_loads.hub_loads.files import read_hub_load_files, rea
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
 from fe_drivetrain.turbine_loads.hub_loads.point_loads import PointLoads
 from fe_drivetrain.turbine_loads.hub_loads.recorded import read_mapped
-from fe_drivetrain.turbine_loads.hub_loads.surrogate import hub_load_set, surrogate_grid
+from fe_drivetrain.turbine_loads.hub_loads.surrogate import (
+    Condition,
+    HubLoadSet,
+    hub_load_set,
+    not_kept,
+    surrogate_grid,
+)
 from fe_drivetrain.turbine_loads.hub_loads.turbines import different_turbines, vertical_forces
-
-_QUICK_SEEDS = 1
 
 
 @dataclass(frozen=True)
@@ -41,6 +48,10 @@ class StudyLoads:
         Name, value, unit and source of what a surrogate assumes.
     gravity : float
         Along -z, that gives all parts their weight [m/s^2]; 0 where weights are left out.
+    skip : float
+        Time that was left out at the beginning of each [s].
+    seeds : tuple of int
+        Seeds of made wind, which the program fixes; none of histories of the user.
     """
 
     histories: Sequence[LoadHistory]
@@ -48,6 +59,17 @@ class StudyLoads:
     own: bool
     assumptions: Sequence[tuple[str, float, str, str]] = field(default_factory=tuple)
     gravity: float = GRAVITY
+    skip: float = 0.0
+    seeds: tuple[int, ...] = ()
+
+    def asked(self) -> dict[str, Any]:
+        """What they are, as plain data."""
+        return {
+            "loads": self.statement,
+            "histories": [history.name for history in self.histories],
+            "skip": self.skip,
+            "seeds of the loads": list(self.seeds),
+        }
 
     @property
     def seconds(self) -> float:
@@ -86,7 +108,7 @@ class EnteredLoads:
 
 
 def own_loads(
-    patterns: str | Sequence[str], skip: float, scene: Scene, mapping: ChannelMap | None = None
+    patterns: str | Sequence[str], skip: float, scene: Scene, channels: ChannelMap | None = None
 ) -> StudyLoads:
     """Read the user's files.
 
@@ -98,7 +120,7 @@ def own_loads(
         What is left out at the beginning of each file [s].
     scene : Scene
         Says which point of the shaft they are about.
-    mapping : ChannelMap, optional
+    channels : ChannelMap, optional
         How files of other programs call their channels, and their frame and origin.
 
     Raises
@@ -106,9 +128,9 @@ def own_loads(
     InputError
         A file cannot be read, or all loads are zero.
     """
-    read = read_hub_loads if mapping is None else partial(read_mapped, mapping)
+    read = read_hub_loads if channels is None else partial(read_mapped, channels)
     histories = read_hub_load_files(patterns, skip, read)
-    return _of_the_user(histories, scene, f"--loads {patterns!r}", ("file", "files"), skip)
+    return _of_the_user(histories, scene, argument("loads", patterns), ("file", "files"), skip)
 
 
 def given_loads(histories: Sequence[LoadHistory], scene: Scene) -> StudyLoads:
@@ -128,7 +150,7 @@ def given_loads(histories: Sequence[LoadHistory], scene: Scene) -> StudyLoads:
     """
     if not histories:
         raise InputError("there is no load history to study: give one or more, or None")
-    return _of_the_user(histories, scene, "loads", ("history", "histories"))
+    return _of_the_user(histories, scene, argument("loads"), ("history", "histories"))
 
 
 def _of_the_user(
@@ -155,28 +177,69 @@ def _of_the_user(
         + about
         + (f" {unlike}" if unlike else ""),
         True,
+        skip=skip,
     )
 
 
-def surrogate_loads(steps: Clock, quick: bool = False) -> StudyLoads:
+def surrogate_loads(steps: Clock, seeds: int | None = None) -> StudyLoads:
     """The surrogate's histories.
 
     Parameters
     ----------
     steps : Clock
         Times the step in which they are made.
-    quick : bool
-        Whether those of one seed are enough.
+    seeds : int, optional
+        How many histories of each wind there are; all six where not given.
     """
-    grid = [c for c in surrogate_grid() if not quick or c.seed <= _QUICK_SEEDS]
-    with steps.step("hub loads"):
-        found = hub_load_set(
-            grid, progress=lambda done, of: steps.report(f"hub loads ({done} of {of})")
-        )
+    conditions = surrogate_conditions(seeds)
+    found = surrogate_set(steps, conditions)
     return StudyLoads(
         list(found),
-        f"Hub loads are a surrogate, not those of your turbine: {len(grid)} ten-minute histories "
-        "of a generic 2 MW, 80 m rotor in turbulent wind. Give your own with --loads.",
+        f"{surrogate_statement(len(found))} Give your own with {argument('loads')}.",
         False,
         list(assumptions()),
+        seeds=tuple(sorted({condition.seed for condition in conditions})),
+    )
+
+
+def surrogate_conditions(seeds: int | None = None) -> list[Condition]:
+    """Winds of the surrogate's histories.
+
+    Parameters
+    ----------
+    seeds : int, optional
+        How many histories of each wind there are; all six where not given.
+    """
+    return [c for c in surrogate_grid() if seeds is None or c.seed <= seeds]
+
+
+def surrogate_set(steps: Clock, conditions: Sequence[Condition]) -> HubLoadSet:
+    """The surrogate's histories in one array, with their winds.
+
+    Parameters
+    ----------
+    steps : Clock
+        Times the step in which they are made, or taken from the cache.
+    conditions : sequence of Condition
+        Winds, see `surrogate_conditions`.
+    """
+    with steps.step("hub loads") as step:
+        if user_cache().folder is not None and not not_kept(conditions):
+            step.name += ", from the cache"
+        return hub_load_set(
+            conditions, progress=lambda done, of: steps.report(f"hub loads ({done} of {of})")
+        )
+
+
+def surrogate_statement(count: int) -> str:
+    """What the surrogate's histories are, as a sentence.
+
+    Parameters
+    ----------
+    count : int
+        Number of histories.
+    """
+    return (
+        f"Hub loads are a surrogate, not those of your turbine: {count} ten-minute histories "
+        "of a generic 2 MW, 80 m rotor in turbulent wind."
     )

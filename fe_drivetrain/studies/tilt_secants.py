@@ -78,13 +78,33 @@ def tilt_secants(
     )
 
 
+def loads_and_motions(response: Response, name: str, factors: Floats) -> tuple[Floats, Floats]:
+    """Loads on a bearing and motions of its seat.
+
+    Parameters
+    ----------
+    response : Response
+        Unit loads on the assembly.
+    name : str
+        Name of the bearing.
+    factors : ndarray, (n, k)
+        Factors of the k unit loads, see `fe_drivetrain.bearing_life.coupled.factors_of`.
+
+    Returns
+    -------
+    loads, motions : ndarray, (n, 6)
+        What the drivetrain puts on the bearing [N, N m], about its centre, and the mean motion of
+        its seat [m, rad].
+    """
+    return factors @ response.reactions[name].T, factors @ response.motions[f"{name}.seat"].T
+
+
 def _of_bearing(
     name: str, unit: UnitBounds, response: Response, factors: Floats, weights: Floats
 ) -> Iterator[TiltSecant]:
     """K_R about y and z; none of a bearing that gives way to both."""
     soft, stiff = unit_numbers(unit.soft), unit_numbers(unit.stiff)
-    on_bearing = factors @ response.reactions[name].T
-    motions = factors @ response.motions[f"{name}.seat"].T
+    on_bearing, motions = loads_and_motions(response, name, factors)
     spring = None
     for a, (axis, key) in _AXES.items():
         if stiff[key] == 0.0 or not motions[:, a].any():
@@ -110,10 +130,10 @@ def secant_rows(found: Sequence[TiltSecant]) -> list[Record]:
         {
             "bearing": one.bearing,
             "axis": one.axis,
-            "secant [MN\u00a0m/rad]": one.stiffness / 1e6,
+            "secant [MN m/rad]": one.stiffness / 1e6,
             "scatter [%]": 100.0 * one.scatter,
-            "unit alone, soft [MN\u00a0m/rad]": one.bounds[0] / 1e6,
-            "unit alone, stiff [MN\u00a0m/rad]": one.bounds[1] / 1e6,
+            "unit alone, soft [MN m/rad]": one.bounds[0] / 1e6,
+            "unit alone, stiff [MN m/rad]": one.bounds[1] / 1e6,
         }
         for one in found
     ]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 
@@ -38,7 +39,7 @@ def own_speeds(rotor_speed: Floats | None) -> Floats:
 
 
 def speed_not_used(given: float | None, stated: Sequence[Floats]) -> str | None:
-    """Files that ``--rotor-speed`` does not reach, as a sentence.
+    """Files that a rotor speed of the user does not reach, as a sentence.
 
     Parameters
     ----------
@@ -59,9 +60,10 @@ def speed_not_used(given: float | None, stated: Sequence[Floats]) -> str | None:
     span = low if low == high else f"{low} to {high}"
     state = "states a speed of its" if len(own) == 1 else "state a speed of their"
     files = f"{len(own)} of {len(stated)} files {state} own, {span} 1/min"
+    option = argument("rotor_speed_rpm", given)
     if len(own) == len(stated):
-        return f"--rotor-speed {given:g} 1/min is not used: {files}."
-    return f"--rotor-speed {given:g} 1/min is used for the other files alone: {files}."
+        return f"{option} 1/min is not used: {files}."
+    return f"{option} 1/min is used for the other files alone: {files}."
 
 
 def choices_not_used(
@@ -82,11 +84,11 @@ def choices_not_used(
         name, named = unit.bearing.name, choices.named.get(unit.bearing.name)
         if named is not None and unit.catalogue not in (None, named):
             yield (
-                f"--bearing {name}={named} takes the place of the entry {unit.catalogue!r} that "
-                "the scene names under catalogue."
+                f"{argument('LifeOptions.bearings', {name: named})} takes the place of the entry "
+                f"{unit.catalogue!r} that the scene names under catalogue."
             )
     if "profile" not in choices.assumed:
-        option = "--profile" if choices.profiled else "--straight"
+        option = argument("LifeOptions.profile", choices.profiled)
         for one in bearings:
             if one.entry.crown:
                 yield (
@@ -98,7 +100,7 @@ def choices_not_used(
 
 
 def catalogues_not_used(catalogues: Sequence[Path], named: Mapping[str, str]) -> Iterator[str]:
-    """Entries of ``--catalogue`` that shadow others, and files of which none is used, as sentences.
+    """Entries of the user's catalogues that shadow others, and files that are not used.
 
     Parameters
     ----------
@@ -106,13 +108,21 @@ def catalogues_not_used(catalogues: Sequence[Path], named: Mapping[str, str]) ->
         Files of the user, later ones before earlier ones.
     named : Mapping[str, str]
         Entry by bearing, of those bearings that have one.
+
+    Yields
+    ------
+    str
+        A sentence.
     """
     if not catalogues:
         return
     # late, since it loads the compiled loops of bearings
-    from fe_drivetrain.bearing.catalogue import read_catalogue, read_entries
+    from fe_drivetrain.bearing.catalogue import read_bearing_catalogue, read_entries
 
-    known, of = read_catalogue(), dict.fromkeys(read_catalogue(), "the program's own catalogue")
+    known, of = (
+        read_bearing_catalogue(),
+        dict.fromkeys(read_bearing_catalogue(), "the program's own catalogue"),
+    )
     for path in catalogues:
         entries = read_entries(path)
         for name in sorted(set(named.values()) & set(entries)):
@@ -123,8 +133,9 @@ def catalogues_not_used(catalogues: Sequence[Path], named: Mapping[str, str]) ->
     for path in dict.fromkeys(catalogues):
         if not {entry for entry in named.values() if of.get(entry) == str(path)}:
             yield (
-                f"--catalogue {path} is not used: no bearing of the scene takes an entry of it, "
-                f"which are {', '.join(read_entries(path))}: name one under catalogue in the scene."
+                f"{argument('catalogues', [str(path)])} is not used: no bearing of the scene takes "
+                f"an entry of it, which are {', '.join(read_entries(path))}: name one under "
+                "catalogue in the scene."
             )
 
 
@@ -147,9 +158,10 @@ def require_samples(file: Path, count: int, every: int, least: int) -> None:
     InputError
         Fewer are left.
     """
-    left = -(-count // every)
+    left, name = -(-count // every), "LifeOptions.every"
     if left < least:
         raise InputError(
-            f"hub loads '{file}': --every {every} leaves {left} of {count} samples, and a history "
-            f"has {least} or more: give --every from 1 to {(count - 1) // (least - 1)}"
+            f"hub loads '{file}': {argument(name, every)} leaves {left} of {count} samples, and a "
+            f"history has {least} or more: give {argument(name)} from 1 to "
+            f"{(count - 1) // (least - 1)}"
         )

@@ -33,12 +33,10 @@ from fe_drivetrain.bearing.contact import (
     linear,
     palmgren_line,
     point_contact,
-    straight_roller,
 )
 from fe_drivetrain.bearing.contact_forces import elements, forces, roller_loads, turn
 from fe_drivetrain.bearing.distribution import (
     effective_centre,
-    load_zone_share,
     sjovall,
     superposed_peak,
 )
@@ -144,9 +142,6 @@ def test_sjovalls_integrals_are_the_published_table() -> None:
     for exponent, peak, axial in ((1.5, 4.37, 1.216), (10 / 9, 4.08, 1.260)):
         Jr, Ja = sjovall(0.5, exponent)
         assert_allclose([1.0 / Jr, Ja / Jr], [peak, axial], rtol=2e-3)
-    assert_allclose(load_zone_share(1.2595, 1.1), 0.5, rtol=2e-4)
-    with pytest.raises(InputError, match="single row needs"):
-        load_zone_share(0.9, 1.1)
     with pytest.raises(InputError, match="must be positive"):
         sjovall(0.0, 1.1)
 
@@ -199,18 +194,16 @@ def test_one_lamina_has_no_length_and_many_converge_to_the_closed_form() -> None
     ("middle", "slope"), [(1e-5, 1e-9), (1e-5, 1e-4), (1e-5, -4e-4), (-1e-5, 1e-3)]
 )
 def test_a_straight_roller_is_integrated_in_closed_form(middle: float, slope: float) -> None:
-    load, moment = straight_roller(LAW, 0.095, middle, slope)
     x = 0.095 * ((np.arange(200_000) + 0.5) / 200_000 - 0.5)
     q = LAW.load(middle + slope * x) / 200_000
-    assert_allclose(load, q.sum(), rtol=1e-7)
-    assert_allclose(moment, (q * x).sum(), rtol=1e-4, atol=1e-9 * load)
+    load, moment = q.sum(), (q * x).sum()
     row = tapered_row(36, 0.065, 0.095, 0.7874, 38.0, laminae=0)
     # a displacement that makes this approach at roller 0, whose tangent is -z
     b, t = middle, slope
     u = [(b - t * row.arm) / np.sin(ALPHA), 0.0, 0.0, 0.0, -t]
     Q, M, _ = elements(Bearing("one", (row,)), u)
-    assert_allclose(Q[0, 0], load, rtol=1e-9)
-    assert_allclose(M[0, 0], moment, rtol=1e-6, atol=1e-9 * load)
+    assert_allclose(Q[0, 0], load, rtol=1e-7)
+    assert_allclose(M[0, 0], moment, rtol=1e-4, atol=1e-9 * load)
 
 
 # identities

@@ -7,7 +7,7 @@ import pytest
 from conftest import QuickRun
 from numpy.testing import assert_allclose
 
-from fe_drivetrain.bearing.catalogue import catalogue_bearing, read_catalogue
+from fe_drivetrain.bearing.catalogue import catalogue_bearing, read_bearing_catalogue
 from fe_drivetrain.bearing.distribution import effective_centre
 from fe_drivetrain.bearing.rating import ratings
 from fe_drivetrain.bearing.rolling import equilibrium
@@ -28,9 +28,9 @@ mine:
 """
 
 
-@pytest.mark.parametrize("name", read_catalogue())
+@pytest.mark.parametrize("name", read_bearing_catalogue())
 def test_every_bearing_carries_a_radial_load(name: str) -> None:
-    entry = read_catalogue()[name]
+    entry = read_bearing_catalogue()[name]
     bearing = entry.bearing(name)
     axial = 1.5 * np.tan(bearing.rows[0].angle) if len(bearing.rows) == 1 else 0.0
     load = [1e5 * axial, 0, -1e5, 0, 0]
@@ -42,7 +42,7 @@ def test_every_bearing_carries_a_radial_load(name: str) -> None:
 
 
 def test_scenes_that_bearings_stand_in_are_in_the_library() -> None:
-    named = {scene for entry in read_catalogue().values() for scene in entry.scenes}
+    named = {scene for entry in read_bearing_catalogue().values() for scene in entry.scenes}
     for scene in named:
         assert library_scene(scene).title
     assert {"three_point_suspension", "iea_15mw_main_shaft", "main_bearing_bonded"} <= named
@@ -51,7 +51,7 @@ def test_scenes_that_bearings_stand_in_are_in_the_library() -> None:
 def test_assumed_rollers_fit_the_printed_ratings() -> None:
     """Bearing S is sized at 20 deg; MASTA's bearing is given with its rollers."""
     for name, within in (("bearing_s_o20", 0.03), ("bearing_s_x20", 0.03), ("masta_single", 1e-3)):
-        entry = read_catalogue()[name]
+        entry = read_bearing_catalogue()[name]
         found = ratings(entry.bearing(name))
         assert entry.ratings is not None
         printed = (entry.ratings.C, entry.ratings.C0, entry.ratings.Cu)
@@ -67,7 +67,7 @@ def test_effective_centres_of_the_pair_are_mastas() -> None:
 def test_a_users_file_extends_the_catalogue(tmp_path: Path) -> None:
     file = tmp_path / "mine.yaml"
     file.write_text(MINE, encoding="utf-8")
-    assert {"mine", "bearing_s"} <= read_catalogue(file).keys()
+    assert {"mine", "bearing_s"} <= read_bearing_catalogue(file).keys()
     assert catalogue_bearing("mine", file, clearance=1e-5).rows[0].clearance == 1e-5
     assert catalogue_bearing("bearing_s", contact_angle=20, arrangement="O").rows[0].angle > 0
 
@@ -88,7 +88,7 @@ def test_mistakes_in_a_file_are_named(tmp_path: Path, old: str, new: str, words:
     file = tmp_path / "mine.yaml"
     file.write_text(MINE.replace(old, new, 1), encoding="utf-8")
     with pytest.raises(InputError, match=words) as caught:
-        read_catalogue(file)
+        read_bearing_catalogue(file)
     assert "\n" not in str(caught.value)
 
 
@@ -105,7 +105,7 @@ def test_every_step_of_the_speed_case_converges(quick_run: QuickRun) -> None:
 
 
 def test_bores_are_compared_with_shafts() -> None:
-    entry = read_catalogue()["three_point_main"]
+    entry = read_bearing_catalogue()["three_point_main"]
     assert check_seat("a", "three_point_main", entry, 0.6) is None
     assert check_seat("a", "three_point_main", entry, 0.62) is None  # rounded, or assumed
     thin = check_seat("a", "three_point_main", entry, 0.4)
@@ -116,7 +116,7 @@ def test_bores_are_compared_with_shafts() -> None:
 
 
 def test_a_shaft_stays_inside_the_rollers_where_no_bore_is_given() -> None:
-    entry = read_catalogue()["iea_15mw_upwind"]
+    entry = read_bearing_catalogue()["iea_15mw_upwind"]
     assert entry.bore is None
     assert check_seat("a", "iea_15mw_upwind", entry, 3.0) is None
     assert "is 3372 mm, the shaft" in str(check_seat("a", "iea_15mw_upwind", entry, 0.9))
@@ -128,7 +128,7 @@ def test_a_bore_that_reaches_into_the_rollers_is_refused(tmp_path: Path) -> None
     text = MINE.replace("  law: iso", "  bore: 0.28\n  law: iso")
     (tmp_path / "mine.yaml").write_text(text.replace("{elements", "{bore: plan, elements"))
     with pytest.raises(InputError, match=r"'Mine' is 0.28 m but must be less than 0.27"):
-        read_catalogue(tmp_path / "mine.yaml")
+        read_bearing_catalogue(tmp_path / "mine.yaml")
 
 
 @pytest.mark.parametrize("name", ["nrel_750kw_low_speed_shaft", "three_point_suspension"])
@@ -137,4 +137,4 @@ def test_bearings_of_library_scenes_fit_their_seats(name: str) -> None:
     (unit,) = scene.bearing_units
     seat = scene.shaft.seat_diameter(unit.bearing.x, unit.bearing.width, unit.bearing.name)
     assert unit.catalogue is not None
-    assert check_seat("a", unit.catalogue, read_catalogue()[unit.catalogue], seat) is None
+    assert check_seat("a", unit.catalogue, read_bearing_catalogue()[unit.catalogue], seat) is None

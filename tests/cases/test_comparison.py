@@ -6,16 +6,12 @@ import numpy as np
 import pytest
 from coarse_scenes import coarse_scene
 
-from fe_drivetrain.cases.main_bearing.study import (
-    Solved,
-)
 from fe_drivetrain.common.components import GRAVITY
-from fe_drivetrain.elasticity.mesh.measures import quality
 from fe_drivetrain.shafts.beam import closed_forms
 from fe_drivetrain.shafts.beam.of_scene import main_bearing_beam
 from fe_drivetrain.shafts.response.model import Model
 from fe_drivetrain.shafts.response.unit_loads import Response
-from fe_drivetrain.studies import LinearModel
+from fe_drivetrain.studies import Assembly, LinearModel
 
 Beam = closed_forms.MainBearingBeam
 
@@ -28,8 +24,8 @@ def loads(rng: np.random.Generator) -> np.ndarray:
 
 
 @pytest.fixture(scope="module")
-def solved(bonded_model: Model, bonded_response: Response) -> Solved:
-    return Solved(bonded_model.scene, bonded_model, bonded_response, quality(bonded_model.mesh))
+def solved(bonded_model: Model, bonded_response: Response) -> Assembly:
+    return Assembly(bonded_model, bonded_response)
 
 
 @pytest.mark.parametrize("model", [closed_forms.pinned_model, closed_forms.torsional_spring_model])
@@ -49,7 +45,7 @@ def test_a_beam_is_its_closed_form(
     )
 
 
-def test_a_solid_is_its_response(solved: Solved, loads: np.ndarray) -> None:
+def test_a_solid_is_its_response(solved: Assembly, loads: np.ndarray) -> None:
     weight = solved.scene.gearbox.weight
     assert weight > 0
     for gravity in (0.0, GRAVITY):
@@ -63,7 +59,7 @@ def test_a_solid_is_its_response(solved: Solved, loads: np.ndarray) -> None:
 
 
 def test_loads_taken_out_or_moved_ahead_are_loads_changed(
-    solved: Solved, loads: np.ndarray
+    solved: Assembly, loads: np.ndarray
 ) -> None:
     model = LinearModel.of_fe(solved.scene, solved.response)
     for component in (0, 3):

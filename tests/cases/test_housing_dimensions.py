@@ -88,7 +88,9 @@ def test_a_housing_whose_bore_breaks_through_is_left_out(scene):
     low = change_scene(scene, {f"bearing_units.0.{key}": value for key, value in wide.items()})
     x = hypercube(housings.LOW, housings.HIGH, 12)
     surface = fitted(x, np.ones((12, 2)), 1)
-    assert housings.gives(scene, ONE_BODY, surface, PLATE, np.ones(2))
-    assert not housings.gives(low, ONE_BODY, surface, PLATE * [1, 1, 0.85, 1, 1], np.ones(2))
+    assert housings.Aim(scene, ONE_BODY, surface, np.ones(2), 0.005).met_by(PLATE)
+    assert not housings.Aim(scene, ONE_BODY, surface, np.full(2, 2.0), 0.005).met_by(PLATE)
+    lower = housings.Aim(low, ONE_BODY, surface, np.ones(2), 0.005)
+    assert not lower.met_by(PLATE * [1, 1, 0.85, 1, 1])
     with pytest.raises(InputError):
         housings.solved(housings.housed(low, ONE_BODY, PLATE * [1, 1, 0.85, 1, 1]), housings.COARSE)

@@ -95,7 +95,7 @@ def test_the_finest_of_a_series_is_judged_with_the_band_of_all() -> None:
     rows = [{"elements": n, "deflection [mm]": 2.0 + 1.0 / n**2} for n in (2, 4, 8)]
     page, series = Page(), MeshSeries(rows, "elements")
     page.finest(series, Target("deflection [mm]", 2.0, 0.01, "why", "source"))
-    (found,) = page.verdicts
+    (found,) = page.checks
     assert (found.quantity, found.unit, found.measure) == ("deflection", "mm", "deflection")
     assert found.computed == 2.0 + 1.0 / 64
     assert found.passed
@@ -113,14 +113,14 @@ def test_targets_are_checked_and_shown_beside_the_meshes() -> None:
     printed = Target("twist [mrad]", 4.0, 0.02, "rounding", "a manual", order=2.0)
     closed = Target("twist [mrad]", 4.3, 0.1, "shear", "a book", "closed form", relative=False)
     page.targets("By mesh", MeshSeries(rows, "elements"), [printed, closed])
-    assert [(v.quantity, v.passed) for v in page.verdicts] == [
+    assert [(v.quantity, v.passed) for v in page.checks] == [
         ("twist", True),
         ("closed form", False),
     ]
-    assert {v.measure for v in page.verdicts} == {"rotation"}
+    assert {v.measure for v in page.checks} == {"rotation"}
     (table,) = page.sections[0].items
     assert [row[0] for row in table.rows] == ["twist [mrad]", "closed form [mrad]"]
     assert [row[-1] for row in table.rows] == [4.0, 4.3]
     meshes = ["1 element", "2 elements", "4 elements"]
     assert table.columns == ["quantity", *meshes, "target"]
-    assert page.figures["By mesh"][0] == {"elements": 1, "twist [mrad]": 5.0}
+    assert page.tables["By mesh"][0] == {"elements": 1, "twist [mrad]": 5.0}

@@ -55,7 +55,7 @@ def test_no_coarser_mesh_gives_no_band():
 def checks_of(series):
     page = Page()
     check_series(page, series, "bonded")
-    return page.verdicts
+    return page.checks
 
 
 def test_coarser_solutions_out_of_balance_are_reported():
@@ -82,17 +82,13 @@ def test_coarser_scene_has_larger_elements_and_enough_a_turn():
 
 def test_figures_of_a_coarser_mesh_are_those_of_the_case(tmp_path):
     """Solved on the same mesh, a figure is the same; K_R stands under its plane and estimator."""
-    from fe_drivetrain.cases.main_bearing import (
-        study,
-    )
+    from fe_drivetrain.cases.main_bearing import bearing_scenes
 
     scene = coarse_scene("bonded")
     run = Run({}, True, tmp_path)
     found = bands.solve_coarser(run, scene, "x", solved=True, tilted=True)
     assert found is not None
-    meshed = study.mesh_of(run, scene, "x")
-    solved = study.solve_scene(run, scene, "x", meshed)
-    tilt = study.solve_tilt(run, scene, "x", meshed)
+    solved, tilt = bearing_scenes.solve_both(run, scene, "x")
     own = bands.of_solved(solved) | bands.of_tilt(tilt)
     assert set(found) == set(own)
     assert found["K_R"][0, 1] == pytest.approx(tilt.by_plane["vertical"]["averaged seat"], rel=1e-9)
@@ -145,17 +141,15 @@ def test_recovered_stresses_give_reactions_a_band_whatever_the_meshes() -> None:
 
 def test_errors_of_reactions_are_those_of_the_assembly(tmp_path) -> None:
     """What equilibrium decides has none; what stiffness shares has one, far below the share."""
-    from fe_drivetrain.cases.main_bearing import (
-        study,
-    )
+    from fe_drivetrain.cases.main_bearing import bearing_scenes
 
     scene = coarse_scene("bonded")
-    solved = study.solve_scene(Run({}, True, tmp_path), scene, "x", recovered=True)
+    solved = bearing_scenes.solve(Run({}, True, tmp_path), scene, "x", with_errors=True)
     name = solved.bearing
-    errors, reactions = solved.recovered[name], solved.response.reactions[name]
-    assert set(solved.recovered) == {name, "gearbox"}
+    errors, reactions = solved.errors[name], solved.response.reactions[name]
+    assert set(solved.errors) == {name, "gearbox"}
     # both supports share a force at the hub: what one gets more, the other gets less
-    np.testing.assert_allclose(errors[2, 2], -solved.recovered["gearbox"][2, 2], rtol=1e-5)
+    np.testing.assert_allclose(errors[2, 2], -solved.errors["gearbox"][2, 2], rtol=1e-5)
     # its mesh is too stiff against tilting, and takes too much of the moment
     assert 1e-4 < -errors[4, 4] / reactions[4, 4] < 0.2
     figures = bands.of_solved(solved)

@@ -110,7 +110,7 @@ def test_statics_is_right_in_every_measure_of_design(reports):
     for name, value in rows[0].items():
         if name.endswith("[%]"):
             assert abs(value) < 1e-5, name
-    assert rows[0]["damage over that of FE, m = 10"] == pytest.approx(1.0)
+    assert rows[0]["damage over it, m = 10"] == pytest.approx(1.0)
     assert any(s.startswith("Good enough within 5 %") for s in results.summary)
 
 

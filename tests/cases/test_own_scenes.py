@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from coarse_scenes import COARSE, coarse_scene
 
-from fe_drivetrain.cases.main_bearing import charts, study
+from fe_drivetrain.cases.main_bearing import bearing_scenes, charts
 from fe_drivetrain.command_line.settings import parse_settings
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.reading import change_scene, library_scene
@@ -50,8 +50,8 @@ def test_no_bearing_is_exchanged_in_silence(tmp_path, kind, interface):
         "bearing_units.0.bearing.kind": bearing,
     }
     page = Page()
-    scene = study.scene_of(Run(COARSE | changes, False, tmp_path), page, kind)
-    allowed = study.SPHERICAL if kind == "spherical" else ("bonded",)
+    scene = bearing_scenes.scene_of(Run(COARSE | changes, False, tmp_path), page, kind)
+    allowed = bearing_scenes.SPHERICAL if kind == "spherical" else ("bonded",)
     assert scene.bearing_units[0].interface in allowed
     kept = scene.bearing_units[0].interface == interface
     assert kept == (page.notes == [])
@@ -79,17 +79,17 @@ def test_a_quick_look_at_a_thin_wall_is_as_coarse_as_the_wall_allows():
 def test_several_bearings_and_a_nose_are_sent_to_the_study(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, scene: str, has: str
 ) -> None:
-    monkeypatch.setattr(study, "library_scene", lambda name: library_scene(scene))
+    monkeypatch.setattr(bearing_scenes, "library_scene", lambda name: library_scene(scene))
     run = Run({}, False, tmp_path)
     with pytest.raises(InputError, match=rf"has {has}.*run fe-drivetrain study"):
-        study.changed_scene(run, "bonded")
+        bearing_scenes.changed_scene(run, "bonded")
 
 
 def test_load_points_are_left_out_aloud(tmp_path: Path) -> None:
     brake = {"name": "brake", "x": 0.8, "width": 0.1, "weight": 2e4}
     page = Page()
     run = Run(COARSE | {"load_points": [brake]}, False, tmp_path)
-    assert study.scene_of(run, page, "bonded").load_points == ()
+    assert bearing_scenes.scene_of(run, page, "bonded").load_points == ()
     assert page.notes[0].startswith("Without the loads and weights at brake")
 
 

@@ -544,7 +544,7 @@ def test_without_an_answer_of_our_own_the_case_fails():
     peer_comparison.check(
         page, problems.hollow_shaft(), [row(auto, 10_000, trouble="over 30 s"), solved]
     )
-    assert [v.passed for v in page.verdicts] == [False, True]
+    assert [v.passed for v in page.checks] == [False, True]
 
 
 def test_growth_is_that_of_one_solver():

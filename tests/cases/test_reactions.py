@@ -4,16 +4,15 @@ import numpy as np
 import pytest
 from coarse_scenes import coarse_scene
 
-from fe_drivetrain.cases.main_bearing.study import Solved, solve_scene
 from fe_drivetrain.common import Floats
 from fe_drivetrain.common.components import GRAVITY
-from fe_drivetrain.report.suite.run import Run
+from fe_drivetrain.common.steps import Steps
+from fe_drivetrain.studies import Assembly, solved_assembly
 
 
 @pytest.fixture(scope="module")
-def solved(tmp_path_factory) -> Solved:
-    run = Run({}, True, tmp_path_factory.mktemp("solved"))
-    return solve_scene(run, coarse_scene("spherical"), "spherical")
+def solved() -> Assembly:
+    return solved_assembly(Steps(), coarse_scene("spherical"))
 
 
 @pytest.fixture
@@ -22,13 +21,13 @@ def hub(rng) -> Floats:
     return rng.normal(size=(2, 50, 6)) * 1e5
 
 
-def reaction_of(solved: Solved, name: str, hub: Floats, self_weight: bool = True) -> Floats:
+def reaction_of(solved: Assembly, name: str, hub: Floats, self_weight: bool = True) -> Floats:
     """One reaction to hub loads, with the weight of the gearbox, and of the parts."""
     gravity = GRAVITY if self_weight else 0.0
     return solved.response.history(name, hub, solved.scene.gearbox.weight, gravity)
 
 
-def weight_of(solved: Solved, *parts: str) -> float:
+def weight_of(solved: Assembly, *parts: str) -> float:
     """Weight of parts by their geometry [N]."""
     return GRAVITY * sum(float(solved.model.part_mass[part].sum()) for part in parts)
 

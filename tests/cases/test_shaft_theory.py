@@ -4,14 +4,12 @@ import numpy as np
 import pytest
 
 from fe_drivetrain.cases.references.shaft_theory import (
-    Spring,
     Tube,
     chain_frequencies,
     evenly_loaded_shear,
     extra_curvature,
     flexure_field,
     flexure_stress,
-    macaulay,
     michell_torque,
     missed_at_held_edge,
     parabola_shortfall,
@@ -26,6 +24,7 @@ from fe_drivetrain.cases.references.solid_shafts import (
     solid,
     straight,
 )
+from fe_drivetrain.cases.references.sprung_beams import Spring, macaulay
 from fe_drivetrain.cases.references.torsion_meridian import torsion_bounds
 from fe_drivetrain.drivetrain_file.materials import MATERIALS
 from fe_drivetrain.geometry import Section, Shaft

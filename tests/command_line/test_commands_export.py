@@ -52,7 +52,7 @@ def test_export_condenses_and_writes(
         assert exported(monkeypatch, *common, *arguments, "--overwrite") == 0
         said = capsys.readouterr().out
         assert f"{element.name} at {', '.join(element.points)}, " in said
-        found = export.read(out, "csv")
+        found = export.read_superelement(out, "csv")
         assert found.points == element.points
         assert found.supported == element.supported
         assert found.band == element.band

@@ -14,7 +14,8 @@ from tiny_case import Result
 
 from fe_drivetrain.bearing_life.life.load_series import years
 from fe_drivetrain.bearing_life.life.roller_damage import LifeRules, step_lives
-from fe_drivetrain.command_line.life import parse_lubricant
+from fe_drivetrain.command_line.life_request import parse_lubricant
+from fe_drivetrain.command_line.option_names import result_with_options
 from fe_drivetrain.common.array_records import as_arrays
 from fe_drivetrain.common.cache import CACHE_VARIABLE
 from fe_drivetrain.common.components import FORCES
@@ -126,7 +127,7 @@ def test_study_and_command_give_the_same_numbers_with_the_same_defaults(
     )
     assert status == 0, error
     shown = read_results(out / "results.json")
-    found = life(library_scene(SCENE), loads, site_of_class("II"))
+    found = result_with_options(life(library_scene(SCENE), loads, site_of_class("II")))
     plain = found.to_dict()
     assert shown.summary == plain["answer"]
     assert shown.notes == plain["notes"]
@@ -385,7 +386,7 @@ def test_defaults_are_assumed_and_other_values_are_not() -> None:
     [
         ({"every": 0}, "whole number of samples"),
         ({"skip": -1.0}, "skip is -1 s"),
-        ({"rotor_speed_rpm": float("inf")}, "rotor_speed_rpm is inf 1/min"),
+        ({"rotor_speed_rpm": float("inf")}, "rotor speed is inf 1/min but must be at least 0"),
         ({"stated": ("speed",)}, "an option that is stated is 'speed': choose 'lubricant'"),
         ({"reliability_percent": 91.0}, "99.9 %"),
         ({"lubricant": (30.0, 460.0)}, "460"),

@@ -1,9 +1,14 @@
-"""Values of --set, --load and --tolerance."""
+"""Values of --set, --load and --tolerance, and options as one record."""
 
 import re
+from dataclasses import dataclass
+from typing import Annotated
 
 import pytest
+import typer
+from typer.testing import CliRunner
 
+from fe_drivetrain.command_line.options import left_out, with_options
 from fe_drivetrain.command_line.settings import parse_loads, parse_settings, parse_tolerance
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.shafts.response.model import LOADS
@@ -81,3 +86,39 @@ def test_a_tolerance_is_a_share(text: str, share: float) -> None:
 def test_a_tolerance_is_between_0_and_100_percent(text: str) -> None:
     with pytest.raises(InputError, match="must be between 0 and 100 %"):
         parse_tolerance(text)
+
+
+@dataclass(frozen=True)
+class Asked:
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Whom to greet.")]
+    count: Annotated[int, typer.Option("--count", min=1, help="How often.")] = 2
+
+
+@with_options(Asked)
+def greet(context: typer.Context, asked: Asked) -> int:
+    """Greet somebody."""
+    if asked.name == "nobody":
+        raise InputError("nobody is there: name somebody")
+    typer.echo(f"{asked}, by default: {left_out(context, 'count')}")
+    return asked.count
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "said"),
+    [
+        (["Ann"], 2, "Asked(name='Ann', count=2), by default: True"),
+        (["Ann", "--count", "1"], 1, "Asked(name='Ann', count=1), by default: False"),
+        (["Ann", "--count", "0"], 2, "--count"),
+        (["nobody", "--count", "1"], 2, "fe-drivetrain: nobody is there: name somebody"),
+        (["--help"], 0, "Greet somebody."),
+        ([], 2, "NAME"),
+    ],
+)
+def test_a_command_takes_its_options_as_one_record(
+    words: list[str], status: int, said: str
+) -> None:
+    app = typer.Typer()
+    app.command()(greet)
+    found = CliRunner().invoke(app, words)
+    assert found.exit_code == status
+    assert said in found.output

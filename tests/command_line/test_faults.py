@@ -150,9 +150,10 @@ def test_at_no_moment_does_a_fault_leave_half_of_anything(
     if not exchange:
         monkeypatch.setattr(folders, "_exchange", lambda first, second: False)
     out = tmp_path / "b"
-    found = []
+    found: list[str] = []
     for number in range(1000):
-        run_case(marked(OLD), out)
+        if found[-1:] != [OLD] or hidden(tmp_path):
+            run_case(marked(OLD), out)
         assert [p.name for p in tmp_path.iterdir()] == ["b"]
 
         def work(number: int = number) -> int:

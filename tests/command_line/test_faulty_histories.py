@@ -10,7 +10,7 @@ from tiny_case import Result
 from fe_drivetrain.report.number_text import THIN_SPACE
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.turbine_loads.histories.faults import lone_samples, times_as_far
-from fe_drivetrain.turbine_loads.hub_loads.csv_table import write_csv
+from fe_drivetrain.turbine_loads.hub_loads.csv_table import write_hub_loads
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
 
 TIME = np.arange(0.0, 120.0, 0.05)
@@ -50,7 +50,7 @@ def test_a_jump_that_stays_noise_and_constants_are_no_lone_samples(
 def test_the_page_notes_what_may_mislead(invoke: Callable[..., Result], tmp_path: Path) -> None:
     loads = 1e5 * np.column_stack([WAVE, WAVE, WAVE - 4.0, 0.0 * WAVE, WAVE, WAVE])
     loads[1000, 4] += 3e6
-    write_csv(LoadHistory("spoilt", TIME, loads), tmp_path / "spoilt.csv")
+    write_hub_loads(LoadHistory("spoilt", TIME, loads), tmp_path / "spoilt.csv")
     status, _, err = invoke("loads", str(tmp_path / "spoilt.csv"), "--out", str(tmp_path / "out"))
     assert status == 0, err
     notes = " ".join(read_results(tmp_path / "out" / "results.json").notes)

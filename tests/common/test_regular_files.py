@@ -18,7 +18,7 @@ from fe_drivetrain.common.made_by import file_digest
 from fe_drivetrain.common.regular_files import NotRegularError, TooLargeError, opened, text_of
 from fe_drivetrain.drivetrain_file.reading import read_component, read_scene
 from fe_drivetrain.dynamics.tables import read_machine
-from fe_drivetrain.dynamics.torsion.gear_table import read_drivetrain
+from fe_drivetrain.dynamics.torsion.gear_table import read_gear_table
 from fe_drivetrain.export.calculix_results import read_dat
 from fe_drivetrain.export.formats import (
     craig_bampton_json,
@@ -47,12 +47,12 @@ READERS: list[tuple[str, Callable[[Path], Any]]] = [
     (".yaml", read_scene),
     (".yaml", read_component),
     (".yaml", read_machine),
-    (".yaml", read_drivetrain),
+    (".yaml", read_gear_table),
     (".yaml", read_project),
     (".yaml", read_measurement_cases),
     (".yaml", read_channel_map),
     (".yaml", failure_modes.read_catalogue),
-    (".yaml", catalogue.read_catalogue),
+    (".yaml", catalogue.read_bearing_catalogue),
     (".yaml", windio.read_torsion),
     (".csv", read_hub_loads),
     (".out", read_hub_loads),
@@ -74,7 +74,7 @@ READERS: list[tuple[str, Callable[[Path], Any]]] = [
     (".msh", surveyed),
     (".vtu", lambda path: read_in_process("read mesh", path, {})),
     *(
-        (form.suffix, lambda path, name=name: export.read(path, name))
+        (form.suffix, lambda path, name=name: export.read_superelement(path, name))
         for name, form in export.FORMATS.items()
         if hasattr(export.format_module(name), "read")
     ),

@@ -25,7 +25,7 @@ from fe_drivetrain.common.csv_cells import (
 )
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path, check_writable, scratch_folder
-from fe_drivetrain.turbine_loads.hub_loads.csv_table import read_csv, write_csv
+from fe_drivetrain.turbine_loads.hub_loads.csv_table import read_csv, write_hub_loads
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
 
 Invoke = Callable[..., Result]
@@ -293,7 +293,7 @@ def test_loads_of_evil_names_are_read_back(tmp_path: Path) -> None:
     time = np.arange(4) * 0.5
     history = LoadHistory("x", time, np.full((4, 6), -2.5), {"file": "=cmd,+b", "n": "-1.5"})
     path = tmp_path / "x.csv"
-    write_csv(history, path, {"=HYPERLINK(1) [m]": time})
+    write_hub_loads(history, path, {"=HYPERLINK(1) [m]": time})
     text = path.read_text()
     for line in text.splitlines():
         for cell in next(csv.reader([line])):

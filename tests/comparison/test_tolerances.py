@@ -18,7 +18,7 @@ def test_the_last_digit_is_that_which_is_printed(printed: str, unit: float) -> N
 def test_what_rounds_to_the_printed_number_passes(computed: float, passed: bool) -> None:
     page = Page()
     page.equals("share [%]", computed, **as_printed("2.886"), source="s")
-    assert page.verdicts[0].passed == passed
+    assert page.checks[0].passed == passed
 
 
 def test_a_sum_of_a_thousand_terms_is_within_a_thousand_roundings() -> None:

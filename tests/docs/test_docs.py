@@ -2,6 +2,7 @@
 
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -47,13 +48,17 @@ def test_the_example_scene_is_valid_and_can_be_meshed():
     assert set(mesh.part_names) == {"shaft", "main_bearing", "main_bearing.housing"}
 
 
-def test_the_library_example_of_the_readme_runs(capsys):
+def test_the_library_example_of_the_readme_runs(capsys: pytest.CaptureFixture[str]) -> None:
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     code = re.search(r"```python\n(.*?)```", readme, re.DOTALL).group(1)
-    exec(compile(code, "example", "exec"), {"__name__": "__main__"})
-    printed = capsys.readouterr().out
-    equilibrium, superposition = (float(x) for x in printed.splitlines()[-1].split())
-    assert max(equilibrium, superposition) < 1e-8
+    names: dict[str, Any] = {}
+    exec(compile(code, "example", "exec"), names)
+    result = names["result"]
+    assert all(check.passed for check in result.checks)
+    figure = result["K_R about y of main_bearing"]
+    assert 0 < figure.band < figure.computed
+    assert capsys.readouterr().out == f"{result!r}\n"
+    assert names["errors"].data
 
 
 def test_the_example_of_load_histories_runs_and_the_mapping_is_valid(

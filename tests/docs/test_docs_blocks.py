@@ -14,12 +14,13 @@ from fe_drivetrain.elasticity.solve import petsc
 
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
 
-HERE = Path(__file__).parents[1]
+HERE = Path(__file__).parent
 #: Pages whose blocks of Python run below, in order, in one empty folder.
 REFERENCE = {"bearing", "clusters", "dynamics", "gears", "life", "procedure", "transients"}
-REFERENCE |= {"turbine"}
+REFERENCE |= {"limits", "turbine"}
 #: Blocks that tests of these files take out of their pages.
 ELSEWHERE = {"../README": "test_docs.py", "gear_rating": "test_docs.py", "loads": "test_docs.py"}
+ELSEWHERE |= {"python": "test_face.py"}
 #: What a block needs that no machine of the tests has; its words are compiled all the same.
 NEEDS = {
     "import submitit": "a scheduler beside it: test_cluster.py runs it",

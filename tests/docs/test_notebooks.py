@@ -10,6 +10,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from fe_drivetrain import reaction_history, shaft_level
+from fe_drivetrain.common.components import GRAVITY
+
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 NOTEBOOKS = sorted((DOCS / "notebooks").glob("*.ipynb"))
@@ -47,6 +50,26 @@ def test_heat_and_moments_cost_life() -> None:
     assert 0 < names["ratio"] < 1
     phases = (names["time"][::13] * 0.6) % 1.0
     assert np.histogram(phases, 4, (0, 1))[0].min() >= 3  # no phase of the blades is left out
+
+
+def test_a_bore_costs_life_once_it_is_wide(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    names = run("bore-and-life")
+    bores, years = np.array(list(names["lives"])), np.array(names["years"])
+    left = 1.0 - (bores / 0.4) ** 4  # of the bending stiffness
+    assert left[[1, 3, 5]] == pytest.approx([0.996, 0.94, 0.68], abs=0.005)
+    assert abs(years[1] / years[0] - 1.0) < 0.02
+    assert (np.diff(years) < 0).all()
+    assert 0.5 < years[-1] / years[0] < 0.7
+    by_forces = np.array([bearing.years["L10"] for bearing in names["lives"].values()])
+    assert (np.diff(by_forces) > 0).all()
+    scene, history = names["scene"], names["history"]
+    moments = []
+    for shaft in (scene, names["bored"]):
+        weight = shaft.gearbox.weight
+        reaction = reaction_history(shaft_level(shaft, 1), "main_bearing", history, weight, GRAVITY)
+        moments.append(np.hypot(*reaction[:, 4:].T).mean())
+    assert moments[1] > 1.1 * moments[0]
 
 
 def test_statics_is_enough_for_a_force_and_not_for_a_stiffness() -> None:

@@ -2,6 +2,7 @@
 
 import re
 from importlib.resources import files
+from pathlib import Path
 
 import gmsh
 import numpy as np
@@ -10,9 +11,18 @@ import pytest
 from fe_drivetrain.cases.fidelity.published_torsion import (
     front_part,
 )
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.drivetrain_file.component import COMPONENTS
-from fe_drivetrain.drivetrain_file.reading import library_scene, parse_scene, scene_text
+from fe_drivetrain.drivetrain_file.named_scenes import named_scene_or_component, read_drivetrain
+from fe_drivetrain.drivetrain_file.reading import (
+    change_scene,
+    library_names,
+    library_scene,
+    parse_scene,
+    read_component,
+    scene_text,
+)
 from fe_drivetrain.elasticity.revolution.rigid_seats import end_stiffness
 from fe_drivetrain.geometry import build, gmsh_session
 from fe_drivetrain.shafts.fidelity.ladder import shaft_level
@@ -62,6 +72,31 @@ def test_a_scene_written_as_a_file_is_read_as_the_same_scene(name: str) -> None:
     assert parse_scene(scene_text(scene)) == scene
     coarser = scene.model_copy(update={"mesh": scene.mesh.scaled(1.7)})
     assert parse_scene(scene_text(coarser)) == coarser
+
+
+def test_a_drivetrain_is_read_by_its_name_or_from_a_file(tmp_path: Path) -> None:
+    assert library_names() == tuple(DRIVETRAINS)
+    changes = {"shaft.sections.0.inner_diameter": 0.2}
+    file = tmp_path / "mine.yaml"
+    file.write_text(scene_text(library_scene("two_bearings")))
+    of_name, of_file = (read_drivetrain(name, changes) for name in ("two_bearings", file))
+    assert of_name == of_file == change_scene(library_scene("two_bearings"), changes)
+    assert read_drivetrain(str(file)) == library_scene("two_bearings")
+    with pytest.raises(InputError, match="no scene 'three_bearings' in the library"):
+        read_drivetrain("three_bearings")
+    with pytest.raises(InputError, match="component"):
+        read_drivetrain("planet_carrier")
+
+
+def test_a_component_is_read_by_its_name_or_from_a_file(tmp_path: Path) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text(TEXTS["planet_carrier"])
+    changes = {"planet_carrier.material": "steel"}
+    of_name, of_file = (
+        named_scene_or_component(name, changes) for name in ("planet_carrier", str(file))
+    )
+    assert of_name == of_file == read_component(file, changes)
+    assert named_scene_or_component("two_bearings") == library_scene("two_bearings")
 
 
 @pytest.mark.parametrize("name", DRIVETRAINS)

@@ -20,8 +20,8 @@ from fe_drivetrain.dynamics.torsion.gear_table import (
     ROTOR,
     gear_masses,
     gear_speeds,
-    parse_drivetrain,
-    read_drivetrain,
+    parse_gear_table,
+    read_gear_table,
     stage_masses,
     two_masses,
 )
@@ -361,7 +361,7 @@ def test_what_a_torque_puts_in_is_what_dampers_take_out(table):
 
 def test_direct_drive_has_no_stages():
     text = "{title: d, rotor: 5.0, shafts: [{name: s, stiffness: 80.0}], generator: {inertia: 3.0}}"
-    table = parse_drivetrain(text)
+    table = parse_gear_table(text)
     exact = np.sqrt(80 * (1 / 5 + 1 / 3)) / (2 * np.pi)
     for model in MODELS:
         assert_allclose(natural_modes(model(table, "free")).frequencies, [0, exact], rtol=1e-12)
@@ -441,9 +441,9 @@ generator: {inertia: 4.0}
     ],
 )
 def test_wrong_tables_say_what_is_wrong(old, new, message):
-    assert parse_drivetrain(GOOD).speeds == (1.0, 3.0)
+    assert parse_gear_table(GOOD).speeds == (1.0, 3.0)
     with pytest.raises(InputError, match=message.replace("[", r"\[")) as error:
-        parse_drivetrain(GOOD.replace(old, new), source="mine")
+        parse_gear_table(GOOD.replace(old, new), source="mine")
     assert str(error.value).startswith("mine")
     assert "\n" not in str(error.value)
 
@@ -455,20 +455,20 @@ def test_planets_need_room():
         "ring_planet: 1e6, sun_planet: 1e6}",
     )
     with pytest.raises(InputError, match="must be greater than 2"):
-        parse_drivetrain(text)
+        parse_gear_table(text)
 
 
 def test_files_are_read_and_misread_with_a_message(tmp_path):
     path = tmp_path / "mine.yaml"
     path.write_text(GOOD, "utf-8")
-    assert read_drivetrain(path).rotor == 100.0
+    assert read_gear_table(path).rotor == 100.0
     with pytest.raises(InputError, match="cannot read drivetrain file"):
-        read_drivetrain(tmp_path / "none.yaml")
+        read_gear_table(tmp_path / "none.yaml")
     path.write_text("#" * 1_000_001, "utf-8")
     with pytest.raises(InputError, match="it has more than 1000000 bytes"):
-        read_drivetrain(path)
+        read_gear_table(path)
     with pytest.raises(InputError, match="generator cannot be fixed"):
-        stage_masses(parse_drivetrain(GOOD), "fixed")
+        stage_masses(parse_gear_table(GOOD), "fixed")
 
 
 def test_own_drivetrain_runs_as_a_case(tmp_path):

@@ -23,7 +23,7 @@ from fe_drivetrain.dynamics.static import over_a_turn, static
 from fe_drivetrain.dynamics.system import System, with_proportional_damping, without_massless
 from fe_drivetrain.dynamics.tables import MACHINES, Machine, library_machine, parse_machine
 from fe_drivetrain.dynamics.torsion.gear_table import (
-    Drivetrain,
+    GearTable,
     PlanetaryStage,
     gear_masses,
     gear_speeds,
@@ -118,7 +118,7 @@ def test_profile_shifted_planets_of_the_5_mw_gearbox_have_their_own_teeth() -> N
                     "mesh": stage.stiffness * base**2,
                 }
             )
-    table = Drivetrain.model_validate(
+    table = GearTable.model_validate(
         {
             "title": "5 MW",
             "rotor": machine.rotor.inertia,
@@ -135,7 +135,7 @@ def test_profile_shifted_planets_of_the_5_mw_gearbox_have_their_own_teeth() -> N
     assert np.abs(masses.B @ turning).max() < 1e-12 * np.abs(turning).max()
     assert speeds["stage 1 planet 1"] == pytest.approx(-(56 - 17) / 17, rel=1e-14)
     del stages[0]["planet_teeth"]
-    table = Drivetrain.model_validate(table.model_dump(exclude_none=True) | {"stages": stages})
+    table = GearTable.model_validate(table.model_dump(exclude_none=True) | {"stages": stages})
     halved = natural_modes(gear_masses(table, "free")).frequencies
     assert np.abs(halved[1:] / found[1:] - 1).max() > 0.01
 

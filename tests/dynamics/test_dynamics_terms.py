@@ -173,11 +173,12 @@ def test_springs_with_laws_act_beside_rollers_as_without_them() -> None:
     offset[2], offset[3], low[2] = 2e-5, 1e-3, -1e-5
     error = np.full(count, -1)
     error[1] = 0
-    laws = spring_laws(
-        system.rows, system.stiffness, damping, lower=low, upper=-low, offset=offset, wave=wave,
-        frequency=35.0, waves=fourier_wave([0.3], [0.1])[None], error=error,
-        errors=harmonic_error([4e-6], [0.0]).table[None],
-    )  # fmt: skip
+    laws = (
+        spring_laws(system.rows, system.stiffness, damping, lower=low, upper=-low, offset=offset)
+        .in_phase(frequency=35.0)
+        .with_waves(fourier_wave([0.3], [0.1])[None], wave)
+        .with_errors(harmonic_error([4e-6], [0.0]).table[None], error)
+    )
     equations = equations_of_motion(bare.mass, laws)
     load = system.load_on("shaft", np.array([3e3, -2e3, 5e3, 100.0, 400.0, -300.0]))
     pull = varying(load, [2.0, 2.01], [0.0, 1.0])

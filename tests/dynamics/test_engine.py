@@ -121,7 +121,7 @@ def test_a_disc_held_beside_a_stiffness_by_angle_is_its_equation_of_motion() -> 
     """Slip and stick of a shaft whose stiffness goes with its angle, by solve_ivp."""
     J, k, friction = (3.0, 1.0), 50.0, 30.0
     wave = fourier_wave([0.3], [0.1])
-    laws = spring_laws([[1.0, -1.0]], k, wave=0, turns=[[0.4, 0.0]], waves=wave[None])
+    laws = spring_laws([[1.0, -1.0]], k).in_phase(turns=[[0.4, 0.0]]).with_waves(wave[None])
 
     def kappa(phase: float) -> tuple[float, float]:
         w = 2 * pi
@@ -410,10 +410,11 @@ def everything() -> tuple[Equations, Travelling, list[Act]]:
     mesh = [i for i, name in enumerate(system.spring_names) if "sun-planet" in name]
     wave, low = np.full(count, -1), np.zeros(count)
     wave[mesh], low[mesh[0]] = 0, -1e-6
-    laws = spring_laws(
-        s.rows, s.stiffness, 1e-6 * s.stiffness, lower=low, upper=-low, wave=wave,
-        frequency=900.0, waves=fourier_wave([0.1], [0.05])[None],
-    )  # fmt: skip
+    laws = (
+        spring_laws(s.rows, s.stiffness, 1e-6 * s.stiffness, lower=low, upper=-low)
+        .in_phase(frequency=900.0)
+        .with_waves(fourier_wave([0.1], [0.05])[None], wave)
+    )
     row = np.eye(n)[system.place("sun rx")]
     machine = slip_line(row, 50.0, 10.0, 20.0)
     base = np.zeros(n)

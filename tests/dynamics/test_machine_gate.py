@@ -21,7 +21,7 @@ from fe_drivetrain.dynamics.modes import spring_frequencies, system_modes
 from fe_drivetrain.dynamics.planetary import PlanetarySet
 from fe_drivetrain.dynamics.springs import Spring
 from fe_drivetrain.dynamics.tables import MACHINES, Machine, library_machine, parse_machine
-from fe_drivetrain.dynamics.torsion.gear_table import Drivetrain, PlanetaryStage, parse_drivetrain
+from fe_drivetrain.dynamics.torsion.gear_table import GearTable, PlanetaryStage, parse_gear_table
 from fe_drivetrain.dynamics.torsion.orders import Toothed
 from fe_drivetrain.dynamics.torsion.system import Inertia, Torsional
 from fe_drivetrain.gear.involute import Gear, Pair
@@ -304,13 +304,13 @@ def test_gear_tables_name_a_kind_that_is_none_and_numbers_beyond_reason() -> Non
     data = mutations.plain(published.table("drivetrain_b"))
     data["stages"][0]["kind"] = ["planetary"]
     with pytest.raises(InputError, match=r"stage 1: kind is .'planetary'. but must be one of"):
-        Drivetrain.model_validate(data)
+        GearTable.model_validate(data)
     with pytest.raises(InputError, match="is too large for a number"):
-        parse_drivetrain(mutations.as_text(data).replace("127", "9" * 400))
+        parse_gear_table(mutations.as_text(data).replace("127", "9" * 400))
     data = mutations.plain(published.table("drivetrain_b"))
     data["shafts"][1]["stiffness"] = 1e-300
     with pytest.raises(InputError, match="shaft 1-2 has 1e-300 N m/rad"):
-        Drivetrain.model_validate(data)
+        GearTable.model_validate(data)
 
 
 def test_slips_of_another_seed_are_refused_or_right(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -39,7 +39,7 @@ M, K, C, A, HZ, LOAD = 2.0, 800.0, 4.0, 1e-3, 2.2, 1.5
 
 def one_mass(damping: float = C) -> Equations:
     error = harmonic_error([A], [0.0]).table[None]
-    springs = spring_laws([[1.0]], K, damping, frequency=HZ, error=0, errors=error)
+    springs = spring_laws([[1.0]], K, damping).in_phase(frequency=HZ).with_errors(error)
     return equations_of_motion([M], springs)
 
 
@@ -99,25 +99,18 @@ def turning(damping: float, frequency: float) -> Equations:
             lower=[-0.01, 0.0],
             upper=[0.02, 0.0],
             exponent=[1.5, 1.0],
-            wave=[-1, 0],
-            phase=[0.2, 0.7],
-            frequency=frequency,
-            turns=[[0.5, 0.0], [0.3, 0.1]],
-            waves=fourier_wave([0.1, 0.02], [0.05, 0.0])[None],
-            error=[0, 1],
-            error_phase=[0.1, 0.4],
-            error_turns=[2.0, 1.0],
-            errors=[
-                fourier_wave(s, s[::-1]) - [1, 0, 0, 0] for s in 0.01 * rng.normal(size=(2, 2))
-            ],
+        )
+        .in_phase(phase=[0.2, 0.7], frequency=frequency, turns=[[0.5, 0.0], [0.3, 0.1]])
+        .with_waves(fourier_wave([0.1, 0.02], [0.05, 0.0])[None], [-1, 0])
+        .with_errors(
+            [fourier_wave(s, s[::-1]) - [1, 0, 0, 0] for s in 0.01 * rng.normal(size=(2, 2))],
+            [0, 1],
+            phase=[0.1, 0.4],
+            turns=[2.0, 1.0],
         ),
-        spring_laws(
-            [[1.0, 1.0]],
-            10.0,
-            error=0,
-            frequency=frequency,
-            errors=harmonic_error([0.1], [0.2]).table[None],
-        ),
+        spring_laws([[1.0, 1.0]], 10.0)
+        .in_phase(frequency=frequency)
+        .with_errors(harmonic_error([0.1], [0.2]).table[None]),
     )
     return equations_of_motion([1.0, 2.0], springs)
 
@@ -306,8 +299,8 @@ def test_refusals() -> None:
         InputError, match="order 5 of a mesh with 8 values in a period must be 1 to 3"
     ):
         MeshError(np.zeros(8)).harmonic(5)
-    with pytest.raises(InputError, match="error of spring 1 is 0 but must be -1 to -1"):
-        spring_laws([[1.0]], 1.0, error=0)
+    with pytest.raises(InputError, match="error of spring 1 is 1 but must be -1 to 0"):
+        spring_laws([[1.0]], 1.0).with_errors(harmonic_error([0.1], [0.2]).table[None], 1)
 
 
 def test_an_error_of_a_helical_mesh_is_along_the_normal() -> None:

@@ -248,8 +248,10 @@ WAVE = fourier_wave([0.3], [0.1])
 
 
 def varying_with_angle() -> Equations:
-    springs = spring_laws(
-        [[1, -1], [0, 1]], [1e3, 50.0], turns=[[2, 0], [0, 0]], wave=[0, -1], waves=[WAVE]
+    springs = (
+        spring_laws([[1, -1], [0, 1]], [1e3, 50.0])
+        .in_phase(turns=[[2, 0], [0, 0]])
+        .with_waves([WAVE], [0, -1])
     )
     return equations_of_motion([1.0, 2.0], springs)
 
@@ -289,7 +291,7 @@ def test_stiffness_by_angle_against_an_explicit_method(
 def test_power_of_the_clock() -> None:
     """Without loads and damping, energy changes by half of dk/dt times the elongation squared."""
     wave = fourier_wave([0.2], [0.0])
-    springs = spring_laws([[1.0]], 100.0, wave=0, frequency=3.0, waves=[wave])
+    springs = spring_laws([[1.0]], 100.0).in_phase(frequency=3.0).with_waves([wave])
     motion = integrate(
         equations_of_motion([1.0], springs), steady([0.0]), 2.0, 1e-3, start=started([1.0], [0.0])
     )
@@ -304,8 +306,10 @@ def test_power_of_the_clock() -> None:
 def test_growth_of_parametric_resonance() -> None:
     """At twice the natural frequency x'' + (1 + e cos 2t) x = 0 grows at the rate e / 4."""
     e = 0.05
-    springs = spring_laws(
-        [[1.0]], 1.0, wave=0, frequency=1.0 / np.pi, waves=[fourier_wave([e], [0])]
+    springs = (
+        spring_laws([[1.0]], 1.0)
+        .in_phase(frequency=1.0 / np.pi)
+        .with_waves([fourier_wave([e], [0])])
     )
     equations = equations_of_motion([1.0], springs)
     motion = integrate(equations, steady([0.0]), 100.0 * np.pi, 0.02, start=started([1.0], [-1.0]))
@@ -319,7 +323,7 @@ def test_growth_of_parametric_resonance() -> None:
 
 def test_machine_of_constant_power() -> None:
     """Speed of an inertia from which constant power is drawn: w^2 falls evenly."""
-    machine = spring_laws([[1.0]], 0.0, power=4.0)
+    machine = spring_laws([[1.0]], 0.0).with_power(4.0)
     motion = integrate(
         equations_of_motion([2.0], machine), steady([0.0]), 3.0, 1e-3, start=started([0.0], [5.0])
     )
@@ -330,15 +334,16 @@ def test_machine_of_constant_power() -> None:
 def test_laws_are_the_derivative_of_their_energy() -> None:
     """The compiled loop's forces, by a step with no time to move, against differences of energy."""
     rng = np.random.default_rng(3)
-    springs = spring_laws(
-        rng.normal(size=(3, 3)),
-        [3.0, 5.0, 7.0],
-        lower=[-0.1, -np.inf, 0.0],
-        upper=[0.2, 0.1, 0.0],
-        exponent=[1.0, 1.5, 1.0],
-        wave=[0, -1, 0],
-        turns=rng.normal(size=(3, 3)),
-        waves=[wave_table(1.0 + 0.3 * rng.normal(size=8))],
+    springs = (
+        spring_laws(
+            rng.normal(size=(3, 3)),
+            [3.0, 5.0, 7.0],
+            lower=[-0.1, -np.inf, 0.0],
+            upper=[0.2, 0.1, 0.0],
+            exponent=[1.0, 1.5, 1.0],
+        )
+        .in_phase(turns=rng.normal(size=(3, 3)))
+        .with_waves([wave_table(1.0 + 0.3 * rng.normal(size=8))], [0, -1, 0])
     )
     equations = equations_of_motion(np.ones(3), springs)
 
@@ -363,8 +368,10 @@ def test_laws_are_the_derivative_of_their_energy() -> None:
 
 def test_a_wave_goes_through_its_values() -> None:
     values = np.array([1.2, 0.9, 0.7, 1.2])
-    springs = spring_laws(
-        [[1.0]], 2.0, wave=0, phase=np.pi / 10, frequency=1.0, waves=[wave_table(values)]
+    springs = (
+        spring_laws([[1.0]], 2.0)
+        .in_phase(phase=np.pi / 10, frequency=1.0)
+        .with_waves([wave_table(values)])
     )
     equations = equations_of_motion([1.0], springs)
     for k, value in enumerate([*values, values[0]]):
@@ -418,7 +425,7 @@ def test_wind_up_through_a_gap_and_what_is_loose() -> None:
 def test_a_sum_of_loads_and_of_laws() -> None:
     both = summed(varying([1.0, 0.0], [0.0, 2.0], [0.0, 4.0]), steady([0.0, 3.0]))
     assert_allclose(both.at([1.0, 5.0]), [[2.0, 3.0], [4.0, 3.0]])
-    one = spring_laws([[1.0]], 1.0, wave=0, waves=[WAVE])
+    one = spring_laws([[1.0]], 1.0).with_waves([WAVE])
     two = joined_laws(one, spring_laws([[2.0]], 3.0), one)
     assert two.wave.tolist() == [0, -1, 1]
     assert two.waves.shape == (2, 256, 4)
@@ -429,7 +436,7 @@ def test_a_sum_of_loads_and_of_laws() -> None:
     [
         (lambda: spring_laws([[1.0]], -1.0), "stiffness of spring 1 is -1"),
         (lambda: spring_laws([[1.0]], 1.0, upper=-1.0), "upper of spring 1"),
-        (lambda: spring_laws([[1.0]], 1.0, wave=0), "wave of spring 1"),
+        (lambda: spring_laws([[1.0]], 1.0).with_waves([WAVE], 1), "wave of spring 1 is 1"),
         (lambda: equations_of_motion([0.0, 1.0], spring_laws([[1, 0]], 1.0)), "without inertia"),
         (lambda: equations_of_motion([1.0], spring_laws([[1, 0]], 1.0)), "rows of springs"),
         (lambda: integrate(ONE, steady([0.0]), 1.0, 0.0), "time step is 0 s"),

@@ -4,13 +4,8 @@ import numpy as np
 import pytest
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.elasticity.revolution.frontal import (
-    JOIN,
-    condensed,
-    dissection,
-    element_matrices,
-    factored,
-)
+from fe_drivetrain.elasticity.revolution.element_order import JOIN, dissection
+from fe_drivetrain.elasticity.revolution.frontal import condensed, element_matrices, factored
 
 
 def grid(across, along):

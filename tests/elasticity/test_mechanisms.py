@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from coarse_scenes import coarse_scene
 
-from fe_drivetrain.cases.main_bearing import shown, study
+from fe_drivetrain.cases.main_bearing import bearing_scenes, shown
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.reading import change_scene
 from fe_drivetrain.elasticity.interfaces.mechanisms import (
@@ -12,7 +12,6 @@ from fe_drivetrain.elasticity.interfaces.mechanisms import (
     named_bodies,
     weak_restraints,
 )
-from fe_drivetrain.elasticity.mesh.measures import quality
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.run import Run
 from fe_drivetrain.shafts.response.model import build_model
@@ -175,7 +174,7 @@ def test_a_warning_reaches_the_progress_lines_and_the_page(spherical_mesh, tmp_p
     scene = change_scene(coarse_scene("spherical"), changes)
     lines: list[str] = []
     run = Run({}, True, tmp_path, lambda step, lane=0: lines.append(step))
-    solved = study.solve_scene(run, scene, "soft", (spherical_mesh, quality(spherical_mesh)))
+    solved = bearing_scenes.solve(run, scene, "soft", spherical_mesh)
     sentence = "shaft and main_bearing can nearly turn about x through (0, 0, 0) m"
     assert any(line.startswith(f"warning: soft: {sentence}") for line in lines)
     page = Page()

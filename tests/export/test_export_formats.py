@@ -62,7 +62,7 @@ def shaft() -> Superelement:
 
 def written(path: Path, element: Superelement, format: str) -> Path:
     target = path / f"{format}{export.FORMATS[format].suffix}"
-    export.write(target, element, format)
+    export.write_superelement(target, element, format)
     return target
 
 
@@ -131,7 +131,7 @@ def test_a_damaged_file_is_read_or_refused(
                 lines[k] = lines[k][:place] + letter + lines[k][place + 1 :]
         path.write_text("\n".join([*lines, ""]))
         try:
-            export.read(path, format)
+            export.read_superelement(path, format)
         except InputError as error:
             messages.append(str(error))
     assert len(messages) > 20
@@ -150,14 +150,14 @@ def test_scipy_reads_matrix_market(tmp_path: Path, seed: int) -> None:
     mass = written(tmp_path, element, "mtx-mass")
     assert (mmread(mass) == element.mass).all()
     with pytest.raises(InputError, match="holds a mass"):
-        export.read(mass, "mtx")
+        export.read_superelement(mass, "mtx")
 
 
 def test_a_matrix_market_file_of_others_has_no_points(tmp_path: Path) -> None:
     path = tmp_path / "a.mtx"
     path.write_text("%%MatrixMarket matrix array real general\n1 1\n2.0\n")
     with pytest.raises(InputError, match="does not state"):
-        export.read(path, "mtx")
+        export.read_superelement(path, "mtx")
 
 
 @pytest.mark.parametrize(
@@ -179,7 +179,7 @@ def test_a_wrong_matrix_market_file_says_why(
     assert old in text
     path.write_text(text.replace(old, new))
     with pytest.raises(InputError, match=message) as caught:
-        export.read(path, "mtx")
+        export.read_superelement(path, "mtx")
     assert str(path) in str(caught.value)
 
 
@@ -192,12 +192,12 @@ def test_a_general_array_is_read_by_columns(tmp_path: Path) -> None:
     body = [repr(value) for value in element.stiffness.T.ravel().tolist()]
     first = "%%MatrixMarket matrix array real general"
     path.write_text("\n".join([first, *head, "12 12", *body]))
-    assert (export.read(path, "mtx").stiffness == element.stiffness).all()
+    assert (export.read_superelement(path, "mtx").stiffness == element.stiffness).all()
 
 
 def test_no_mass_makes_no_file(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="has no mass"):
-        export.write(tmp_path / "a.mtx", random_element(0, mass=False), "mtx-mass")
+        export.write_superelement(tmp_path / "a.mtx", random_element(0, mass=False), "mtx-mass")
     assert not list(tmp_path.iterdir())
 
 
@@ -222,11 +222,11 @@ def test_hdf5_of_others_is_refused(tmp_path: Path) -> None:
     with h5py.File(path, "w") as file:
         file["other"] = [1.0]
     with pytest.raises(InputError, match="no dataset 'stiffness'"):
-        export.read(path, "hdf5")
+        export.read_superelement(path, "hdf5")
     with h5py.File(path, "w") as file:
         file.create_group("stiffness")
     with pytest.raises(InputError, match=r"a\.h5"):
-        export.read(path, "hdf5")
+        export.read_superelement(path, "hdf5")
 
 
 # --- CSV ----------------------------------------------------------------------------------------
@@ -265,7 +265,7 @@ def test_a_wrong_csv_says_where(tmp_path: Path, old: str, new: str, message: str
     assert old in text
     path.write_text(text.replace(old, new))
     with pytest.raises(InputError, match=message) as caught:
-        export.read(path, "csv")
+        export.read_superelement(path, "csv")
     assert str(path) in str(caught.value)
 
 
@@ -370,7 +370,7 @@ def test_one_triangle_of_a_symmetric_dmig_is_the_whole_matrix(tmp_path: Path) ->
     for name, matrix in there.items():
         assert (matrix == matrix.T).all()
         assert np.count_nonzero(matrix) == 144, name
-    mine, theirs = export.read(path, "dmig"), export.read(other, "dmig")
+    mine, theirs = export.read_superelement(path, "dmig"), export.read_superelement(other, "dmig")
     assert (mine.stiffness == there["KFULL0"]).all()
     assert (mine.stiffness == theirs.stiffness).all()
     assert mine.mass is not None
@@ -390,7 +390,7 @@ def test_columns_of_a_dmig_may_stand_in_any_order(tmp_path: Path) -> None:
     for column, row, value in reversed(entries(path)):
         lines += [f"DMIG*   {column}", f"*       {row}{value}"]
     path.write_text("\n".join([*lines, text[-1], ""]))
-    assert difference(export.read(path, "dmig").stiffness, element.stiffness) < 1e-9
+    assert difference(export.read_superelement(path, "dmig").stiffness, element.stiffness) < 1e-9
 
 
 @pytest.mark.needs("pyNastran")
@@ -410,7 +410,7 @@ def test_a_wrong_dmig_gets_one_sentence(tmp_path: Path, old: str, new: str, mess
     assert old in text
     path.write_text(text.replace(old, new))
     with pytest.raises(InputError, match=message) as caught:
-        export.read(path, "dmig")
+        export.read_superelement(path, "dmig")
     assert str(path) in str(caught.value)
 
 
@@ -431,9 +431,9 @@ def test_pyyeti_reads_dmig_and_op4(tmp_path: Path, shaft: Superelement) -> None:
 
 @pytest.mark.needs("pyNastran")
 def test_op4_tells_the_free_from_the_supported(tmp_path: Path, shaft: Superelement) -> None:
-    assert not export.read(written(tmp_path, shaft, "op4"), "op4").supported
+    assert not export.read_superelement(written(tmp_path, shaft, "op4"), "op4").supported
     (tmp_path / "op4.op4").unlink()
-    assert export.read(written(tmp_path, moderate_element(2), "op4"), "op4").supported
+    assert export.read_superelement(written(tmp_path, moderate_element(2), "op4"), "op4").supported
 
 
 def test_an_absent_pynastran_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -442,7 +442,7 @@ def test_an_absent_pynastran_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path:
 
     monkeypatch.setattr(nastran, "import_module", absent)
     with pytest.raises(MissingToolError, match=r'pip install "fe-drivetrain\[nastran\]"'):
-        export.write(tmp_path / "a.op4", random_element(0), "op4")
+        export.write_superelement(tmp_path / "a.op4", random_element(0), "op4")
     assert not list(tmp_path.iterdir())
 
 
@@ -573,4 +573,4 @@ def test_a_wrong_deck_gets_one_sentence(tmp_path: Path, old: str, new: str) -> N
     assert old in text
     path.write_text(text.replace(old, new))
     with pytest.raises(InputError, match=r"calculix\.inp"):
-        export.read(path, "calculix")
+        export.read_superelement(path, "calculix")

@@ -61,7 +61,7 @@ def two_seats(mass: bool = False) -> Superelement:
 
 def test_rexs_relates_casing_group_and_points_as_its_database_allows(tmp_path: Path) -> None:
     path = tmp_path / "casing.rexs"
-    export.write(path, two_seats(), "rexs")
+    export.write_superelement(path, two_seats(), "rexs")
     content = path.read_bytes()
     assert content.startswith(b"\xef\xbb\xbf<?xml")  # REXS asks for the byte order mark
     model = ET.fromstring(content)
@@ -92,7 +92,7 @@ def test_rexs_is_in_millimetres(tmp_path: Path) -> None:
     """1 N moves a point by as much in either unit, and a moment of 1000 N mm is 1 N m."""
     element = two_seats()
     path = tmp_path / "casing.rexs"
-    export.write(path, element, "rexs")
+    export.write_superelement(path, element, "rexs")
     model = ET.fromstring(path.read_bytes())
     rows = model.iterfind(".//attribute[@id='reduced_static_stiffness_matrix']/matrix/r")
     K = np.array([[float(c.text or "nan") for c in row] for row in rows])
@@ -113,7 +113,7 @@ def test_rexs_is_in_millimetres(tmp_path: Path) -> None:
 def test_rexs_keeps_the_order_of_the_relations(tmp_path: Path) -> None:
     """Points belong to the matrix by the order in the relations, not in the file."""
     path = tmp_path / "casing.rexs"
-    export.write(path, two_seats(), "rexs")
+    export.write_superelement(path, two_seats(), "rexs")
     text = path.read_text("utf-8-sig")
     swapped = text.replace('order="1"', 'order="9"').replace('id="4"', 'id="7"')
     path.write_text(swapped, "utf-8-sig")
@@ -123,8 +123,8 @@ def test_rexs_keeps_the_order_of_the_relations(tmp_path: Path) -> None:
 
 def test_rexs_says_what_it_is(tmp_path: Path) -> None:
     path, element = tmp_path / "casing.rexs", two_seats()
-    export.write(path, element, "rexs")
-    back = export.read(path, "rexs")
+    export.write_superelement(path, element, "rexs")
+    back = export.read_superelement(path, "rexs")
     assert back.points == element.points
     assert back.band == element.band
     assert back.supported
@@ -144,10 +144,10 @@ def test_rexs_says_what_it_is(tmp_path: Path) -> None:
 )
 def test_rexs_of_other_content(tmp_path: Path, old: str, new: str, message: str) -> None:
     path = tmp_path / "casing.rexs"
-    export.write(path, two_seats(), "rexs")
+    export.write_superelement(path, two_seats(), "rexs")
     path.write_text(path.read_text("utf-8-sig").replace(old, new))
     with pytest.raises(InputError, match=message) as caught:
-        export.read(path, "rexs")
+        export.read_superelement(path, "rexs")
     assert str(path) in str(caught.value)
 
 
@@ -157,16 +157,18 @@ def test_seats_of_a_scene(tmp_path: Path) -> None:
     assert seats.points == ("main_bearing",)
     np.testing.assert_array_equal(seats.stiffness, unit.stiffness)
     path = tmp_path / "seats.rexs"
-    export.write(path, seats, "rexs")
-    np.testing.assert_allclose(export.read(path, "rexs").stiffness, seats.stiffness, rtol=1e-14)
+    export.write_superelement(path, seats, "rexs")
+    np.testing.assert_allclose(
+        export.read_superelement(path, "rexs").stiffness, seats.stiffness, rtol=1e-14
+    )
 
 
 def test_two_seats_have_a_node_each_and_nothing_between(tmp_path: Path) -> None:
     scene = library_scene("two_bearings")
     scene = scene.model_copy(update={"mesh": scene.mesh.scaled(3.0)})
     path = tmp_path / "seats.rexs"
-    export.write(path, seats_superelement(scene), "rexs")
-    seats = export.read(path, "rexs")
+    export.write_superelement(path, seats_superelement(scene), "rexs")
+    seats = export.read_superelement(path, "rexs")
     assert seats.points == tuple(unit.bearing.name for unit in scene.bearing_units)
     for k, unit in enumerate(scene.bearing_units):
         assert seats.positions[k, 0] == pytest.approx(unit.bearing.x, rel=1e-15)
@@ -181,7 +183,7 @@ def test_two_seats_have_a_node_each_and_nothing_between(tmp_path: Path) -> None:
 
 def test_subvar_has_each_entry_once_and_keeps_every_digit(tmp_path: Path) -> None:
     path, element = tmp_path / "casing.subvar", two_seats(mass=True)
-    export.write(path, element, "simpack")
+    export.write_superelement(path, element, "simpack")
     lines = path.read_text().splitlines()
     assert lines[0].startswith("!file.version=")
     given = [line for line in lines if line and not line.startswith("!")]
@@ -190,7 +192,7 @@ def test_subvar_has_each_entry_once_and_keeps_every_digit(tmp_path: Path) -> Non
     assert "subvar($_casing_x_2, str= '1.5') ! [m] rear" in given
     value = float(element.stiffness[2, 8])
     assert f"subvar($_casing_K_3_9, str= '{value!r}') ! [N/m] front uz, rear uz" in given
-    back = export.read(path, "simpack")
+    back = export.read_superelement(path, "simpack")
     np.testing.assert_array_equal(back.stiffness, element.stiffness)
     assert back.mass is not None
     assert element.mass is not None
@@ -208,7 +210,7 @@ def test_subvar_has_each_entry_once_and_keeps_every_digit(tmp_path: Path) -> Non
 )
 def test_subvar_of_other_content(tmp_path: Path, old: str, new: str, message: str) -> None:
     path = tmp_path / "casing.subvar"
-    export.write(path, two_seats(mass=True), "simpack")
+    export.write_superelement(path, two_seats(mass=True), "simpack")
     path.write_text(path.read_text().replace(old, new))
     if "1.5" in old:  # a position stands in the comments, too: they decide
         assert simpack.read(path).positions[1, 0] == 1.5

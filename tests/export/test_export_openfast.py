@@ -309,7 +309,7 @@ def shaft() -> Superelement:
 
 def test_extptfm_keeps_frequencies_and_inertia(tmp_path: Path, shaft: Superelement) -> None:
     path = tmp_path / "extptfm.dat"
-    export.write(path, shaft, "extptfm")
+    export.write_superelement(path, shaft, "extptfm")
     found = extptfm.read_reduced(path)
     assert shaft.mass is not None
     # the condensation's own round-off, over the frequencies' spread of a decade squared
@@ -397,7 +397,7 @@ def test_openfast_files_state_their_origin(
     path = tmp_path / "file.dat"
     element = shaft if format == "extptfm" else cantilever()
     element = replace(element, origin=Origin("my scene", "abc123"), band=BANDS)
-    export.write(path, element, format)
+    export.write_superelement(path, element, format)
     said = commented(path.read_text().splitlines(), "!")
     assert said["scene"] == "my scene"
     assert said["scene hash"] == "abc123"

@@ -46,7 +46,7 @@ def test_published_schema_is_that_of_the_program(name: str) -> None:
 
 def test_files_fulfil_the_published_schemas(tmp_path: Path, content: SummaryFile) -> None:
     write_summary(tmp_path / "summary.json", content)
-    export.write(
+    export.write_superelement(
         tmp_path / "superelement.json", shaft_superelement(coarse_scene("bonded"), 2), "json"
     )
     write_craig_bampton(
@@ -133,7 +133,7 @@ def test_the_command_writes_summary_and_seats(tmp_path: Path) -> None:
     seats = tmp_path / "seats.json"
     done = CliRunner().invoke(app, [*command, "--what", "seats", "--out", str(seats)])
     assert done.exit_code == 0, done.output
-    assert export.read(seats, "json").points == ("main_bearing",)
+    assert export.read_superelement(seats, "json").points == ("main_bearing",)
     wrong = [*command[:-1], "csv", "--what", "summary", "--out", str(tmp_path / "a.csv")]
     assert CliRunner().invoke(app, wrong).exit_code == MISTAKE
 
@@ -142,7 +142,7 @@ def test_compliance_is_written_where_there_is_one(tmp_path: Path) -> None:
     scene = coarse_scene("bonded")
     for name, has in (("unit", True), ("shaft", False)):
         made = unit_superelement(scene, "main_bearing") if has else shaft_superelement(scene, 1)
-        export.write(tmp_path / name, made, "json")
+        export.write_superelement(tmp_path / name, made, "json")
         compliance = json.loads((tmp_path / name).read_text())["compliance"]
         assert (compliance is not None) == has
         if has:

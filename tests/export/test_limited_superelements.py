@@ -36,7 +36,7 @@ def strut() -> Superelement:
 
 @pytest.fixture
 def content(tmp_path: Path) -> dict[str, Any]:
-    export.write(tmp_path / "sound.json", strut(), "json")
+    export.write_superelement(tmp_path / "sound.json", strut(), "json")
     found: dict[str, Any] = json.loads((tmp_path / "sound.json").read_text())
     return found
 
@@ -123,7 +123,7 @@ def test_what_is_no_json_of_ours_is_one_sentence(tmp_path: Path, text: str) -> N
 
 def test_the_limited_process_hands_back_the_superelement_to_the_last_bit(tmp_path: Path) -> None:
     element = replace(strut(), mass=np.eye(12), band=StiffnessBands(0.1, 0.02, 0.3))
-    export.write(tmp_path / "one.json", element, "json")
+    export.write_superelement(tmp_path / "one.json", element, "json")
     found = read_limited(tmp_path / "one.json", "json")
     assert found.stiffness.tobytes() == element.stiffness.tobytes()
     assert found.positions.tobytes() == element.positions.tobytes()
@@ -135,7 +135,7 @@ def test_the_limited_process_hands_back_the_superelement_to_the_last_bit(tmp_pat
 
 def test_reading_takes_no_more_than_its_limits(tmp_path: Path) -> None:
     file = tmp_path / "one.json"
-    export.write(file, strut(), "json")
+    export.write_superelement(file, strut(), "json")
     with pytest.raises(InputError, match="bytes but must have 1 to 100"):
         read_limited(file, "json", replace(LIMITS, file=100))
     # two million times the smallest number: 6 MB of text, far more once it is read

@@ -5,7 +5,7 @@ import pytest
 import yaml
 
 from fe_drivetrain.drivetrain_file.reading import change_scene, parse_scene
-from fe_drivetrain.export.files import read, write
+from fe_drivetrain.export.files import read_superelement, write_superelement
 from fe_drivetrain.export.scene_export import superelement_of
 from fe_drivetrain.geometry import Bearing, Housing, gmsh_session, write_step
 from fe_drivetrain.shafts.fidelity.bearing_units import unit_stiffness
@@ -48,9 +48,9 @@ def test_a_bonded_unit_from_step_is_written_read_and_stands_in_a_scene(
 ):
     scene, element = unit
     path = tmp_path / f"unit{ending}"
-    write(path, element, format)
+    write_superelement(path, element, format)
     K, scale = element.stiffness, np.sqrt(np.outer(*2 * [element.stiffness.diagonal()]))
-    assert np.abs((read(path, format).stiffness - K) / scale).max() < 1e-9
+    assert np.abs((read_superelement(path, format).stiffness - K) / scale).max() < 1e-9
     status, out, _ = invoke("part", str(path))
     assert status == 0
     housing = yaml.safe_load(out[out.index("housing:") :])["housing"]

@@ -10,7 +10,7 @@ from fe_drivetrain.cases.references.published_gears import NREL_5MW_PRINTED, iso
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.gear.functions import involute_of
 from fe_drivetrain.gear.involute import Gear, Pair, Rack, meshing_without_backlash
-from fe_drivetrain.gear.iso import blank_factor, iso_stiffness, rack_factor
+from fe_drivetrain.gear.iso import blank_factor, iso_gear_stiffness, rack_factor
 from fe_drivetrain.gear.meshes import (
     MeshStiffness,
     StiffnessTable,
@@ -37,7 +37,7 @@ HELICAL = PAIRS["stage 3"]
 @pytest.mark.parametrize("name", PAIRS)
 def test_gearbox_of_kisssoft_reports(name: str) -> None:
     printed = NREL_5MW_PRINTED[name]
-    found = iso_stiffness(PAIRS[name], blank=printed.blank)
+    found = iso_gear_stiffness(PAIRS[name], blank=printed.blank)
     for value, expected in (
         (found.single, printed.single),
         (found.mesh, printed.mesh),
@@ -51,14 +51,14 @@ def test_one_blank_gives_all_printed_digits_of_both_planetary_stages() -> None:
     # printed as 0.862
     for name, printed in NREL_5MW_PRINTED.items():
         if name != "stage 3":
-            found = iso_stiffness(PAIRS[name], blank=0.86231)
+            found = iso_gear_stiffness(PAIRS[name], blank=0.86231)
             values = [round(v / 1e9, 3) for v in (found.single, found.mesh, found.misaligned)]
             expected = (printed.single, printed.mesh, printed.misaligned)
             assert values == pytest.approx(expected, abs=1.1e-3)
 
 
 def test_example_1_of_iso_tr_6336_30() -> None:
-    found = iso_stiffness(iso_example_1(), specific_load=1273.52e3)
+    found = iso_gear_stiffness(iso_example_1(), specific_load=1273.52e3)
     assert found.theoretical / 1e9 == pytest.approx(17.85584, abs=5e-6)
     assert found.single / 1e9 == pytest.approx(12.37047, abs=5e-6)
     assert found.mesh / 1e9 == pytest.approx(17.46485, abs=2e-4)
@@ -71,14 +71,14 @@ def test_factors_of_iso() -> None:
     assert blank_factor(0.01, 5.0) == blank_factor(0.2, 5.0)
     assert rack_factor(STRAIGHT.first) == pytest.approx(0.975)
     assert rack_factor(iso_example_1().first) == pytest.approx(0.9)
-    full = iso_stiffness(STRAIGHT)
-    assert iso_stiffness(STRAIGHT, 1e5).single == full.single
+    full = iso_gear_stiffness(STRAIGHT)
+    assert iso_gear_stiffness(STRAIGHT, 1e5).single == full.single
     # a sixteenth of 100 N/mm: half the stiffness
-    assert iso_stiffness(STRAIGHT, 1e5 / 16).single == pytest.approx(0.5 * full.single)
-    assert iso_stiffness(STRAIGHT, youngs_modulus=103e9).mesh == pytest.approx(0.5 * full.mesh)
+    assert iso_gear_stiffness(STRAIGHT, 1e5 / 16).single == pytest.approx(0.5 * full.single)
+    assert iso_gear_stiffness(STRAIGHT, youngs_modulus=103e9).mesh == pytest.approx(0.5 * full.mesh)
     for wrong in ({"specific_load": 0.0}, {"blank": 0.0}, {"youngs_modulus": -1.0}):
         with pytest.raises(InputError, match="it must be positive"):
-            iso_stiffness(STRAIGHT, **wrong)
+            iso_gear_stiffness(STRAIGHT, **wrong)
     with pytest.raises(InputError, match=r"a rim of 0\.5 modules"):
         blank_factor(0.5, 0.5)
     with pytest.raises(InputError, match="a web of 0 face widths"):
@@ -219,7 +219,7 @@ def test_helical_gears_are_slices_turned_against_each_other() -> None:
 def test_formulas_of_others_are_near_the_standard() -> None:
     # unverified coefficients: no more than that they describe teeth of steel
     pair = STRAIGHT
-    standard = iso_stiffness(pair).single
+    standard = iso_gear_stiffness(pair).single
     places = np.linspace(pair.path.start, pair.path.end, 9)
     kuang = kuang_yang_law(pair)(places)
     assert 0.5 * standard < kuang.min() < kuang.max() < 1.5 * standard

@@ -25,7 +25,7 @@ from fe_drivetrain.gear.energy import (
     yang_sun_contact,
 )
 from fe_drivetrain.gear.involute import Gear, Rack, meshing_without_backlash
-from fe_drivetrain.gear.iso import iso_stiffness
+from fe_drivetrain.gear.iso import iso_gear_stiffness
 from fe_drivetrain.gear.pair_stiffness import kuang_yang_law
 from fe_drivetrain.gear.profile import fillet_points, flank_normals, flank_points, tooth_outline
 
@@ -161,7 +161,7 @@ def test_methods_agree_as_far_as_they_do(meshed: MeshedPair) -> None:
     assert (kuang > elements).all()
     assert kuang == pytest.approx(elements, rel=0.16)
     # c' of ISO 6336-1 is the greatest over the path; from tests of discs
-    assert iso_stiffness(PAIR).single == pytest.approx(elements.max(), rel=0.03)
+    assert iso_gear_stiffness(PAIR).single == pytest.approx(elements.max(), rel=0.03)
 
 
 def test_bodies_couple_two_pairs_in_contact(meshed: MeshedPair) -> None:

@@ -90,6 +90,7 @@ def test_a_face_says_what_its_room_is_for_and_shows_only_what_is_there(room: str
 #: Modules for users, which one case tries or none: the page that tells them to take its names.
 FOR_USERS = {
     "bearing.subsurface": "procedure.md",
+    # answers of a bearing to millions of loads, from one grid of solves
     "bearing.tables": "bearing.md",
     "export.formats.windio": "how-to/shafts-of-a-gearbox.md",
     "export.programs.ross_rotor": "how-to/housing-to-ross-and-exudyn.md",
@@ -97,11 +98,14 @@ FOR_USERS = {
     "turbine_loads.histories.farm": "clusters.md",
     "turbine_loads.hub_loads.events": "turbine.md",
     "turbine_loads.hub_loads.wind_boxes": "loads.md",
+    # loads at the interfaces of any scene, from a level of the ladder
     "procedure.levels": "procedure.md",
+    # reads the scripts of a user's own campaign
     "procedure.measurement_cases": "procedure.md",
+    # the accelerations at interfaces that a load table asks for, of any three-point drivetrain
     "procedure.moving": "procedure.md",
+    # ranks and locks the degrees of freedom of any machine, under a user's load case
     "procedure.reduction": "procedure.md",
-    "procedure.run_up": "procedure.md",
 }
 
 #: Modules that are started or imported by a name in a string, and by what.
@@ -183,6 +187,34 @@ def test_references_serve_two_cases_and_other_bodies_stand_beside_theirs() -> No
             group = ".".join(name.split(".")[:2])
             elsewhere = [u for u in house.users()[name] if not u.startswith(f"{group}.")]
             assert not elsewhere, f"{name} belongs into the references"
+
+
+#: Lines of a function of a case, with its description.
+LONGEST = 60
+
+
+def long_functions(source: str) -> list[str]:
+    """Functions, nested ones too, with more lines than a case may have in one."""
+    return [
+        node.name
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.FunctionDef) and (node.end_lineno or 0) - node.lineno + 1 > LONGEST
+    ]
+
+
+def test_long_functions_are_found() -> None:
+    lines = "    x = 1\n" * (LONGEST - 1)
+    assert long_functions(f"def short():\n{lines}") == []
+    assert long_functions(f"class A:\n  def long(self):\n{lines}    x = 2\n") == ["long"]
+
+
+def test_no_function_of_a_case_is_long() -> None:
+    found = {
+        name: long
+        for name, path in house.modules().items()
+        if name.startswith("cases.") and (long := long_functions(path.read_text(encoding="utf-8")))
+    }
+    assert found == {}
 
 
 def test_names_are_found_through_faces() -> None:

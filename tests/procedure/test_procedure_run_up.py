@@ -5,6 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.special import fresnel
 
+from fe_drivetrain.cases.procedure.swept_modes import Sweep, run_up_peak, swept_response
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.levels import machine_system
 from fe_drivetrain.dynamics.modes import system_modes
@@ -14,7 +15,6 @@ from fe_drivetrain.dynamics.torsion.orders import mesh_orders
 from fe_drivetrain.dynamics.torsion.system import Inertia, chain
 from fe_drivetrain.procedure.motions import driven_motions
 from fe_drivetrain.procedure.resonance import Excitation, drivetrain_excitations, resonances
-from fe_drivetrain.procedure.run_up import Sweep, run_up_peak, swept_response
 
 
 @pytest.mark.parametrize("sweep", [Sweep(0.5, 0.8), Sweep(8.0, -1.5), Sweep(2.5, 20.0)])

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from coarse_scenes import COARSE
 from conftest import QuickRun
 from small_project import (
     MACHINE,
@@ -358,18 +359,20 @@ def test_a_page_stamps_what_is_of_its_drivetrain() -> None:
     page.holds("after", True, why="w", source="s")
     page.found("margin [-]", 0.2, loads=(RESONANCE,))
     page.skip("share", "NGSolve is not there")
-    assert [v.of for v in page.verdicts] == ["", OWN.hash]
-    assert page.answers[0].of == OWN.hash
+    assert [v.of for v in page.checks] == ["", OWN.hash]
+    assert page.figures[0].of == OWN.hash
     assert page.drivetrains == [OWN]
     assert page.skipped == ["share: NGSolve is not there"]
 
 
 def test_a_command_on_a_scene_states_its_hash_and_a_digest(invoke: Invoke, tmp_path: Path) -> None:
-    status, _, error = invoke("check", "two_bearings", "--set", "mesh.shaft=0.3", "--out", "out")
+    sizes = {key: size for key, size in COARSE.items() if key.startswith("mesh.")}
+    words = [word for key, size in sizes.items() for word in ("--set", f"{key}={size}")]
+    status, _, error = invoke("check", "two_bearings", *words, "--out", "out")
     assert status == 0, error
     text = (tmp_path / "out/results.json").read_text("utf-8")
     results = read_results(tmp_path / "out/results.json")
-    scene = change_scene(library_scene("two_bearings"), {"mesh.shaft": 0.3})
+    scene = change_scene(library_scene("two_bearings"), sizes)
     assert results.drivetrains == [drivetrain_record(scene)]
     assert results.digest == results_digest(text)
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 from tiny_case import check_one
 
@@ -16,7 +17,7 @@ from fe_drivetrain.command_line.settings import parse_settings
 from fe_drivetrain.common import folders
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.manifest import MANIFEST
-from fe_drivetrain.pages.advice import tornado
+from fe_drivetrain.pages.advise import tornado
 from fe_drivetrain.report.answer import headline
 from fe_drivetrain.report.charts import trace
 from fe_drivetrain.report.history import FILE
@@ -269,3 +270,27 @@ def test_every_case_of_the_package_is_named_after_its_place() -> None:
         # of a table, in any script of the group; else of another name only where a folder has it
         if "row" not in found.run.keywords and script != last:
             assert hasattr(import_module(f"{place}.{last}"), "__path__")
+
+
+def test_an_exponent_is_fitted_and_judged_with_its_band() -> None:
+    page = Page()
+    x = np.array([1.0, 2.0, 4.0, 8.0])
+    error = 3.0 * x**-2.0 * np.array([1.02, 0.99, 1.01, 0.98])
+    beyond = np.append(error, 1e-30)  # round-off, outside what is fitted
+    found = page.exponent(
+        "error over steps, exponent",
+        np.append(x, 16.0),
+        beyond,
+        -2.0,
+        within=0.05,
+        between=(1e-3, 10.0),
+        why="scatter",
+        source="second order",
+    )
+    page.exponent("the same", x, error, -1.0, within=0.05, why="scatter", source="first order")
+    right, wrong = page.verdicts
+    assert found == right.computed == pytest.approx(np.polyfit(np.log(x), np.log(error), 1)[0])
+    assert (right.passed, wrong.passed) == (True, False)
+    assert (right.measure, right.tolerance, right.relative) == ("order", 0.05, True)
+    assert right.band is not None
+    assert 0.0 < right.band < 0.1

@@ -33,15 +33,9 @@ def of_mesh(
 ) -> InTime:
     """One mass on a mesh that is suddenly loaded; on a plain spring without harmonics."""
     law = (
-        spring_laws(
-            [[1.0]],
-            40.0,
-            damping,
-            wave=0,
-            waves=contact_wave(ratio, harmonics)[None],
-            frequency=frequency,
-            phase=phase,
-        )
+        spring_laws([[1.0]], 40.0, damping)
+        .in_phase(phase=phase, frequency=frequency)
+        .with_waves(contact_wave(ratio, harmonics)[None])
         if harmonics
         else spring_laws([[1.0]], 40.0, damping)
     )
@@ -126,23 +120,21 @@ def checked(found: ConvergenceInTime, **given: object) -> Page:
 
 def test_what_has_converged_is_checked() -> None:
     page = checked(series(1.16, 1.04, 1.01))
-    assert [v.passed for v in page.verdicts] == [True, True]
-    assert (
-        page.verdicts[1].quantity == "step: left uncertain by the step, of largest force, over it"
-    )
-    assert page.verdicts[1].computed == pytest.approx(0.03 / 1.01, rel=1e-6)
+    assert [v.passed for v in page.checks] == [True, True]
+    assert page.checks[1].quantity == "step: left uncertain by the step, of largest force, over it"
+    assert page.checks[1].computed == pytest.approx(0.03 / 1.01, rel=1e-6)
     assert not page.unsettled
 
 
 def test_what_has_not_converged_fails_or_is_open_but_never_passes() -> None:
     coarse = series(1.9, 1.5, 1.1)
-    assert [v.passed for v in checked(coarse).verdicts] == [True, False]
+    assert [v.passed for v in checked(coarse).checks] == [True, False]
     page = checked(coarse, open_for=[FORCE])
-    assert [v.passed for v in page.verdicts] == [True]
+    assert [v.passed for v in page.checks] == [True]
     assert page.unsettled == [
         "Not converged: step: largest force, uncertain by ± 1\u00a0N by the step."
     ]
-    assert [v.passed for v in checked(series(1.16, 1.04, 1.01, energy=0.02)).verdicts] == [
+    assert [v.passed for v in checked(series(1.16, 1.04, 1.01, energy=0.02)).checks] == [
         False,
         True,
     ]
@@ -155,9 +147,9 @@ def test_what_has_not_converged_fails_or_is_open_but_never_passes() -> None:
     two = Page()
     both = ConvergenceInTime((4.0, 2.0, 1.0), runs)
     check_in_time(two, "step", both, {END: 1e-6, FORCE: 0.01}, energy=1.0, why="small")
-    assert [v.passed for v in two.verdicts] == [True, False]
-    assert two.verdicts[1].source.endswith(FORCE)
+    assert [v.passed for v in two.checks] == [True, False]
+    assert two.checks[1].source.endswith(FORCE)
     # a value of zero has no share: it is measured by a size that is given
     zero = series(0.08, 0.02, 0.0)
-    assert [v.passed for v in checked(zero).verdicts] == [True, False]
-    assert [v.passed for v in checked(zero, scale={FORCE: 1.0}).verdicts] == [True, True]
+    assert [v.passed for v in checked(zero).checks] == [True, False]
+    assert [v.passed for v in checked(zero, scale={FORCE: 1.0}).checks] == [True, True]

@@ -278,7 +278,7 @@ def test_components_are_exported_by_name(tmp_path: Path) -> None:
         str(out), "--set", "gearbox_housing.arm_z=0",
     )  # fmt: skip
     assert status == 0, said
-    found = export.read(out, "json")
+    found = export.read_superelement(out, "json")
     assert found.points == ("ring",)
     assert found.supported
     assert found.mass is None

@@ -7,7 +7,7 @@ from coarse_scenes import coarse_scene
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.reading import change_scene, parse_scene
 from fe_drivetrain.export.condensed_housing import condensed_housing
-from fe_drivetrain.export.files import write
+from fe_drivetrain.export.files import write_superelement
 from fe_drivetrain.export.superelement import Superelement
 from fe_drivetrain.shafts.fidelity.bearing_units import unit_bounds, unit_stiffness
 from fe_drivetrain.shafts.fidelity.ladder import housing_springs, shaft_level
@@ -70,7 +70,7 @@ def test_a_superelement_of_a_solid_housing_stands_in_its_place(tmp_path, invoke,
     solid = coarse_scene("bonded")
     K = unit_stiffness(solid, NAME)
     element = Superelement("unit", (NAME,), np.zeros((1, 3)), K, supported=True)
-    write(tmp_path / f"unit.{format}", element, format)
+    write_superelement(tmp_path / f"unit.{format}", element, format)
     status, out, _ = invoke("part", f"unit.{format}")
     assert status == 0
     rows = (

@@ -33,7 +33,7 @@ from fe_drivetrain.shafts.fidelity.quantities import numbers
 from fe_drivetrain.shafts.response.entering import Factors, entering, joined
 from fe_drivetrain.shafts.response.unit_loads import Response
 from fe_drivetrain.studies.load_reactions import scene_reactions
-from fe_drivetrain.turbine_loads.hub_loads.csv_table import read_csv, write_csv
+from fe_drivetrain.turbine_loads.hub_loads.csv_table import read_csv, write_hub_loads
 from fe_drivetrain.turbine_loads.hub_loads.histories import About, LoadHistory
 from fe_drivetrain.turbine_loads.hub_loads.point_loads import PointLoads
 
@@ -158,7 +158,7 @@ def test_named_loads_are_taken_by_all_of_them() -> None:
 
 @pytest.mark.parametrize("about", [None, "front face", 0.7])
 def test_a_table_keeps_the_point_that_its_loads_are_about(about: About, tmp_path: Path) -> None:
-    write_csv(history_of(LOADS, about), tmp_path / "a.csv")
+    write_hub_loads(history_of(LOADS, about), tmp_path / "a.csv")
     read = read_csv(tmp_path / "a.csv")
     assert read.about == about
     assert "moments about" not in read.attributes
@@ -290,7 +290,7 @@ def test_headers_say_what_each_table_of_loads_is_as_page_and_data_do(
     turning = np.outer(np.sin(3.8 * time), [0, 0, 1e5, 0, 3e5, 0])
     turning += np.outer(np.cos(3.8 * time), [0, 1e5, 0, 0, 0, 3e5])
     many = LoadHistory("own", time, loads.loads[:1] + turning)
-    write_csv(many, "own.csv", {"oil temperature [degC]": 40.0 + np.sin(time)})
+    write_hub_loads(many, "own.csv", {"oil temperature [degC]": 40.0 + np.sin(time)})
     Path("scene.yaml").write_text(scene_text(SCENE))
     status, _, error = invoke(
         *("loads", "own.csv", "--rotor-speed", "12", "--scene", "scene.yaml", "--out", "out"),

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import yaml
 
+from fe_drivetrain.command_line.option_names import with_options
 from fe_drivetrain.command_line.settings import parse_tolerance
 from fe_drivetrain.drivetrain_file.reading import change_scene, library_scene
 from fe_drivetrain.drivetrain_file.scene import Scene, coarser_scene
@@ -101,8 +102,11 @@ def test_an_assembly_that_is_too_coarse_is_told_with_the_sizes_to_set() -> None:
     assert (
         "has a band of 3.1 %, and 1 % or less is asked: make the element sizes under mesh" in said
     )
-    assert said.endswith("or ask for --tolerance 3.2%.")
-    words = [word for word in said.split() if word.startswith("mesh.")]
+    assert said.endswith("or ask for `tolerance=0.032`.")
+    assert "instance half of those here, `change_scene(changes={'mesh.shaft': " in said
+    typed = with_options(said)
+    assert typed.endswith("or ask for --tolerance 3.2%.")
+    words = [word for word in typed.split() if word.startswith("mesh.")]
     halves = change_scene(
         scene, dict(yaml.safe_load(w.replace("=", ": ")).popitem() for w in words)
     )
@@ -115,7 +119,7 @@ def test_an_assembly_that_is_too_coarse_is_told_with_the_sizes_to_set() -> None:
 
 def test_sizes_and_tolerances_that_are_named_can_be_given() -> None:
     most = MeshSizes(elements_per_turn=300)
-    assert "--set mesh.elements_per_turn=360 " in finer_mesh(most, 0.02)
-    assert finer_mesh(most, 0.02).endswith("or ask for --tolerance 2%")
-    assert "--tolerance" not in finer_mesh(most, 1.2)  # it must be below 100 %
-    assert finer_mesh(None, 0.101) == "ask for --tolerance 11%"
+    assert "--set mesh.elements_per_turn=360 " in with_options(finer_mesh(most, 0.02))
+    assert finer_mesh(most, 0.02).endswith("or ask for `tolerance=0.02`")
+    assert "tolerance" not in finer_mesh(most, 1.2)  # it must be below 100 %
+    assert finer_mesh(None, 0.101) == "ask for `tolerance=0.11`"

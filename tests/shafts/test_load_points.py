@@ -25,7 +25,7 @@ from fe_drivetrain.shafts.response.unit_loads import Response, unit_load_respons
 from fe_drivetrain.studies.load_reactions import scene_reactions
 from fe_drivetrain.studies.study_loads import own_loads
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
-from fe_drivetrain.turbine_loads.hub_loads.csv_table import read_csv, write_csv
+from fe_drivetrain.turbine_loads.hub_loads.csv_table import read_csv, write_hub_loads
 from fe_drivetrain.turbine_loads.hub_loads.files import require_points
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
 from fe_drivetrain.turbine_loads.hub_loads.recorded import OWN_NAMES, read_recorded
@@ -196,7 +196,7 @@ def test_a_file_has_columns_for_it(tmp_path: Path) -> None:
     assert "brake.Fz [kN]" in str(history.attributes["channels"])
     with pytest.raises(InputError, match=r"Brake.*no load point of the scene \(brake;"):
         require_points([history], ["brake"])
-    write_csv(history, file)
+    write_hub_loads(history, file)
     again = read_csv(file)
     np.testing.assert_array_equal(again.at["Brake"], history.at["Brake"])
     np.testing.assert_array_equal(again.between(1.0).at["brake"], history.at["brake"][1:])

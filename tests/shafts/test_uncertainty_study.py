@@ -40,6 +40,7 @@ from fe_drivetrain.shafts.uncertainty.numbers import figures
 from fe_drivetrain.shafts.uncertainty.resolver import Resolver, shaft_content, unit_content
 from fe_drivetrain.shafts.uncertainty.response_surface import touching, unit_surface
 from fe_drivetrain.shafts.uncertainty.sampling import check_spreads, nominal_value, with_values
+from fe_drivetrain.studies.input_effects import input_effects
 
 BEARING = "main_bearing"
 STEEL, IRON = "materials.steel.youngs_modulus", "materials.ductile_iron.youngs_modulus"
@@ -271,6 +272,21 @@ def test_a_small_spread_gives_the_band_of_first_order(found: Study) -> None:
         assert deviation == pytest.approx(expected, rel=allowed), number.name
 
 
+def test_a_value_moves_a_quantity_by_its_deviation_times_its_slope(found: Study) -> None:
+    sizes = {STEEL: 0.03, IRON: 0.05, SPRING: 0.2 / np.sqrt(3), FRONT: 0.01 / np.sqrt(3)}
+    effects = input_effects(found)
+    assert [one.name for one in effects.quantities] == [number.name for number in found.numbers]
+    for one in effects.quantities:
+        expected = {key: one.sensitivities[key] * size for key, size in sizes.items()}
+        assert one.changes == pytest.approx(expected, rel=2e-3)
+        moved = [abs(change) for change in one.changes.values()]
+        assert moved == sorted(moved)
+        assert one.half == pytest.approx((one.band.high - one.band.low) / 2 / abs(one.nominal))
+        if one.scatter is not None:
+            assert one.scatter.first_order == pytest.approx(float(np.linalg.norm(moved)))
+            assert one.scatter.counts.sum() == effects.samples == COUNT
+
+
 def test_stiffness_is_homogeneous_in_moduli_and_springs(found: Study) -> None:
     """Elasticities add up to one; the other springs do nothing in the vertical plane."""
     for slopes in (found.slopes, found.soft_slopes):
@@ -289,7 +305,8 @@ def test_the_model_error_of_a_level_without_a_top_is_half_its_bounds(found: Stud
 
 
 def test_the_page_has_every_number(found: Study) -> None:
-    sections = {section.title: section for section in (bands(found), inputs(found))}
+    effects = input_effects(found)
+    sections = {section.title: section for section in (bands(effects), inputs(effects))}
     (table,) = (i for i in sections["Uncertainty of the results"].items if i.kind == "table")
     assert [row[0] for row in table.rows] == stiffness_names(found.scene)
     values, surfaces = (i for i in sections["Uncertain values"].items if i.kind == "table")
@@ -297,7 +314,9 @@ def test_the_page_has_every_number(found: Study) -> None:
     assert [row[1] for row in surfaces.rows] == ["rigid", "averaged"]
     numbers = figures(found)["quantities"]
     assert numbers["main_bearing.tilt"]["half_band"] > 0
-    assert len(numbers["main_bearing.tilt"]["samples"]) == COUNT
+    tilt = found.samples["main_bearing.tilt"]
+    assert figures(found)["samples"] == len(tilt.values) == COUNT
+    assert numbers["main_bearing.tilt"]["standard_deviation"] == np.std(tilt.values, ddof=1)
 
 
 def test_the_library_scene_is_uncertain_and_can_be_solved() -> None:

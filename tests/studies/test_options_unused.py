@@ -176,12 +176,13 @@ def test_entries_that_take_the_place_of_others_are_named(tmp_path: Path) -> None
     assert unused(tmp_path, named={"main_bearing": ENTRY}) == []
     mine = own_catalogue(tmp_path / "mine.yaml", "mine", clearance=1e-4)
     assert unused(tmp_path, catalogues=(mine,), named={"main_bearing": "mine"}) == [
-        f"--bearing main_bearing=mine takes the place of the entry {ENTRY!r} that the scene names "
+        "`LifeOptions(bearings={'main_bearing': 'mine'})` takes the place of the entry "
+        f"{ENTRY!r} that the scene names "
         "under catalogue."
     ]
     assert unused(tmp_path, catalogues=(mine,)) == [
-        f"--catalogue {mine} is not used: no bearing of the scene takes an entry of it, which are "
-        "mine: name one under catalogue in the scene."
+        f"`catalogues=['{mine}']` is not used: no bearing of the scene takes an entry of it, which "
+        "are mine: name one under catalogue in the scene."
     ]
     shadow = own_catalogue(tmp_path / "shadow.yaml", ENTRY, clearance=1e-4)
     assert unused(tmp_path, catalogues=(shadow,)) == [
@@ -192,13 +193,14 @@ def test_entries_that_take_the_place_of_others_are_named(tmp_path: Path) -> None
     # the later file counts, so that nothing of the earlier one is left
     first, second = unused(tmp_path, catalogues=(same, shadow))
     assert first == f"Entry {ENTRY!r} of {shadow} takes the place of that of {same}."
-    assert second.startswith(f"--catalogue {same} is not used")
+    assert second.startswith(f"`catalogues=['{same}']` is not used")
 
 
 def test_a_profile_of_the_entry_comes_before_the_option(tmp_path: Path) -> None:
     mine = own_catalogue(tmp_path / "mine.yaml", "mine", crown=4e-4)
     given = {"catalogues": (mine,), "named": {"main_bearing": "mine"}}
-    for profiled, option in ((False, "--straight"), (True, "--profile")):
+    for profiled in (False, True):
+        option = f"`LifeOptions(profile={profiled})`"
         (_, words) = unused(tmp_path, **given, profiled=profiled, assumed=())
         assert words == (
             f"{option} is not used for bearing main_bearing: its entry 'mine' states a profile of "
@@ -210,7 +212,7 @@ def test_a_profile_of_the_entry_comes_before_the_option(tmp_path: Path) -> None:
 def test_check_names_a_catalogue_that_it_does_not_use(tmp_path: Path) -> None:
     mine = own_catalogue(tmp_path / "mine.yaml", "mine")
     (note,) = check(coarse_scene("spherical"), (mine,)).notes
-    assert note.startswith(f"--catalogue {mine} is not used")
+    assert note.startswith(f"`catalogues=['{mine}']` is not used")
 
 
 def test_a_summary_has_all_points(invoke: Invoke, tmp_path: Path) -> None:

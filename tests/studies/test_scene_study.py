@@ -14,8 +14,8 @@ from fe_drivetrain.common import GRAVITY, InputError
 from fe_drivetrain.comparison import statistics
 from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.shafts.fidelity import statics_level
-from fe_drivetrain.studies import StudyResult, study
-from fe_drivetrain.studies.scene_study import statics_error
+from fe_drivetrain.studies import StudyLoads, StudyResult, study
+from fe_drivetrain.studies.model_checks import statics_error
 from fe_drivetrain.turbine_loads.hub_loads import LoadHistory, PointLoads
 
 
@@ -68,6 +68,22 @@ def test_statistics_are_of_the_reactions_each_history_by_its_time(studied: Study
     mean = (40 * 0.1 * samples[0].mean(0) + 60 * 0.05 * samples[1].mean(0)) / (4.0 + 3.0)
     np.testing.assert_allclose(found.whole.values[:, 1], mean, rtol=1e-9, atol=1e-3)
     assert [one.samples for one in studied.loads.histories] == [40, 60]
+
+
+def test_the_first_minute_has_the_radial_force_of_the_assembly_and_of_beams(
+    studied: StudyResult,
+) -> None:
+    history = HISTORIES[len(HISTORIES) // 2]
+    beginning = studied.beginning
+    count = len(beginning.time)
+    assert beginning.name == history.name
+    np.testing.assert_array_equal(beginning.time, history.time[:count])
+    forces = beginning.radial_forces["main_bearing"]
+    beams = [names for level, names in studied.levels.bounds.items() if level.startswith("1")]
+    assert list(forces) == ["assembly", *beams[-1]]
+    for model, force in forces.items():
+        reaction = studied.reactions(history, model)["main_bearing"][:count]
+        np.testing.assert_allclose(force, np.hypot(reaction[:, 1], reaction[:, 2]), rtol=1e-12)
 
 
 def test_stiffness_of_a_unit_is_between_its_bounds(studied: StudyResult) -> None:
@@ -195,6 +211,28 @@ def test_two_bearings_and_a_brake_are_studied(tmp_path: Path) -> None:
     # a housing that gives makes the hub softer
     assert (hub["rigid"][[1, 2, 4, 5]] < hub["stiff"][[1, 2, 4, 5]]).all()
     assert (hub["stiff"][[1, 2, 4, 5]] < hub["soft"][[1, 2, 4, 5]]).all()
+
+
+def test_the_json_has_histories_skip_and_what_reactions_are(studied: StudyResult) -> None:
+    found = studied.to_dict()
+    assert found["options"]["histories"] == ["calm", "storm"]
+    assert found["options"]["skip"] == 0.0
+    rows = found["tables"]["histories"]
+    assert [row["history"] for row in rows] == ["calm", "storm"]
+    assert sum(row["share of the time [%]"] for row in rows) == pytest.approx(100.0)
+    assert found["tables"]["reactions_stated"] == studied.stated.facts()
+    assert (found["seed"], found["options"]["seeds of the loads"]) == (None, [])
+
+
+def test_the_seed_is_that_of_the_samples_not_of_made_wind() -> None:
+    made = StudyLoads(HISTORIES, "Made for a test.", False, seeds=(1, 2))
+    spread = {"gearbox.stiffness.2": {"uniform": 0.1}}
+    scene = coarse_scene("bonded", uncertainty=spread)
+    found = study(scene, made, slopes=(4.0,), quick=True)
+    assert found.uncertainty is not None
+    assert found.seed == 0
+    assert found.options["seeds of the loads"] == [1, 2]
+    assert found.options["skip"] == 0.0
 
 
 def test_histories_without_loads_are_refused_before_any_work() -> None:

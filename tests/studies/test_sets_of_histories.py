@@ -7,7 +7,7 @@ import pytest
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.studies.load_comparison import LoadSet, compare_sets, features
+from fe_drivetrain.studies.load_comparison import Feature, LoadSet, compare_sets, features
 from fe_drivetrain.studies.load_digest import LoadOptions, digest
 from fe_drivetrain.studies.load_reactions import FileDigest
 from fe_drivetrain.turbine_loads.histories.sets import differences
@@ -15,7 +15,7 @@ from fe_drivetrain.turbine_loads.histories.spectra import spectrum
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
 from fe_drivetrain.turbine_loads.hub_loads.recorded import Recorded
 
-OPTIONS = LoadOptions(slopes=(3.0, 10.0), rotor_speed=1.5)
+OPTIONS = LoadOptions(slopes=(3.0, 10.0), rotor_speed_rpm=45.0 / np.pi)
 
 
 def set_of(histories: Iterable[Recorded]) -> LoadSet:
@@ -65,9 +65,12 @@ def test_features_of_a_history_are_what_its_samples_have(rng: np.random.Generato
     found = features(digest(history(0, 1.0, wind), OPTIONS), OPTIONS.slopes)
     assert one.features["8 m/s"][0] == found
     values = history(0, 1.0, wind).history.loads[:, 4]
-    assert found["My, mean [kN m]"] == pytest.approx(values.mean() / 1e3)
-    assert found["My, standard deviation [kN m]"] == pytest.approx(values.std() / 1e3)
-    assert found["My, 3P [kN m]"] == pytest.approx(50.0, rel=0.1)
+    by_name = {str(feature): value for feature, value in found.items()}
+    assert by_name["My, mean [kN m]"] == pytest.approx(values.mean() / 1e3)
+    assert found[Feature("", "My", "standard deviation", "kN m")] == pytest.approx(
+        values.std() / 1e3
+    )
+    assert by_name["My, 3P [kN m]"] == pytest.approx(50.0, rel=0.1)
     compared = compare_sets(one, other, ("old", "new"))
     (at_wind,) = compared.winds
     assert at_wind.wind == "8 m/s"

@@ -28,6 +28,7 @@ from fe_drivetrain.studies import (
     CheckResult,
     CompareResult,
     ExportResult,
+    LifeOptions,
     LifeResult,
     LoadOptions,
     LoadsResult,
@@ -49,7 +50,7 @@ from fe_drivetrain.studies import (
 )
 from fe_drivetrain.studies.design_comparison import Varied
 from fe_drivetrain.turbine_loads.histories import Site
-from fe_drivetrain.turbine_loads.hub_loads import LoadHistory, write_csv
+from fe_drivetrain.turbine_loads.hub_loads import LoadHistory, write_hub_loads
 
 HOLLOW = Shaft(front=0.0, sections=(Section(length=0.6, outer_diameter=0.3, inner_diameter=0.1),))
 STIFFNESS = np.diag([1e9, 2e9, 3e9, 1e7, 4e7, 5e7])
@@ -101,7 +102,9 @@ def condensed(tmp_path_factory: pytest.TempPathFactory) -> PartResult:
     """A housing on springs of its own, as a superelement."""
     path = tmp_path_factory.mktemp("superelement") / "mine.csv"
     place = np.zeros((1, 3))
-    export.write(path, Superelement("mine", ("bore",), place, STIFFNESS, supported=True), "csv")
+    export.write_superelement(
+        path, Superelement("mine", ("bore",), place, STIFFNESS, supported=True), "csv"
+    )
     return part(path)
 
 
@@ -117,8 +120,8 @@ def loaded(tmp_path_factory: pytest.TempPathFactory) -> LoadsResult:
     time = np.arange(301) * 0.1
     samples = np.random.default_rng(3).standard_normal((301, 6))
     samples[:, 4] = 1e3 * np.sin(2.0 * np.pi * time / 10.0)
-    write_csv(LoadHistory("wave", time, samples), file)
-    options = LoadOptions(slopes=(3.0, 5.0), rotor_speed=1.5, ultimate={"My": 1e6})
+    write_hub_loads(LoadHistory("wave", time, samples), file)
+    options = LoadOptions(slopes=(3.0, 5.0), rotor_speed_rpm=45.0 / np.pi, ultimate={"My": 1e6})
     return loads([file], options, scene=coarse_scene("bonded"))
 
 
@@ -195,7 +198,8 @@ def test_numbers_that_are_none_are_words_in_the_json(compared: CompareResult) ->
         ({"frequency": 0.0}, "frequency of equivalent loads is 0 Hz but must be above 0"),
         ({"gate": 1.0}, "gate is 1 of the largest range but must be at least 0 and below 1"),
         ({"skip": -1.0}, "skip is -1 s but must be at least 0"),
-        ({"rotor_speed": math.nan}, "rotor speed is nan rad/s but must be above 0"),
+        ({"rotor_speed_rpm": math.nan}, "rotor speed is nan 1/min but must be at least 0"),
+        ({"rotor_speed_rpm": 0.0}, "rotor speed is 0 1/min but must be above 0"),
         ({"residue": "none"}, "residue of cycles"),
     ],
 )
@@ -243,6 +247,9 @@ def test_a_level_that_is_enough_is_within_the_tolerance(advised: AdviseResult) -
     (figure,), (check,) = advised.figures, advised.checks
     assert figure.computed == pytest.approx(100 * check.computed)
     assert check.computed <= advised.advice.tolerance
+    # one figure, from the advice and from the result
+    mine, its = advised.plot().data, advised.advice.plot().data
+    assert [(t.name, t.x, t.y) for t in mine] == [(t.name, t.x, t.y) for t in its]
     # the change of each detail, the largest first
     changes = [abs(effect.change) for effect in advised.effects]
     assert changes == sorted(changes, reverse=True)
@@ -263,6 +270,22 @@ def test_a_band_is_of_the_inputs_and_stands_beside_the_error(uncertain: Uncertai
     assert 0.5 * reach < half < 1.1 * reach
     assert uncertain.units.keys() == uncertain.errors.keys() == uncertain.bands.keys()
     assert [row["quantity"] for row in uncertain.all_tables()["bands"]] == list(uncertain.bands)
+
+
+def test_no_samples_of_uncertain_values_are_in_the_json(uncertain: UncertaintyResult) -> None:
+    found = uncertain.to_dict()
+    assert found["tables"]["samples"] == found["options"]["samples"] == 40
+
+    def longest(value: Any) -> int:
+        if isinstance(value, dict):
+            return max(map(longest, value.values()), default=0)
+        if isinstance(value, list):
+            return max([len(value), *map(longest, value)])
+        return 0
+
+    # the longest list is the quantities, each with its digest
+    assert longest(found["tables"]) == len(uncertain.bands) < 40
+    assert (uncertain.seed, found["seed"]) == (0, 0)
 
 
 def test_a_load_that_a_scene_does_not_have_is_refused() -> None:
@@ -351,13 +374,13 @@ def test_a_mesh_is_counted_by_part(kind: Literal["mesh", "model"]) -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"kind": "modes", "what": "seats"}, "--modes is for the free shaft, not for --what seats"),
-        ({"kind": "modes", "level": 3}, "--modes is for the shaft of level 2, not --level 3"),
+        ({"kind": "modes", "what": "seats"}, "is for the free shaft, not for `what='seats'`"),
+        ({"kind": "modes", "level": 3}, "is for the shaft of level 2, not `level=3`"),
         ({"what": "tower"}, "'tower' cannot be exported: use one of shaft"),
         ({"level": 7}, "level 7 of shaft is unknown"),
-        ({"modes": 3}, "modes is not used by an export of kind 'superelement': leave it out"),
-        ({"kind": "mesh", "at": ["hub"]}, "at is not used by an export of kind 'mesh'"),
-        ({"kind": "summary", "at": ["hub"]}, "--at hub is not used by --what summary"),
+        ({"modes": 3}, "`modes` is not used by an export of kind 'superelement': leave it out"),
+        ({"kind": "mesh", "at": ["hub"]}, "`at` is not used by an export of kind 'mesh'"),
+        ({"kind": "summary", "at": ["hub"]}, "is not used by `kind='summary'`"),
     ],
 )
 def test_what_cannot_be_exported_is_refused(options: dict[str, Any], message: str) -> None:
@@ -366,7 +389,7 @@ def test_what_cannot_be_exported_is_refused(options: dict[str, Any], message: st
 
 
 def test_points_of_a_mesh_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="--held foot names points of a superelement"):
+    with pytest.raises(InputError, match=r"`held=.*foot.*` names points of a superelement"):
         part(tmp_path / "any.vtu", held=["foot"])
 
 
@@ -375,7 +398,7 @@ def test_a_component_is_no_model() -> None:
     for kind in ("model", "summary"):
         with pytest.raises(InputError, match="is a component: export its mesh"):
             prepare_export(component, kind)
-    with pytest.raises(InputError, match="--modes is for the shaft of a scene"):
+    with pytest.raises(InputError, match="`kind='modes'` is for the shaft of a scene"):
         prepare_export(component, "modes", modes=1)
 
 
@@ -423,10 +446,10 @@ def test_loads_without_files_winds_or_slopes_are_refused(tmp_path: Path) -> None
     with pytest.raises(InputError, match="there are no files"):
         loads([])
     still = tmp_path / "still.csv"
-    write_csv(LoadHistory("still", np.arange(20) * 0.1, np.ones((20, 6))), still)
-    with pytest.raises(InputError, match="no wind speed, by which --site weights"):
+    write_hub_loads(LoadHistory("still", np.arange(20) * 0.1, np.ones((20, 6))), still)
+    with pytest.raises(InputError, match="no wind speed, by which `site` weights"):
         loads([still], site=Site(8.5))
-    with pytest.raises(InputError, match="give a site, too"):
+    with pytest.raises(InputError, match="events of a lifetime: give `site`, too"):
         loads(still, transients=[(700.0, still)])
     with pytest.raises(InputError, match="no slope of an S-N curve"):
         LoadOptions(slopes=())
@@ -471,6 +494,18 @@ def test_a_lifetime_is_that_of_its_winds_and_events(tmp_path: Path) -> None:
     assert found.hours_at_level["Mx"].amount.sum() == pytest.approx(hours.sum() + of_events)
 
 
+def test_files_of_one_stem_are_told_apart(tmp_path: Path) -> None:
+    files = [tmp_path / folder / "same.csv" for folder in "ab"]
+    for file, wind in zip(files, (8.0, 14.0), strict=True):
+        file.parent.mkdir()
+        write_history(file, wind)
+    found = life(library_scene("main_bearing_spherical"), files, options=LifeOptions(every=4))
+    names = [str(file) for file in files]
+    assert [row["file"] for row in found.all_tables()["files"]] == names
+    assert found.options["files"] == names
+    assert loads(files).options["files"] == names
+
+
 def test_a_life_is_a_number_with_what_takes_it(lived: LifeResult) -> None:
     (one,) = lived.bearings.values()
     years = one.years["L10mr"]
@@ -488,8 +523,8 @@ def test_a_life_is_a_number_with_what_takes_it(lived: LifeResult) -> None:
 
 def test_tables_of_lives_by_file_and_place_are_frames(lived: LifeResult) -> None:
     pytest.importorskip("pandas")
-    assert list(lived.to_frame("files")["file"]) == ["v14.csv", "v8.csv"]
-    places, rings = lived.to_frame("places"), lived.to_frame("main_bearing: rows and rings")
+    assert list(lived.to_frame("files")["file"]) == ["v14", "v8"]
+    places, rings = lived.to_frame("places"), lived.to_frame("rings")
     (one,) = lived.bearings.values()
     by_place = places["outer ring, damage by L10mr"].sum()
     outer = rings[rings["ring"] == "outer"]["share of L10mr's damage [%]"].sum()

@@ -16,7 +16,7 @@ from hypothesis.extra.numpy import arrays
 
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.turbine_loads.hub_loads.csv_table import read_csv, write_csv
+from fe_drivetrain.turbine_loads.hub_loads.csv_table import read_csv, write_hub_loads
 from fe_drivetrain.turbine_loads.hub_loads.files import (
     hub_load_files,
     read_hub_load_files,
@@ -284,7 +284,7 @@ def test_histories_of_several_folders_have_names_of_their_own(tmp_path: Path) ->
         (tmp_path / folder).mkdir()
         write_out(tmp_path / folder / "run.out", rotating_columns())
     assert [h.name for h in read_hub_load_files(f"{tmp_path}/*/run.out")] == ["a_run", "b_run"]
-    write_csv(read_hub_loads(tmp_path / "a" / "run.out"), tmp_path / "a" / "run.csv")
+    write_hub_loads(read_hub_loads(tmp_path / "a" / "run.out"), tmp_path / "a" / "run.csv")
     names = {h.name.lower() for h in read_hub_load_files(f"{tmp_path}/*/*")}
     assert len(names) == 3
 
@@ -314,7 +314,7 @@ def test_a_transient_as_long_as_the_file_is_refused(tmp_path: Path) -> None:
 def test_what_was_read_says_channels_signs_and_rotation(tmp_path: Path) -> None:
     def read(columns: Columns) -> str:
         history = read_openfast(write_out(tmp_path / "a.out", columns))
-        write_csv(history, tmp_path / "a.csv")
+        write_hub_loads(history, tmp_path / "a.csv")
         again = read_csv(tmp_path / "a.csv")
         assert again.attributes["channels"] == history.attributes["channels"]
         return str(history.attributes["channels"])
@@ -576,7 +576,7 @@ def test_csv_round_trip_is_exact(
     attributes = {"wind_speed": 12.0, "turbulence": "high", "seed": 3, "source": "test"}
     attributes["channels"] = "as made"
     history = LoadHistory("round", start + step * np.arange(7.0), loads, attributes)
-    write_csv(history, tmp_path / "round.csv")
+    write_hub_loads(history, tmp_path / "round.csv")
     back = read_csv(tmp_path / "round.csv")
     np.testing.assert_array_equal(back.time, history.time)
     np.testing.assert_array_equal(back.loads, history.loads)
@@ -625,7 +625,7 @@ def test_csv_that_is_not_text_is_refused(tmp_path: Path) -> None:
 
 def test_writing_into_a_missing_folder_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="cannot be written"):
-        write_csv(history_of(np.arange(3.0)), tmp_path / "nowhere" / "a.csv")
+        write_hub_loads(history_of(np.arange(3.0)), tmp_path / "nowhere" / "a.csv")
 
 
 # --- choosing the reader -------------------------------------------------------------------------

@@ -10,7 +10,7 @@ from test_hub_loads import rotating_columns, write_out, write_outb
 from tiny_case import Result
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.turbine_loads.hub_loads.csv_table import write_csv
+from fe_drivetrain.turbine_loads.hub_loads.csv_table import write_hub_loads
 from fe_drivetrain.turbine_loads.hub_loads.files import read_hub_loads
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
 from fe_drivetrain.turbine_loads.hub_loads.recorded import read_recorded
@@ -67,7 +67,7 @@ def test_commands_name_a_set_of_two_turbines(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     for history in (made("small", 4.5e5, 1), made("large", 1e6, 2)):
-        write_csv(history, f"{history.name}.csv", {"rotor speed [rad/s]": np.full(100, 1.2)})
+        write_hub_loads(history, f"{history.name}.csv", {"rotor speed [rad/s]": np.full(100, 1.2)})
     for words in (
         ("loads", "*.csv", "--out", "a"),
         ("life", "main_bearing_bonded", "--loads", "*.csv", "--out", "b"),

@@ -96,8 +96,6 @@ def solve(state: Any, variant: str, clock: Clock) -> list[float]:
         for function, values in zip((lam, mu), problem.lame(), strict=True):
             function.x.array[:] = values[material]
         u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
-        strain = ufl.sym(ufl.grad(u))
-        stress = 2 * mu * strain + lam * ufl.tr(strain) * ufl.Identity(3)
         rule = {
             "quadrature_degree": 4,
             "quadrature_rule": "custom",
@@ -105,7 +103,7 @@ def solve(state: Any, variant: str, clock: Clock) -> list[float]:
             "quadrature_weights": tuple(problem.rule_weights.tolist()),
         }
         dx = ufl.dx(metadata=rule)
-        a = fem.form(ufl.inner(stress, ufl.sym(ufl.grad(v))) * dx)
+        a = fem.form(_work(u, v, lam, mu) * dx)
         ends = [fem.locate_dofs_topological(space, 2, facets) for facets in (fixed, moved)]
         held = fem.dirichletbc(fem.Function(space), ends[0])
         systems = []
@@ -121,24 +119,7 @@ def solve(state: Any, variant: str, clock: Clock) -> list[float]:
         A = fem.petsc.assemble_matrix(a, bcs=systems[0][1])
         A.assemble()
     with clock.step("solve"):
-        solver = PETSc.KSP().create(mesh.comm)
-        preconditioner = solver.getPC()
-        if variant == "mumps":
-            A.setOption(PETSc.Mat.Option.SPD, True)
-            solver.setType("preonly")
-            preconditioner.setType("cholesky")
-            preconditioner.setFactorSolverType("mumps")
-        else:
-            A.setNearNullSpace(_rigid_motions(space))
-            solver.setType("cg")
-            solver.setTolerances(rtol=TOLERANCE, max_it=1000)
-            preconditioner.setType("gamg")
-            options = PETSc.Options()
-            options["mg_levels_ksp_type"] = "chebyshev"
-            options["mg_levels_pc_type"] = "jacobi"
-            solver.setFromOptions()
-        solver.setOperators(A)
-        solver.setInitialGuessNonzero(variant != "mumps")
+        solver = _solver(mesh.comm, A, space, variant)
         solutions = []
         for b, conditions in systems:
             solution = fem.Function(space)
@@ -151,14 +132,46 @@ def solve(state: Any, variant: str, clock: Clock) -> list[float]:
             if variant != "mumps":
                 clock.iterations = max(clock.iterations or 0, int(solver.getIterationNumber()))
     shown = fem.Function(space)
-    strain = ufl.sym(ufl.grad(shown))
-    stress = 2 * mu * strain + lam * ufl.tr(strain) * ufl.Identity(3)
-    energy = fem.form(ufl.inner(stress, strain) * dx)
+    energy = fem.form(_work(shown, shown, lam, mu) * dx)
     found = []
     for solution in solutions:
         shown.x.array[:] = solution.x.array
         found.append(float(mesh.comm.allreduce(fem.assemble_scalar(energy), op=MPI.SUM)))
     return found
+
+
+def _work(u: Any, v: Any, lam: Any, mu: Any) -> Any:
+    """Work of the stress of displacement u on the strain of displacement v."""
+    import ufl
+
+    strain = ufl.sym(ufl.grad(u))
+    stress = 2 * mu * strain + lam * ufl.tr(strain) * ufl.Identity(3)
+    return ufl.inner(stress, ufl.sym(ufl.grad(v)))
+
+
+def _solver(comm: Any, A: Any, space: Any, variant: str) -> Any:
+    """PETSc's solver: a Cholesky factor, or conjugate gradients with algebraic multigrid."""
+    from petsc4py import PETSc
+
+    solver = PETSc.KSP().create(comm)
+    preconditioner = solver.getPC()
+    if variant == "mumps":
+        A.setOption(PETSc.Mat.Option.SPD, True)
+        solver.setType("preonly")
+        preconditioner.setType("cholesky")
+        preconditioner.setFactorSolverType("mumps")
+    else:
+        A.setNearNullSpace(_rigid_motions(space))
+        solver.setType("cg")
+        solver.setTolerances(rtol=TOLERANCE, max_it=1000)
+        preconditioner.setType("gamg")
+        options = PETSc.Options()
+        options["mg_levels_ksp_type"] = "chebyshev"
+        options["mg_levels_pc_type"] = "jacobi"
+        solver.setFromOptions()
+    solver.setOperators(A)
+    solver.setInitialGuessNonzero(variant != "mumps")
+    return solver
 
 
 def _n_cells(mesh: Any) -> int:

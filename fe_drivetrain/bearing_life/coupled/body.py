@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import least_eigenvalue, scaled_solve
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.drivetrain_file.entrance import AT_HUB, Entrance
 from fe_drivetrain.elasticity.solve.condensation import Condensed, on_supports
@@ -73,6 +74,8 @@ class LinearBody:
     housings: Floats
     load_points: tuple[str, ...] = ()
     entrance: Entrance = AT_HUB
+
+    __repr__ = short_repr
 
     def forces(self, factors: Floats, deflections: Floats) -> Floats:
         """Loads (n, k, 5) on the bearings, from the body's side.

@@ -18,6 +18,7 @@ from fe_drivetrain.bearing.rolling import TOLERANCE
 from fe_drivetrain.bearing_life.coupled.body import LinearBody
 from fe_drivetrain.common.arrays import Bools, Floats, Ints, chunks
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.shafts.response.entering import Factors, factor_values
 
 #: Load cases that are iterated together.
@@ -79,6 +80,8 @@ class CoupledEquilibrium:
     residuals: Floats
     converged: Bools
     iterations: Ints
+
+    __repr__ = short_repr
 
     def of(self, name: str) -> Floats:
         """Loads (n, 5) on one bearing [N, N m]."""

@@ -16,6 +16,7 @@ from fe_drivetrain.bearing_life.coupled.body import LinearBody
 from fe_drivetrain.bearing_life.coupled.newton import contact_stiffness
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.shafts.response.entering import Factors, factor_values
 
 #: The thesis's change of K_R at which its loop stops (Stirling 2023, section 4.3.1).
@@ -43,6 +44,8 @@ class OnSprings:
     deflections: Floats
     forces: Floats
 
+    __repr__ = short_repr
+
 
 @dataclass(frozen=True, eq=False)
 class StiffnessLoop:
@@ -67,6 +70,8 @@ class StiffnessLoop:
     stiffness: Floats
     rounds: Ints
     converged: Bools
+
+    __repr__ = short_repr
 
 
 def on_springs(body: LinearBody, factors: Factors | ArrayLike, springs: ArrayLike) -> OnSprings:

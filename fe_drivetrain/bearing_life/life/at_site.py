@@ -10,6 +10,7 @@ import numpy as np
 from fe_drivetrain.bearing_life.life.roller_damage import KINDS, Damage
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError, require_known
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.histories.sites import HOURS_A_YEAR, Site, midpoint_edges
 
 
@@ -24,9 +25,9 @@ class SiteLife:
     speeds, shares : Floats
         (n,) mean winds [m/s], and their shares of time, whose sum is below 1.
     at_winds : tuple of Damage
-        Of each wind, as its histories have it.
+        Damage at each wind, as its histories have it.
     a_year : Damage
-        Of a year at the site, all winds together.
+        Damage of a year at the site, all winds together.
     """
 
     site: Site
@@ -34,6 +35,8 @@ class SiteLife:
     shares: Floats
     at_winds: tuple[Damage, ...]
     a_year: Damage
+
+    __repr__ = short_repr
 
     @property
     def covered(self) -> float:

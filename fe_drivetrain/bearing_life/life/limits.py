@@ -43,7 +43,7 @@ class Limits:
     reversals : float
         How often the direction of rotation changed, within each chunk of steps.
     largest_load, largest_static, largest_roller : float
-        Of P, P_0 and one rolling element [N].
+        Maximum of P, of P_0 and of the load of one rolling element [N].
     largest_reference, largest_pressure, largest_use, largest_speed_rpm : float
         Radial load that has the life of the rollers by their own exponent [N], C / L10r^(1/4), of
         balls C / L10r^(1/3); Hertz pressure of a lamina or a ball [Pa];
@@ -103,7 +103,7 @@ def limits_of(
     Returns
     -------
     limits : Limits
-        Of these steps.
+        Limits of these steps.
     """
     time, speed = steps.seconds, np.abs(steps.speed_rpm)
     turns = speed >= standing_rpm
@@ -208,7 +208,7 @@ def centrifugal_load(bearing: Bearing, speed_rpm: float) -> float:
     Parameters
     ----------
     bearing : Bearing
-        Of steel, its rollers taken as cylinders.
+        Bearing of steel, its rollers taken as cylinders.
     speed_rpm : float
         Speed of the inner ring [1/min].
 

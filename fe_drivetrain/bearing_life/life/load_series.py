@@ -40,11 +40,11 @@ def equivalent_life(lives: ArrayLike, durations: ArrayLike | None = None, axis: 
     Parameters
     ----------
     lives : array_like
-        Of each step alone [any unit], in time where durations are times, in revolutions where they
-        are turns; infinite where there is no damage, 0 where the first is fatal.
+        Life of each step alone [any unit], in time where durations are times, in revolutions where
+        they are turns; infinite where there is no damage, 0 where the first is fatal.
     durations : array_like, optional
-        Of the steps, of a shape that broadcasts to that of lives; equal if not given. Their shares
-        phi sum to one.
+        Durations of the steps, of a shape that broadcasts to that of lives; equal if not given.
+        Shares phi sum to one.
     axis : int
         Along which the steps are.
 

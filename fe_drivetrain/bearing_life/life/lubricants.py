@@ -88,7 +88,7 @@ class Lubricant:
     viscosity_40, viscosity_100 : float
         Kinematic viscosity of the (base) oil at 40 and at 100 degC [mm2/s].
     temperature : float
-        Of the bearing in operation [degC].
+        Temperature of the bearing in operation [degC].
     supply : {"grease", "filtered oil", "oil bath"}
         How it comes to the rollers.
     cleanliness : str

@@ -126,7 +126,7 @@ def life_factor(ratio: ArrayLike, kappa: ArrayLike, contact: Contact = "line") -
         Viscosity ratio; above 4 it counts as 4, below 0.1 the method does not hold and a_ISO is its
         smallest value.
     contact : {"line", "point"}
-        Of rollers, or of balls.
+        Line contact of rollers, or point contact of balls.
 
     Returns
     -------

@@ -79,15 +79,15 @@ class RatedBearing:
     Attributes
     ----------
     bearing : Bearing
-        Of rollers or of balls, not both.
+        Bearing with rollers or with balls, not both.
     dynamic, static, fatigue : float
         C, C_0 and C_u of the whole bearing [N].
     sources : tuple of str
         Where each of the three comes from.
     factors : Factors or None
-        Of a catalogue; those of the geometry where None.
+        Factors of a catalogue; those of the geometry where not given.
     f_0 : float
-        Of deep grooves.
+        Factor f_0 of deep grooves.
     limiting_speed_rpm : float or None
         Limiting speed of a catalogue [1/min].
     """
@@ -243,13 +243,13 @@ def rated_bearing(
     Parameters
     ----------
     bearing : Bearing
-        Of one kind of rolling elements.
+        Bearing of one kind of rolling elements.
     dynamic, static, fatigue : float, optional
         C, C_0 and C_u [N].
     b_m : float
         See `fe_drivetrain.bearing.ratings`.
     factors : Factors, optional
-        Of a catalogue.
+        Factors of a catalogue.
 
     Returns
     -------
@@ -292,7 +292,7 @@ def rated_from_catalogue(name: str, *more: str | Path, **changes: Any) -> RatedB
     Parameters
     ----------
     name : str
-        Of the entry.
+        Name of the entry.
     *more : str or Path
         Catalogue files beside the package's.
     **changes : Any

@@ -18,6 +18,7 @@ from fe_drivetrain.bearing.geometry import BallRow, Bearing, RollerRow, pitch_ra
 from fe_drivetrain.bearing.rating import LAMBDA
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError, require_known
+from fe_drivetrain.common.short_repr import short_repr
 
 LINE = 4.5
 """Exponent of load to damage in line contact; 1 / LINE of a mean over a ring that stands."""
@@ -62,6 +63,8 @@ class RowLoads:
     outer_capacity: float
     edge: float
 
+    __repr__ = short_repr
+
     @property
     def damage(self) -> Floats:
         """(n, laminae): (q_ei / q_ci)^4.5 + (q_ee / q_ce)^4.5."""
@@ -76,7 +79,7 @@ def stress_riser(laminae: int) -> Floats:
     Parameters
     ----------
     laminae : int
-        Of a roller.
+        Number of laminae of a roller.
 
     Returns
     -------
@@ -218,7 +221,7 @@ def rows_of(
     Parameters
     ----------
     bearing : Bearing
-        Of equal rows of rollers with laminae.
+        Bearing of equal rows of rollers with laminae.
     displacements : array_like
         (n, 5) [m, rad], from `fe_drivetrain.bearing.equilibrium`.
     capacity : float

@@ -38,6 +38,7 @@ from fe_drivetrain.bearing_life.life.reference_life import (
 from fe_drivetrain.bearing_life.life.steps import Steps
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError, require_known
+from fe_drivetrain.common.short_repr import short_repr
 
 KINDS = ("L10", "L10m", "L10r", "L10mr")
 """Basic and modified life of ISO 281; basic and modified reference life of ISO/TS 16281."""
@@ -134,6 +135,8 @@ class Damage:
     of_bearing: Floats
     alone: Floats
     limits: Limits
+
+    __repr__ = short_repr
 
     def __add__(self, other: Damage) -> Damage:
         """Damage of both."""
@@ -269,7 +272,7 @@ def damage_of_steps(steps: Steps, rated: RatedBearing, rules: LifeRules) -> Dama
     Returns
     -------
     damage : Damage
-        Of these steps; damages of several chunks add up. Steps without equilibrium do no damage and
+        Damage of these steps; several chunks' add up. Steps without equilibrium do no damage and
         are counted in `Limits.lost`.
 
     Raises

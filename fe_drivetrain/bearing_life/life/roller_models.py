@@ -76,7 +76,7 @@ def flexible_rings(races: Races, shapes: int | None = None) -> RollerModel:
     Parameters
     ----------
     races : Races
-        As of `fe_drivetrain.bearing_life.rings.housing_races`.
+        Races, see `fe_drivetrain.bearing_life.rings.housing_races`.
     shapes : int, optional
         How many shapes of the races to take, see `Races.shapes`.
 
@@ -94,7 +94,7 @@ def with_laminae(bearing: Bearing) -> Bearing:
     Parameters
     ----------
     bearing : Bearing
-        Of rollers, or of balls, which have none.
+        Bearing with rollers, or with balls, which have none.
 
     Returns
     -------

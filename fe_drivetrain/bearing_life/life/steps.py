@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from fe_drivetrain.common.arrays import Bools, Floats
+from fe_drivetrain.common.short_repr import short_repr
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,3 +31,5 @@ class Steps:
     speed_rpm: Floats
     seconds: Floats
     converged: Bools
+
+    __repr__ = short_repr

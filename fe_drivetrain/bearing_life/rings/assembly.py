@@ -31,6 +31,7 @@ from fe_drivetrain.bearing.rolling import TOLERANCE
 from fe_drivetrain.bearing_life.rings.housing import MADE_BY, contact_rows
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.bearing_unit import RollerRow as SceneRow
 from fe_drivetrain.drivetrain_file.bearing_unit import Rollers
 from fe_drivetrain.drivetrain_file.entrance import AT_HUB, Entrance
@@ -76,6 +77,8 @@ class RollerAssembly:
     points: Mapping[str, tuple[Floats, Floats]]
     springs: Floats
     entrance: Entrance = AT_HUB
+
+    __repr__ = short_repr
 
     @property
     def together(self) -> Bearing:
@@ -136,6 +139,8 @@ class AssemblyEquilibrium:
     residuals: Floats
     converged: Bools
     iterations: Ints
+
+    __repr__ = short_repr
 
     def of(self, name: str) -> Floats:
         """Rollers (n, k) of one bearing [N].

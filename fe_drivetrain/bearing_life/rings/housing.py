@@ -18,6 +18,7 @@ from fe_drivetrain.bearing.geometry import Bearing, RollerRow, angles
 from fe_drivetrain.bearing.races import Races
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.drivetrain_file.joint_springs import as_numbers
 from fe_drivetrain.drivetrain_file.materials import Material
@@ -63,6 +64,8 @@ class HousingSolid:
     mesh: Mesh
     name: str
     contacts: Floats
+
+    __repr__ = short_repr
 
 
 def housing_races(scene: Scene, name: str, bearing: Bearing, method: str = "auto") -> Races:

@@ -2,7 +2,7 @@ from .damping import mesh_damping as mesh_damping
 from .damping import shaft_damping as shaft_damping
 from .gear_table import GENERATOR as GENERATOR
 from .gear_table import ROTOR as ROTOR
-from .gear_table import Drivetrain as Drivetrain
+from .gear_table import GearTable as GearTable
 from .gear_table import GeneratorRow as GeneratorRow
 from .gear_table import GeneratorState as GeneratorState
 from .gear_table import ParallelStage as ParallelStage
@@ -10,8 +10,8 @@ from .gear_table import PlanetaryStage as PlanetaryStage
 from .gear_table import ShaftRow as ShaftRow
 from .gear_table import gear_masses as gear_masses
 from .gear_table import gear_speeds as gear_speeds
-from .gear_table import parse_drivetrain as parse_drivetrain
-from .gear_table import read_drivetrain as read_drivetrain
+from .gear_table import parse_gear_table as parse_gear_table
+from .gear_table import read_gear_table as read_gear_table
 from .gear_table import stage_masses as stage_masses
 from .gear_table import two_masses as two_masses
 from .orders import Geared as Geared

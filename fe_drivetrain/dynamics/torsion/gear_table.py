@@ -243,7 +243,7 @@ class GeneratorRow(Part):
     damping: float = _damping("electrical damping")
 
 
-class Drivetrain(Part):
+class GearTable(Part):
     """A table of a drivetrain, from the rotor to the generator."""
 
     title: str = Field(description="what it is, and whose numbers")
@@ -303,7 +303,7 @@ class Drivetrain(Part):
         return tuple(speeds)
 
 
-def read_drivetrain(path: str | Path) -> Drivetrain:
+def read_gear_table(path: str | Path) -> GearTable:
     """Read a drivetrain's table from a YAML file of at most 1 MB.
 
     Parameters
@@ -313,22 +313,22 @@ def read_drivetrain(path: str | Path) -> Drivetrain:
 
     Returns
     -------
-    Drivetrain
+    GearTable
 
     Raises
     ------
     InputError
         The file cannot be read, is not plain YAML, or does not describe a drivetrain.
     """
-    return parse_drivetrain(read_text(path, "drivetrain"), source=str(path))
+    return parse_gear_table(read_text(path, "drivetrain"), source=str(path))
 
 
-def parse_drivetrain(text: str, source: str = "drivetrain") -> Drivetrain:
-    """A drivetrain from YAML text; see `read_drivetrain`."""
-    return validated(Drivetrain, parse_mapping(text, source), source)
+def parse_gear_table(text: str, source: str = "drivetrain") -> GearTable:
+    """A drivetrain from YAML text; see `read_gear_table`."""
+    return validated(GearTable, parse_mapping(text, source), source)
 
 
-def stage_masses(table: Drivetrain, generator: GeneratorState = "fixed") -> Torsional:
+def stage_masses(table: GearTable, generator: GeneratorState = "fixed") -> Torsional:
     """One mass a stage, beside rotor and generator, on the rotor's side (Eq 4.8-4.21, 4.24-4.26).
 
     Gear meshes are rigid. As in the source, planets turn with no inertia of their own (Eq 4.9).
@@ -356,7 +356,7 @@ def stage_masses(table: Drivetrain, generator: GeneratorState = "fixed") -> Tors
     return chain(parts, shafts, ground if _on_grid(table, generator) else None)
 
 
-def two_masses(table: Drivetrain, generator: GeneratorState = "fixed") -> Torsional:
+def two_masses(table: GearTable, generator: GeneratorState = "fixed") -> Torsional:
     """The rotor, and all the rest as one generator (Eq 4.28-4.30, 4.33-4.35).
 
     Dampers are put in series as springs are (Eq 4.30), which holds for each alone; without any
@@ -378,7 +378,7 @@ def two_masses(table: Drivetrain, generator: GeneratorState = "fixed") -> Torsio
     )
 
 
-def gear_masses(table: Drivetrain, generator: GeneratorState = "fixed") -> Torsional:
+def gear_masses(table: GearTable, generator: GeneratorState = "fixed") -> Torsional:
     """A mass for each part of the gearbox, meshes as springs (Eq 4.36-4.37).
 
     The ring stands still. Each mesh is wound by the sliding of the base circles along the line of
@@ -420,7 +420,7 @@ def gear_masses(table: Drivetrain, generator: GeneratorState = "fixed") -> Torsi
     return Torsional(tuple(parts), tuple(elements))
 
 
-def gear_speeds(table: Drivetrain) -> dict[str, float]:
+def gear_speeds(table: GearTable) -> dict[str, float]:
     """Speed of each part of `gear_masses` over the rotor's, where nothing is wound up."""
     speeds, speed = {ROTOR: 1.0}, 1.0
     for number, stage in enumerate(table.stages, start=1):
@@ -471,7 +471,7 @@ def _shaft(row: ShaftRow, front: str, rear: str) -> Element:
     return Element(row.name, {front: 1.0, rear: -1.0}, row.stiffness, row.damping)
 
 
-def _on_grid(table: Drivetrain, generator: GeneratorState) -> bool:
+def _on_grid(table: GearTable, generator: GeneratorState) -> bool:
     if generator == "fixed" and table.generator.stiffness == 0:
         raise InputError(
             f"drivetrain {shown(table.title)} has no electrical stiffness, so that its generator "

@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 
 Complex = NDArray[np.complex128]
 
@@ -188,6 +189,8 @@ class Modes:
     shapes: Floats
     stiffness_shares: Floats
     inertia_shares: Floats
+
+    __repr__ = short_repr
 
     @property
     def energy_shares(self) -> dict[str, Floats]:

@@ -15,6 +15,7 @@ from scipy.sparse.linalg import splu
 
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import rigid_motions
 
 AXES = ("x", "y", "z")
@@ -46,6 +47,8 @@ class Constraint:
     sums: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     is_mean: bool = False
 
+    __repr__ = short_repr
+
 
 @dataclass(frozen=True)
 class ReferencePoint:
@@ -65,6 +68,8 @@ class ReferencePoint:
     name: str
     position: Floats
     motion: sparse.csr_array
+
+    __repr__ = short_repr
 
     @property
     def is_mean(self) -> bool:
@@ -315,6 +320,8 @@ class Elimination:
     T: sparse.csr_array
     free: NDArray[np.bool_]
     constraints: tuple[Constraint, ...]
+
+    __repr__ = short_repr
 
     def multipliers(self, residual: Floats) -> dict[str, Floats]:
         """Constraint forces by the name of the constraint.

@@ -14,6 +14,7 @@ from scipy.spatial import cKDTree
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.elasticity.mesh.facets import local_facets
 from fe_drivetrain.elasticity.mesh.hexahedra import VTK_LATTICE
 from fe_drivetrain.elasticity.mesh.linear import renumbered
@@ -43,6 +44,8 @@ class Block:
     points: Floats
     cells: Ints
     faces: dict[str, Ints]
+
+    __repr__ = short_repr
 
     def face_nodes(self, name: str) -> Ints:
         """Nodes of a face, ascending."""

@@ -14,6 +14,7 @@ from typing import Literal
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.elasticity.mesh.linear import renumbered
 from fe_drivetrain.elasticity.mesh.shaft_section import (
     CORE,
@@ -67,6 +68,8 @@ class Hexahedra:
     front: Ints
     rear: Ints
     seats: dict[str, Ints]
+
+    __repr__ = short_repr
 
 
 def shaft_hexahedra(

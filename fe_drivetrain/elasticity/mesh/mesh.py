@@ -10,6 +10,7 @@ from skfem import MeshTet2
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.elasticity.mesh.facets import local_facets, outside
 
 FACETS = local_facets(10)
@@ -46,6 +47,8 @@ class Mesh:
     faces: dict[str, Ints]
     named_points: dict[str, int]
     kept: bool = False
+
+    __repr__ = short_repr
 
     def part_cells(self, name: str) -> Ints:
         """Indices of the cells of a part, ascending."""

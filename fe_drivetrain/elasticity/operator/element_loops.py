@@ -3,6 +3,8 @@
 Compiled by numba at the first call (seconds), then kept in its cache on disk.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit, prange
 from numpy.typing import NDArray
@@ -194,9 +196,24 @@ def add_elements(
     n_q, _, k = gradients.shape
     # rows are read eight numbers at once, beyond the last one, too
     width = 3 * k + LANES
-    G, W, S = np.zeros((n_q, width)), np.empty((n_q, 3 * k)), np.empty((3, width))
-    flat = G.reshape(-1), W.reshape(-1), S.reshape(-1), data.reshape(-1)
-    _add_elements(points, cells, chosen, gradients, weights, lam, mu, slots, *flat)
+    room = _Room(np.zeros(n_q * width), np.empty(n_q * 3 * k), np.empty(3 * width))
+    rule = _Rule(gradients, weights)
+    _add_elements(points, cells, chosen, rule, lam, mu, slots, room, data.reshape(-1))
+
+
+class _Rule(NamedTuple):
+    """Reference gradients (n_q, 3, k) and weights (n_q,) of a quadrature rule."""
+
+    gradients: Floats
+    weights: Floats
+
+
+class _Room(NamedTuple):
+    """Room for one element: gradients, those times their weight, integrals of their products."""
+
+    gradients: Floats
+    weighted: Floats
+    products: Floats
 
 
 @njit(cache=True, fastmath=True, nogil=True)
@@ -204,17 +221,15 @@ def _add_elements(
     points: Floats,
     cells: Index,
     chosen: NDArray[np.int64],
-    gradients: Floats,
-    weights: Floats,
+    rule: _Rule,
     lam: float,
     mu: float,
     slots: Index,
-    G: Floats,
-    W: Floats,
-    S: Floats,
+    room: _Room,
     data: Floats,
 ) -> None:
-    """With room for gradients, those times their weight, and integrals of their products."""
+    gradients, weights = rule
+    G, W, S = room
     k, n_q = cells.shape[1], len(weights)
     rows, width = 3 * k, 3 * k + LANES
     J, A = np.empty((3, 3)), np.empty((3, 3))

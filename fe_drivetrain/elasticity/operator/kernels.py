@@ -288,7 +288,7 @@ def chebyshev_step(
     assert out.flags.c_contiguous
     data, x, b, d, y = (array.reshape(-1) for array in (data, X, B, D, out))
     if m > 1:
-        _step_of_many(indptr, indices, data, inverse, x, b, d, y, momentum, step, m)
+        _step_of_many(indptr, indices, data, inverse, x, b, d, y, momentum, step)
     else:
         _step_of_one(indptr, indices, data, inverse, x, b, d, y, momentum, step)
 
@@ -305,9 +305,9 @@ def _step_of_many(
     out: Floats,
     momentum: float,
     step: float,
-    columns: int,
 ) -> None:
     n = len(indptr) - 1
+    columns = len(x) // (3 * n)
     for piece in prange(_PIECES):
         low, high = piece * n // _PIECES, (piece + 1) * n // _PIECES
         own = np.empty(9 * _most(indptr, low, high))

@@ -17,9 +17,6 @@ from numba import njit
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 
-JOIN = -1
-"""In a dissection: join the last two."""
-
 _PANEL, _STRIP = 32, 96
 
 
@@ -44,7 +41,7 @@ def condensed(
     kept : int
         Number of degrees of freedom that are kept.
     order : Ints
-        Order of elimination, from `dissection`.
+        Order of elimination, from `element_order.dissection`.
 
     Returns
     -------
@@ -148,69 +145,6 @@ def _element_matrices(grams: Floats, law: Floats) -> Floats:
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
-def dissection(centres: Floats) -> Ints:
-    """Order in which to take and to join elements, from their centres (ne, 2).
-
-    Halves across the longer side, halved again. Returns (2 ne - 1,): an element's number where it
-    is taken, `JOIN` where the last two are joined.
-    """
-    ne = len(centres)
-    program = np.empty(2 * ne - 1, dtype=np.int64)
-    some, key = np.arange(ne), np.empty(ne)
-    waiting = np.empty((2 * ne + 1, 2), dtype=np.int64)  # parts of ``some``, an empty one to join
-    waiting[0, 0], waiting[0, 1] = 0, ne
-    count, length = 1, 0
-    while count > 0:
-        count -= 1
-        first, end = waiting[count, 0], waiting[count, 1]
-        if end - first < 2:
-            program[length] = some[first] if end > first else -1
-            length += 1
-            continue
-        left = right = centres[some[first], 0]
-        low = high = centres[some[first], 1]
-        for i in range(first, end):
-            x, r = centres[some[i], 0], centres[some[i], 1]
-            left, right, low, high = min(left, x), max(right, x), min(low, r), max(high, r)
-        for i in range(first, end):
-            x, r = centres[some[i], 0], centres[some[i], 1]
-            # ties are broken by the other coordinate, so that cuts are straight
-            key[i] = x + 1e-6 * r if right - left >= high - low else r + 1e-6 * x
-        middle = first + (end - first) // 2
-        _part(some, key, first, middle, end)
-        waiting[count, 0], waiting[count, 1] = 0, 0
-        waiting[count + 1, 0], waiting[count + 1, 1] = first, middle
-        waiting[count + 2, 0], waiting[count + 2, 1] = middle, end
-        count += 3
-    return program
-
-
-@njit(cache=True)  # type: ignore[untyped-decorator]
-def _part(some: Ints, key: Floats, first: int, middle: int, end: int) -> None:
-    """Bring the least keys before the middle (Hoare 1961, Comm. ACM 4, 321: FIND).
-
-    NumPy's sort would take two seconds to compile.
-    """
-    low, high = first, end - 1
-    while low < high:
-        pivot, i, j = key[middle], low, high
-        while i <= j:
-            while key[i] < pivot:
-                i += 1
-            while pivot < key[j]:
-                j -= 1
-            if i <= j:
-                key[i], key[j] = key[j], key[i]
-                some[i], some[j] = some[j], some[i]
-                i += 1
-                j -= 1
-        if j < middle:
-            low = i
-        if middle < i:
-            high = j
-
-
-@njit(cache=True)  # type: ignore[untyped-decorator]
 def _swept(
     grams: Floats, law: Floats, ids: Ints, shares: Floats, kept: int, order: Ints, store: bool
 ) -> tuple[bool, Floats, Ints, Ints, Ints, Floats]:
@@ -218,15 +152,8 @@ def _swept(
 
     Only the upper triangles of matrices are kept.
     """
-    ne, size = ids.shape
-    users = np.zeros(ids.max() + 1, dtype=np.int64)
-    last = np.full(len(users), -1)
-    for e in range(ne):
-        for f in ids[e]:
-            if f >= 0 and last[f] != e:
-                last[f] = e
-                users[f] += 1
-    users[:kept] = ne + 1
+    size = ids.shape[1]
+    users = _users(ids, kept)
     place = np.full(len(users), -1)
     K = np.empty((size, size))
     matrices = [np.empty((0, 0))]
@@ -241,48 +168,15 @@ def _swept(
     nothing = np.empty(0, dtype=np.int64), np.empty(0)
     for step in range(len(order)):
         what = order[step]
-        # the degrees of freedom of the front, and how many elements have brought each
         if what >= 0:
-            brought = np.empty(size, dtype=np.int64)
-            n = 0
-            for f in ids[what]:
-                if f >= 0 and seen[f] == 0:
-                    seen[f] = 1
-                    brought[n] = f
-                    n += 1
+            brought = _of_element(ids[what], seen)
             _element(grams[what], law, K)
         else:
             A, B = matrices.pop(), matrices.pop()
             of_a, of_b = dofs.pop(), dofs.pop()
-            by_a, by_b = counts.pop(), counts.pop()
-            brought = np.empty(len(of_a) + len(of_b), dtype=np.int64)
-            n = 0
-            for i in range(len(of_a)):
-                brought[n] = of_a[i]
-                seen[of_a[i]] = by_a[i]
-                n += 1
-            for i in range(len(of_b)):
-                if seen[of_b[i]] == 0:
-                    brought[n] = of_b[i]
-                    n += 1
-                seen[of_b[i]] += by_b[i]
-        # those that are complete come first
-        gone = int(np.int64(0))  # a literal would be a type of its own, compiled by itself
-        for i in range(n):
-            if seen[brought[i]] == users[brought[i]]:
-                place[brought[i]] = gone
-                gone += 1
-        left = np.empty(n - gone, dtype=np.int64)
-        by = np.empty(n - gone, dtype=np.int64)
-        at = 0
-        for i in range(n):
-            f = brought[i]
-            if seen[f] != users[f]:
-                place[f] = gone + at
-                left[at] = f
-                by[at] = seen[f]
-                at += 1
-            seen[f] = 0
+            brought = _of_both(of_a, counts.pop(), of_b, counts.pop(), seen)
+        n = len(brought)
+        gone, left, by = _placed(brought, users, seen, place)
         front = np.zeros((n, n))
         if what >= 0:
             _add_element(front, K, ids[what], shares[what], place)
@@ -301,14 +195,91 @@ def _swept(
         matrices.append(front[gone:, gone:].copy())
         dofs.append(left)
         counts.append(by)
-    found, last = matrices.pop(), dofs.pop()
-    result = np.zeros((kept, kept))
-    for i in range(len(last)):
-        for j in range(i, len(last)):
-            result[last[i], last[j]] = result[last[j], last[i]] = found[i, j]
+    result = _of_kept(matrices.pop(), dofs.pop(), kept)
     if not store:
         return True, result, nothing[0], sizes, eliminated, nothing[1]
     return True, result, _joined(numbers), sizes, eliminated, _joined(rows)
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _users(ids: Ints, kept: int) -> Ints:
+    """How many elements each degree of freedom belongs to; more than there are, of the kept."""
+    ne = len(ids)
+    users = np.zeros(ids.max() + 1, dtype=np.int64)
+    last = np.full(len(users), -1)
+    for e in range(ne):
+        for f in ids[e]:
+            if f >= 0 and last[f] != e:
+                last[f] = e
+                users[f] += 1
+    users[:kept] = ne + 1
+    return users
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _of_element(ids: Ints, seen: Ints) -> Ints:
+    """Degrees of freedom that an element brings to its front; each is seen once."""
+    brought = np.empty(len(ids), dtype=np.int64)
+    n = 0
+    for f in ids:
+        if f >= 0 and seen[f] == 0:
+            seen[f] = 1
+            brought[n] = f
+            n += 1
+    return brought[:n]
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _of_both(of_a: Ints, by_a: Ints, of_b: Ints, by_b: Ints, seen: Ints) -> Ints:
+    """Degrees of freedom of two fronts, and in ``seen`` how many elements have brought each."""
+    brought = np.empty(len(of_a) + len(of_b), dtype=np.int64)
+    n = 0
+    for i in range(len(of_a)):
+        brought[n] = of_a[i]
+        seen[of_a[i]] = by_a[i]
+        n += 1
+    for i in range(len(of_b)):
+        if seen[of_b[i]] == 0:
+            brought[n] = of_b[i]
+            n += 1
+        seen[of_b[i]] += by_b[i]
+    return brought[:n]
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _placed(brought: Ints, users: Ints, seen: Ints, place: Ints) -> tuple[int, Ints, Ints]:
+    """Place in the front of each degree of freedom, those that are complete first.
+
+    Returns the number of these, the others, and how many elements have brought each of the others.
+    """
+    n = len(brought)
+    gone = int(np.int64(0))  # a literal would be a type of its own, compiled by itself
+    for i in range(n):
+        if seen[brought[i]] == users[brought[i]]:
+            place[brought[i]] = gone
+            gone += 1
+    left = np.empty(n - gone, dtype=np.int64)
+    by = np.empty(n - gone, dtype=np.int64)
+    at = 0
+    for i in range(n):
+        f = brought[i]
+        if seen[f] != users[f]:
+            place[f] = gone + at
+            left[at] = f
+            by[at] = seen[f]
+            at += 1
+        seen[f] = 0
+    return gone, left, by
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _of_kept(found: Floats, dofs: Ints, kept: int) -> Floats:
+    """Stiffness of what is kept, whole, from the upper triangle of the last front."""
+    result = np.zeros((kept, kept))
+    for i in range(len(dofs)):
+        for j in range(i, len(dofs)):
+            result[dofs[i], dofs[j]] = result[dofs[j], dofs[i]] = found[i, j]
+    return result
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]

@@ -21,6 +21,7 @@ from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.materials import Material
 from fe_drivetrain.elasticity.revolution import frontal
+from fe_drivetrain.elasticity.revolution.element_order import dissection
 from fe_drivetrain.elasticity.revolution.meridian_mesh import Meridian
 from fe_drivetrain.geometry import LENGTH_TOLERANCE
 
@@ -401,7 +402,7 @@ def _factored(mesh: Meridian, material: Material, n: int, held: Ints) -> Callabl
     alive[np.isin(target, target[held])] = False
     local = _local(mesh).reshape(len(mesh.cells), 3, -1)
     ids, shares = np.where(alive, target, -1)[local], coefficient[local]
-    order = frontal.dissection(mesh.nodes[mesh.cells].mean(axis=1))
+    order = dissection(mesh.nodes[mesh.cells].mean(axis=1))
     law = turn(n) * material_law(material.lame, n)
 
     def factor(components: slice) -> frontal.Factor:

@@ -25,6 +25,7 @@ from scipy import linalg, special
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.materials import Material
 from fe_drivetrain.elasticity.revolution.harmonics import (
     Traction,
@@ -79,6 +80,8 @@ class InfluenceFunctions:
     half_angle: float
     harmonic_compliances: Floats
     limits: Floats
+
+    __repr__ = short_repr
 
     @property
     def shares(self) -> Floats:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.elasticity.mesh.shaft_section import shaft_quadrilaterals
 from fe_drivetrain.elasticity.revolution.lagrange import Element, lagrange_element
 from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
@@ -48,6 +49,8 @@ class Meridian:
     nodes: Floats
     cells: Ints
     element: Element
+
+    __repr__ = short_repr
 
     def where(self, here: Where) -> Ints:
         """Nodes at the places meant, ascending."""

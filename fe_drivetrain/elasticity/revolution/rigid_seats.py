@@ -12,6 +12,7 @@ from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.materials import Material
 from fe_drivetrain.elasticity.revolution import frontal
+from fe_drivetrain.elasticity.revolution.element_order import dissection
 from fe_drivetrain.elasticity.revolution.harmonics import (
     material_law,
     on_axis,
@@ -136,7 +137,7 @@ def stiffness_between_seats(
     met = np.concatenate([nodes for nodes, _ in seats])
     if len(np.unique(met)) < len(met):
         raise InputError("two seats meet: leave some of the shaft's surface between them")
-    order = frontal.dissection(mesh.nodes[mesh.cells].mean(axis=1))
+    order = dissection(mesh.nodes[mesh.cells].mean(axis=1))
 
     def between(n: int, components: slice, which: slice) -> Floats:
         motions = [

@@ -6,7 +6,6 @@ from .coupled_solid import CondensedSolid as CondensedSolid
 from .coupled_solid import CoupledSolid as CoupledSolid
 from .coupled_solid import condensed_solid as condensed_solid
 from .coupled_solid import coupled_solid as coupled_solid
-from .coupled_solid import point_compliance as point_compliance
 from .coupled_solid import point_motions_of as point_motions_of
 from .element_system import Cut as Cut
 from .element_system import ElementSystem as ElementSystem

@@ -5,6 +5,8 @@ block of P as a full one. Between quadratic and linear elements on the same corn
 a number times the identity, and two or fewer a node.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit, prange
 from numpy.typing import NDArray
@@ -35,50 +37,74 @@ def coarse_product(K: sparse.bsr_array, prolongation: sparse.csr_array) -> spars
     """
     n = prolongation.shape[1]
     P = prolongation.tobsr((3, 3))
-    forwards, back = _Blocks(P), _Blocks(P.T)
+    forwards, back = _transfer(P), _transfer(P.T)
     pieces = np.linspace(0, n // 3, _PIECES + 1).astype(np.int64)
     indptr = np.zeros(n // 3 + 1, dtype=np.int32)
-    patterns = back.indptr, back.indices, K.indptr, K.indices, forwards.indptr, forwards.indices
+    patterns = back.pattern, _Pattern(K.indptr, K.indices), forwards.pattern
     # NumPy makes the array out here: in a compiled loop that takes longer to compile
     markers = np.full((_PIECES, n // 3), -1, dtype=np.int64)
     _count(*patterns, pieces, markers, indptr[1:])
     np.cumsum(indptr, out=indptr)
     markers[:] = -1
     indices, data = np.empty(indptr[-1], dtype=np.int32), np.zeros((indptr[-1], 3, 3))
-    values = back.data, back.factors, K.data.ravel(), forwards.data, forwards.factors
-    _fill(*patterns, pieces, markers, *values, indptr, indices, data.ravel())
+    _fill(
+        *(back, _Rows(K.indptr, K.indices, K.data.ravel()), forwards),
+        *(pieces, markers, _Rows(indptr, indices, data.ravel())),
+    )
     coarse = sparse.bsr_array((data, indices, indptr), shape=(n, n))
     coarse.has_sorted_indices = False
     coarse.sort_indices()
     return coarse
 
 
-class _Blocks:
+class _Pattern(NamedTuple):
+    """Where the blocks of a matrix are."""
+
+    indptr: Index
+    indices: Index
+
+
+class _Rows(NamedTuple):
+    """A block matrix, its blocks flat."""
+
+    indptr: Index
+    indices: Index
+    data: Floats
+
+
+class _Transfer(NamedTuple):
     """A block matrix, and which factor times the identity each block is: NaN of the others."""
 
-    def __init__(self, P: sparse.bsr_array) -> None:
-        self.indptr, self.indices = pattern_of(P)
-        self.data = P.data
-        first, *others, last = P.data.reshape(-1, 9).T
-        plain = (first == others[3]) & (first == last)
-        for place in (0, 1, 2, 4, 5, 6):
-            plain &= others[place] == 0.0
-        self.factors = np.where(plain, first, np.nan)
+    indptr: Index
+    indices: Index
+    data: Floats
+    factors: Floats
+
+    @property
+    def pattern(self) -> _Pattern:
+        """Where the blocks are."""
+        return _Pattern(self.indptr, self.indices)
+
+
+def _transfer(P: sparse.bsr_array) -> _Transfer:
+    first, *others, last = P.data.reshape(-1, 9).T
+    plain = (first == others[3]) & (first == last)
+    for place in (0, 1, 2, 4, 5, 6):
+        plain &= others[place] == 0.0
+    return _Transfer(*pattern_of(P), P.data, np.where(plain, first, np.nan))
 
 
 @njit(cache=True, parallel=True)
 def _count(
-    Rptr: Index,
-    Rind: Index,
-    Kptr: Index,
-    Kind: Index,
-    Pptr: Index,
-    Pind: Index,
+    R: _Pattern,
+    K: _Pattern,
+    P: _Pattern,
     pieces: NDArray[np.int64],
     markers: NDArray[np.int64],
     counts: Index,
 ) -> None:
-    """Number of blocks in each coarse row."""
+    """Number of blocks in each coarse row of R K P."""
+    (Rptr, Rind), (Kptr, Kind), (Pptr, Pind) = R, K, P
     for piece in prange(len(pieces) - 1):
         seen = markers[piece]
         for a in range(pieces[piece], pieces[piece + 1]):
@@ -96,24 +122,18 @@ def _count(
 
 @njit(cache=True, parallel=True)
 def _fill(
-    Rptr: Index,
-    Rind: Index,
-    Kptr: Index,
-    Kind: Index,
-    Pptr: Index,
-    Pind: Index,
+    R: _Transfer,
+    K: _Rows,
+    P: _Transfer,
     pieces: NDArray[np.int64],
     markers: NDArray[np.int64],
-    R: Floats,
-    to: Floats,
-    K: Floats,
-    P: Floats,
-    of: Floats,
-    indptr: Index,
-    indices: Index,
-    data: Floats,
+    coarse: _Rows,
 ) -> None:
-    """Sum the blocks of each coarse row, in the order in which they are met."""
+    """Sum the blocks of each coarse row of R K P, in the order in which they are met."""
+    Rptr, Rind, left, to = R
+    Kptr, Kind, values = K
+    Pptr, Pind, right, of = P
+    indptr, indices, data = coarse
     for piece in prange(len(pieces) - 1):
         place = markers[piece]
         for a in range(pieces[piece], pieces[piece + 1]):
@@ -122,7 +142,7 @@ def _fill(
                 i, weight = Rind[s], to[s]
                 for p in range(Kptr[i], Kptr[i + 1]):
                     j = Kind[p]
-                    fetch(K, 9 * p + AHEAD // K.itemsize)
+                    fetch(values, 9 * p + AHEAD // values.itemsize)
                     for q in range(Pptr[j], Pptr[j + 1]):
                         b = Pind[q]
                         t = place[b]
@@ -132,9 +152,9 @@ def _fill(
                             end += 1
                         factor = weight * of[q]
                         if factor == factor:
-                            _add(data, np.uint64(9 * t), factor, K, np.uint64(9 * p))
+                            _add(data, np.uint64(9 * t), factor, values, np.uint64(9 * p))
                         else:
-                            _add_between(data, 9 * t, R[s], K, 9 * p, P[q])
+                            _add_between(data, 9 * t, left[s], values, 9 * p, right[q])
 
 
 @njit(inline="always")

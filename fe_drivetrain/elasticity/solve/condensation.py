@@ -18,6 +18,7 @@ from scipy import sparse
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import least_eigenvalue, scaled_solve, scaled_to_unit_diagonal
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import point_motions, wrench_transport
 
 
@@ -47,6 +48,8 @@ class Condensed:
     stiffness: Floats
     gravity: Floats
     mass: Floats | None = None
+
+    __repr__ = short_repr
 
     def rows(self, name: str) -> slice:
         """The six rows of a point."""

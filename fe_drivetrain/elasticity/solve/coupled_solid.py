@@ -2,7 +2,7 @@
 
 Shafts, components and bearing units all come this way: the parts of a mesh and their materials, the
 faces and how each holds its point, then either the free body condensed to the points
-(`condensed_solid`) or the compliance of a held one there (`point_compliance`).
+(`condensed_solid`) or the compliance of a held one there (`point_motions_of`).
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 from scipy import linalg, sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import point_motions, rigid_motions
 from fe_drivetrain.drivetrain_file.component import Attachment
 from fe_drivetrain.drivetrain_file.materials import Material
@@ -62,6 +63,8 @@ class CoupledSolid:
     points: tuple[ReferencePoint, ...]
     rigid_faces: tuple[Constraint, ...]
 
+    __repr__ = short_repr
+
     @property
     def n_dofs(self) -> int:
         """Number of degrees of freedom, of the nodes and of points with a rigid face."""
@@ -94,6 +97,8 @@ class CondensedSolid:
     _rigid: Floats
     _elimination: Elimination
     _solver: Solver
+
+    __repr__ = short_repr
 
     def displacements(self, motions: Floats) -> Floats:
         """Displacements of all nodes (n, 3) where the points move so, and nothing else loads it.
@@ -291,22 +296,6 @@ def compliance_of(K: sparse.bsr_array, F: Floats, U: Floats) -> Floats:
     """
     first = F.T @ U
     return np.asarray(first + first.T - U.T @ kernels.product(K, U))
-
-
-def point_compliance(
-    solid: CoupledSolid,
-    held: Sequence[Constraint],
-    springs: Sequence[tuple[ReferencePoint, Floats]] = (),
-    method: str = "auto",
-) -> Floats:
-    """Motions of a held solid's points for unit loads there, see `point_motions_of`.
-
-    Returns
-    -------
-    ndarray, (6 p, 6 p)
-        Motions of the p points [m/N, 1/N, rad/(N m)].
-    """
-    return point_motions_of(solid, held, springs, method)[1]
 
 
 def _pins(points: Floats, allowed: Ints, n_dofs: int) -> Constraint:

@@ -14,6 +14,7 @@ from scipy import sparse
 from scipy.linalg import block_diag
 
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.elasticity.interfaces.constraints import Elimination, ReferencePoint
 from fe_drivetrain.elasticity.mesh.bodies import connected_bodies
 from fe_drivetrain.elasticity.mesh.shapes import element_kind
@@ -49,6 +50,8 @@ class ElementSystem:
     parts: Sequence[tuple[Ints, tuple[float, float]]]
     elimination: Elimination
     springs: Springs = ()
+
+    __repr__ = short_repr
 
     @property
     def n_blocks(self) -> int:
@@ -115,6 +118,8 @@ class Cut:
     order: Ints
     starts: Ints
     apart: bool
+
+    __repr__ = short_repr
 
     def __len__(self) -> int:
         return len(self.starts) - 1

@@ -25,6 +25,7 @@ from scipy import sparse
 from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common.arrays import CHUNK, Floats, Ints, chunks
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.elasticity.mesh.mapping import jacobian
 from fe_drivetrain.elasticity.mesh.numbering import check_nodes
 from fe_drivetrain.elasticity.mesh.shapes import ElementKind, element_kind
@@ -56,6 +57,8 @@ class ErrorEstimate:
 
     energy: float
     indicators: Floats
+
+    __repr__ = short_repr
 
     @property
     def error_energy(self) -> float:

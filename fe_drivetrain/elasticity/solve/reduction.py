@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.elasticity.interfaces.constraints import Elimination, ReferencePoint
 from fe_drivetrain.elasticity.mesh.bodies import connected_bodies
@@ -85,6 +86,8 @@ class System:
     n_free: int
     elements: Elements | None = None
     joints: "Callable[[], Joints] | None" = None
+
+    __repr__ = short_repr
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit, prange
@@ -225,25 +226,14 @@ def _coarse_stiffness(
     place[parts.blocks] = np.arange(len(parts.blocks)) - np.repeat(
         parts.starts[:-1], np.diff(parts.starts)
     )
+    basis = PatchModes(modes, mode_starts, counts)
     rows, columns, values = [], [], []
     for patch, own, around in _neighbours(K, parts):
         slot = np.full(len(parts), -1)
         width = counts[around]
         slot[around] = np.concatenate([[0], np.cumsum(width)[:-1]])
         moved = np.zeros((3 * len(own), int(width.sum())))
-        times_modes(
-            K.indptr,
-            K.indices,
-            K.data,
-            own,
-            parts.patch,
-            place,
-            modes,
-            mode_starts,
-            counts,
-            slot,
-            moved,
-        )
+        times_modes(K.indptr, K.indices, K.data, own, parts.patch, place, basis, slot, moved)
         start = mode_starts[patch]
         v = modes[start : start + 3 * len(own) * counts[patch]].reshape(3 * len(own), -1)
         block = v.T @ moved
@@ -266,6 +256,14 @@ def _neighbours(K: sparse.bsr_array, parts: Partition) -> Iterator[tuple[int, In
         yield patch, own, np.unique(parts.patch[touched])
 
 
+class PatchModes(NamedTuple):
+    """Modes of all patches, where those of each begin, and how many it has; see `Schwarz`."""
+
+    values: Floats
+    starts: Ints
+    counts: Ints
+
+
 @njit(cache=True)
 def times_modes(
     indptr: Index,
@@ -274,9 +272,7 @@ def times_modes(
     own: Ints,
     patch: Ints,
     place: Ints,
-    modes: Floats,
-    mode_starts: Ints,
-    counts: Ints,
+    basis: PatchModes,
     slot: Ints,
     out: Floats,
 ) -> None:
@@ -288,11 +284,12 @@ def times_modes(
         Node blocks whose rows are taken.
     patch, place : Ints
         Patch (n_blocks,) of each block, and its place in the patch.
-    modes, mode_starts, counts : Floats, Ints, Ints
-        Modes of the patches, see `Schwarz`.
+    basis : PatchModes
+        Modes of the patches.
     slot : Ints
         First column (n_patches,) of each patch in ``out``.
     """
+    modes, mode_starts, counts = basis
     for a in range(len(own)):
         for p in range(indptr[own[a]], indptr[own[a] + 1]):
             c = indices[p]

@@ -8,6 +8,7 @@ from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.elasticity.interfaces.constraints import Constraint, eliminate, held_dofs
 from fe_drivetrain.elasticity.operator import kernels
 from fe_drivetrain.elasticity.operator.elasticity import assemble
@@ -45,6 +46,8 @@ class Static:
     energy: Floats
     K: sparse.bsr_array
     diagnostics: Diagnostics
+
+    __repr__ = short_repr
 
 
 def solve_solid(

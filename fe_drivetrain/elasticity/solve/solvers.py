@@ -12,6 +12,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import SINGULAR, InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.elasticity.solve import direct_solvers, multigrid, petsc, schwarz
 from fe_drivetrain.elasticity.solve.cost_model import iterations, predict
 from fe_drivetrain.elasticity.solve.element_system import ElementSystem
@@ -81,6 +82,8 @@ class Solution:
     x: Floats
     diagnostics: Diagnostics
 
+    __repr__ = short_repr
+
 
 @dataclass(frozen=True)
 class Solver:
@@ -93,6 +96,8 @@ class Solver:
     setup_seconds: float
     bytes: int
     iterate: Callable[[Floats], multigrid.Iteration]
+
+    __repr__ = short_repr
 
     def solve(self, F: Floats) -> Solution:
         """Solve for all columns of F at once.

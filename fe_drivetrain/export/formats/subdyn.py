@@ -7,6 +7,7 @@ OpenFAST 5 (r-test, SD_Spring_Case1); its spring, cosine matrix and member go in
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -25,82 +26,9 @@ _COSINES = tuple(f"COSM{i}{j}" for i in range(1, 4) for j in range(1, 4))
 _INERTIAS = ("JMXX", "JMYY", "JMZZ", "JMXY", "JMXZ", "JMYZ")
 
 
-class Spring(NamedTuple):
-    """A spring element as it stands in a file.
-
-    Attributes
-    ----------
-    stiffness : Floats
-        (6, 6) in the element's axes.
-    axes : Floats
-        (3, 3) whose rows are the element's x, y, z in SubDyn's frame.
-    joints : Floats
-        (2, 3) of its ends [m].
-    mass : float
-        [kg] at the second joint.
-    inertia : Floats
-        (3, 3) there, in SubDyn's frame [kg m^2].
-    """
-
-    stiffness: Floats
-    axes: Floats
-    joints: Floats
-    mass: float
-    inertia: Floats
-
-    @property
-    def global_stiffness(self) -> Floats:
-        """(6, 6) in SubDyn's frame."""
-        turn = np.kron(np.eye(2), self.axes)
-        return np.asarray(turn.T @ self.stiffness @ turn)
-
-
-def write(path: Path, element: Superelement, axes: Floats | None = None) -> None:
-    """Write a superelement of one point on the ground; numbers keep every digit.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    element : Superelement
-        Of one point, with its supports. A mass must be that of a rigid body with its centre at the
-        point.
-    axes : Floats or None
-        (3, 3) whose rows are x, y, z of the superelement's frame in SubDyn's; the same frame where
-        not given. Both have their origin in one place.
-
-    Raises
-    ------
-    InputError
-        The superelement has more points, no supports, or another mass; or the axes are not a
-        right-handed orthonormal frame.
-    """
-    if len(element.points) != 1 or not element.supported:
-        raise InputError(
-            f"superelement {element.name!r} has {len(element.points)} points and supports "
-            f"{'in it' if element.supported else 'left out'}: a SubDyn spring takes one point, "
-            "with the supports"
-        )
-    A = np.eye(3) if axes is None else np.asarray(axes, dtype=float)
-    # to the digits of a double: a cosine of 5 digits is not orthogonal to more
-    if A.shape != (3, 3) or not (
-        np.abs(A @ A.T - np.eye(3)).max() < 1e-12 and np.linalg.det(A) > 0
-    ):
-        raise InputError("the axes must be a (3, 3) right-handed orthonormal frame, to 12 digits")
-    mass, inertia = _rigid_mass(element)
-    inertia = A.T @ inertia @ A
-    place = " ".join(repr(float(value)) for value in A.T @ element.positions[0])
-    terms = " ".join(repr(float(value)) for value in element.stiffness[np.triu_indices(6)])
-    cosines = " ".join(repr(float(value)) for value in A.ravel())
-    inertias = " ".join(
-        repr(float(inertia["xyz".index(name[2].lower()), "xyz".index(name[3].lower())]))
-        for name in _INERTIAS
-    )
-    held = " ".join(["1"] * 6)
-    zeros = "\n".join([" ".join(["0.0"] * 6)] * 6)
-    text = f"""\
+_INPUT = """\
 ----------- SubDyn input file: one spring element --------------------------------------
-{element.name}, scene {element.origin.scene_hash[:16] or "unknown"}; N, m, kg, rad; more at the end
+{name}, scene {scene}; N, m, kg, rad; more at the end
 -------------------------- SIMULATION CONTROL ------------------------------------------
 False       Echo
 "DEFAULT"   SDdeltaT
@@ -109,7 +37,7 @@ True        SttcSolve
 -------------------- FEA and CRAIG-BAMPTON PARAMETERS ----------------------------------
 3           FEMMod
 1           NDiv
-{6 if mass else 0}           Nmodes       - all of the second joint, where it has mass
+{modes}           Nmodes       - all of the second joint, where it has mass
 0           JDampings    - (%)
 0           GuyanDampMod
 0.0 0.0     RayleighDamp
@@ -120,7 +48,7 @@ RBSurge RBSway RBHeave RBRoll RBPitch RBYaw
 (m) (m) (m) (deg) (deg) (deg)
 0.0 0.0 0.0 0.0 0.0 0.0
 ---- STRUCTURE JOINTS ------------------------------------------------------------------
-2           NJoints      - the ground and {element.points[0]}, in one place
+2           NJoints      - the ground and {point}, in one place
 JointID JointXss JointYss JointZss JointType JointDirX JointDirY JointDirZ JointStiff
 (-) (m) (m) (m) (-) (-) (-) (-) (Nm/rad)
 1 {place} 1 0.0 0.0 0.0 0.0
@@ -162,20 +90,19 @@ PropSetID MatDens
 (-) (kg/m)
 ----------------------- SPRING ELEMENT PROPERTIES --------------------------------------
 1           NSpringPropSets
-PropSetID {" ".join(TERMS)}
-(-) {" ".join(_unit(term) for term in TERMS)}
+PropSetID {names}
+(-) {units}
 1 {terms}
 ---------------------- MEMBER COSINE MATRICES COSM(i,j) --------------------------------
 1           NCOSMs       - rows: the element's x, y, z in SubDyn's frame
-COSMID {" ".join(_COSINES)}
-(-) {" ".join(["(-)"] * 9)}
+COSMID {cosine_names}
+(-) {cosine_units}
 1 {cosines}
 ------------------------ JOINT ADDITIONAL CONCENTRATED MASSES --------------------------
-{1 if mass else 0}           NCmass
-CMJointID JMass {" ".join(_INERTIAS)} MCGX MCGY MCGZ
-(-) (kg) {" ".join(["(kg*m^2)"] * 6)} (m) (m) (m)
-{f"2 {mass!r} {inertias} 0.0 0.0 0.0" if mass else ""}
----------------------------- OUTPUT: SUMMARY & OUTFILE ---------------------------------
+{masses}           NCmass
+CMJointID JMass {inertia_names} MCGX MCGY MCGZ
+(-) (kg) {inertia_units} (m) (m) (m)
+{added}---------------------------- OUTPUT: SUMMARY & OUTFILE ---------------------------------
 False       SumPrint
 0           OutCBModes
 0           OutFEMModes
@@ -195,13 +122,106 @@ MemberID NOutCnt NodeCnt
 "M1N2TDzss"  - displacement of the second joint along z
 END of output channels
 """
-    if not mass:
-        text = text.replace("(m) (m) (m)\n\n---------------------------- OUTPUT", _NO_MASS)
+
+
+class Spring(NamedTuple):
+    """A spring element as it stands in a file.
+
+    Attributes
+    ----------
+    stiffness : Floats
+        (6, 6) in the element's axes.
+    axes : Floats
+        (3, 3) whose rows are the element's x, y, z in SubDyn's frame.
+    joints : Floats
+        (2, 3) of its ends [m].
+    mass : float
+        [kg] at the second joint.
+    inertia : Floats
+        (3, 3) there, in SubDyn's frame [kg m^2].
+    """
+
+    stiffness: Floats
+    axes: Floats
+    joints: Floats
+    mass: float
+    inertia: Floats
+
+    @property
+    def global_stiffness(self) -> Floats:
+        """(6, 6) in SubDyn's frame."""
+        turn = np.kron(np.eye(2), self.axes)
+        return np.asarray(turn.T @ self.stiffness @ turn)
+
+
+def write(path: Path, element: Superelement, axes: Floats | None = None) -> None:
+    """Write a superelement of one point on the ground; numbers keep every digit.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    element : Superelement
+        Superelement of one point, with its supports. A mass must be that of a rigid body with its
+        centre at the point.
+    axes : Floats or None
+        (3, 3) whose rows are x, y, z of the superelement's frame in SubDyn's; the same frame where
+        not given. Both have their origin in one place.
+
+    Raises
+    ------
+    InputError
+        The superelement has more points, no supports, or another mass; or the axes are not a
+        right-handed orthonormal frame.
+    """
+    A = _checked_axes(element, axes)
+    mass, inertia = _rigid_mass(element)
+    inertia = A.T @ inertia @ A
+    inertias = [
+        inertia["xyz".index(name[2].lower()), "xyz".index(name[3].lower())] for name in _INERTIAS
+    ]
+    text = _INPUT.format(
+        name=element.name,
+        scene=element.origin.scene_hash[:16] or "unknown",
+        modes=6 if mass else 0,
+        zeros="\n".join([" ".join(["0.0"] * 6)] * 6),
+        point=element.points[0],
+        place=_numbers(A.T @ element.positions[0]),
+        held=" ".join(["1"] * 6),
+        names=" ".join(TERMS),
+        units=" ".join(_unit(term) for term in TERMS),
+        terms=_numbers(element.stiffness[np.triu_indices(6)]),
+        cosine_names=" ".join(_COSINES),
+        cosine_units=" ".join(["(-)"] * 9),
+        cosines=_numbers(A.ravel()),
+        masses=1 if mass else 0,
+        inertia_names=" ".join(_INERTIAS),
+        inertia_units=" ".join(["(kg*m^2)"] * 6),
+        added=f"2 {mass!r} {_numbers(inertias)} 0.0 0.0 0.0\n" if mass else "",
+    )
     comments = "\n".join(comment_lines(statement(element), "!"))
     path.write_text(f"{text}{comments}\n", encoding="utf-8")
 
 
-_NO_MASS = "(m) (m) (m)\n---------------------------- OUTPUT"
+def _checked_axes(element: Superelement, axes: Floats | None) -> Floats:
+    """Axes of a frame, of a superelement that a spring can hold."""
+    if len(element.points) != 1 or not element.supported:
+        raise InputError(
+            f"superelement {element.name!r} has {len(element.points)} points and supports "
+            f"{'in it' if element.supported else 'left out'}: a SubDyn spring takes one point, "
+            "with the supports"
+        )
+    A = np.eye(3) if axes is None else np.asarray(axes, dtype=float)
+    # to the digits of a double: a cosine of 5 digits is not orthogonal to more
+    if A.shape != (3, 3) or not (
+        np.abs(A @ A.T - np.eye(3)).max() < 1e-12 and np.linalg.det(A) > 0
+    ):
+        raise InputError("the axes must be a (3, 3) right-handed orthonormal frame, to 12 digits")
+    return A
+
+
+def _numbers(values: Iterable[float]) -> str:
+    return " ".join(repr(float(value)) for value in values)
 
 
 def read_spring(path: str | Path) -> Spring:

@@ -98,7 +98,7 @@ def summary(scene: Scene, level: int = 2) -> SummaryFile:
     scene : Scene
         The scene.
     level : int
-        Of the reactions: 1 to 3 with housings as springs, faces in shape, or 4. The shaft's
+        Level of the reactions: 1 to 3 with housings as springs, faces in shape, or 4. The shaft's
         stiffness is of the meridian, level 2.
 
     Raises

@@ -73,11 +73,11 @@ def torsional_damping(
     Parameters
     ----------
     ratio : float
-        Of critical, 0 to 1.
+        Share of critical damping, 0 to 1.
     stiffness : float
         [N m/rad], low-speed side.
     rotor_inertia : float
-        Of blades and hub about the shaft [kg m^2].
+        Inertia of blades and hub about the shaft [kg m^2].
     generator_inertia : float
         About its own shaft [kg m^2], inf where the generator is held.
     gear_ratio : float

@@ -117,9 +117,9 @@ class System:
         point : str
             Where the load is.
         size : float
-            Of the loads that it is measured with, both ways, so that what a load does by turning
-            the shaft cancels to its third power [N, N m]. A small one drowns: bodies stand at
-            metres, which leaves their springs 1e-16 m.
+            Size of the loads that it is measured with, both ways, so that what a load does by
+            turning the shaft cancels to its third power [N, N m]. A small one drowns: bodies stand
+            at metres, which leaves their springs 1e-16 m.
         """
         matrices = {name: np.zeros((6, 6)) for name in self.supports}
         for component in range(6):
@@ -226,8 +226,8 @@ def floating_system(
     Parameters
     ----------
     body, supports, gravity : Superelement, Mapping[str, Floats], Sequence[float]
-        As for `flexible_system`; modes of Craig and Bampton have no motion of any point that could
-        carry their momentum, and are not taken.
+        The same as for `flexible_system`; modes of Craig and Bampton have no motion of any point
+        that could carry their momentum, and are not taken.
 
     Raises
     ------
@@ -290,7 +290,7 @@ def rigid_bodies_system(
         Free, its stiffness a chain along x and its mass of rigid bodies at its points, as
         `fe_drivetrain.export.lumped_shaft.lumped_superelement` gives it.
     supports, gravity : Mapping[str, Floats], Sequence[float]
-        As for `flexible_system`.
+        The same as for `flexible_system`.
 
     Raises
     ------

@@ -54,10 +54,10 @@ class Rotor:
     stations : Floats
         (n,) x of its nodes [m].
     supports : Mapping[str, tuple[int, Floats]]
-        Of each support by name: its node, and its stiffness (6, 6) [N/m, N, N m/rad] in this
+        Node and stiffness (6, 6) of each support by name [N/m, N, N m/rad] in this
         project's frame and order, as it went in.
     inertia : Mapping[str, Floats]
-        Of supports that have a mass: (6, 6) [kg, kg m, kg m^2].
+        Mass (6, 6) of supports that have one [kg, kg m, kg m^2].
     """
 
     rotor: Any
@@ -152,8 +152,8 @@ def ross_rotor(
     stations : Sequence[float]
         Where nodes must be [m], besides the ends of sections and the supports.
     longest : float or None
-        Of its elements [m]; a sixteenth of the beam where not given. What is static is exact
-        between nodes; frequencies, and cones, want short elements.
+        Maximum length of its elements [m]; a sixteenth of the beam where not given. What is static
+        is exact between nodes; frequencies, and cones, want short elements.
     stiffer : float
         How many times a support that is rigid is stiffer than the shaft at its node.
     inertia : Mapping[str, Floats] or None
@@ -179,13 +179,37 @@ def ross_rotor(
     longest = beam.length / 16.0 if longest is None else longest
     if not longest > 0.0:
         raise InputError(f"longest element is {longest:g} m but must be above 0")
+    nodes = _nodes(beam, stations, longest)
+    elements = _shaft_elements(ross, beam, nodes)
+    own = _free_diagonal(elements)
+    extra = _further_matrices(ross)
+    bearings, others = [], []
+    supports: dict[str, tuple[int, Floats]] = {}
+    for support in beam.supports:
+        node = int(np.argmin(np.abs(nodes - support.x)))
+        k = np.array(support.stiffness, dtype=float)
+        rigid = np.flatnonzero(np.isinf(k.diagonal()))
+        k[rigid, rigid] = stiffer * own[node][rigid]
+        supports[support.name] = (node, k)
+        k = k[np.ix_(FROM_PROJECT, FROM_PROJECT)]
+        bearing = _bearing_element(ross, node, k, support.name)
+        bearings.append(bearing)
+        rest = k.copy()
+        rest[:3, :3] -= bearing.K(0.0)
+        mass = inertia.get(support.name, np.zeros((6, 6)))[np.ix_(FROM_PROJECT, FROM_PROJECT)]
+        if rest.any() or mass.any():
+            others.append(extra(node, rest, mass, f"{support.name}, moments, coupling, mass"))
+    return Rotor(ross.Rotor(elements, others, bearings), nodes, supports, inertia)
+
+
+def _shaft_elements(ross: Any, beam: Beam, nodes: Floats) -> list[Any]:
+    """ROSS's elements of the shaft between nodes."""
     material = ross.Material(
         name="shaft",
         rho=beam.material.density,
         E=beam.material.youngs_modulus,
         G_s=beam.material.shear_modulus,
     )
-    nodes = _nodes(beam, stations, longest)
     ends = beam.ends
     elements = []
     for low, high in itertools.pairwise(nodes.tolist()):
@@ -211,34 +235,21 @@ def ross_rotor(
                 shear_method_calc="cowper",
             )
         )
-    own = _free_diagonal(elements)
-    extra = _further_matrices(ross)
-    bearings, others = [], []
-    supports: dict[str, tuple[int, Floats]] = {}
-    for support in beam.supports:
-        node = int(np.argmin(np.abs(nodes - support.x)))
-        k = np.array(support.stiffness, dtype=float)
-        rigid = np.flatnonzero(np.isinf(k.diagonal()))
-        k[rigid, rigid] = stiffer * own[node][rigid]
-        supports[support.name] = (node, k)
-        k = k[np.ix_(FROM_PROJECT, FROM_PROJECT)]
-        bearing = ross.BearingElement(
-            n=node,
-            kxx=float(k[0, 0]),
-            kxy=float(k[0, 1]),
-            kyx=float(k[1, 0]),
-            kyy=float(k[1, 1]),
-            kzz=float(k[2, 2]),
-            cxx=0.0,
-            tag=support.name,
-        )
-        bearings.append(bearing)
-        rest = k.copy()
-        rest[:3, :3] -= bearing.K(0.0)
-        mass = inertia.get(support.name, np.zeros((6, 6)))[np.ix_(FROM_PROJECT, FROM_PROJECT)]
-        if rest.any() or mass.any():
-            others.append(extra(node, rest, mass, f"{support.name}, moments, coupling, mass"))
-    return Rotor(ross.Rotor(elements, others, bearings), nodes, supports, inertia)
+    return elements
+
+
+def _bearing_element(ross: Any, node: int, k: Floats, name: str) -> Any:
+    """ROSS's bearing with the forces of a stiffness (6, 6) in ROSS's frame."""
+    return ross.BearingElement(
+        n=node,
+        kxx=float(k[0, 0]),
+        kxy=float(k[0, 1]),
+        kyx=float(k[1, 0]),
+        kyy=float(k[1, 1]),
+        kzz=float(k[2, 2]),
+        cxx=0.0,
+        tag=name,
+    )
 
 
 def rotor_of_scene(
@@ -261,7 +272,7 @@ def rotor_of_scene(
     rings : bool
         Whether the shaft has its rings, see `fe_drivetrain.shafts.fidelity.shafts.ringed_shaft`.
     longest, stiffer : float or None, float
-        As for `ross_rotor`.
+        The same as for `ross_rotor`.
     inertia : Mapping[str, Floats] or None
         (6, 6) by bearing [kg, kg m, kg m^2], as `fe_drivetrain.shafts.fidelity.unit_matrices` gives
         it; supports have no mass where it is not given.

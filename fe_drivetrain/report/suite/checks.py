@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+import math
+from typing import Unpack
 
-from fe_drivetrain.report.results import Basis, Measure, Verdict, judge
+from numpy.typing import ArrayLike
+
+from fe_drivetrain.report.results import Basis, JudgedFacts, ValueFacts, Verdict, judge
 from fe_drivetrain.report.suite.records import MeshSeries
 from fe_drivetrain.report.suite.targets import MEASURES, Target, split_unit
 
@@ -14,12 +17,12 @@ class Checks:
 
     Attributes
     ----------
-    verdicts : list of Verdict
+    checks : list of Verdict
         Of all checks so far.
     """
 
     def __init__(self) -> None:
-        self.verdicts: list[Verdict] = []
+        self.checks: list[Verdict] = []
         self._of = ""
 
     def equals(
@@ -31,11 +34,8 @@ class Checks:
         within: float,
         why: str,
         source: str,
-        unit: str = "",
         relative: bool = True,
-        measure: Measure | None = None,
-        basis: Basis = "independent",
-        band: float | None = None,
+        **more: Unpack[ValueFacts],
     ) -> None:
         """The computed value is the reference, within a tolerance.
 
@@ -51,34 +51,80 @@ class Checks:
             Why the tolerance is what it is: a physical or numerical reason.
         source : str
             Where the reference comes from.
-        unit : str
-            Of both, where the quantity is stated without it.
         relative : bool
             False where `within` is in the unit.
-        measure : str, optional
-            Kind of quantity, for bias and scatter over all cases; that of the unit in brackets
-            where left out.
-        basis : str
-            "self-consistency" of what is true by construction, "second-hand" of a source that was
-            not read itself: both are shown as such, and stay out of bias and scatter.
-        band : float, optional
-            Half width of the numerical uncertainty of `computed`, in its unit. It is computed, from
-            a series of meshes or an error estimate; where there is none, it is left out.
+        **more : object
+            ``unit`` of both, where the quantity is stated without it. ``measure``: kind of
+            quantity, for bias and scatter over all cases; that of the unit in brackets where left
+            out. ``basis``: "self-consistency" of what is true by construction, "second-hand" of a
+            source that was not read itself; both are shown as such, and stay out of bias and
+            scatter. ``band``: half width of the numerical uncertainty of `computed`, in its unit.
+            It is computed, from a series of meshes or an error estimate; where there is none, it
+            is left out.
         """
         self._judge(
-            "equals",
             quantity,
             computed,
             reference,
-            why,
-            source,
+            why=why,
+            source=source,
             tolerance=within,
             relative=relative,
-            unit=unit,
-            measure=measure,
-            basis=basis,
+            **more,
+        )
+
+    def exponent(
+        self,
+        quantity: str,
+        x: ArrayLike,
+        y: ArrayLike,
+        expected: float,
+        *,
+        within: float,
+        why: str,
+        source: str,
+        between: tuple[float, float] = (0.0, math.inf),
+        relative: bool = True,
+    ) -> float:
+        """The exponent of a power of x that fits y best is the expected one, with its own band.
+
+        Parameters
+        ----------
+        quantity : str
+            What grows with what.
+        x, y : (n,) array
+            The points; see `fe_drivetrain.comparison.fitted_exponent`.
+        expected : float
+            The exponent by theory.
+        within : float
+            Allowed difference, as for `equals`.
+        why, source : str
+            As for `equals`.
+        between : tuple of float
+            Only points with y between these are fitted.
+        relative : bool
+            False where `within` is that of the exponent itself.
+
+        Returns
+        -------
+        exponent : float
+            That of the points.
+        """
+        from fe_drivetrain.comparison.sweeps import fitted_exponent
+
+        exponent, band = fitted_exponent(x, y, between)
+        self.equals(
+            quantity,
+            exponent,
+            expected,
+            within=within,
+            relative=relative,
+            why=why,
+            source=source,
+            measure="order",
             band=band,
         )
+        return exponent
 
     def vanishes(
         self,
@@ -88,25 +134,19 @@ class Checks:
         within: float,
         why: str,
         source: str,
-        unit: str = "",
-        measure: Measure | None = "identity",
-        basis: Basis = "independent",
-        band: float | None = None,
+        **more: Unpack[ValueFacts],
     ) -> None:
         """The computed value is zero, but for `within`, in its unit; see `equals`."""
+        more.setdefault("measure", "identity")
         self._judge(
-            "vanishes",
             quantity,
             computed,
             0.0,
-            why,
-            source,
+            why=why,
+            source=source,
             tolerance=within,
-            relative=False,
-            unit=unit,
-            measure=measure,
-            basis=basis,
-            band=band,
+            check="vanishes",
+            **more,
         )
 
     def finest(self, series: MeshSeries, *targets: Target, of: str = "") -> None:
@@ -141,13 +181,13 @@ class Checks:
         quantity = target.name or quantity
         zero = target.value == 0.0
         self._judge(
-            "vanishes" if zero else "equals",
             f"{of}: {quantity}" if of else quantity,
             computed,
             target.value,
-            target.why,
-            target.source,
+            why=target.why,
+            source=target.source,
             tolerance=target.within,
+            check="vanishes" if zero else "equals",
             relative=target.relative and not zero,
             unit=unit,
             measure=target.measure or MEASURES.get(unit) or ("identity" if zero else None),
@@ -156,16 +196,30 @@ class Checks:
         )
 
     def at_most(
-        self, quantity: str, computed: float, bound: float, *, why: str, source: str, **more: Any
+        self,
+        quantity: str,
+        computed: float,
+        bound: float,
+        *,
+        why: str,
+        source: str,
+        **more: Unpack[ValueFacts],
     ) -> None:
         """The computed value is no larger than a bound; `more` is unit, measure, basis, band."""
-        self._judge("at most", quantity, computed, bound, why, source, **more)
+        self._judge(quantity, computed, bound, why=why, source=source, check="at most", **more)
 
     def at_least(
-        self, quantity: str, computed: float, bound: float, *, why: str, source: str, **more: Any
+        self,
+        quantity: str,
+        computed: float,
+        bound: float,
+        *,
+        why: str,
+        source: str,
+        **more: Unpack[ValueFacts],
     ) -> None:
         """The computed value is no smaller than a bound; `more` is unit, measure, basis, band."""
-        self._judge("at least", quantity, computed, bound, why, source, **more)
+        self._judge(quantity, computed, bound, why=why, source=source, check="at least", **more)
 
     def between(
         self,
@@ -176,10 +230,12 @@ class Checks:
         *,
         why: str,
         source: str,
-        **more: Any,
+        **more: Unpack[ValueFacts],
     ) -> None:
         """The computed value is no smaller than `low`, and no larger than `high`."""
-        self._judge("between", quantity, computed, low, why, source, upper=high, **more)
+        self._judge(
+            quantity, computed, low, why=why, source=source, check="between", upper=high, **more
+        )
 
     def holds(
         self,
@@ -205,38 +261,41 @@ class Checks:
         basis : str
             As of `equals`.
         """
-        truth = float(bool(condition))
-        self._judge("holds", statement, truth, 1.0, why, source, measure="identity", basis=basis)
+        self._judge(
+            statement,
+            float(bool(condition)),
+            1.0,
+            why=why,
+            source=source,
+            check="holds",
+            measure="identity",
+            basis=basis,
+        )
 
     def _judge(
         self,
-        check: Any,
         quantity: str,
         computed: float,
         reference: float,
+        *,
         why: str,
         source: str,
         tolerance: float = 0.0,
-        relative: bool = False,
-        unit: str = "",
-        measure: Measure | None = None,
-        **more: Any,
+        **more: Unpack[JudgedFacts],
     ) -> None:
-        if not unit:
+        if not more.get("unit"):
             quantity, unit = split_unit(quantity)
-            measure = measure or MEASURES.get(unit)
-        self.verdicts.append(
+            more["unit"] = unit
+            more["measure"] = more.get("measure") or MEASURES.get(unit)
+        more.setdefault("relative", False)
+        self.checks.append(
             judge(
                 quantity,
                 computed,
                 reference,
-                check=check,
                 tolerance=tolerance,
-                relative=relative,
                 reason=why,
                 source=source,
-                unit=unit,
-                measure=measure,
                 of=self._of,
                 **more,
             )

@@ -83,7 +83,7 @@ class Found:
 
 
 class Findings(Checks):
-    """Collects what is found.
+    """Collects what is found, under the names that it has in `Found`.
 
     Attributes
     ----------
@@ -91,17 +91,17 @@ class Findings(Checks):
         What must be known before any figure, in sentences.
     unsettled : list of str
         Answers that have not converged, in sentences.
-    verdicts : list of Verdict
-        Verdicts of all checks so far.
-    summary : list of str
-        The answer, in sentences.
-    answers : list of Figure
+    checks : list of Verdict
+        Checks so far.
+    sentences : list of str
+        The answer, which `answer` adds to.
+    figures : list of Figure
         Values that answer what was asked.
     limits : list of Limit
         Where methods fail.
     assumptions : list of AssumptionRow
         Values that the sources do not give.
-    figures : dict
+    tables : dict
         Named numbers for other programs.
     scene : str
         The scene as a file.
@@ -118,11 +118,11 @@ class Findings(Checks):
         self.scene = ""
         self.notes: list[str] = []
         self.unsettled: list[str] = []
-        self.summary: list[str] = []
-        self.answers: list[Figure] = []
+        self.sentences: list[str] = []
+        self.figures: list[Figure] = []
         self.limits: list[Limit] = []
         self.assumptions: list[AssumptionRow] = []
-        self.figures: dict[str, Any] = {}
+        self.tables: dict[str, Any] = {}
         self.drivetrains: list[DrivetrainRecord] = []
         self.skipped: list[str] = []
         self.seed: int | None = 0
@@ -138,13 +138,13 @@ class Findings(Checks):
             What was asked for.
         """
         return {
-            "answer": tuple(self.summary),
-            "figures": tuple(self.answers),
-            "checks": tuple(self.verdicts),
+            "answer": tuple(self.sentences),
+            "figures": tuple(self.figures),
+            "checks": tuple(self.checks),
             "notes": tuple(self.notes),
             "unsettled": tuple(self.unsettled),
             "skipped": tuple(self.skipped),
-            "tables": MappingProxyType(dict(self.figures)),
+            "tables": MappingProxyType(dict(self.tables)),
             "limits": tuple(self.limits),
             "assumptions": tuple(self.assumptions),
             "drivetrains": tuple(self.drivetrains),
@@ -207,8 +207,8 @@ class Findings(Checks):
         return record.hash
 
     def answer(self, *sentences: str) -> None:
-        """The answer first: added to the summary on top of the page."""
-        self.summary.extend(sentences)
+        """The answer first: sentences on top of the page."""
+        self.sentences.extend(sentences)
 
     def found(
         self,
@@ -231,7 +231,7 @@ class Findings(Checks):
         """
         quantity, unit = split_unit(quantity)
         figure = Figure(quantity=quantity, unit=unit, computed=value, band=band)
-        self.answers.append(figure.model_copy(update={"of": self._of, "loads": loads}))
+        self.figures.append(figure.model_copy(update={"of": self._of, "loads": loads}))
 
     def skip(self, check: str, why: str) -> None:
         """State that a check was not made; results with such a gap are no evidence of a project.
@@ -252,7 +252,7 @@ class Findings(Checks):
 
     def data(self, name: str, value: Any) -> None:
         """Keep numbers for other programs in results.json, under a name with its unit."""
-        self.figures[name] = as_json(value)
+        self.tables[name] = as_json(value)
 
     def limit(self, method: str, parameter: str, **more: Any) -> None:
         """State how far a method can be trusted; `more` is the rest of `report.Limit`."""

@@ -65,12 +65,9 @@ def check_in_time(
     if not found.converged:
         page.unsettled.append(f"Not converged: {of}, iterations of some steps.")
     settled: dict[str, list[tuple[float, float, str]]] = {}
-    rows: list[Record] = []
+    every = {key: _bands(found, key) for key in within}
     for key, allowed in within.items():
-        size = abs((scale or {}).get(key, found.value(key)))
-        bands = {_STEP: found.step_band(key)}
-        if found.harmonics:
-            bands[_WAVE] = found.harmonics_band(key)
+        bands, size = every[key], abs((scale or {}).get(key, found.value(key)))
         shares = {by: band / size if size else float("inf") for by, band in bands.items()}
         beyond = [by for by, share in shares.items() if key in open_for and not share <= allowed]
         if beyond:
@@ -78,11 +75,22 @@ def check_in_time(
         for by, share in shares.items():
             if by not in beyond:
                 settled.setdefault(by, []).append((share, allowed, key))
-        rows.append(_row(key, found, bands))
     for by, each in settled.items():
         _check_worst(page, of, by, each)
+    _show(page, of, [_row(key, found, bands) for key, bands in every.items()])
+
+
+def _show(page: Page, of: str, rows: list[Record]) -> None:
     page.table(f"{of}: convergence", rows)
     page.data(f"{of}: convergence", rows)
+
+
+def _bands(found: ConvergenceInTime, key: str) -> dict[str, float]:
+    """Bands of a quantity by the step, and by the number of harmonics where there are some."""
+    bands = {_STEP: found.step_band(key)}
+    if found.harmonics:
+        bands[_WAVE] = found.harmonics_band(key)
+    return bands
 
 
 def _still_open(name: str, bands: Mapping[str, float]) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, TypedDict, Unpack
 
 import numpy as np
 
@@ -28,6 +28,30 @@ from fe_drivetrain.report.suite.records import (
     plain_cells,
 )
 from fe_drivetrain.report.suite.targets import Target
+
+
+class Look(TypedDict, total=False):
+    """How the chart of a sweep looks.
+
+    Attributes
+    ----------
+    log : str
+        Which axes are logarithmic: "", "x", "y" or "xy".
+    reference : dict
+        Horizontal lines: name and value of y.
+    safe : tuple
+        Range of x that is shaded as safe.
+    points : bool
+        Points without lines.
+    axis : str
+        Title of the vertical axis, with its unit; the key of the first curve where left out.
+    """
+
+    log: str
+    reference: Mapping[str, float] | None
+    safe: tuple[float | None, float | None] | None
+    points: bool
+    axis: str
 
 
 class Page(Findings):
@@ -59,9 +83,9 @@ class Page(Findings):
         found : Found
             Its answer, numbers, checks, cautions, and what it is of.
         """
-        self.summary += found.answer
-        self.answers += found.figures
-        self.verdicts += found.checks
+        self.sentences += found.answer
+        self.figures += found.figures
+        self.checks += found.checks
         self.unsettled += found.unsettled
         self.skipped += found.skipped
         self.limits += found.limits
@@ -69,7 +93,7 @@ class Page(Findings):
         for sentence in found.notes:
             self.note(sentence)
         self.drivetrains += [one for one in found.drivetrains if one not in self.drivetrains]
-        self.figures |= found.tables
+        self.tables |= found.tables
         self.scene = found.scene or self.scene
         self.seed = found.seed
 
@@ -180,12 +204,8 @@ class Page(Findings):
         y: str | Mapping[str, str],
         *,
         by: str | None = None,
-        log: str = "",
-        reference: Mapping[str, float] | None = None,
-        safe: tuple[float | None, float | None] | None = None,
-        points: bool = False,
         table: Sequence[str] | bool = True,
-        axis: str = "",
+        **look: Unpack[Look],
     ) -> None:
         """One list of records, of which chart, table and data are made.
 
@@ -202,28 +222,21 @@ class Page(Findings):
             Key of the vertical axis; or of several curves the key of each, and its name.
         by : str, optional
             Key that tells the curves apart; of several `y` each has its own for every value.
-        log : str
-            Which axes are logarithmic: "", "x", "y" or "xy".
-        reference : dict, optional
-            Horizontal lines: name and value of y.
-        safe : tuple, optional
-            Range of x that is shaded as safe.
-        points : bool
-            Points without lines.
         table : bool or sequence of str
             Whether there is a table, or which keys it shows.
-        axis : str
-            Title of the vertical axis, with its unit; the key of the first curve where left out.
+        **look : object
+            How the chart looks, see `Look`.
         """
-        mode = "markers" if points else "lines+markers"
+        mode = "markers" if look.get("points") else "lines+markers"
         keys = {y: ""} if isinstance(y, str) else y
         traces = curves(rows, x, keys, by, mode)
         ends = rounded([min(column(rows, x)), max(column(rows, x))])
         traces += [
             trace(name, ends, [value, value], line={"dash": "dot"})
-            for name, value in (reference or {}).items()
+            for name, value in (look.get("reference") or {}).items()
         ]
-        self.chart(caption, traces, x, axis or next(iter(keys)), tuple(log), safe)
+        axis = look.get("axis") or next(iter(keys))
+        self.chart(caption, traces, x, axis, tuple(look.get("log", "")), look.get("safe"))
         plain = [key for key, value in rows[0].items() if np.ndim(value) == 0]
         if table is not False:
             self.table("The same in numbers", rows, plain if table is True else table)

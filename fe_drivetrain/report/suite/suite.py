@@ -14,7 +14,7 @@ from typing import Any
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import sentence_about
 from fe_drivetrain.common.folders import HiddenFolder, empty
-from fe_drivetrain.common.jobs import pool
+from fe_drivetrain.common.jobs import Pool, pool
 from fe_drivetrain.common.processes import Processes
 from fe_drivetrain.common.progress import OVERALL, Progress, silent
 from fe_drivetrain.common.repeated import Repeated
@@ -77,88 +77,130 @@ def run_cases(
     InputError
         A result folder cannot be written or holds something else, or no case takes a setting.
     """
-    from fe_drivetrain.report.history import check_history, record_run, seconds_before
-    from fe_drivetrain.report.index import problems_before, write_index
-    from fe_drivetrain.report.results import read_results
-
     out = Path(out)
     taken = settings_by_case(cases, settings or {})
     require_reports(out)
-    asked = {case.name for case in cases}
-    cases = [case for case in cases if case.name not in kept]
-    known = list(all_cases())
-    others = {name: why for name, why in problems_before(out).items() if name not in asked}
-    problems: dict[str, Problem] = {}
-    folders: dict[str, HiddenFolder] = {}
-    pending = {case.name: PLANNED for case in cases}
-    changing = threading.Lock()  # steps are reported by several threads
-
-    def list_all() -> None:
-        write_index(out, others | problems | pending, known)
-
-    # a run that is killed could write no pages of what it has done
-    pages = Repeated(list_all)
-
-    def show(step: str, lane: int = 0) -> None:
-        name = step.partition(": ")[0]
-        if lane != OVERALL and pending.get(name) is PLANNED:
-            with changing:
-                if name in pending:
-                    pending[name] = RUNNING
-            pages.soon()
-        report(step, lane)
-
-    def finish(case: Case, problem: Problem | None) -> None:
-        if problem:
-            problems[case.name] = problem
-        else:
-            # whoever is stopped in between runs the case again: no result is without its history
-            record_run(out, read_results(folders[case.name].path / "results.json"))
-            put_in_place(folders[case.name], result_folder(out, case))
-        with changing:
-            del pending[case.name]
-        pages.soon()
-        count()
-
-    def count() -> None:
-        if len(cases) > 1:
-            report(f"cases ({len(cases) - len(pending)} of {len(cases)})", OVERALL)
-
+    left = [case for case in cases if case.name not in kept]
+    listed = _Listed(out, {case.name for case in cases}, left, report)
     try:
-        for case in cases:
-            folders[case.name] = new_folder(result_folder(out, case))
-        check_history(out)
-        pages.soon()
-        count()
-        took = seconds_before(out, quick)
-        # at the end no process waits for another's long one; nobody knows how long a new one is
-        beside = sorted(
-            (case for case in cases if not case.runs_alone(quick)),
-            key=lambda case: -took.get(case.name, math.inf),
-        )
-        with pool(len(beside), show, each_for_itself=True) as workers:
-            jobs: dict[Future[Problem | None], Case] = {
-                workers.start(
-                    _run, case, folders[case.name].path, taken[case.name], quick, out
-                ): case
-                for case in beside
-            }
-            for job in workers.finished(jobs):
-                finish(jobs[job], _outcome(job))
-        for case in cases:
-            if case.runs_alone(quick):
-                with Processes(1, show, always=True, each_for_itself=True) as processes:
-                    job = processes.start(
-                        _run, case, folders[case.name].path, taken[case.name], quick, out
-                    )
-                    finish(case, _outcome(job))
+        listed.begin()
+        _run_all(left, listed, taken, quick)
     finally:
-        pages.stop()
-        for folder in folders.values():
+        listed.end()
+    return listed.problems
+
+
+def _run_all(
+    cases: Sequence[Case],
+    listed: _Listed,
+    settings: Mapping[str, Mapping[str, Any]],
+    quick: bool,
+) -> None:
+    """Run cases side by side, and then one by one those that are to be alone."""
+    from fe_drivetrain.report.history import seconds_before
+
+    took = seconds_before(listed.out, quick)
+
+    def start(workers: Pool, case: Case) -> Future[Problem | None]:
+        folder = listed.folders[case.name].path
+        return workers.start(_run, case, folder, settings[case.name], quick, listed.out)
+
+    # at the end no process waits for another's long one; nobody knows how long a new one is
+    beside = sorted(
+        (case for case in cases if not case.runs_alone(quick)),
+        key=lambda case: -took.get(case.name, math.inf),
+    )
+    with pool(len(beside), listed.show, each_for_itself=True) as workers:
+        jobs = {start(workers, case): case for case in beside}
+        for job in workers.finished(jobs):
+            listed.finish(jobs[job], _outcome(job))
+    for case in (case for case in cases if case.runs_alone(quick)):
+        with Processes(1, listed.show, always=True, each_for_itself=True) as processes:
+            listed.finish(case, _outcome(start(processes, case)))
+
+
+class _Listed:
+    """Cases of a run in a folder of reports: how each stands, and the page that lists them.
+
+    Attributes
+    ----------
+    out : Path
+        The folder of reports.
+    folders : dict
+        Hidden folder of each case, by its name.
+    problems : dict
+        Why there are no results, by the name of the case.
+    """
+
+    def __init__(
+        self, out: Path, asked: Collection[str], cases: Sequence[Case], report: Progress
+    ) -> None:
+        from fe_drivetrain.report.index import problems_before
+
+        self.folders: dict[str, HiddenFolder] = {}
+        self.problems: dict[str, Problem] = {}
+        self.out, self._cases, self._report = out, cases, report
+        self._others = {n: why for n, why in problems_before(out).items() if n not in asked}
+        self._pending = {case.name: PLANNED for case in cases}
+        self._known = list(all_cases())
+        self._changing = threading.Lock()  # steps are reported by several threads
+        # a run that is killed could write no pages of what it has done
+        self._pages = Repeated(lambda: self._write(self._pending))
+
+    def begin(self) -> None:
+        """Make a folder for each case, and list all of them."""
+        from fe_drivetrain.report.history import check_history
+
+        for case in self._cases:
+            self.folders[case.name] = new_folder(result_folder(self.out, case))
+        check_history(self.out)
+        self._pages.soon()
+        self._count()
+
+    def show(self, step: str, lane: int = 0) -> None:
+        """Report a step, and list the case that it belongs to as running."""
+        name = step.partition(": ")[0]
+        if lane != OVERALL and self._pending.get(name) is PLANNED:
+            with self._changing:
+                if name in self._pending:
+                    self._pending[name] = RUNNING
+            self._pages.soon()
+        self._report(step, lane)
+
+    def finish(self, case: Case, problem: Problem | None) -> None:
+        """Put the results of a case in place, or keep why there are none."""
+        from fe_drivetrain.report.history import record_run
+        from fe_drivetrain.report.results import read_results
+
+        if problem:
+            self.problems[case.name] = problem
+        else:
+            folder = self.folders[case.name]
+            # whoever is stopped in between runs the case again: no result is without its history
+            record_run(self.out, read_results(folder.path / "results.json"))
+            put_in_place(folder, result_folder(self.out, case))
+        with self._changing:
+            del self._pending[case.name]
+        self._pages.soon()
+        self._count()
+
+    def end(self) -> None:
+        """Remove what is left of folders, and list cases without results as not run."""
+        self._pages.stop()
+        for folder in self.folders.values():
             folder.discard()
-        if len(folders) == len(cases):  # else nothing was begun
-            write_index(out, others | problems | dict.fromkeys(pending, NOT_RUN), known)
-    return problems
+        if len(self.folders) == len(self._cases):  # else nothing was begun
+            self._write(dict.fromkeys(self._pending, NOT_RUN))
+
+    def _write(self, pending: dict[str, Problem]) -> None:
+        from fe_drivetrain.report.index import write_index
+
+        write_index(self.out, self._others | self.problems | pending, self._known)
+
+    def _count(self) -> None:
+        if len(self._cases) > 1:
+            done = len(self._cases) - len(self._pending)
+            self._report(f"cases ({done} of {len(self._cases)})", OVERALL)
 
 
 def _outcome(job: Future[Problem | None]) -> Problem | None:

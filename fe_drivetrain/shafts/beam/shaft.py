@@ -25,6 +25,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import along_x, wrench_transport
 from fe_drivetrain.shafts.beam.beam import SAME_STATION, Beam, stations_on
 from fe_drivetrain.shafts.beam.sections import element_integrals, stiffness_of_ends
@@ -62,6 +63,8 @@ class BeamSolution:
     supports: tuple[str, ...]
     displacements: Floats
     reactions: Floats
+
+    __repr__ = short_repr
 
     def reaction(self, support: str) -> Floats:
         """Load on one support, (..., 6).
@@ -105,6 +108,8 @@ class UnitLoadResponse:
     reaction: Floats
     gravity_displacement: Floats
     gravity_reaction: Floats
+
+    __repr__ = short_repr
 
     def solution(self, loads: ArrayLike, gravity: ArrayLike = (0.0, 0.0, 0.0)) -> BeamSolution:
         """Answer to load cases, as one matrix product.

@@ -10,6 +10,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.elasticity.solve.condensation import Condensed
 from fe_drivetrain.shafts.fidelity.ladder import housing_springs, shaft_level
 from fe_drivetrain.shafts.fidelity.quantity import Quantity
 from fe_drivetrain.shafts.fidelity.shafts import (
@@ -29,7 +30,7 @@ class Effect:
     detail : str
         What was left out.
     change : float
-        Of the quantity, relative: with its sign for one load, else of the whole row.
+        Change of the quantity, relative: with its sign for one load, else of the whole row.
     """
 
     detail: str
@@ -97,21 +98,33 @@ def effects(
             add(detail, quantity.of(shaft_level(changed, level, housings, whole), length))
         except InputError:  # nothing else holds the shaft
             continue
+    for detail, body in _other_bodies(scene, level).items():
+        add(detail, quantity.of(shaft_level(scene, level, housings, body), length))
+    for detail, load in _lighter(quantity).items():
+        add(detail, Quantity(quantity.name, load).of(base, length))
+    return sorted(found, key=lambda effect: -abs(effect.change))
+
+
+def _other_bodies(scene: Scene, level: int) -> dict[str, Condensed]:
+    """The shaft without its rings, and without shear."""
     condense = beam_shaft if level == 1 else meridian_shaft
     bodies = {}
     if ringed_shaft(scene)[1]:
         bodies["rings on the shaft"] = condense(scene, rings=False)
     if level == 1:
         bodies["shear deformation"] = beam_shaft(scene, shear=False)
-    for detail, body in bodies.items():
-        add(detail, quantity.of(shaft_level(scene, level, housings, body), length))
+    return bodies
+
+
+def _lighter(quantity: Quantity) -> dict[str, Floats]:
+    """Factors of the load without each weight that is in it."""
+    loads: dict[str, Floats] = {}
     if (given := quantity.factors) is not None:
         for detail, columns in (("self-weight", slice(6, 9)), ("gearbox weight", slice(9, 10))):
             if np.any(given[columns]):
-                load = given.copy()
-                load[columns] = 0.0
-                add(detail, Quantity(quantity.name, load).of(base, length))
-    return sorted(found, key=lambda effect: -abs(effect.change))
+                loads[detail] = given.copy()
+                loads[detail][columns] = 0.0
+    return loads
 
 
 def simplified(scene: Scene) -> dict[str, Scene]:

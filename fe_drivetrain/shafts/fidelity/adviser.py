@@ -14,11 +14,13 @@ from typing import Any
 
 import numpy as np
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import silent
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.elasticity.mesh.measures import mean_size
 from fe_drivetrain.geometry import MeshSizes
@@ -59,7 +61,7 @@ class LevelResult:
     model : LevelModel
         The model that was solved.
     values : Floats
-        Of the quantity.
+        Values of the quantity.
     seconds : float
         Wall time of all that its value needs; what its estimate takes comes on top.
     waited : float
@@ -81,6 +83,8 @@ class LevelResult:
     waited: float = 0.0
     error: float = float("nan")
     band: AssemblyBand | None = None
+
+    __repr__ = short_repr
 
 
 @dataclass(frozen=True)
@@ -111,6 +115,8 @@ class Advice:
     share: float = 1.0
     sizes: MeshSizes | None = None
 
+    __repr__ = short_repr
+
     @property
     def top(self) -> LevelResult:
         """The most expensive model that was run."""
@@ -130,13 +136,15 @@ class Advice:
         plotly.graph_objects.Figure
             See `fe_drivetrain.plots.error_against_time`; of the last level its estimated own error.
         """
-        return error_against_time(
+        return error_against_time(*self.ladder, self.tolerance, self.chosen, self.quantity.name)
+
+    @property
+    def ladder(self) -> tuple[list[str], list[float], list[float]]:
+        """Name, time [s] and relative error of each level; of the last one its own error."""
+        return (
             [f"level {result.model.level}, {result.model.title}" for result in self.results],
             [result.seconds for result in self.results],
             [*(result.error for result in self.results[:-1]), self.top.estimate],
-            self.tolerance,
-            self.chosen,
-            self.quantity.name,
         )
 
     def sentence(self) -> str:
@@ -218,7 +226,7 @@ def advise(
     if not 0 < tolerance < 1:
         raise InputError(
             f"tolerance is {100 * tolerance:g} % but must be between 0 and 100 %: "
-            "give it as in --tolerance 1%"
+            f"give it as in {argument('tolerance', 0.01)}"
         )
     length = scene.shaft.length
     results: list[LevelResult] = []
@@ -332,7 +340,7 @@ def banded_assembly(
     float
         Wall time of that alone [s]; of reading it, where it was kept.
     list[AssemblyBand]
-        Of each quantity.
+        Band of each quantity.
     """
     level, seconds, series = assembly_series(scene, quantities, report, cache)
     return level, seconds, [of.band for of in series]
@@ -413,7 +421,7 @@ def recovered_errors(
     model, response : Model, Response
         The solved assembly.
     length : float
-        Of the shaft [m], as of `Quantity.of`.
+        Length of the shaft [m], see `Quantity.of`.
 
     Returns
     -------

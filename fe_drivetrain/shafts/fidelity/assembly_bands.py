@@ -22,6 +22,7 @@ from math import ceil, floor, log10
 
 import numpy as np
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.cache import Cache, user_cache
 from fe_drivetrain.common.made_by import source_hash
@@ -107,16 +108,22 @@ def finer_mesh(sizes: MeshSizes | None, band: float) -> str:
     percent = 100.0 * band
     digits = 10.0 ** (floor(log10(percent)) - 1) if percent > 0.0 else 1.0
     enough = ceil(percent / digits) * digits
-    wider = f"ask for --tolerance {enough:g}%" if enough < 100.0 else ""
+    wider = f"ask for {argument('tolerance', round(enough / 100.0, 12))}" if enough < 100.0 else ""
     if sizes is None:
         return wider or "make its mesh finer"
     half = sizes.scaled(0.5, min(2 * sizes.elements_per_turn, MOST_TURN))
     keys = ("shaft", "bearing", "bearing_edge", "housing", "elements_per_turn")
-    given = " ".join(f"--set mesh.{key}={getattr(half, key):.3g}" for key in keys)
+    smaller = {f"mesh.{key}": _rounded(getattr(half, key)) for key in keys}
+    given = argument("change_scene.changes", smaller)
     return (
         f"make the element sizes under mesh smaller, for instance half of those here, {given} (all "
         f"in m but for the elements a turn){', or ' if wider else ''}{wider}"
     )
+
+
+def _rounded(value: float) -> float:
+    """A size to three digits; a number of elements as it is."""
+    return value if isinstance(value, int) else float(f"{value:.3g}")
 
 
 def assembly_band(
@@ -193,7 +200,7 @@ def reaction_error(
     model, response : Model, Response
         A solved scene.
     name : str
-        Of a bearing, or "gearbox".
+        Name of a bearing, or "gearbox".
     components : Sequence[int]
         Which of the six.
     columns : Floats
@@ -244,7 +251,7 @@ def cached_reaction_errors(
     Returns
     -------
     dict[str, Floats]
-        As of `all_reaction_errors`, the same to the last bit whether kept or not.
+        Errors as from `all_reaction_errors`, the same to the last bit whether kept or not.
     bool
         Whether they were kept.
     """

@@ -89,9 +89,9 @@ def unit_stiffness(
     scene : Scene
         The scene.
     name : str
-        Of the bearing.
+        Name of the bearing.
     coupling : Coupling
-        Of the face to its reference point.
+        Coupling of the face to its reference point.
     method : str
         Solver, see `fe_drivetrain.elasticity.solve.solvers.solve`.
     ring : bool
@@ -132,7 +132,7 @@ def unit_stiffnesses(
     scene : Scene
         The scene.
     name : str
-        Of the bearing.
+        Name of the bearing.
     method : str
         Solver, see `fe_drivetrain.elasticity.solve.solvers.solve`.
     cache : Cache or None
@@ -196,9 +196,9 @@ def unit_matrices(
     scene : Scene
         The scene.
     name : str
-        Of the bearing.
+        Name of the bearing.
     coupling, method, cache : Coupling, str, Cache or None
-        As of `unit_stiffness`.
+        The same as for `unit_stiffness`.
 
     Raises
     ------
@@ -236,7 +236,7 @@ def banded_unit(scene: Scene, name: str) -> tuple[Floats, StiffnessBands]:
     scene : Scene
         The scene.
     name : str
-        Of the bearing.
+        Name of the bearing.
 
     Returns
     -------
@@ -274,7 +274,7 @@ def unit_bounds(scene: Scene, name: str, cache: Cache | None = None) -> UnitBoun
     scene : Scene
         The scene.
     name : str
-        Of the bearing.
+        Name of the bearing.
     cache : Cache or None
         Where they may come from, the same to the last bit; the user's if not given.
 

@@ -78,7 +78,7 @@ def frame_level(component: Component, ring_gives: bool = True) -> LevelModel:
     component : Component
         The component.
     ring_gives : bool
-        Of a housing, whether the ring is of beams, too.
+        Whether the ring of a housing is of beams, too.
     """
     check_component_standing(component)
     start = time.perf_counter()

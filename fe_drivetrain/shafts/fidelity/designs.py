@@ -69,7 +69,7 @@ class Difference:
     quantity : Quantity
         What it is.
     values : tuple[Value, ...]
-        Of each design, the first one that the others are compared with.
+        Value of each design, the first one that the others are compared with.
     """
 
     quantity: Quantity

@@ -26,7 +26,7 @@ def foot_warnings(
     scene : Scene
         The scene.
     response : Response
-        Of its assembly, which is linear: no patch of a foot opens or closes.
+        Response of its assembly, which is linear: no patch of a foot opens or closes.
     loads : LoadHistory, PointLoads or array_like
         (N, 6 + 6 m) at the hub and at load points, see `Response.history`.
     weights : Floats

@@ -16,7 +16,7 @@ SLIGHT = 1e-2
 NEGLIGIBLE = 1e-3
 """Share of the largest force below which a moment over the shaft's length does not decide."""
 
-_UNITS = {"force": "kN", "moment": "kN\u00a0m"}
+_UNITS = {"force": "kN", "moment": "kN m"}
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import point_motions, wrench_transport
 from fe_drivetrain.drivetrain_file.entrance import AT_HUB, Entrance
 from fe_drivetrain.drivetrain_file.joint_springs import joint_stiffness
@@ -61,7 +62,7 @@ class Cost:
     seconds : float
         Wall time, meshes and solutions included.
     unknowns : int
-        Of its largest system.
+        Number of unknowns of its largest system.
     """
 
     seconds: float
@@ -79,7 +80,7 @@ class LevelModel:
     level : int
         0 to 4.
     title : str
-        Of the level, with what its housings are.
+        Title of the level, with what its housings are.
     neglects : tuple[str, ...]
         What it leaves out.
     cost : Cost
@@ -102,6 +103,8 @@ class LevelModel:
     points: tuple[str, ...] = ()
     compliance: Floats = field(default_factory=lambda: np.zeros((0, 0)))
     entrance: Entrance = AT_HUB
+
+    __repr__ = short_repr
 
     def reactions(self, load: Factors | ArrayLike) -> dict[str, Floats]:
         """Reactions (..., 6) [N, N m] to loads (..., n), factors of `model.scene_loads`.
@@ -295,7 +298,7 @@ def housing_springs(
     scene, coupling : Scene, Coupling
         See `bearing_units.unit_stiffness`.
     level : int
-        Of the shaft that they are for: a solid one (3) has all rings itself.
+        Level of the shaft that they are for: a solid one (3) has all rings itself.
     cache : Cache or None
         Where they may come from; the user's if not given.
     solids : dict or None

@@ -34,11 +34,11 @@ class Forecast:
     level : int
         0 to 4.
     title : str
-        Of the level, with what its housings are.
+        Title of the level, with what its housings are.
     unknowns : int
-        Of its largest system.
+        Number of unknowns of its largest system.
     seconds : float
-        Of the solution, without mesh and assembly where predicted.
+        Duration of the solution, without mesh and assembly where predicted.
     bytes : float or None
         Memory of its largest system, with what the solver keeps; None where it was run.
     solver : str

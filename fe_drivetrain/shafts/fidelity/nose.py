@@ -101,7 +101,7 @@ class OnNose:
     rows : Ints
         (k,) of the shaft's degrees of freedom that they act on.
     names : tuple[str, ...]
-        Of the bearings.
+        Names of the bearings.
     """
 
     body: Condensed
@@ -126,7 +126,7 @@ def on_nose(scene: Scene, nose: Nose, level: int, body: Condensed) -> OnNose:
     scene, nose : Scene, Nose
         The scene, and its nose.
     level : int
-        Of the nose: 1 beam, 2 meridian, 3 solid.
+        Level of the nose: 1 beam, 2 meridian, 3 solid.
     body : Condensed
         The free shaft.
     """

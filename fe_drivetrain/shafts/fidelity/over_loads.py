@@ -84,7 +84,7 @@ def levels_of(scene: Scene, response: Response, report: Progress = silent) -> Le
     scene : Scene
         Any scene, with any number of bearings and sections.
     response : Response
-        Of the assembly.
+        Response of the assembly.
     report : callable
         Called with what is being done.
 
@@ -145,7 +145,7 @@ def reaction_history(
     model : LevelModel
         The scene at a level.
     name : str
-        Of a bearing, or "gearbox".
+        Name of a bearing, or "gearbox".
     hub_loads : LoadHistory, PointLoads or array_like
         As `shafts.response.entering` takes them; an array is (..., 6) hub forces [N] and moments [N
         m] about the front face, or (..., 6 + 6 m) with those at the m load points.
@@ -181,9 +181,9 @@ def relative_errors(
     reference, found : ndarray, (n, 6)
         Samples of a reaction [N, N m].
     length : float
-        Of the shaft [m], which makes forces comparable to moments.
+        Length of the shaft [m], which makes forces comparable to moments.
     weights : ndarray, (n,), or None
-        Of the samples, their sum 1; equal where not given.
+        Weights of the samples, their sum 1; equal where not given.
 
     Returns
     -------

@@ -140,7 +140,7 @@ def numbers(
     scene : Scene
         The scene.
     names : Sequence[str]
-        Of `known_names`.
+        Names from `known_names`.
     load : Factors, Floats or None
         (n,) factors of `model.scene_loads`, for reactions; else a reaction stands for six
         numbers, one for a unit of each hub load.

@@ -142,7 +142,7 @@ def meridian_shaft(
     rings : bool
         Whether it has its rings, see `ringed_shaft`.
     layers : int or None
-        Of ever smaller elements at corners; 4 where not given, of shafts with fillets 2.
+        Number of layers of ever smaller elements at corners; 4 where not given, 2 with fillets.
     per_fillet : int
         See `fe_drivetrain.elasticity.revolution.meridian_mesh.meridian`.
     """

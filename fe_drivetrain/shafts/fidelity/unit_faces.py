@@ -68,7 +68,7 @@ def attached(scene: Scene, name: str, with_ring: bool, coupling: Coupling) -> At
     scene, name : Scene, str
         The scene, and which bearing of it.
     with_ring, coupling : bool, Coupling
-        As of `face_of`.
+        The same as for `face_of`.
     """
     unit = scene.bearing_unit(name)
     if with_ring:
@@ -86,7 +86,7 @@ def parts_left_out(solid: CoupledSolid, at: Sequence[Attachment]) -> constraints
     Parameters
     ----------
     solid : CoupledSolid
-        Of some parts of its mesh.
+        Solid of some parts of its mesh.
     at : Sequence[Attachment]
         Its attachments.
     """

@@ -3,6 +3,7 @@ from .bearing_stiffness import PLANES as PLANES
 from .bearing_stiffness import VERTICAL as VERTICAL
 from .bearing_stiffness import Plane as Plane
 from .bearing_stiffness import bearing_unit_stiffness as bearing_unit_stiffness
+from .bearing_stiffness import tilt_by_plane as tilt_by_plane
 from .bearing_stiffness import tilt_stiffness as tilt_stiffness
 from .bearing_stiffness import without_gearbox as without_gearbox
 from .cached import cached_response as cached_response

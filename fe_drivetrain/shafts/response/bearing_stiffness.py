@@ -12,6 +12,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import wrench_transport
+from fe_drivetrain.drivetrain_file.bearing_unit import SPHERICAL_JOINTS
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.shafts.response.model import Model
 from fe_drivetrain.shafts.response.unit_loads import Response
@@ -28,8 +29,8 @@ class Plane:
     force, moment : int
         Components (0-5) of the force and of the moment that bend the shaft in this plane.
     sign : int
-        Of the moment: a positive force at the hub and a positive sign * moment load the bearing
-        in the same direction.
+        Sign of the moment: a positive force at the hub and a positive sign * moment load the
+        bearing in the same direction.
     nodes : tuple[str, str]
         The two named points of the housing whose displacement along x gives its rotation.
     """
@@ -58,6 +59,39 @@ def without_gearbox(scene: Scene) -> Scene:
     return scene.model_copy(update={"gearbox": free})
 
 
+def check_one_tilting_bearing(scene: Scene) -> None:
+    """Refuse a scene whose bearing unit has no tilt stiffness that a moment could measure.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, with or without its gearbox springs.
+
+    Raises
+    ------
+    InputError
+        It has another number of bearing units, or a bearing that carries no moment, or a housing
+        that is a stiffness alone.
+    """
+    if len(scene.bearing_units) != 1:
+        raise InputError(
+            f"tilt stiffness needs a scene with one bearing, not {len(scene.bearing_units)}: "
+            "a second one carries part of the moment; take it out of the scene"
+        )
+    (unit,) = scene.bearing_units
+    name = unit.bearing.name
+    if unit.interface in SPHERICAL_JOINTS:
+        raise InputError(
+            f"{name!r} has no tilt stiffness: its interface {unit.interface!r} carries no moment; "
+            "take the interface bonded, rollers or spring"
+        )
+    if unit.condensed is not None:
+        raise InputError(
+            f"the housing of {name!r} is a stiffness alone: its tilt stiffness is that of the "
+            "scene: read it there"
+        )
+
+
 def tilt_stiffness(
     model: Model, response: Response, bearing: str, plane: Plane
 ) -> dict[str, float]:
@@ -66,7 +100,7 @@ def tilt_stiffness(
     Parameters
     ----------
     model, response : Model, Response
-        Of a scene without gearbox springs, so that the bearing carries the whole moment.
+        Scene without gearbox springs, so that the bearing carries the whole moment; its response.
     bearing : str
         Name of the bearing.
     plane : Plane
@@ -84,29 +118,21 @@ def tilt_stiffness(
     Raises
     ------
     InputError
-        The gearbox still carries part of the load.
+        The gearbox still carries part of the load, or `check_one_tilting_bearing` refuses the
+        scene.
 
     Warns
     -----
     UserWarning
         The four nodes differ from the averaged seat by more than `MISLEADS`.
     """
-    if len(model.scene.bearing_units) != 1:
-        raise InputError(
-            f"tilt stiffness needs a scene with one bearing, not {len(model.scene.bearing_units)}: "
-            "a second one carries part of the moment; take it out of the scene"
-        )
+    check_one_tilting_bearing(model.scene)
     if any(k != 0 for k in model.scene.gearbox.stiffness):
         raise InputError(
             "tilt stiffness needs a scene without gearbox stiffness, else the bearing does not "
             "carry the whole moment: set gearbox.stiffness to zeros"
         )
     load = plane.moment
-    if model.scene.bearing_unit(bearing).condensed is not None:
-        raise InputError(
-            f"the housing of {bearing!r} is a stiffness alone: its tilt stiffness is that of the "
-            "scene: read it there"
-        )
     parts = [bearing, *model.scene.bearing_unit(bearing).housing_parts]
     energy = sum(response.strain_energy[part][load, load] for part in parts)
     found = {
@@ -131,6 +157,31 @@ def tilt_stiffness(
     return found
 
 
+def tilt_by_plane(model: Model, response: Response, bearing: str) -> dict[str, dict[str, float]]:
+    """K_R of a bearing unit by plane and estimator, without a word where four nodes mislead.
+
+    Parameters
+    ----------
+    model, response : Model, Response
+        Of a scene without gearbox springs.
+    bearing : str
+        Name of the bearing.
+
+    Returns
+    -------
+    dict of str to dict of str to float
+        [N m/rad] by plane ("vertical", "horizontal") and estimator, see `tilt_stiffness`.
+
+    Raises
+    ------
+    InputError
+        As `tilt_stiffness`.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the averaged seat stands beside the four nodes
+        return {plane.name: tilt_stiffness(model, response, bearing, plane) for plane in PLANES}
+
+
 def bearing_unit_stiffness(response: Response, bearing: str) -> Floats:
     """Condensed 6x6 stiffness of a bearing and its housing, as the shaft feels it.
 
@@ -143,8 +194,8 @@ def bearing_unit_stiffness(response: Response, bearing: str) -> Floats:
     Parameters
     ----------
     response : Response
-        Of a scene without gearbox springs; of a spherical joint, which carries no moment, the
-        response with its gearbox.
+        Response of a scene without gearbox springs; of a spherical joint, which carries no moment,
+        the response with its gearbox.
     bearing : str
         Name of the bearing.
 

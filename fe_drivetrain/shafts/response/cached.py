@@ -34,7 +34,7 @@ def cached_response(
         Solver, see `fe_drivetrain.elasticity.solve.solve`. What "auto" chose when it was solved is
         kept.
     seed : int
-        As of `unit_load_response`.
+        Seed, see `unit_load_response`.
     cache : Cache or None
         The user's if not given.
 

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.entrance import Entrance
 from fe_drivetrain.turbine_loads.hub_loads.files import require_points
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
@@ -42,6 +43,8 @@ class Factors:
 
     values: Floats
 
+    __repr__ = short_repr
+
     def __len__(self) -> int:
         return len(self.values)
 
@@ -61,9 +64,9 @@ def entering(where: Entered, loads: Loads) -> PointLoads:
     where : Scene, or what was solved of one
         With m load points.
     loads : LoadHistory, PointLoads or array_like
-        Of a history, those at load points that it does not have are zero, and the weights of load
-        points are added. `PointLoads` name the point that they are about. An array, (..., 6) or
-        (..., 6 + 6 m) [N, N m], is about the front face.
+        Loads; of a history, those at load points that it does not have are zero, and the weights of
+        load points are added. `PointLoads` name the point that they are about. An array, (..., 6)
+        or (..., 6 + 6 m) [N, N m], is about the front face.
 
     Returns
     -------
@@ -101,7 +104,7 @@ def at_front(where: Entered, history: LoadHistory) -> LoadHistory:
     where : Scene, or what was solved of one
         States which point a history is about that names none.
     history : LoadHistory
-        Of a file, or made.
+        History from a file, or made.
 
     Raises
     ------

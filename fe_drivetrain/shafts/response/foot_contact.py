@@ -59,7 +59,7 @@ def clamped_foot(
     scene : Scene
         The scene.
     name : str
-        Of a bearing whose housing has bolts with the hold "clamped".
+        Name of a bearing whose housing has bolts with the hold "clamped".
     method : str
         Solver, see `fe_drivetrain.elasticity.solve.solvers.solve`.
     size : float or None

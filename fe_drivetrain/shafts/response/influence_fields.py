@@ -29,8 +29,8 @@ def reaction_influences(
     model : Model
         The model.
     name : str
-        Of a bearing, whose housing or bedplate stands on that ground, or which moves so against a
-        nose; or "gearbox".
+        Name of a bearing whose housing or bedplate stands on that ground, or that moves so against
+        a nose; or "gearbox".
     components : Sequence[int]
         Which motions: 0 to 2 displacements [m], 3 to 5 rotations about the bearing's centre [rad].
     method : str

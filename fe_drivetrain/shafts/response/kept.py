@@ -59,22 +59,22 @@ def kept_together(
     Parameters
     ----------
     scene : Scene
-        As of `kept_arrays`.
+        Scene, see `kept_arrays`.
     contents : Sequence
         What else each depends on.
     rooms : Mapping
-        As of `kept_arrays`.
+        Rooms, see `kept_arrays`.
     solve : callable
         Makes the arrays of each, by name.
     cache : Cache or None
-        As of `kept_arrays`.
+        Cache, see `kept_arrays`.
     depends : Mapping[str, Any] or None
         What of the scene they depend on; `solved_content` if not given.
 
     Returns
     -------
     list of dict
-        Of each content.
+        Arrays of each content.
     """
     used = user_cache() if cache is None else cache
     common = {

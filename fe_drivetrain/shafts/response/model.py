@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.bearing_unit import BearingUnit, Springs
 from fe_drivetrain.drivetrain_file.joint_springs import as_numbers
 from fe_drivetrain.drivetrain_file.scene import Scene
@@ -17,6 +18,7 @@ from fe_drivetrain.elasticity.interfaces import constraints
 from fe_drivetrain.elasticity.interfaces.constraints import Constraint, ReferencePoint
 from fe_drivetrain.elasticity.interfaces.joints import (
     SECTORS,
+    Joint,
     condensed_joint,
     nose_joint,
     roller_joint,
@@ -108,6 +110,8 @@ class Model:
     held: Mapping[str, Sequence[int]]
     n_dofs: int
     warnings: tuple[str, ...] = ()
+
+    __repr__ = short_repr
 
     def standing(self, name: str) -> list[str]:
         """Reference points that a bearing's housing stands on: a bedplate, bolts, or a foot."""
@@ -227,7 +231,41 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
     ties = [pair for unit in units for pair in tie_faces(unit)]
     refuse_unsound(mesh, needed_faces(scene), [*apart, *ties, *open_sides(units)])
     n = len(mesh.points)
-    extra: dict[str, int] = {}  # degrees of freedom beside the nodes' own
+    stated = _Conditions(scene, mesh)
+    stated.shaft()
+    for unit in units:
+        stated.unit(unit)
+    stated.nose()
+    stated.stand("gearbox", scene.gearbox.stiffness)
+    mesh, conditions, springs = stated.mesh, stated.conditions, stated.springs
+
+    refuse_mechanisms(mesh, conditions, springs)
+    moduli = {part: scene.material_of(part).youngs_modulus for part in mesh.part_names}
+    warnings = warn_of_weak_restraints(mesh, conditions, springs, moduli)
+
+    part_mass = {}
+    for part in mesh.part_names:
+        material = scene.material_of(part)
+        cells = mesh.cells[mesh.part_cells(part)]
+        warnings += warn_of_averaging(part, material.lame)
+        part_mass[part] = material.density * volume_weights(mesh.points, cells, n)
+    return Model(
+        scene,
+        mesh,
+        PartStiffness(scene, mesh, stated.n_dofs),
+        part_mass,
+        stated.points,
+        tuple(conditions),
+        tuple(springs),
+        stated.held,
+        stated.n_dofs,
+        warnings,
+    )
+
+
+def _further_dofs(scene: Scene) -> dict[str, int]:
+    """Number of degrees of freedom beside the nodes' own, of each point or joint that has some."""
+    extra: dict[str, int] = {}
     for name, coupling in (("hub", scene.hub.coupling), ("gearbox", scene.gearbox.coupling)):
         if coupling == "rigid":
             extra[name] = 6
@@ -243,129 +281,126 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
             extra[f"{name}.joint"] = 6 * SECTORS
         if unit.bedplate is not None:
             extra[f"{name}.base"] = 6
-    extra |= {f"{bearing.name}.joint": 6 * SECTORS for bearing in scene.nose_bearings}
-    ends = 3 * n + np.cumsum([0, *extra.values()])
-    first_dof = dict(zip(extra, ends[:-1].tolist(), strict=True))
-    n_dofs = int(ends[-1])
+    return extra | {f"{bearing.name}.joint": 6 * SECTORS for bearing in scene.nose_bearings}
 
-    together = tied(units, mesh)
-    mesh = together.mesh
-    conditions = together.conditions(n_dofs)
-    points: dict[str, ReferencePoint] = {}
-    springs: list[tuple[ReferencePoint, Floats]] = []
-    held: dict[str, Sequence[int]] = {}
 
-    def couple(name: str, face: str, position: Floats) -> ReferencePoint:
+class _Conditions:
+    """Reference points, constraints and springs of a scene, as they are stated part by part."""
+
+    def __init__(self, scene: Scene, mesh: Mesh) -> None:
+        n, extra = len(mesh.points), _further_dofs(scene)
+        ends = 3 * n + np.cumsum([0, *extra.values()])
+        self._first_dof = dict(zip(extra, ends[:-1].tolist(), strict=True))
+        self.n_dofs = int(ends[-1])
+        together = tied(scene.bearing_units, mesh)
+        self._scene, self._n, self.mesh = scene, n, together.mesh
+        self.conditions = together.conditions(self.n_dofs)
+        self.points: dict[str, ReferencePoint] = {}
+        self.springs: list[tuple[ReferencePoint, Floats]] = []
+        self.held: dict[str, Sequence[int]] = {}
+
+    def shaft(self) -> None:
+        """The ends of the shaft and the points at which further loads act."""
+        shaft = self._scene.shaft
+        self._point("hub", "shaft.front", shaft.front)
+        self._point("gearbox", "shaft.rear", shaft.rear)
+        for point in self._scene.load_points:
+            self._point(point.name, f"shaft.band.{point.name}", point.x)
+
+    def unit(self, unit: BearingUnit) -> None:
+        """A bearing's seat and joint, and what its housing stands on."""
+        name = unit.bearing.name
+        self._point(f"{name}.seat", f"shaft.seat.{name}", unit.bearing.x)
+        if unit.condensed is not None:
+            self._joined(
+                condensed_joint(unit, self.mesh, self._first_dof[f"{name}.ground"], self.n_dofs)
+            )
+            return
+        self._interface(unit)
+        self._base(unit)
+
+    def nose(self) -> None:
+        """The bearings on a nose, and the nose's root."""
+        scene = self._scene
+        for bearing in scene.nose_bearings:
+            name = bearing.name
+            self._point(f"{name}.seat", f"shaft.band.{name}", bearing.x)
+            first = self._first_dof[f"{name}.joint"]
+            shares, between = nose_joint(bearing, self.mesh, first, self.n_dofs)
+            self.conditions.append(shares)
+            self.points[between.name] = between
+            self.stand(between.name, bearing.stiffness)
+        if scene.nose is not None:
+            self._point("nose.root", "nose.rear", scene.nose.body.rear)
+            self.stand("nose.root", ("rigid",) * 6)
+
+    def stand(self, name: str, stiffness: Springs) -> None:
+        """Put a reference point on the ground, or hold a relative motion."""
+        point, numbers = self.points[name], as_numbers(stiffness)
+        rigid = np.flatnonzero(np.isinf(numbers)).tolist()
+        if rigid:
+            self.conditions.append(constraints.held(f"{name} reaction", point, rigid))
+            self.held[name] = rigid
+        k = np.diag(np.where(np.isinf(numbers), 0.0, numbers))
+        if k.any():
+            self.springs.append((point, k))
+
+    def _couple(self, name: str, face: str, position: Floats) -> ReferencePoint:
+        mesh, n_dofs = self.mesh, self.n_dofs
         nodes = mesh.face_nodes(face)
-        if name in first_dof:
-            point = constraints.rigid_point(name, position, first_dof[name], n_dofs)
-            conditions.append(constraints.rigid_face(name, nodes, mesh.points, point))
+        if name in self._first_dof:
+            point = constraints.rigid_point(name, position, self._first_dof[name], n_dofs)
+            self.conditions.append(constraints.rigid_face(name, nodes, mesh.points, point))
             return point
-        weights = face_weights(mesh.points, mesh.faces[face], n, MEANS)[nodes]
+        weights = face_weights(mesh.points, mesh.faces[face], self._n, MEANS)[nodes]
         return constraints.averaged_point(name, nodes, weights, mesh.points, position, n_dofs)
 
-    points["hub"] = couple("hub", "shaft.front", np.array([scene.shaft.front, 0.0, 0.0]))
-    points["gearbox"] = couple("gearbox", "shaft.rear", np.array([scene.shaft.rear, 0.0, 0.0]))
-    for point in scene.load_points:
-        at = np.array([point.x, 0.0, 0.0])
-        points[point.name] = couple(point.name, f"shaft.band.{point.name}", at)
-    for unit in scene.bearing_units:
-        name = unit.bearing.name
-        centre = np.array([unit.bearing.x, 0.0, 0.0])
-        points[f"{name}.seat"] = couple(f"{name}.seat", f"shaft.seat.{name}", centre)
-        if unit.condensed is not None:
-            joint = condensed_joint(unit, mesh, first_dof[f"{name}.ground"], n_dofs)
-            conditions += joint.constraints
-            springs += joint.springs
-            points |= {point.name: point for point, _ in joint.springs}
-            continue
+    def _point(self, name: str, face: str, x: float) -> None:
+        """A point on the axis that moves with a face."""
+        self.points[name] = self._couple(name, face, np.array([x, 0.0, 0.0]))
+
+    def _joined(self, joint: Joint) -> None:
+        self.conditions += joint.constraints
+        self.springs += joint.springs
+        self.points |= {point.name: point for point, _ in joint.springs}
+
+    def _interface(self, unit: BearingUnit) -> None:
+        name, mesh, n_dofs = unit.bearing.name, self.mesh, self.n_dofs
         if unit.interface == "rigid":
+            centre = np.array([unit.bearing.x, 0.0, 0.0])
             inner, outer = (
-                couple(face, face, centre) for face in (f"{name}.outer", f"{name}.housing.bore")
+                self._couple(face, face, centre)
+                for face in (f"{name}.outer", f"{name}.housing.bore")
             )
-            conditions.append(constraints.equal_translations(f"{name} joint", inner, outer))
-        elif unit.interface in ("spring", "rollers"):
-            joint = (
-                roller_joint(unit, mesh, n_dofs)
-                if unit.interface == "rollers"
-                else spring_joint(unit, mesh, first_dof[f"{name}.joint"], n_dofs)
-            )
-            conditions += joint.constraints
-            springs += joint.springs
-            points |= {point.name: point for point, _ in joint.springs}
+            self.conditions.append(constraints.equal_translations(f"{name} joint", inner, outer))
+        elif unit.interface == "rollers":
+            self._joined(roller_joint(unit, mesh, n_dofs))
+        elif unit.interface == "spring":
+            self._joined(spring_joint(unit, mesh, self._first_dof[f"{name}.joint"], n_dofs))
         elif unit.interface == "averaged" or (unit.interface == "sliding" and not unit.foreign):
-            first = first_dof.get(f"{name} joint", 0)
-            conditions.append(_spherical_joint(unit, mesh, first, n_dofs))
+            first = self._first_dof.get(f"{name} joint", 0)
+            self.conditions.append(_spherical_joint(unit, mesh, first, n_dofs))
+
+    def _base(self, unit: BearingUnit) -> None:
+        name, mesh = unit.bearing.name, self.mesh
         base = f"{name}.housing.base"
-        if bolts := bolt_springs(unit, mesh, n_dofs):
-            springs += bolts
-            points |= {point.name: point for point, _ in bolts}
+        if bolts := bolt_springs(unit, mesh, self.n_dofs):
+            self.springs += bolts
+            self.points |= {point.name: point for point, _ in bolts}
             if is_clamped(unit):
-                pressed, holds = foot_holds(scene, unit, mesh, n_dofs)
-                conditions += holds
-                points |= {point.name: point for point in pressed}
-                held |= {point.name: (0, 1, 2) for point in pressed}
+                pressed, holds = foot_holds(self._scene, unit, mesh, self.n_dofs)
+                self.conditions += holds
+                self.points |= {point.name: point for point in pressed}
+                self.held |= {point.name: (0, 1, 2) for point in pressed}
         elif base not in mesh.faces:
-            continue  # it stands on parts of another unit
+            return  # it stands on parts of another unit
         elif unit.bedplate is None:
-            conditions.append(constraints.fixed(base, mesh.face_nodes(base), n_dofs))
+            self.conditions.append(constraints.fixed(base, mesh.face_nodes(base), self.n_dofs))
         else:
-            points[f"{name}.base"] = couple(f"{name}.base", base, base_centre(unit, mesh))
-            _stand(points[f"{name}.base"], unit.bedplate, conditions, springs, held)
-    for bearing in scene.nose_bearings:
-        name = bearing.name
-        at = np.array([bearing.x, 0.0, 0.0])
-        points[f"{name}.seat"] = couple(f"{name}.seat", f"shaft.band.{name}", at)
-        shares, between = nose_joint(bearing, mesh, first_dof[f"{name}.joint"], n_dofs)
-        conditions.append(shares)
-        points[between.name] = between
-        _stand(between, bearing.stiffness, conditions, springs, held)
-    if scene.nose is not None:
-        root = np.array([scene.nose.body.rear, 0.0, 0.0])
-        points["nose.root"] = couple("nose.root", "nose.rear", root)
-        _stand(points["nose.root"], ("rigid",) * 6, conditions, springs, held)
-    _stand(points["gearbox"], scene.gearbox.stiffness, conditions, springs, held)
-
-    refuse_mechanisms(mesh, conditions, springs)
-    moduli = {part: scene.material_of(part).youngs_modulus for part in mesh.part_names}
-    warnings = warn_of_weak_restraints(mesh, conditions, springs, moduli)
-
-    part_mass = {}
-    for part in mesh.part_names:
-        material = scene.material_of(part)
-        cells = mesh.cells[mesh.part_cells(part)]
-        warnings += warn_of_averaging(part, material.lame)
-        part_mass[part] = material.density * volume_weights(mesh.points, cells, n)
-    return Model(
-        scene,
-        mesh,
-        PartStiffness(scene, mesh, n_dofs),
-        part_mass,
-        points,
-        tuple(conditions),
-        tuple(springs),
-        held,
-        n_dofs,
-        warnings,
-    )
-
-
-def _stand(
-    point: ReferencePoint,
-    stiffness: Springs,
-    conditions: list[Constraint],
-    springs: list[tuple[ReferencePoint, Floats]],
-    held: dict[str, Sequence[int]],
-) -> None:
-    """Put a reference point on the ground, or hold a relative motion."""
-    numbers = as_numbers(stiffness)
-    rigid = np.flatnonzero(np.isinf(numbers)).tolist()
-    if rigid:
-        conditions.append(constraints.held(f"{point.name} reaction", point, rigid))
-        held[point.name] = rigid
-    k = np.diag(np.where(np.isinf(numbers), 0.0, numbers))
-    if k.any():
-        springs.append((point, k))
+            self.points[f"{name}.base"] = self._couple(
+                f"{name}.base", base, base_centre(unit, mesh)
+            )
+            self.stand(f"{name}.base", unit.bedplate)
 
 
 def stood_on(scene: Scene, name: str) -> list[str]:

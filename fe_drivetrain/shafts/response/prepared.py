@@ -33,9 +33,9 @@ class Prepared:
     stiffness : sparse.bsr_array
         (n_dofs, n_dofs) before any constraint [N/m].
     elimination : Elimination
-        Of its constraints.
+        Elimination of its constraints.
     solver : Solver
-        Of what is left.
+        Solver of what is left.
     """
 
     stiffness: sparse.bsr_array

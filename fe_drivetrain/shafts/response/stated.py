@@ -70,7 +70,7 @@ def stated_reactions(scene: Scene, masses: Mapping[str, float], gravity: float =
     scene : Scene
         With its bearings, and the weights of gearbox and load points [N].
     masses : Mapping
-        Of parts whose weight reactions have, by what they are called [kg]; "nose" is in none.
+        Masses of parts whose weight reactions have, by name [kg]; "nose" is in none.
     gravity : float
         0 where all weights are left out [m/s^2].
     """

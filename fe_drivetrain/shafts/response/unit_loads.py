@@ -49,7 +49,7 @@ class Response:
         Difference between the reactions to a random load, solved directly, and the superposed
         ones, relative to the largest reaction.
     diagnostics : Diagnostics
-        Of the solve.
+        Diagnostics of the solve.
     kept : bool
         Whether it was taken from the cache instead of solved.
     entrance : Entrance
@@ -66,6 +66,15 @@ class Response:
     diagnostics: Diagnostics
     kept: bool = False
     entrance: Entrance = AT_HUB
+
+    def __repr__(self) -> str:
+        """One line: the loads, the reactions on the surroundings, and the errors."""
+        names = ", ".join(name for name in self.reactions if "." not in name)
+        return (
+            f"<Response to {self.displacements.shape[-1]} unit loads: reactions of {names}; errors "
+            f"of equilibrium {self.equilibrium_error:.1g}, of superposition "
+            f"{self.superposition_error:.1g}>"
+        )
 
     def reaction_matrix(self) -> tuple[list[str], Floats]:
         """All reactions as one matrix.
@@ -126,7 +135,7 @@ class Response:
         hub_loads : PointLoads or array_like
             (6,) and more, as of `history`.
         gearbox_weight, gravity : float
-            As of `history`.
+            The same as for `history`.
 
         Returns
         -------
@@ -156,7 +165,7 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
     method : str
         Solver, see `solvers.solve`.
     seed : int
-        Of the random load vector of the superposition check.
+        Seed of the random load vector of the superposition check.
 
     Raises
     ------

@@ -8,11 +8,12 @@ average.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, field, replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import Pool, pool
@@ -98,7 +99,7 @@ class Study:
     soft_slopes, soft_samples : Mapping[str, Mapping[str, float]], Mapping[str, Samples]
         The same with housings whose faces move on average, where that matters.
     surfaces : Sequence[UnitSurface]
-        Of bearing units that depend on uncertain values, two of each.
+        Surfaces of bearing units that depend on uncertain values, two of each.
     shares : Mapping[str, Shares]
         Sobol's, of those numbers that vary; empty where not wanted.
     """
@@ -144,12 +145,12 @@ def study(
     load : Factors, Floats or None
         (n,) factors of `model.scene_loads`, for reactions.
     tolerance : float
-        Of the level, relative.
+        Maximum error of the level, relative.
     level : int or None
         1 or 2; where not given, the cheapest of these that the adviser finds good enough for all
         that was asked, and the better one where neither is.
     count, seed : int
-        Of the Latin hypercube.
+        Number of samples and seed of the Latin hypercube.
     sobol : int
         Base samples of Sobol's shares, a power of two; none for 0.
     report : Progress
@@ -162,7 +163,9 @@ def study(
     """
     check_spreads(scene)
     if level is not None and level not in LEVELS:
-        raise InputError(f"--level {level} cannot be sampled: use 1 (beam) or 2 (meridian)")
+        raise InputError(
+            f"{argument('level', level)} cannot be sampled: use 1 (beam) or 2 (meridian)"
+        )
     stiffnesses = numbers(scene, [n for n in stiffness_names(scene) if n not in asked])
     wanted = numbers(scene, asked, load)
     solver = Resolver(LEVELS[0] if level is None else level)
@@ -170,8 +173,6 @@ def study(
         unit.bearing.name: _touching(scene, unit.bearing.name) for unit in scene.bearing_units
     }
     designs = {n: surface_scenes(scene, some, seed) for n, some in touched.items() if some}
-    surfaces = []
-    bounds = []
     # bearing units do not depend on the level: they are solved beside the ladders that select it
     with pool(min(cores(), 1 + sum(map(len, designs.values()))), report) as workers:
         report("nominal values")
@@ -188,31 +189,13 @@ def study(
         if level != solver.level:
             solver = replace(solver, level=level, bodies={})
         solved = solver(scene)
-        for coupling in _BOUNDS:
-            exact = replace(solver, coupling=coupling, units={})
-            known = [
-                unit_surface(scene, name, touched[name], exact, seed, report) for name in designs
-            ]
-            bounds.append(replace(exact, units={surface.name: surface for surface in known}))
-            surfaces += known
+        spreads = {name: touched[name] for name in designs}
+        bounds, surfaces = _bounded(scene, solver, spreads, seed, report)
     found = [*wanted, *(n for n in stiffnesses if n.of(solved) > 0.0)]
-    of_housings = [n for n in found if not n.name.startswith("shaft.")]
-
-    def evaluate(changed: Scene) -> dict[str, float]:
-        stiff, soft = (bound(changed) for bound in bounds)
-        values = {number.name: number.of(stiff) for number in found}
-        return values | {_SOFT + number.name: number.of(soft) for number in of_housings}
-
+    evaluate = _evaluation(found, bounds)
     report("sensitivities")
     slopes = sensitivities(scene, evaluate, list(scene.uncertainty))
-    content = {
-        "numbers of": whole_content(scene),
-        "level": level,
-        "seed of surfaces": seed,
-        "asked": list(asked),
-        "load": None if load is None else factor_values(scene, load).tolist(),
-        "made by": {"code": program_hash(), **solved_by()},
-    }
+    content = _content(scene, level, seed, asked, load)
     samples = sample(scene, evaluate, count, seed, report, content)
     varying = [n.name for n in found if samples[n.name].varies]
     shares = sobol_shares(scene, evaluate, varying, sobol, seed, report, content) if sobol else {}
@@ -232,6 +215,53 @@ def study(
         surfaces,
         shares,
     )
+
+
+def _content(
+    scene: Scene, level: int, seed: int, asked: Sequence[str], load: Factors | Floats | None
+) -> dict[str, Any]:
+    """What the samples depend on, for the key under which they are kept."""
+    return {
+        "numbers of": whole_content(scene),
+        "level": level,
+        "seed of surfaces": seed,
+        "asked": list(asked),
+        "load": None if load is None else factor_values(scene, load).tolist(),
+        "made by": {"code": program_hash(), **solved_by()},
+    }
+
+
+def _bounded(
+    scene: Scene,
+    solver: Resolver,
+    spreads: Mapping[str, Mapping[str, Spread]],
+    seed: int,
+    report: Progress,
+) -> tuple[list[Resolver], list[UnitSurface]]:
+    """Resolvers that take bearing units from surfaces, of each bound, and these surfaces."""
+    bounds, surfaces = [], []
+    for coupling in _BOUNDS:
+        exact = replace(solver, coupling=coupling, units={})
+        known = [
+            unit_surface(scene, name, some, exact, seed, report) for name, some in spreads.items()
+        ]
+        bounds.append(replace(exact, units={surface.name: surface for surface in known}))
+        surfaces += known
+    return bounds, surfaces
+
+
+def _evaluation(
+    found: Sequence[Number], bounds: Sequence[Resolver]
+) -> Callable[[Scene], dict[str, float]]:
+    """What a sampled scene is asked for: all numbers, those of housings by both bounds."""
+    of_housings = [n for n in found if not n.name.startswith("shaft.")]
+
+    def evaluate(changed: Scene) -> dict[str, float]:
+        stiff, soft = (bound(changed) for bound in bounds)
+        values = {number.name: number.of(stiff) for number in found}
+        return values | {_SOFT + number.name: number.of(soft) for number in of_housings}
+
+    return evaluate
 
 
 def _touching(scene: Scene, name: str) -> dict[str, Spread]:

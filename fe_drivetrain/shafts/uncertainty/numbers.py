@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.drivetrain_file.scene import Spread
 from fe_drivetrain.shafts.fidelity.quantities import Number
 from fe_drivetrain.shafts.uncertainty.input_study import Study
@@ -32,7 +31,7 @@ def relative_spread(spread: Spread) -> float:
 
 
 def figures(found: Study) -> dict[str, Any]:
-    """All numbers, for other programs, as JSON."""
+    """All numbers for other programs, as JSON: digests of the samples, no samples."""
     quantities = {}
     for number in found.numbers:
         samples, error = found.samples[number.name], found.errors[number.name]
@@ -46,7 +45,7 @@ def figures(found: Study) -> dict[str, Any]:
             "model_error": error.share,
             "model_error_source": error.source,
             "sensitivities": dict(found.slopes[number.name]),
-            "samples": rounded(samples.values),
+            "standard_deviation": float(samples.values.std(ddof=1)),
         }
         if number.name in found.soft_samples:
             entry["face_on_average"] = {
@@ -64,9 +63,8 @@ def figures(found: Study) -> dict[str, Any]:
                 for k, key in enumerate(shares.keys)
             }
         quantities[number.name] = entry
-    inputs = next(iter(found.samples.values())).inputs
     return {
         "level": found.level,
-        "inputs": {key: rounded(inputs[:, k]) for k, key in enumerate(found.scene.uncertainty)},
+        "samples": len(next(iter(found.samples.values())).values),
         "quantities": quantities,
     }

@@ -60,7 +60,7 @@ class Resolver:
     units : Mapping[str, UnitStiffness]
         What gives the stiffness of a bearing unit, by its name; solved where not given.
     coupling : Coupling
-        Of the units' faces, where solved.
+        Coupling of the units' faces, where solved.
     springs, bodies : dict[str, Floats], dict[str, tuple[float, Condensed]]
         What was solved before, by what it depends on; a body with the modulus that it had.
     coming : dict[str, Future]
@@ -104,7 +104,7 @@ class Resolver:
         scenes : sequence of Scene
             Which.
         name : str
-            Of the bearing.
+            Name of the bearing.
         workers : Pool
             Solves them, and stays until they are asked for.
         """
@@ -123,7 +123,7 @@ class Resolver:
         scenes : sequence of Scene
             Which.
         name : str
-            Of the bearing.
+            Name of the bearing.
         report : callable
             Called with the number of a scene before its stiffness is there, the first being 1.
         """

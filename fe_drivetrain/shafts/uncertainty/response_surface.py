@@ -46,7 +46,7 @@ class UnitSurface:
     Attributes
     ----------
     name, coupling : str, Coupling
-        Of the bearing, and of its face.
+        Name of the bearing, and coupling of its face.
     keys, nominal : tuple[str, ...], Floats
         The values by dotted key, and (d,) what the scene gives.
     reach : Floats
@@ -143,7 +143,7 @@ def surface_scenes(scene: Scene, spreads: Mapping[str, Spread], seed: int = 0) -
     Parameters
     ----------
     scene, spreads, seed : Scene, Mapping[str, Spread], int
-        As of `unit_surface`.
+        The same as for `unit_surface`.
 
     Raises
     ------
@@ -172,7 +172,7 @@ def unit_surface(
     resolver : Resolver
         Solves the unit.
     seed : int
-        Of the values that check it.
+        Seed of the values that check it.
     report : callable
         Called with what is being done.
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.reading import change_scene
 from fe_drivetrain.drivetrain_file.scene import Scene, Spread, nominal_values, with_materials
 from fe_drivetrain.shafts.uncertainty.kept_rows import evaluated_rows
@@ -59,7 +60,7 @@ class Samples:
     Attributes
     ----------
     keys : tuple[str, ...]
-        Of the d uncertain values.
+        Keys of the d uncertain values.
     inputs, values : Floats
         (n, d), and (n,) the result of each sample.
     nominal : float
@@ -70,6 +71,8 @@ class Samples:
     inputs: Floats
     values: Floats
     nominal: float
+
+    __repr__ = short_repr
 
     @property
     def varies(self) -> bool:
@@ -142,7 +145,7 @@ class Shares:
     Attributes
     ----------
     keys : tuple[str, ...]
-        Of the d uncertain values.
+        Keys of the d uncertain values.
     first, total : Floats
         (d,) what each value does alone, and with all in which it has a part.
     first_error, total_error : Floats
@@ -154,6 +157,8 @@ class Shares:
     total: Floats
     first_error: Floats
     total_error: Floats
+
+    __repr__ = short_repr
 
 
 def nominal_value(scene: Scene, key: str) -> float:
@@ -252,7 +257,7 @@ def sample(
     count : int
         Samples.
     seed : int
-        Of the hypercube.
+        Seed of the hypercube.
     report : callable
         Called with what is being done.
     content : mapping or None
@@ -298,15 +303,15 @@ def sobol_shares(
     scene, evaluate : Scene, Evaluate
         What is varied, and its results.
     names : Sequence[str]
-        Of results that vary.
+        Names of results that vary.
     count : int
         Base samples, a power of two; (d + 2) times as many evaluations of d values.
     seed : int
-        Of the samples.
+        Seed of the samples.
     report : callable
         Called with what is being done.
     content : mapping or None
-        As of `sample`.
+        Content of the key, see `sample`.
     """
     check_spreads(scene)
     keys = tuple(scene.uncertainty)
@@ -341,19 +346,19 @@ def variance_shares(
     Parameters
     ----------
     results : callable
-        Of rows (n, d) of values the s results, (s, n). It is called with the base samples, twice
+        The s results (s, n) of rows (n, d) of values. It is called with the base samples, twice
         `count` rows of independent inputs, and then with each input exchanged.
     distributions : mapping
         scipy's distribution of each of d values, by name.
     count : int
         Base samples, a power of two; (d + 2) times as many evaluations.
     seed : int
-        Of the samples.
+        Seed of the samples.
 
     Returns
     -------
     shares : list of Shares
-        Of each of the s results (Sobol 2001; Saltelli et al. 2010).
+        Shares of each of the s results (Sobol 2001; Saltelli et al. 2010).
     """
     keys = tuple(distributions)
     d = len(keys)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.short_repr import short_repr
 
 LEAST = 64
 """Classes over the range of a history, at least."""
@@ -31,7 +32,7 @@ class Classes:
     Attributes
     ----------
     powers : tuple of int
-        Of two: the widths of the classes of each quantity.
+        Powers of two: the widths of the classes of each quantity.
     first : tuple of int
         Lower limit of the first class of each, in widths.
     amount : ndarray
@@ -41,6 +42,8 @@ class Classes:
     powers: tuple[int, ...]
     first: tuple[int, ...]
     amount: Floats
+
+    __repr__ = short_repr
 
     def edges(self, axis: int = 0) -> Floats:
         """Limits of the classes of one quantity."""
@@ -72,7 +75,7 @@ def in_classes(
     least : int
         Classes over the range of each quantity, at least.
     power : int, optional
-        Of two: the width of the classes, where it is not to follow from the range.
+        Power of two: the width of the classes, where it is not to follow from the range.
     """
     powers, first, places, shape = [], [], [], []
     for column in columns:

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.histories.three_points import close_cycles, half_cycles
 
 Residue = Literal["half", "closed", "repeated"]
@@ -60,6 +61,8 @@ class Cycles:
     residue: Residue = "half"
     gate: float = 0.0
     left_out: float = 0.0
+
+    __repr__ = short_repr
 
     @property
     def rule(self) -> str:
@@ -122,7 +125,7 @@ def streamed_cycles(chunks: Iterable[ArrayLike], residue: Residue = "half") -> I
     chunks : iterable of array_like
         Pieces of one history, of any length, one after the other.
     residue : str
-        As of `rainflow_cycles`.
+        Residue, see `rainflow_cycles`.
 
     Yields
     ------
@@ -132,7 +135,7 @@ def streamed_cycles(chunks: Iterable[ArrayLike], residue: Residue = "half") -> I
     Raises
     ------
     InputError
-        As of `rainflow_cycles`.
+        The same as for `rainflow_cycles`.
     """
     if residue not in RESIDUES:
         raise InputError(f"residue '{residue}' is not a rule: choose one of {', '.join(RESIDUES)}")
@@ -197,7 +200,7 @@ def gated(cycles: Cycles, gate: float) -> Cycles:
     Parameters
     ----------
     cycles : Cycles
-        Of any count.
+        Cycles of any count.
     gate : float
         Least range, in the unit of the history.
     """
@@ -218,7 +221,7 @@ def exceedance(cycles: Cycles) -> tuple[Floats, Floats]:
     Parameters
     ----------
     cycles : Cycles
-        Of any count.
+        Cycles of any count.
 
     Returns
     -------
@@ -238,7 +241,7 @@ def range_mean_matrix(cycles: Cycles, ranges: ArrayLike, means: ArrayLike) -> Fl
     Parameters
     ----------
     cycles : Cycles
-        Of any count.
+        Cycles of any count.
     ranges, means : array_like
         Limits of the classes, rising.
 

@@ -79,13 +79,13 @@ def damage_equivalent_load(
     Parameters
     ----------
     cycles : sequence of Cycles
-        Of one or more histories, which are added.
+        Cycles of one or more histories, which are added.
     seconds : float
         How long all of them last together [s].
     slope : float
         Exponent m of the S-N curve.
     frequency : float
-        Of the sine [Hz].
+        Frequency of the sine [Hz].
 
     Returns
     -------

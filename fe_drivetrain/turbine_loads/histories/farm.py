@@ -22,6 +22,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.exact_sums import ExactSum, exact_sum
 from fe_drivetrain.common.jobs import AT_ONCE, mapped
 from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.histories.classes import Classes, added, in_classes
 from fe_drivetrain.turbine_loads.histories.cycles import (
     BLOCK,
@@ -61,7 +62,7 @@ class Count:
     Attributes
     ----------
     samples : int
-        Of the histories.
+        Number of samples of the histories.
     cycles : Classes
         Number of cycles by range; halves count as halves.
     damage : tuple of ExactSum
@@ -96,12 +97,14 @@ class Piece:
     open : ndarray
         Its turning points that no cycle has taken, with its first value and its last.
     count : Count
-        Of cycles that are closed whatever lies before and behind.
+        Count of cycles that are closed whatever lies before and behind.
     """
 
     counting: Counting
     open: Floats
     count: Count
+
+    __repr__ = short_repr
 
     def __add__(self, behind: Piece) -> Piece:
         """This piece with the one that follows it."""
@@ -186,16 +189,16 @@ def counted_histories(
     counting : Counting
         What is counted.
     residue : str
-        As of `Piece.whole`.
+        Residue, see `Piece.whole`.
     local : int
-        As of `fe_drivetrain.common.jobs.pool`.
+        Number of processes, see `fe_drivetrain.common.jobs.pool`.
     report : Progress
-        As of `pool`.
+        Called with what is being done, see `pool`.
 
     Yields
     ------
     name, count
-        Of each history, once its last piece is there.
+        Name and count of each history, once its last piece is there.
     """
     items = ((read, name, several, counting) for name, several in _runs(pieces))
     for name, group in groupby(mapped(_piece_of, items, local, report), itemgetter(0)):

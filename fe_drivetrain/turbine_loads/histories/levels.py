@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +30,8 @@ class Levels:
 
     edges: Floats
     amount: Floats
+
+    __repr__ = short_repr
 
     @property
     def middles(self) -> Floats:
@@ -86,11 +89,11 @@ def revolutions_at_level(
     signal : array_like, (n,)
         The load.
     speed : array_like, (n,) or float
-        Of the shaft [rad/s]; turns count in either direction.
+        Speed of the shaft [rad/s]; turns count in either direction.
     step : float
         Between two samples [s].
     edges : array_like, (k + 1,)
-        As of `time_at_level`.
+        Edges, see `time_at_level`.
 
     Raises
     ------

@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.histories.cycles import rainflow_cycles
 from fe_drivetrain.turbine_loads.histories.damage import SLOPES, damage_equivalent_load
 
@@ -34,6 +35,8 @@ class Measured:
     values: Floats
     weights: Floats
     equivalent: Mapping[float, float]
+
+    __repr__ = short_repr
 
     @property
     def mean(self) -> float:
@@ -63,7 +66,7 @@ def measured(
     steps : sequence of float
         Between two samples of each [s].
     slopes : sequence of float
-        Of S-N curves.
+        Slopes of S-N curves.
     """
     seconds = np.repeat(np.asarray(steps, dtype=float), [len(h) for h in histories])
     total = float(seconds.sum())
@@ -78,7 +81,7 @@ def model_errors(model: Measured, reference: Measured) -> dict[str, float]:
     Parameters
     ----------
     model, reference : Measured
-        Of one load over the same histories.
+        Measures of one load over the same histories.
 
     Returns
     -------
@@ -107,9 +110,9 @@ def damage_ratio(error: float, slope: float) -> float:
     Parameters
     ----------
     error : float
-        Of the load, as a share.
+        Error of the load, as a share.
     slope : float
-        Of the S-N curve.
+        Slope of the S-N curve.
     """
     return float((1.0 + error) ** slope)
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
 from fe_drivetrain.common.errors import InputError
+
+_K = TypeVar("_K", bound=Hashable)
 
 CHANCE = 0.01
 """Share of quantities that would be named if nothing differed but the seeds."""
@@ -47,8 +50,8 @@ class Difference:
 
 
 def differences(
-    one: Sequence[Mapping[str, float]],
-    other: Sequence[Mapping[str, float]],
+    one: Sequence[Mapping[_K, float]],
+    other: Sequence[Mapping[_K, float]],
     chance: float = CHANCE,
 ) -> list[Difference]:
     """Compare quantities of histories of one condition.
@@ -59,7 +62,7 @@ def differences(
     Parameters
     ----------
     one, other : sequence of mappings
-        Quantities by name of each history; those that all have are compared.
+        Quantities of each history; those that all have are compared. Their text is the name.
     chance : float
         Share of equal quantities that would be named all the same.
 
@@ -90,6 +93,8 @@ def differences(
         rounding = 1e-9 * max(float(np.abs(v).max()) for v in values)
         allowed = max(factor * scatter, rounding)
         result.append(
-            Difference(name, float(values[0].mean()), float(values[1].mean()), scatter, allowed)
+            Difference(
+                str(name), float(values[0].mean()), float(values[1].mean()), scatter, allowed
+            )
         )
     return result

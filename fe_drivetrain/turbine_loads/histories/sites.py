@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 
@@ -32,11 +33,11 @@ class Site:
     Attributes
     ----------
     mean_wind : float
-        Of the year [m/s].
+        Mean wind speed of the year [m/s].
     shape : float
         Weibull's exponent k; 2 is Rayleigh's distribution.
     years : float
-        Of design life.
+        Design life [years].
 
     Raises
     ------
@@ -90,7 +91,7 @@ def site_of_class(name: str, years: float = 20.0) -> Site:
     name : str
         The class, with or without a category of turbulence, as in "IIB".
     years : float
-        Of design life.
+        Design life [years].
 
     Raises
     ------
@@ -149,17 +150,19 @@ def require_winds(files: Sequence[Path], winds: Sequence[float]) -> None:
     InputError
         A file has no wind speed, or all stand for one wind.
     """
+    site = argument("site")
     for file, wind in zip(files, winds, strict=True):
         if np.isnan(wind):
             raise InputError(
-                f"hub loads '{file}': there is no wind speed, by which --site weights files: name "
-                "its channel, as in --channel 'wind speed=Vhub', or leave --site out"
+                f"hub loads '{file}': there is no wind speed, by which {site} weights files: name "
+                "its channel, as in `ChannelMap(channels={'wind speed': 'Vhub'})`, or leave "
+                f"{site} out"
             )
     if len({rounded_wind(wind) for wind in winds}) < 2:
         count = f"all {len(files)} files have" if len(files) > 1 else "the one file has"
         raise InputError(
-            f"--site weights winds, and {count} a mean wind of {rounded_wind(winds[0]):g} m/s: "
-            "give files of two winds or more, or leave --site out"
+            f"{site} weights winds, and {count} a mean wind of {rounded_wind(winds[0]):g} m/s: "
+            f"give files of two winds or more, or leave {site} out"
         )
 
 
@@ -202,13 +205,13 @@ def lifetime_damage(
     Parameters
     ----------
     damage : array_like, (n,)
-        Of the history of each wind speed.
+        Damage of the history of each wind speed.
     factors : array_like, (n,)
         See `time_factors`.
     of_transients : sequence of (Transient, float)
         Each event, and the damage of one.
     years : float
-        Of life.
+        Life [years].
     """
     normal = float(np.asarray(damage, dtype=float) @ np.asarray(factors, dtype=float))
     return normal + sum(event.a_year * years * one for event, one in of_transients)
@@ -222,7 +225,7 @@ def site_life(lives: ArrayLike, shares: ArrayLike) -> float:
     lives : array_like, (n,)
         At each wind [any unit of time]; infinite where there is no damage.
     shares : array_like, (n,)
-        Of time at each.
+        Shares of time at each.
 
     Returns
     -------

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 
 MULTIPLES = (1, 3, 6, 9)
 """Of the rotor's speed, that are named."""
@@ -44,6 +45,8 @@ class Spectrum:
     frequency: Floats
     density: Floats
     segments: int
+
+    __repr__ = short_repr
 
     @property
     def spacing(self) -> float:
@@ -140,7 +143,7 @@ def multiples(
     Parameters
     ----------
     found : Spectrum
-        Of a channel.
+        Spectrum of a channel.
     rotor_speed : float
         Mean [rad/s].
     numbers : sequence of int
@@ -182,6 +185,8 @@ class Campbell:
     frequency: Floats
     density: Floats
     segments: Floats
+
+    __repr__ = short_repr
 
 
 def campbell(

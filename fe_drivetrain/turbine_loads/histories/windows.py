@@ -14,10 +14,12 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 
 TEN_MINUTES = 600.0
 
-COLUMNS = ("least", "mean", "largest", "standard deviation")
+COLUMNS = ("min", "mean", "max", "standard deviation")
+"""Statistics of a channel, in the order in which arrays have them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,12 +31,14 @@ class Windows:
     start, seconds : ndarray, (w,)
         When each begins, and how long it lasts [s].
     values : ndarray, (w, k, 4)
-        Least, mean, largest, standard deviation.
+        Min, mean, max, standard deviation.
     """
 
     start: Floats
     seconds: Floats
     values: Floats
+
+    __repr__ = short_repr
 
     def chosen(self, which: ArrayLike) -> Windows:
         """Those for which a mask (w,) holds."""
@@ -42,7 +46,7 @@ class Windows:
         return Windows(self.start[mask], self.seconds[mask], self.values[mask])
 
     def together(self) -> Floats:
-        """(k, 4) least, mean, largest, standard deviation of all samples of all windows."""
+        """(k, 4) min, mean, max, standard deviation of all samples of all windows."""
         share = self.seconds / self.seconds.sum()
         means = self.values[:, :, 1]
         mean = np.einsum("w,wc->c", share, means)
@@ -78,7 +82,7 @@ def window_statistics(time: ArrayLike, samples: ArrayLike, seconds: float = TEN_
     Parameters
     ----------
     time : array_like, (n,)
-        Of uniform step [s].
+        Times of uniform step [s].
     samples : array_like, (n, k)
         Channels.
     seconds : float
@@ -132,6 +136,8 @@ class CaptureMatrix:
     turbulence: Floats
     counts: Ints
     outside: int
+
+    __repr__ = short_repr
 
     def missing(self, target: int) -> Ints:
         """(r, c) windows that each still needs, where each should have `target`."""

@@ -7,7 +7,7 @@ from .controller import Tuning as Tuning
 from .controller import designed_controller as designed_controller
 from .controller import speed_poles as speed_poles
 from .controller import steady_operation as steady_operation
-from .csv_table import write_csv as write_csv
+from .csv_table import write_hub_loads as write_hub_loads
 from .events import RATED as RATED
 from .events import Event as Event
 from .events import grid_loss as grid_loss

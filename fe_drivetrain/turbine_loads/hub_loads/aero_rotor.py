@@ -323,7 +323,7 @@ def aerodynamic_hub_loads(
     wind : (b, n, r) [m/s]
         Horizontal wind speed at each element of each blade.
     azimuth : (n,) [rad]
-        Of blade 1; the others follow evenly.
+        Azimuth of blade 1; the others follow evenly.
 
     Returns
     -------

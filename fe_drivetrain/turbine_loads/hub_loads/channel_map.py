@@ -47,7 +47,7 @@ class ChannelMap(BaseModel):
     azimuth_blade1_up : float
         Azimuth that is written when blade 1 points up [deg].
     tilt : float
-        Of the shaft, positive with the rotor raised, where loads are in a horizontal frame:
+        Tilt of the shaft, positive with the rotor raised, where loads are in a horizontal frame:
         they are turned into the shaft's [deg].
     moments_at : float
         How far downwind of the hub along the shaft the point is that moments are about, where it
@@ -130,7 +130,7 @@ def to_shaft_frame(loads: Floats, tilt: float) -> Floats:
     loads : ndarray, (n, 6)
         Forces and moments; x horizontal downwind, z up.
     tilt : float
-        Of the shaft [deg].
+        Tilt of the shaft [deg].
     """
     cos, sin = np.cos(np.radians(tilt)), np.sin(np.radians(tilt))
     turned = loads.copy()

@@ -48,9 +48,9 @@ class Tuning:
     Attributes
     ----------
     frequency : float
-        Of the speed's answer above rated wind [rad/s].
+        Frequency of the speed's answer above rated wind [rad/s].
     damping : float
-        Of it, as a share of critical.
+        Damping of that answer, as a share of critical.
     filter : float
         Corner of the low-pass filter on the speed [Hz].
     pitch_rate : float

@@ -177,7 +177,7 @@ def _channels(
     return channels, rows, unread
 
 
-def write_csv(
+def write_hub_loads(
     history: LoadHistory,
     path: str | os.PathLike[str],
     beside: Mapping[str, Floats] | None = None,

@@ -20,6 +20,7 @@ from scipy.signal import StateSpace, lsim
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.hub_loads.turbine import Turbine
 
 State = Literal["normal operation", "start-up", "normal stop", "emergency stop"]
@@ -80,7 +81,7 @@ def stated(state: State, shaft: Shaft) -> Statistics:
     Parameters
     ----------
     state : State
-        Of operation.
+        State of operation.
     shaft : Shaft
         "slow" (rotor) or "fast" (generator).
     """
@@ -154,6 +155,8 @@ class Event:
     torque: Floats
     thrust: Floats
 
+    __repr__ = short_repr
+
 
 def made_event(state: State, shaft: Shaft, seed: int) -> Event:
     """Draw a history of a state of operation; see the module.
@@ -164,11 +167,11 @@ def made_event(state: State, shaft: Shaft, seed: int) -> Event:
     Parameters
     ----------
     state : State
-        Of operation.
+        State of operation.
     shaft : Shaft
         "slow" or "fast".
     seed : int
-        Of the random numbers; the largest cycle and the statistics are the same for all.
+        Seed of the random numbers; the largest cycle and the statistics are the same for all.
     """
     asked = stated(state, shaft)
     random = np.random.default_rng(np.random.SeedSequence([seed, sum(map(ord, state + shaft))]))

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.comparison.statistics import CONSTANT
 from fe_drivetrain.plots.figures import load_lines
 from fe_drivetrain.turbine_loads.hub_loads.point_loads import PointLoads
@@ -82,6 +83,8 @@ class LoadHistory:
     at: Mapping[str, Floats] = field(default_factory=dict)
     unread: Sequence[str] = ()
     about: About = None
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         time = _frozen(self.time)

@@ -27,6 +27,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 
 LONGEST = 2.0
 """Longest loop [s]: the thesis shows loops of 1 to 2 s."""
@@ -72,6 +73,8 @@ class Loops:
     lowest: Floats
     highest: Floats
     swept: Floats
+
+    __repr__ = short_repr
 
     def __len__(self) -> int:
         return len(self.start)
@@ -252,6 +255,25 @@ def _closed_parts(t: Floats, z: Plane, longest: float, excursion: float) -> list
     return _one_after_another(parts, _TOUCH * longest)
 
 
+@njit(cache=True, error_model="numpy")
+def _extremes(
+    x: Floats, y: Floats, i: int, j: int, px: float, py: float
+) -> tuple[float, float, float]:
+    """Minimum and maximum size along a part from its crossing p and back, and range of its turn."""
+    before = np.arctan2(py, px)
+    turned, least, most = 0.0, 0.0, 0.0
+    lowest = highest = np.hypot(px, py)
+    for k in range(i + 1, j + 1):
+        size, here = np.hypot(x[k], y[k]), np.arctan2(y[k], x[k])
+        lowest, highest = min(lowest, size), max(highest, size)
+        change = here - before
+        turned += change - 2.0 * np.pi * np.round(change / (2.0 * np.pi))
+        least, most, before = min(least, turned), max(most, turned), here
+    change = np.arctan2(py, px) - before
+    turned += change - 2.0 * np.pi * np.round(change / (2.0 * np.pi))
+    return lowest, highest, max(most, turned) - min(least, turned)
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
 def _crossings(
     t: Floats,
@@ -305,21 +327,10 @@ def _crossings(
                 continue
             if number < len(steps):
                 steps[number, 0], steps[number, 1] = i, j
-                before = np.arctan2(py, px)
-                turned, least, most = 0.0, 0.0, 0.0
-                lowest = highest = np.hypot(px, py)
-                for k in range(i + 1, j + 1):
-                    size, here = np.hypot(x[k], y[k]), np.arctan2(y[k], x[k])
-                    lowest, highest = min(lowest, size), max(highest, size)
-                    change = here - before
-                    turned += change - 2.0 * np.pi * np.round(change / (2.0 * np.pi))
-                    least, most, before = min(least, turned), max(most, turned), here
-                change = np.arctan2(py, px) - before
-                turned += change - 2.0 * np.pi * np.round(change / (2.0 * np.pi))
                 found = values[number]
                 found[0], found[1], found[2] = start, end, np.sqrt(far)
-                found[3], found[4], found[5] = 0.5 * twice, lowest, highest
-                found[6] = max(most, turned) - min(least, turned)
+                found[3] = 0.5 * twice
+                found[4], found[5], found[6] = _extremes(x, y, i, j, px, py)
                 found[_AT_X], found[_AT_Y] = px, py
             number += 1
     return number

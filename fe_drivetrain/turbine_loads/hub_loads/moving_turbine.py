@@ -22,13 +22,14 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache, user_cache
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.hub_loads.aero_rotor import OperatingPoint
 from fe_drivetrain.turbine_loads.hub_loads.controller import (
     Controller,
     designed_controller,
     steady_operation,
 )
-from fe_drivetrain.turbine_loads.hub_loads.csv_table import write_csv
+from fe_drivetrain.turbine_loads.hub_loads.csv_table import write_hub_loads
 from fe_drivetrain.turbine_loads.hub_loads.histories import MIN_SAMPLES, Attribute, LoadHistory
 from fe_drivetrain.turbine_loads.hub_loads.recorded import Recorded
 from fe_drivetrain.turbine_loads.hub_loads.surrogate import DURATION, RATE, Condition, made_by
@@ -87,6 +88,8 @@ class TurbineHistory:
     power: Floats
     wind_speed: Floats
 
+    __repr__ = short_repr
+
     @property
     def recorded(self) -> Recorded:
         """The loads with speed and wind, as a file of measurements gives them."""
@@ -112,7 +115,7 @@ class TurbineHistory:
             "pitch [rad]": self.pitch,
             "generator torque [N m]": self.generator_torque,
         }
-        write_csv(self.history, path, beside)
+        write_hub_loads(self.history, path, beside)
 
 
 def simulate(
@@ -175,7 +178,7 @@ def energy_account(
     Parameters
     ----------
     turbine, controller, inflow, physics : Turbine, Controller, Inflow, Physics or None
-        As for `simulate`.
+        The same as for `simulate`.
     azimuth, held, start, longest_step : float, bool, tuple of float or None, float
         As there.
 
@@ -240,7 +243,7 @@ def accounted_history(
     condition, turbine : Condition, Turbine
         The wind, the turbine.
     controller, physics, duration, rate : Controller or None, Physics or None, float, float
-        As for `turbine_history`.
+        The same as for `turbine_history`.
     longest_step : float
         Longest step of the integration [s], as for `simulate`.
     harmonics : int or None
@@ -288,7 +291,7 @@ def turbine_histories(
     conditions : iterable of Condition
         The winds; those of one mean speed side by side share what is expensive.
     turbine, controller, physics : Turbine, Controller or None, Physics or None
-        As for `turbine_history`.
+        The same as for `turbine_history`.
     duration, rate : float
         As there.
     cache : bool or Cache

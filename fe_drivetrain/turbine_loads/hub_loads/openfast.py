@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -104,7 +105,7 @@ def loads_from_channels(
     channels : mapping
         Channels by their names in lower case.
     gage_distance, azimuth_blade1_up : float
-        As of `read_openfast`.
+        The same as for `read_openfast`.
 
     Returns
     -------
@@ -118,83 +119,24 @@ def loads_from_channels(
     Raises
     ------
     InputError
-        As of `read_openfast`.
+        The same as for `read_openfast`.
     """
-    used: dict[str, Channel] = {}
-
-    def first(names: Sequence[str]) -> Channel | None:
-        found = next((channels[n.lower()] for n in names if n.lower() in channels), None)
-        if found is not None:
-            used[found.name] = found
-        return found
-
-    def needed(names: Sequence[str], what: str) -> Channel:
-        found = first(names)
-        if found is None:
-            raise InputError(
-                f"hub loads '{source}': no channel for the {what}; add one of "
-                f"{', '.join(names)} to OutList and run again, or map yours (--mapping)"
-            )
-        return found
-
-    def pair(fixed: Sequence[str], rotating: Sequence[str]) -> tuple[list[Channel], bool] | None:
-        # Either frame is complete or it is of no use: one component alone cannot be turned.
-        for prefixes, turning in ((fixed, False), (rotating, True)):
-            for prefix in prefixes:
-                names = [prefix.replace("*", axis) for axis in "yz"]
-                if all(n.lower() in channels for n in names):
-                    return [needed([n], n) for n in names], turning
-        return None
-
-    time = needed(("Time",), "time")
-    axial = needed(_AXIAL, "thrust")
-    torque = needed(_TORQUE, "torque")
-    shear = pair(("LSShftF*s", "LSSGagF*s"), ("LSShftF*a", "LSSGagF*a"))
-    if shear is None:
-        raise InputError(
-            f"hub loads '{source}': no pair of shear-force channels; add LSShftFys and LSShftFzs "
-            "to OutList and run again, or map yours, both Fy and Fz (--mapping)"
-        )
-    bending = pair(("LSSTipM*s",), ("LSSTipM*a",))
-    at_gage = bending is None
-    if bending is None:
-        bending = pair(("LSSGagM*s",), ("LSSGagM*a",))
-        if bending is None:
-            raise InputError(
-                f"hub loads '{source}': no pair of bending-moment channels; add LSSTipMys and "
-                "LSSTipMzs to OutList and run again, or map yours, both My and Mz (--mapping)"
-            )
-        if gage_distance is None:
-            raise InputError(
-                f"hub loads '{source}': {bending[0][0].name} and {bending[0][1].name} are moments "
-                "at the strain gage, not at the hub; add LSSTipMys and LSSTipMzs to OutList, or "
-                "give gage_distance (ShftGagL of the ElastoDyn file)"
-            )
-
-    azimuth = None
-    if shear[1] or bending[1]:
-        azimuth = first(AZIMUTH)
-        if azimuth is None:
-            rotating = ", ".join(c.name for p, turns in (shear, bending) if turns for c in p)
-            raise InputError(
-                f"hub loads '{source}': {rotating} turn with the rotor and the file has no azimuth "
-                "to turn them back; add Azimuth, or LSShftFys, LSShftFzs, LSSTipMys and LSSTipMzs, "
-                "to OutList"
-            )
+    chosen = _Chosen(source, channels)
+    time = chosen.needed(("Time",), "time")
+    axial, torque = chosen.needed(_AXIAL, "thrust"), chosen.needed(_TORQUE, "torque")
+    shear = chosen.shear()
+    bending, at_gage = chosen.bending(gage_distance)
+    azimuth = chosen.azimuth(shear, bending)
 
     seconds = in_si(source, time, TIME_UNITS)
-    columns = {name: channel.values for name, channel in used.items() if channel is not time}
+    columns = {name: one.values for name, one in chosen.used.items() if one is not time}
     require_sound(f"hub loads '{source}'", seconds, columns)
 
     psi = np.zeros_like(seconds)
     if azimuth is not None:
         psi = in_si(source, azimuth, ANGLE_UNITS) - azimuth_blade1_up
-    fy, fz = (in_si(source, c, FORCE_UNITS) for c in shear[0])
-    if shear[1]:
-        fy, fz = turn_to_fixed(fy, fz, psi)
-    my, mz = (in_si(source, c, MOMENT_UNITS) for c in bending[0])
-    if bending[1]:
-        my, mz = turn_to_fixed(my, mz, psi)
+    fy, fz = _fixed(source, shear, FORCE_UNITS, psi)
+    my, mz = _fixed(source, bending, MOMENT_UNITS, psi)
     if at_gage and gage_distance is not None:
         # M_gage = M_hub + (-L, 0, 0) cross F
         my, mz = my - gage_distance * fz, mz + gage_distance * fy
@@ -204,18 +146,115 @@ def loads_from_channels(
     if azimuth is not None and azimuth_blade1_up:
         turned += f" less {azimuth_blade1_up:g} rad"
     carried = f", carried {gage_distance:g} m from the gage to the hub" if at_gage else ""
-    changed = any(reversed_name(c.name) for c in (axial, torque, *shear[0], *bending[0]))
+    changed = any(
+        reversed_name(c.name) for c in (axial, torque, *shear.channels, *bending.channels)
+    )
     read = "; ".join(
         (
             f"Fx = {_as_read(axial)}",
-            f"Fy, Fz = {_as_read(*shear[0])}{turned if shear[1] else ''}",
+            f"Fy, Fz = {_as_read(*shear.channels)}{turned if shear.rotating else ''}",
             f"Mx = {_as_read(torque)}",
-            f"My, Mz = {_as_read(*bending[0])}{turned if bending[1] else ''}{carried}",
+            f"My, Mz = {_as_read(*bending.channels)}{turned if bending.rotating else ''}{carried}",
             f"{'other ' if changed else ''}signs as in the file",
             "nothing turned" if azimuth is None else "others not turned",
         )
     )
     return seconds, np.column_stack((fx, fy, fz, mx, my, mz)), read
+
+
+class _Pair(NamedTuple):
+    """Channels along y and z, and whether these axes turn with the rotor."""
+
+    channels: list[Channel]
+    rotating: bool
+
+
+def _fixed(
+    source: str, pair: _Pair, units: Mapping[str, float], psi: Floats
+) -> tuple[Floats, Floats]:
+    """Components along the y and z that do not turn."""
+    y, z = (in_si(source, c, units) for c in pair.channels)
+    return turn_to_fixed(y, z, psi) if pair.rotating else (y, z)
+
+
+class _Chosen:
+    """Channels of a file that hub loads are read from, chosen by what they are for."""
+
+    def __init__(self, source: str, channels: Mapping[str, Channel]) -> None:
+        self._source, self._channels = source, channels
+        self.used: dict[str, Channel] = {}
+
+    def first(self, names: Sequence[str]) -> Channel | None:
+        """The first of some channels that the file has."""
+        channels = self._channels
+        found = next((channels[n.lower()] for n in names if n.lower() in channels), None)
+        if found is not None:
+            self.used[found.name] = found
+        return found
+
+    def needed(self, names: Sequence[str], what: str) -> Channel:
+        """The same; refused where the file has none."""
+        found = self.first(names)
+        if found is None:
+            raise InputError(
+                f"hub loads '{self._source}': no channel for the {what}; add one of "
+                f"{', '.join(names)} to OutList and run again, or map yours (`ChannelMap`)"
+            )
+        return found
+
+    def pair(self, fixed: Sequence[str], rotating: Sequence[str]) -> _Pair | None:
+        """A pair that is complete: one component alone cannot be turned."""
+        for prefixes, turning in ((fixed, False), (rotating, True)):
+            for prefix in prefixes:
+                names = [prefix.replace("*", axis) for axis in "yz"]
+                if all(n.lower() in self._channels for n in names):
+                    return _Pair([self.needed([n], n) for n in names], turning)
+        return None
+
+    def shear(self) -> _Pair:
+        """The shear forces."""
+        found = self.pair(("LSShftF*s", "LSSGagF*s"), ("LSShftF*a", "LSSGagF*a"))
+        if found is None:
+            raise InputError(
+                f"hub loads '{self._source}': no pair of shear-force channels; add LSShftFys and "
+                "LSShftFzs to OutList and run again, or map yours, both Fy and Fz (`ChannelMap`)"
+            )
+        return found
+
+    def bending(self, gage_distance: float | None) -> tuple[_Pair, bool]:
+        """The bending moments, and whether they are those at the strain gage."""
+        at_hub = self.pair(("LSSTipM*s",), ("LSSTipM*a",))
+        if at_hub is not None:
+            return at_hub, False
+        found = self.pair(("LSSGagM*s",), ("LSSGagM*a",))
+        if found is None:
+            raise InputError(
+                f"hub loads '{self._source}': no pair of bending-moment channels; add LSSTipMys "
+                "and LSSTipMzs to OutList and run again, or map yours, both My and Mz "
+                "(`ChannelMap`)"
+            )
+        if gage_distance is None:
+            y, z = found.channels
+            raise InputError(
+                f"hub loads '{self._source}': {y.name} and {z.name} are moments at the strain "
+                "gage, not at the hub; add LSSTipMys and LSSTipMzs to OutList, or give "
+                "gage_distance (ShftGagL of the ElastoDyn file)"
+            )
+        return found, True
+
+    def azimuth(self, *pairs: _Pair) -> Channel | None:
+        """The azimuth, where pairs turn with the rotor."""
+        rotating = ", ".join(c.name for pair in pairs if pair.rotating for c in pair.channels)
+        if not rotating:
+            return None
+        found = self.first(AZIMUTH)
+        if found is None:
+            raise InputError(
+                f"hub loads '{self._source}': {rotating} turn with the rotor and the file has no "
+                "azimuth to turn them back; add Azimuth, or LSShftFys, LSShftFzs, LSSTipMys and "
+                "LSSTipMzs, to OutList"
+            )
+        return found
 
 
 def _as_read(*channels: Channel) -> str:

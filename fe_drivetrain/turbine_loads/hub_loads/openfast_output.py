@@ -77,7 +77,7 @@ def reversed_name(name: str) -> re.Match[str] | None:
     Parameters
     ----------
     name : str
-        Of the channel, as the file has it.
+        Name of the channel, as the file has it.
     """
     return re.fullmatch(r"[-_m]((?:LSS|Rot|Azimuth).*)", name, re.IGNORECASE)
 

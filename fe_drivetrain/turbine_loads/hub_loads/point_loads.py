@@ -10,6 +10,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +23,7 @@ class PointLoads:
         (..., 6) Fx, Fy, Fz [N], Mx, My, Mz [N m] in the shaft frame that does not turn; with
         (..., 6 + 6 m) those at m load points, about these, with their weights.
     x : float
-        Of the point on the shaft's axis that the moments of the first six are about [m].
+        Place of the point on the shaft's axis that the moments of the first six are about [m].
 
     Raises
     ------
@@ -32,6 +33,8 @@ class PointLoads:
 
     values: Floats
     x: float
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         values = np.asarray(self.values, dtype=np.float64)

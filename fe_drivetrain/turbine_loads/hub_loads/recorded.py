@@ -14,6 +14,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.csv_cells import cell_as_given
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import (
     LOAD_NAMES,
     ChannelMap,
@@ -83,6 +84,8 @@ class Recorded:
     wind_speed: Floats | None = None
     others: Mapping[str, Floats] = field(default_factory=dict)
 
+    __repr__ = short_repr
+
 
 def recorded_files(files: Files) -> list[Path]:
     """Files that are named, or found by patterns, each once.
@@ -144,13 +147,7 @@ def read_recorded(
             "convert the file or rename it"
         )
     is_table, loads_mapped = suffix == ".csv", mapping.loads_mapped
-    beside_loads = [n.lower() for names in KNOWN.values() for n in names]
-    wanted = {*beside_loads, *(mapping.column(name)[0].lower() for name in mapping.channels)}
-    wanted |= {name.lower() for name in also}
-    if is_table and mapping.rotating:
-        wanted |= {name.lower() for name in AZIMUTH}
-    if is_table and loads_mapped:
-        wanted |= {name.lower() for name in LOAD_NAMES} | LOAD_CHANNELS
+    wanted = _wanted(mapping, also, is_table)
     channels = (
         csv_channels(file, wanted, mapping.units, points=bool(loads_mapped))
         if is_table
@@ -174,13 +171,7 @@ def read_recorded(
     history = _at_hub(history, mapping, own_names=not (is_table or loads_mapped))
     unread = [t for t in history.unread if without_unit(t).lower() not in wanted]
     history = replace(history, unread=tuple(unread))
-    beside = {}
-    for name, sizes in (("rotor speed", SPEED_UNITS), ("wind speed", WIND_UNITS)):
-        candidates = (channels.get(candidate.lower()) for candidate in KNOWN[name])
-        channel = named.get(name) or next((c for c in candidates if c is not None), None)
-        if channel is not None:
-            beside[name] = in_si(str(file), channel, sizes)
-            require_sound(f"hub loads '{file}'", history.time, {channel.name: beside[name]})
+    beside = _beside_loads(file, history, channels, named)
     others = {f"{c.name} [{c.unit.strip('()')}]": c.values for c in further}
     require_sound(f"hub loads '{file}'", history.time, others)
     kept = history.time >= history.time[0] + skip
@@ -198,6 +189,35 @@ def read_recorded(
     )
 
 
+def _wanted(mapping: ChannelMap, also: Sequence[str], is_table: bool) -> set[str]:
+    """Names in lower case of channels that are looked for, beside OpenFAST's loads."""
+    beside_loads = [n.lower() for names in KNOWN.values() for n in names]
+    wanted = {*beside_loads, *(mapping.column(name)[0].lower() for name in mapping.channels)}
+    wanted |= {name.lower() for name in also}
+    if is_table and mapping.rotating:
+        wanted |= {name.lower() for name in AZIMUTH}
+    if is_table and mapping.loads_mapped:
+        wanted |= {name.lower() for name in LOAD_NAMES} | LOAD_CHANNELS
+    return wanted
+
+
+def _beside_loads(
+    file: Path,
+    history: LoadHistory,
+    channels: Mapping[str, Channel],
+    named: Mapping[str, Channel],
+) -> dict[str, Floats]:
+    """Rotor speed [rad/s] and wind speed [m/s], where a file has them."""
+    beside = {}
+    for name, sizes in (("rotor speed", SPEED_UNITS), ("wind speed", WIND_UNITS)):
+        candidates = (channels.get(candidate.lower()) for candidate in KNOWN[name])
+        channel = named.get(name) or next((c for c in candidates if c is not None), None)
+        if channel is not None:
+            beside[name] = in_si(str(file), channel, sizes)
+            require_sound(f"hub loads '{file}'", history.time, {channel.name: beside[name]})
+    return beside
+
+
 def read_mapped(mapping: ChannelMap, path: Path, skip: float = 0.0) -> LoadHistory:
     """Hub loads alone, as `read_recorded` reads them.
 
@@ -213,7 +233,7 @@ def read_mapped(mapping: ChannelMap, path: Path, skip: float = 0.0) -> LoadHisto
     Raises
     ------
     InputError
-        As of `read_recorded`, or the loads never vary.
+        The same as for `read_recorded`, or the loads never vary.
     """
     history = read_recorded(path, mapping, skip).history
     require_variation(f"hub loads '{path}'", history.loads)

@@ -29,6 +29,7 @@ from fe_drivetrain.common.cache import Cache, user_cache
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.made_by import machine, source_hash
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.hub_loads.aero_rotor import (
     CUT_IN,
     CUT_OUT,
@@ -83,7 +84,7 @@ class Condition:
     shear : float
         Power-law exponent, 0 to 1.
     seed : int
-        Of the random numbers, not negative.
+        Seed of the random numbers, not negative.
 
     Raises
     ------
@@ -163,6 +164,8 @@ class HubLoadSet(Sequence[LoadHistory]):
     time: Floats
     loads: Floats
 
+    __repr__ = short_repr
+
     def __len__(self) -> int:
         return len(self.conditions)
 
@@ -231,7 +234,7 @@ def hub_load_set(
     conditions : Sequence[Condition] or None
         ``surrogate_grid()`` if not given.
     duration, rate, rotor : float, float, Rotor or None
-        As for ``hub_loads``.
+        The same as for ``hub_loads``.
     cache : bool or str or path-like
         Whether to keep histories in the user's cache, or another folder for them.
     progress : callable or None

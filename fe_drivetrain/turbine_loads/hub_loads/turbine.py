@@ -194,13 +194,13 @@ class BladeModes:
     shape : ndarray, (2, 2, k)
         By mode, component and place.
     force, moment : ndarray, (2, 2)
-        Of m and m r, times the shape, by mode and component [kg], [kg m].
+        Integrals of m and m r, times the shape, by mode and component [kg], [kg m].
     products : ndarray, (2, 2, 2, 2)
-        Of m times two shapes, by both modes and both components [kg].
+        Integrals of m times two shapes, by both modes and both components [kg].
     stiffening : ndarray, (2, 2)
-        Of the tension under unit speed of rotation times slopes of two modes [kg].
+        Integrals of the tension under unit speed of rotation times slopes of two modes [kg].
     first_moment : float
-        Of m r [kg m].
+        Integral of m r [kg m].
     """
 
     place: Floats
@@ -273,7 +273,7 @@ def natural_frequencies(
     rotor_speed : float
         [rad/s].
     pitch : float
-        Of all blades [rad].
+        Pitch of all blades [rad].
 
     Returns
     -------

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.short_repr import short_repr
 
 STORED = (
     "rotation of the rotor",
@@ -49,6 +50,8 @@ class EnergyAccount:
 
     stored: Floats
     works: Floats
+
+    __repr__ = short_repr
 
     @property
     def energy(self) -> Floats:

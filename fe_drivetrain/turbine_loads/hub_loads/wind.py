@@ -68,27 +68,11 @@ def length_scales(hub_height: float) -> tuple[float, float]:
     return 8.1 * scale, 8.1 * scale
 
 
-def kaimal_spectrum(frequency: ArrayLike, wind_speed: float, sigma: float, length: float) -> Floats:
-    """One-sided power spectral density [m^2/s] of the along-wind speed.
+def kaimal_variance_below(frequency: ArrayLike, wind_speed: float, length: float) -> Floats:
+    """Share of the variance slower than a frequency: the exact integral of Kaimal's spectrum.
 
     IEC 61400-1 Ed. 3, Eq B.14: f S / sigma^2 = 4 f L / V / (1 + 6 f L / V)^(5/3).
-
-    Parameters
-    ----------
-    frequency : array_like
-        [Hz].
-    wind_speed, sigma : float
-        Mean and standard deviation of the speed [m/s].
-    length : float
-        Integral length scale L [m].
     """
-    passage = length / wind_speed
-    f = np.asarray(frequency, dtype=float)
-    return np.asarray(sigma**2 * 4.0 * passage / (1.0 + 6.0 * f * passage) ** (5.0 / 3.0))
-
-
-def kaimal_variance_below(frequency: ArrayLike, wind_speed: float, length: float) -> Floats:
-    """Share of the variance slower than a frequency: the exact integral of ``kaimal_spectrum``."""
     f = np.asarray(frequency, dtype=float)
     return np.asarray(1.0 - (1.0 + 6.0 * f * length / wind_speed) ** (-2.0 / 3.0))
 
@@ -114,7 +98,7 @@ class DiscTurbulence:
     Attributes
     ----------
     radius : array_like, (r,)
-        Of the rings [m].
+        Radii of the rings [m].
         Rings of the disc.
     samples, rate : int, float
         Length n of a history and its samples a second [Hz].
@@ -173,7 +157,7 @@ def disc_turbulence(
     Parameters
     ----------
     radius : array_like, (r,)
-        Of the rings [m].
+        Radii of the rings [m].
     harmonics : int
         Highest azimuth harmonic M.
     wind_speed : float

@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.hub_loads.aero_rotor import (
     Rotor,
     aerodynamic_hub_loads,
@@ -42,7 +43,7 @@ class WindBox:
     Attributes
     ----------
     name : str
-        Of its file.
+        Name of its file.
     step : float
         Between two planes [s].
     y : ndarray, (ny,)
@@ -63,6 +64,8 @@ class WindBox:
     y: Floats
     z: Floats
     speed: NDArray[np.float32]
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         if self.speed.shape[1:] != (len(self.y), len(self.z)) or min(self.speed.shape) < 2:
@@ -87,7 +90,7 @@ class WindBox:
         Parameters
         ----------
         time, y, z : array_like
-            Of one shape [s, m, m].
+            Times and places, of one shape [s, m, m].
 
         Raises
         ------
@@ -124,12 +127,12 @@ class WindBox:
         time : array_like, (n,)
             [s].
         azimuth : array_like, (n,)
-            Of blade 1 from upwards, clockwise looking downwind [rad].
+            Azimuth of blade 1 from upwards, clockwise looking downwind [rad].
 
         Raises
         ------
         InputError
-            As of `at`.
+            The same as for `at`.
         """
         radius, _ = rotor.element_radius()
         shape = (len(np.asarray(time)), len(radius))
@@ -162,7 +165,7 @@ class WindBox:
         Raises
         ------
         InputError
-            As of `at`.
+            The same as for `at`.
         """
         radius, _ = rotor.element_radius()
         when = np.asarray(time, dtype=float)
@@ -194,7 +197,7 @@ def box_hub_loads(
     rotor : Rotor, optional
         The default one.
     azimuth : float
-        Of blade 1 at the beginning [rad].
+        Azimuth of blade 1 at the beginning [rad].
     rate : float, optional
         Samples per second [Hz]; the planes' where it is not given.
 
@@ -311,7 +314,7 @@ def read_hawc2(
     wind_speed : float
         Mean at the hub, which carries the box past the rotor [m/s].
     hub_height : float
-        Of the middle of the box [m].
+        Height of the middle of the box [m].
     shear : float
         Exponent of the mean wind's power law.
 

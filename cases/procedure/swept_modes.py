@@ -1,4 +1,4 @@
-"""Run-up through a resonance: the exact response of a mode to a frequency that rises evenly.
+"""Exact response of a mode to a frequency that rises evenly: a run-up through a resonance.
 
 PROTEST 2010 (appendix A.3.3) asks for a run-up by steadily rising speed. A mode then answers an
 excitation whose phase is 2 pi (f0 t + r t^2 / 2), with the response of Lewis (1932, Vibration
@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import wofz
 
-from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common import Floats, InputError
 
 Complex = NDArray[np.complex128]
 
@@ -30,7 +29,7 @@ class Sweep:
     start : float
         Frequency at t = 0 [Hz].
     rate : float
-        [Hz/s], not 0.
+        Rise of the frequency [Hz/s], not 0.
 
     Raises
     ------
@@ -49,7 +48,7 @@ class Sweep:
             )
 
     def phase(self, time: ArrayLike) -> Floats:
-        """At times from 0 on [rad].
+        """Phase at times from 0 on [rad].
 
         Parameters
         ----------
@@ -76,13 +75,13 @@ def swept_response(frequency: float, ratio: float, sweep: Sweep, time: ArrayLike
     Parameters
     ----------
     frequency : float
-        Natural, w / 2 pi [Hz].
+        Natural frequency, w / 2 pi [Hz].
     ratio : float
         Damping ratio zeta, from 0 and below 1.
     sweep : Sweep
-        Of the excitation.
+        Sweep of the excitation.
     time : array_like, (n,)
-        From 0 on [s].
+        Times from 0 on [s].
 
     Returns
     -------
@@ -128,16 +127,16 @@ def _memory(root: complex, sweep: Sweep, t: Floats) -> Complex:
 
 @dataclass(frozen=True)
 class RunUpPeak:
-    """The largest response of a mode in a sweep.
+    """Peak response of a mode in a sweep.
 
     Attributes
     ----------
     amplification : float
-        Over the static response to the same force.
+        Peak over the static response to the same force.
     share : float
-        Over the response at rest in the resonance.
+        Peak over the response at rest in the resonance.
     frequency : float
-        Of the excitation at that time [Hz].
+        Frequency of the excitation at that time [Hz].
     """
 
     amplification: float
@@ -151,11 +150,11 @@ def run_up_peak(frequency: float, ratio: float, sweep: Sweep, periods: int = 40)
     Parameters
     ----------
     frequency : float
-        Natural [Hz].
+        Natural frequency [Hz].
     ratio : float
         Damping ratio, above 0.
     sweep : Sweep
-        That meets the frequency after its start.
+        Sweep that meets the frequency after its start.
     periods : int
         Points in a period of the mode.
 

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from fe_drivetrain.command_line.study_files import STATISTICS
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.studies.load_facts import hub_load_rows
 from fe_drivetrain.studies.scene_study import StudyResult
 from fe_drivetrain.turbine_loads.histories.cycles import RULE
 from fe_drivetrain.turbine_loads.histories.damage import FREQUENCY
 
+STATISTICS = "reaction_statistics.csv"
+"""The file beside the page that has the statistics of each history."""
 
-def show_reactions(page: Page, result: StudyResult) -> None:
+
+def reaction_sections(page: Page, result: StudyResult) -> None:
     """Show extremes, means, standard deviations and damage-equivalent loads of every reaction.
 
     Parameters
@@ -28,9 +31,10 @@ def show_reactions(page: Page, result: StudyResult) -> None:
     )
     page.text(
         f"Damage-equivalent loads: ranges of a sine of {FREQUENCY:g} Hz that does the same damage, "
-        f"for S-N curves of slope {', '.join(f'{m:g}' for m in result.slopes)} (--slope takes "
-        f"others); {RULE}. They are for welds, castings and composites that these reactions load, "
-        "not for rolling bearings, whose life follows the load and the turns of each roller. "
+        f"for S-N curves of slope {', '.join(f'{m:g}' for m in result.slopes)} "
+        f"({argument('slopes')} takes others); {RULE}. They are for welds, castings and "
+        "composites that these reactions load, not for rolling bearings, whose life follows "
+        "the load and the turns of each roller. "
         + (
             "± mesh: what a coarser mesh changes, continued at first order of the mean element "
             "size."
@@ -65,17 +69,4 @@ def _loads(page: Page, result: StudyResult) -> None:
             for channels, names in by_channels.items()
         ],
     )
-    page.table(
-        "Histories, each with its own time",
-        [
-            {
-                "history": history.name,
-                "from [s]": history.start,
-                "to [s]": history.end,
-                "step [s]": history.step,
-                "samples": history.samples,
-                "share of the time [%]": 100.0 * history.share,
-            }
-            for history in result.loads.histories
-        ],
-    )
+    page.table("Histories, each with its own time", result.tables["histories"])

@@ -7,26 +7,26 @@ from collections.abc import Sequence
 import numpy as np
 
 from fe_drivetrain.bearing_life.life.roller_damage import KINDS
-from fe_drivetrain.command_line.life_sections import laminae, places, winds
-from fe_drivetrain.command_line.loads_tables import write_tables
+from fe_drivetrain.common.arguments import argument
+from fe_drivetrain.pages.life_bearings import laminae, places, winds
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.report.suite.run import Run
-from fe_drivetrain.shafts.response.stated import HUB_LOADS
 from fe_drivetrain.studies.bearing_lives import LifeResult
 from fe_drivetrain.studies.life_sums import BearingLife
+from fe_drivetrain.studies.life_tables import ring_rows
 
 #: Columns of the table of limits that are about static safety; the others are shares of the time.
 _OF_SAFETY = 7
 
 
 def show_life(run: Run, page: Page, result: LifeResult) -> None:
-    """Show lives, what takes them, and where methods end; write the tables.
+    """Show lives, what takes them, and where methods end.
 
     Parameters
     ----------
     run : Run
-        Its folder takes the tables.
+        Not used: the page has no pictures.
     page : Page
         Takes tables and charts.
     result : LifeResult
@@ -38,21 +38,8 @@ def show_life(run: Run, page: Page, result: LifeResult) -> None:
     for life in result.lives:
         page.section(f"Bearing {life.name}: {life.bearing.entry.title}")
         winds(page, life)
-        places(page, life, result.tables[f"{life.name}: rows and rings"])
+        places(page, life, ring_rows(life))
         laminae(page, life)
-    known = result.all_tables()
-    tables: dict[str, list[Record]] = {
-        name: known[name] for name in ("lives", "files", "winds", "places", "laminae")
-    }
-    facts = {
-        "frame": f"{HUB_LOADS.frame}; places of rollers: 0 right, 90 deg on top",
-        "units": "as in the heads of columns",
-        "lives": "with 90 % reliability but for a_1 of modified ones",
-    }
-    write_tables(run.folder, tables, dict.fromkeys(tables, facts))
-    page.section("Tables")
-    names = ", ".join(f"{name}.csv" for name, rows in tables.items() if rows)
-    page.text(f"Beside this page: {names}, and results.json with the numbers of all charts.")
 
 
 def _lives(page: Page, result: LifeResult) -> None:
@@ -131,5 +118,6 @@ def _assumed(page: Page, result: LifeResult) -> None:
         "do. The clearance is 1/4000 of the pitch diameter, rounded, along the contact normal, "
         "and the preload a tenth of it: a size to compare with, of no table. Give the clearance of "
         "the mounted bearing in its catalogue entry, and the others by their options. How rings, "
-        "housing and the shaft's support give way is not varied here: see --rings and --support."
+        "housing and the shaft's support give way is not varied here: see "
+        f"{argument('LifeOptions.rings')} and {argument('LifeOptions.support')}."
     )

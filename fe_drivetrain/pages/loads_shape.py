@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats, rounded
 from fe_drivetrain.report.charts import heat_map, trace
 from fe_drivetrain.report.results import Chart
@@ -13,8 +14,9 @@ from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.studies.load_digest import LOADS, UNITS
 from fe_drivetrain.studies.load_histories import LoadsResult
 from fe_drivetrain.studies.load_planes import SECTORS
-from fe_drivetrain.studies.load_records import multiple_columns, shown_unit
+from fe_drivetrain.studies.load_records import multiple_columns
 from fe_drivetrain.studies.load_totals import LoadTotals
+from fe_drivetrain.studies.shown_units import shown_unit
 from fe_drivetrain.turbine_loads.histories.spectra import MULTIPLES, NEAR, SEGMENT, WINDOW, Campbell
 from fe_drivetrain.turbine_loads.histories.spectrum_sums import HIGHEST
 from fe_drivetrain.turbine_loads.hub_loads.loops import LONGEST, ROUNDNESS, SHARE
@@ -173,8 +175,9 @@ def _multiples(page: Page, found: LoadTotals) -> None:
     amplitudes = found.spectra.multiples
     if amplitudes is None:
         page.text(
-            "No file has a rotor speed, so that multiples of it have no names: give --rotor-speed "
-            "in rpm, or --channel 'rotor speed=NAME'."
+            "No file has a rotor speed, so that multiples of it have no names: give "
+            f"{argument('LoadOptions.rotor_speed_rpm')}, or the channel, as in "
+            "`ChannelMap(channels={'rotor speed': 'RotSpeed'})`."
         )
         return
     page.table(

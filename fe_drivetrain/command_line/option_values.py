@@ -1,4 +1,4 @@
-"""What the options of ``loads`` say in words of their own."""
+"""Values of options of ``loads`` and ``life`` that are typed in a form of their own."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.studies.load_digest import LOADS, UNITS
 from fe_drivetrain.studies.load_winds import CaptureTarget
 from fe_drivetrain.turbine_loads.histories.sites import Site, site_of_class
-from fe_drivetrain.turbine_loads.hub_loads.channel_map import NAMES
+from fe_drivetrain.turbine_loads.hub_loads.channel_map import NAMES, ChannelMap, read_channel_map
 from fe_drivetrain.turbine_loads.hub_loads.channels import FORCE_UNITS, MOMENT_UNITS
-from fe_drivetrain.turbine_loads.hub_loads.recorded import recorded_files
+from fe_drivetrain.turbine_loads.hub_loads.recorded import OWN_NAMES, recorded_files
 
 
 def parse_channels(texts: Iterable[str]) -> dict[str, str]:
@@ -37,6 +37,25 @@ def parse_channels(texts: Iterable[str]) -> dict[str, str]:
         refuse_again("--channel", name, found)
         found[name] = column
     return found
+
+
+def parse_mapping(file: Path | None, channels: Iterable[str]) -> ChannelMap:
+    """How files call their channels, by ``--mapping`` and ``--channel``.
+
+    Parameters
+    ----------
+    file : Path or None
+        File of ``--mapping``.
+    channels : iterable of str
+        Words of ``--channel``, which goes before the mapping.
+
+    Raises
+    ------
+    InputError
+        The mapping cannot be read, or an option has another form.
+    """
+    names = OWN_NAMES if file is None else read_channel_map(file)
+    return names.with_columns(parse_channels(channels))
 
 
 def parse_site(text: str, shape: float = Site.shape, years: float = Site.years) -> Site:

@@ -14,9 +14,6 @@ from fe_drivetrain.studies.load_records import reaction_loop_rows
 from fe_drivetrain.studies.load_totals import LoadTotals
 from fe_drivetrain.turbine_loads.histories.spectra import SEGMENT
 
-OF_REACTIONS = ("reactions", "reaction_loops")
-"""Names of the tables of a scene's reactions."""
-
 
 def reactions_section(page: Page, result: LoadsResult, of: SceneReactions) -> None:
     """Add the section of bearing reactions.

@@ -3,45 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 
-from fe_drivetrain.command_line.validate_steps import STEP_SECTIONS, evidence_table
+from fe_drivetrain.pages.validate_steps import STEP_SECTIONS, evidence_table
 from fe_drivetrain.procedure.iteration_log import Entry, procedure_of
 from fe_drivetrain.procedure.steps import STEPS
 from fe_drivetrain.report.suite.page import Page
+from fe_drivetrain.report.suite.run import Run
 from fe_drivetrain.studies.project_validation import ValidateResult
 
 
-def show_validate(
-    page: Page,
-    result: ValidateResult,
-    log: Sequence[Entry],
-    reports: Path,
-    folder: Path,
-    commands: Sequence[str],
-) -> None:
-    """Fill the page of a project.
+def show_validate(run: Run, page: Page, result: ValidateResult) -> None:
+    """Show how the six steps of a project stand, their evidence with links, and the log.
 
     Parameters
     ----------
+    run : Run
+        Its folder is where links begin.
     page : Page
-        Takes a section for each step, and the checks.
+        Takes a section for each step.
     result : ValidateResult
         How it stands.
-    log : sequence of Entry
-        All runs that have changed something, this one included.
-    reports : Path
-        Folder of the evidence.
-    folder : Path
-        Of the page, for links.
-    commands : sequence of str
-        What to type next.
     """
     states = result.states
     _show_states(page, result)
-    if commands:
+    if result.commands:
         page.section("What to run next")
-        for command in commands:
+        for command in result.commands:
             page.text(f"`{command}`")
     for state, show in zip(states, STEP_SECTIONS, strict=True):
         page.section(f"Step {state.number}: {STEPS[state.number - 1]}")
@@ -51,12 +38,12 @@ def show_validate(
         page.text(f"Decision: {state.decision}")
         show(page, result)
         if state.evidence:
-            page.add(evidence_table(state.evidence, reports, folder))
+            page.add(evidence_table(state.evidence, result.reports, run.folder))
         if state.lacks:
             page.table("What it lacks", [[text] for text in state.lacks], ["step is not complete"])
     _show_signatures(page, result)
-    _show_log(page, result.project.subject, log)
-    page.data("log", [entry.model_dump(mode="json", exclude={"steps"}) for entry in log])
+    _show_log(page, result.project.subject, result.log)
+    page.data("log", [entry.model_dump(mode="json", exclude={"steps"}) for entry in result.log])
 
 
 def _show_states(page: Page, result: ValidateResult) -> None:

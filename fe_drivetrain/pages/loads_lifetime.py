@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.report.charts import trace
 from fe_drivetrain.report.suite.page import Page
-from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.load_histories import LoadsResult
 from fe_drivetrain.studies.load_lifetime import CYCLES, Lifetime
-from fe_drivetrain.studies.load_tables import damage_rows, transient_rows
+from fe_drivetrain.studies.load_tables import leading_damage_rows, transient_rows
 
 
 def lifetime_section(page: Page, found: Lifetime, result: LoadsResult) -> None:
@@ -30,10 +28,17 @@ def lifetime_section(page: Page, found: Lifetime, result: LoadsResult) -> None:
     page.table(
         f"Range of {CYCLES:.0e} cycles that do the damage of {site.years:g} years at a mean wind "
         f"of {site.mean_wind:g} m/s (Weibull, k = {site.shape:g}), {winds}"
-        + ("" if found.events else "; starts and stops are not among these files (--transient)"),
+        + (
+            ""
+            if found.events
+            else f"; starts and stops are not among these files ({argument('transients')})"
+        ),
         result.tables["lifetime"],
     )
-    _most(page, damage_rows(found, result.asked))
+    page.table(
+        "Where most of the damage comes from; all of it is in lifetime_damage.csv",
+        leading_damage_rows(found, result.asked),
+    )
     page.text(
         f"The files stand for {found.hours.sum():,.0f} h, {winds}: {100.0 * found.covered:.3g} % "
         "of the time; each mean wind speed reaches halfway to the next."
@@ -41,17 +46,6 @@ def lifetime_section(page: Page, found: Lifetime, result: LoadsResult) -> None:
     if found.events:
         page.table("Transients", transient_rows(found))
     _levels(page, found)
-
-
-def _most(page: Page, shares: Sequence[Record]) -> None:
-    """What does most damage."""
-    rows: list[Record] = []
-    for name in ("Mx", "radial force", "bending moment"):
-        for slope in dict.fromkeys(row["slope"] for row in shares):
-            own = [r for r in shares if r["channel"] == name and r["slope"] == slope]
-            if own:
-                rows.append(max(own, key=lambda r: float(r["share of damage [%]"])))
-    page.table("Where most of the damage comes from; all of it is in lifetime_damage.csv", rows)
 
 
 def _levels(page: Page, found: Lifetime) -> None:

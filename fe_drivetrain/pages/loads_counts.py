@@ -8,7 +8,8 @@ from fe_drivetrain.report.charts import heat_map, trace
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.studies.load_digest import LOADS, MOMENTS_BY_MEAN, UNITS
 from fe_drivetrain.studies.load_histories import LoadsResult
-from fe_drivetrain.studies.load_records import shown_unit, slope_columns, torque_rows
+from fe_drivetrain.studies.load_records import slope_columns, torque_rows
+from fe_drivetrain.studies.shown_units import shown_unit
 
 
 def counts(page: Page, result: LoadsResult) -> None:

@@ -2,52 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-import numpy as np
-
-from fe_drivetrain.command_line.scene_page import describe
-from fe_drivetrain.command_line.study_files import (
-    STATISTICS,
-    STIFFNESS,
-    write_reactions,
-    write_statistics,
-    write_stiffness,
-)
-from fe_drivetrain.command_line.study_reactions import show_reactions
-from fe_drivetrain.elasticity.mesh.files import write
-from fe_drivetrain.export.formats.summary import summary, write_summary
+from fe_drivetrain.pages.check import describe
+from fe_drivetrain.pages.study_reactions import reaction_sections
 from fe_drivetrain.pages.uncertainty import bands, inputs
 from fe_drivetrain.pages.uncertainty import slopes as slopes_section
 from fe_drivetrain.report.charts import trace
-from fe_drivetrain.report.pictures import NoPictureError, picture_of_model
-from fe_drivetrain.report.solid_view import deformed_shape
+from fe_drivetrain.report.solid_view import model_pictures
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.run import Run
 from fe_drivetrain.shafts.fidelity.judgement import Judgement
 from fe_drivetrain.shafts.fidelity.over_loads import COARSER_ASSEMBLY, Levels
-from fe_drivetrain.shafts.fidelity.quantities import unit_numbers
 from fe_drivetrain.shafts.fidelity.shaft_bands import COARSER
 from fe_drivetrain.studies.level_errors import ENOUGH
-from fe_drivetrain.studies.scene_study import ASSEMBLY, StudyResult
-from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
+from fe_drivetrain.studies.scene_study import StudyResult
+
+_DASHES = ("solid", "dash", "dot")
 
 
-def show_study(
-    run: Run, page: Page, result: StudyResult, histories: Sequence[LoadHistory] = ()
-) -> None:
-    """Show the study of a scene, and write its files.
+def show_study(run: Run, page: Page, result: StudyResult) -> None:
+    """Show the study of a scene.
 
     Parameters
     ----------
     run : Run
-        Its folder takes pictures, CSV files, stiffnesses, summary and mesh.
+        Its folder takes the pictures.
     page : Page
         Takes tables and charts.
     result : StudyResult
         What was found.
-    histories : sequence of LoadHistory
-        Load histories whose reactions are written over time.
     """
     page.section("Scene")
     _pictures(run, page, result)
@@ -56,52 +38,41 @@ def show_study(
         page.section("Stiffness of the bearing units")
         _stiffness(page, result)
     page.section("Reactions")
-    show_reactions(page, result)
+    reaction_sections(page, result)
     page.section("Beams against FE")
     _errors(page, result)
     page.section("Over time")
-    _series(page, result)
+    _over_time(page, result)
     if result.uncertainty is not None:
         spreads = result.uncertainty
         page.sections += [bands(spreads), inputs(spreads), slopes_section(spreads)]
-    with run.step("files"):
-        _files(run, page, result, histories)
 
 
 def _pictures(run: Run, page: Page, result: StudyResult) -> None:
     model, mean = result.model, result.loads.mean
     weights = " and all weights" if mean[8] else ""
     with run.step("pictures"):
-        try:
-            picture_of_model(model, run.folder / "model.png")
-            shape = deformed_shape(
-                model, result.response, mean, run.folder, f"the mean load{weights}"
-            )
-        except NoPictureError as reason:
-            page.text(f"No picture: {reason}")
-            return
-    page.image(f"{model.scene.title}: parts, loads and supports", "model.png")
-    page.add(shape)
+        what = f"the mean load{weights}"
+        page.add(*model_pictures(model, result.response, mean, run.folder, what))
 
 
 def _stiffness(page: Page, result: StudyResult) -> None:
     """K_R and the other stiffnesses of each unit between two bounds."""
     page.table(
-        "Bearing, housing and bedplate without the shaft: the shaft keeps the face between them in "
-        "shape, but not wholly, so that the truth is between two bounds (equal where the joint "
-        "itself says how its faces move). The mesh makes both too stiff by up to the last column. "
-        "Force over motion, all other loads zero",
+        "Stiffness of bearing, housing and bedplate together, without the shaft: force over "
+        "motion, all other loads zero. The shaft holds the face where they meet in shape only in "
+        "part. The true stiffness is therefore between two bounds: the face is free to deform and "
+        "its average motion counts (soft), or it stays rigid (stiff). Both are equal where the "
+        "joint itself prescribes how the face moves. The mesh makes both too stiff, by at most the "
+        "last column",
         result.tables["unit_stiffness"],
     )
-    free = {name: unit_numbers(bounds.stiff) for name, bounds in result.units.items()}
-    aligning = [name for name, of in free.items() if of["tilt"] == of["yaw"] == 0.0]
-    floating = [name for name, of in free.items() if of["axial"] == 0.0]
-    if aligning:
-        page.text(f"No K_R of {', '.join(aligning)}: the bearing gives way to tilt.")
-    if floating:
+    if result.aligning:
+        page.text(f"No K_R of {', '.join(result.aligning)}: the bearing gives way to tilt.")
+    if result.floating:
         page.text(
-            f"No axial stiffness of {', '.join(floating)}: the bearing floats, and leaves axial "
-            "force to the others at every level."
+            f"No axial stiffness of {', '.join(result.floating)}: the bearing floats, and leaves "
+            "axial force to the others at every level."
         )
     if result.secants:
         page.table(
@@ -172,49 +143,17 @@ def _notes(levels: Levels, judgement: Judgement) -> str:
     return " ".join(notes)
 
 
-def _series(page: Page, result: StudyResult) -> None:
+def _over_time(page: Page, result: StudyResult) -> None:
     """The beginning of the middle history: radial force of each bearing, FE and beams."""
-    levels, shown = result.levels, result.loads.beginning
-    (*_, beams) = [models for level, models in levels.bounds.items() if level.startswith("1")]
-    labels = [ASSEMBLY, *beams]
-    found = {label: result.reactions(shown.loads, label) for label in labels}
+    shown = result.beginning
     with_weights = " with all weights" if result.loads.gravity else ""
-    for name in result.model.scene.bearing_names:
-        traces = []
-        for label, dash in zip(labels, ("solid", "dash", "dot"), strict=False):
-            reaction = found[label][name]
-            force = np.hypot(reaction[:, 1], reaction[:, 2]) / 1e3
-            traces.append(trace(label, shown.time, force, line={"dash": dash}))
+    for name, forces in shown.radial_forces.items():
         page.chart(
             f"Radial force on {name}{with_weights}: the beginning of {shown.name}",
-            traces,
+            [
+                trace(model, shown.time, force / 1e3, line={"dash": dash})
+                for (model, force), dash in zip(forces.items(), _DASHES, strict=False)
+            ],
             "time [s]",
             "radial force [kN]",
         )
-
-
-def _files(run: Run, page: Page, result: StudyResult, histories: Sequence[LoadHistory]) -> None:
-    """Exports beside the page, and a list of them."""
-    model = result.model
-    write_statistics(run.folder / STATISTICS, result)
-    files = {STATISTICS: "reactions of each history: statistics, bands, equivalent loads"}
-    if histories:
-        write_reactions(run.folder, result, histories)
-        files["reactions_*.csv"] = "reactions over time"
-    if result.units:
-        write_stiffness(run.folder / STIFFNESS, result)
-        files[STIFFNESS] = "6x6 stiffness of each bearing unit, two bounds"
-    write_summary(run.folder / "summary.json", summary(model.scene, 2))
-    files["summary.json"] = "shaft, bearing units, reactions, masses of a drivetrain model"
-    fields = {
-        f"displacement {load}": result.response.displacements[:, :, k]
-        for k, load in enumerate(model.loads)
-    }
-    write(model.mesh, run.folder / "mesh.vtu", fields)
-    files["mesh.vtu"] = "the assembly with its unit-load displacements, for ParaView"
-    page.section("Files")
-    page.table(
-        "Files of this study",
-        [{"file": name, "content": content} for name, content in files.items()],
-    )
-    page.text("'fe-drivetrain export' writes the model for other programs.")

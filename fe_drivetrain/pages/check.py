@@ -25,7 +25,7 @@ def show_check(run: Run, page: Page, result: CheckResult) -> None:
         What was found.
     """
     page.section("Scene")
-    picture(run, page, result.model)
+    _picture(run, page, result.model)
     describe(page, result.described)
     page.section("Cost")
     page.table(
@@ -33,20 +33,21 @@ def show_check(run: Run, page: Page, result: CheckResult) -> None:
         result.tables["levels"],
     )
     page.text(
-        "Predicted times are those of the solver, fitted on two cores, without mesh and assembly, "
-        "whose times stand below; a mesh comes from the cache the next time. "
+        "Predicted times are those of the solver, fitted on two cores. Times of meshing and "
+        "assembly are not in them: they stand below, and the next time a mesh comes from the "
+        "cache. "
         + (
-            "Housings as springs are solved for two bounds, all bearing units; the shaft on them "
-            "was run. "
+            "The level with housings as springs solves every bearing unit for two bounds; the "
+            "shaft on these springs was run here. "
             if result.model.scene.bearing_units
-            else "The bearings on the nose have no solids: as far as the mesh is the same, the "
-            "assembly (4) answers as solid shaft and solid nose (3) do. "
+            else "The bearings on the nose have no solids: on the same mesh, the assembly (4) "
+            "gives the results of solid shaft and solid nose (3). "
         )
-        + "advise solves coarser meshes, too, for the band of the assembly."
+        + "The command advise also solves coarser meshes, for the error band of the assembly."
     )
 
 
-def picture(run: Run, page: Page, model: Model) -> None:
+def _picture(run: Run, page: Page, model: Model) -> None:
     """Draw the model; where nothing can be drawn, say why.
 
     Parameters

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fe_drivetrain.bearing_life.life.roller_damage import KINDS
-from fe_drivetrain.command_line.life_charts import along_rollers, damage_map, load_zone
+from fe_drivetrain.pages.life_charts import along_rollers, damage_map, load_zone
 from fe_drivetrain.report.charts import bars
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.records import Record
@@ -81,10 +81,17 @@ def places(page: Page, life: BearingLife, rings: Sequence[Record]) -> None:
         Share of each row and ring in the damage, and its life if it were alone.
     """
     page.add(load_zone(life.name, life.rows, life.mean_load, life.peak_load))
-    page.table(f"{life.name}: rows and rings", rings)
+    page.table(f"{life.name}: rows and rings", rings, list(rings[0])[1:])
+    what = "damage by L10r at the site over wind and place of rollers"
     maps = [
-        damage_map(caption, speeds, "wind [m/s]", row, values)
-        for caption, row, speeds, values in site_maps(life)
+        damage_map(
+            f"{life.name}, {one.row_name}: {what}",
+            one.speeds,
+            "wind [m/s]",
+            one.row,
+            one.values,
+        )
+        for one in site_maps(life)
     ]
     for r, (row, word) in enumerate(zip(life.rows, row_names(len(life.rows)), strict=True)):
         if maps:

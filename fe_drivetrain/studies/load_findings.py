@@ -1,0 +1,174 @@
+"""What load histories say in sentences and numbers: answer, cautions, tables and checks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.procedure.failure_modes import ROTOR_TORQUE
+from fe_drivetrain.report.answer import value_with_band
+from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.studies.load_cautions import cautions
+from fe_drivetrain.studies.load_digest import LoadOptions
+from fe_drivetrain.studies.load_records import (
+    loop_rows,
+    slope_rows,
+    statistics_rows,
+    torque_rows,
+)
+from fe_drivetrain.studies.load_totals import LoadTotals
+from fe_drivetrain.studies.load_winds import Capture, CaptureTarget, winds_not_used
+from fe_drivetrain.studies.unused import speed_not_used
+from fe_drivetrain.turbine_loads.histories.spectra import MULTIPLES
+
+_NAMED = 3  # files that are sampled too slowly
+
+
+def hub_findings(
+    found: Findings,
+    hub: LoadTotals,
+    options: LoadOptions,
+    target: CaptureTarget,
+    capture: Capture | None,
+) -> None:
+    """State answer, cautions and numbers of the hub loads.
+
+    Parameters
+    ----------
+    found : Findings
+        Takes them.
+    hub : LoadTotals
+        Hub loads of all files.
+    options : LoadOptions
+        How they were counted.
+    target : CaptureTarget
+        What the capture matrix should hold.
+    capture : Capture or None
+        What it holds; None where no file has a wind speed.
+    """
+    _answer(found, hub, options)
+    if capture is not None:
+        found.answer(capture.sentence)
+    for sentence in cautions(hub, options):
+        found.note(sentence)
+    for sentence in winds_not_used(target, capture):
+        found.note(sentence)
+    for sentence in _aliased(hub):
+        found.note(sentence)
+    _data(found, hub, options, capture)
+
+
+def note_unused_speed(
+    found: Findings, options: LoadOptions, stated: Sequence[Sequence[Floats]]
+) -> None:
+    """Note files that state a speed of their own where another one is given.
+
+    Parameters
+    ----------
+    found : Findings
+        Takes the note.
+    options : LoadOptions
+        How files were read.
+    stated : sequence of sequence of ndarray, (2,)
+        Min and max rotor speed that files of each set state [1/min]; NaN where one states none.
+    """
+    given = options.rotor_speed_rpm
+    if unused := speed_not_used(given, [speeds for own in stated for speeds in own]):
+        found.note(unused)
+
+
+def _answer(found: Findings, hub: LoadTotals, options: LoadOptions) -> None:
+    """The equivalent tilting moment and torque, with what the residue leaves open."""
+    slope, hertz = options.slopes[0], options.frequency
+    words = []
+    for name in ("My", "Mx"):
+        one = hub.equivalent_load(name, slope, options)
+        if not one.load:
+            continue
+        band = None if one.band is None else one.band / 1e3
+        quantity = f"equivalent load of {name}, slope {slope:g} [kN m]"
+        found.found(quantity, one.load / 1e3, band, (ROTOR_TORQUE,) if name == "Mx" else ())
+        words.append(f"{value_with_band(found.figures[-1])} in {name}")
+    open_ends = " (± what whole cycles in place of half ones would add)"
+    rule = open_ends if options.residue == "half" else ""
+    said = (
+        f"These loads do the damage of a sine of {hertz:g} Hz with a range of "
+        f"{' and '.join(words)} at a slope of {slope:g}{rule}: "
+    )
+    files = hub.files
+    count = len(files.names)
+    found.answer(
+        f"{said if words else ''}{count} file{'s' * (count > 1)}, {files.samples:,} samples over "
+        f"{files.seconds:,.6g} s; {options.counted}."
+    )
+
+
+def _aliased(hub: LoadTotals) -> list[str]:
+    """Sentences on files that are sampled too slowly for multiples of their rotor's speed."""
+    turning = dict(zip(hub.files.names, hub.statistics.mean_of("rotor speed"), strict=True))
+    said = []
+    for one in hub.spectra.aliased[:_NAMED]:
+        # less a little for round-off
+        hertz = float(turning[one.file]) / (2.0 * np.pi) * (1.0 - 1e-6)
+        shown = ", ".join(
+            f"{n}P appears at {at:.3g} Hz"
+            for n, at in zip(MULTIPLES, one.appears_at.tolist(), strict=True)
+            if at < hertz * n
+        )
+        said.append(
+            f"{one.file} is sampled every {one.step:g} s, too slowly for its multiples of rotor "
+            f"speed: {shown}. What stands there in its spectra is not there in the load; sample "
+            "faster."
+        )
+    return said
+
+
+def _data(found: Findings, hub: LoadTotals, options: LoadOptions, capture: Capture | None) -> None:
+    """Numbers of the hub loads for other programs."""
+    found.data("statistics", statistics_rows(hub))
+    if capture is not None:
+        found.data(
+            "capture",
+            {
+                "wind [m/s]": capture.matrix.wind,
+                "turbulence [-]": capture.matrix.turbulence,
+                "windows": capture.matrix.counts,
+                "missing windows": capture.missing,
+            },
+        )
+    found.data("loops", loop_rows(hub))
+    found.data("equivalent_loads", slope_rows(hub.equivalent_loads(options), options))
+    if options.ultimate:
+        about_zero = slope_rows(hub.equivalent_loads_about_zero(options), options)
+        found.data("equivalent_loads_about_zero", about_zero)
+    found.data("torque", {row["quantity"]: row["value"] for row in torque_rows(hub)})
+
+
+def check_classes(found: Findings, hub: LoadTotals) -> None:
+    """Check that classes of levels and planes hold the time of all samples.
+
+    Parameters
+    ----------
+    found : Findings
+        Takes the checks.
+    hub : LoadTotals
+        Hub loads of all files.
+    """
+    for what, classes in (
+        ("time at the levels", list(hub.levels.seconds.values())),
+        (
+            "time in the planes of force and moment",
+            [plane.positions for plane in hub.planes.values()],
+        ),
+    ):
+        worst = max(abs(one.amount.sum() / hub.files.seconds - 1.0) for one in classes)
+        found.vanishes(
+            f"{what}, less that of all samples, as a share",
+            worst,
+            within=1e-9,
+            why="each sample is in one class: rounding of the sums",
+            source="number of samples times their step",
+            basis="self-consistency",
+        )

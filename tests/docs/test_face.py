@@ -1,0 +1,89 @@
+"""The public names of `fe_drivetrain`: each has an example in python.md, and prints one line."""
+
+import contextlib
+import inspect
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import fe_drivetrain
+from fe_drivetrain.common.short_repr import LONGEST
+from fe_drivetrain.studies.result import Result
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "docs"))
+
+import face_examples
+
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
+Names = dict[str, Any]
+
+
+@pytest.fixture(scope="module")
+def names(kept_between_runs: None, tmp_path_factory: pytest.TempPathFactory) -> Names:
+    """All names of the page after its last block."""
+    found: Names = {}
+    with (
+        contextlib.chdir(tmp_path_factory.mktemp("face")),
+        contextlib.redirect_stdout(None),
+    ):
+        for block in face_examples.blocks():
+            exec(compile(block, face_examples.PAGE.name, "exec"), found)
+    return found
+
+
+def test_each_public_name_has_an_example() -> None:
+    shown = [name for group, _ in face_examples.examples() for name in group]
+    assert sorted(shown) == fe_drivetrain.__all__
+    assert 55 <= len(shown) <= 70
+
+
+def test_a_name_is_not_that_of_a_room() -> None:
+    """Else it is the room once anything imports from that."""
+    rooms = {path.parent.name for path in Path(fe_drivetrain.__file__).parent.glob("*/__init__.py")}
+    assert not rooms & set(fe_drivetrain.__all__)
+    for name in fe_drivetrain.__all__:
+        assert not inspect.ismodule(getattr(fe_drivetrain, name)), name
+
+
+def test_the_examples_find_what_they_say(names: Names) -> None:
+    assert names["checked"].mass > 0
+    response = names["response"]
+    assert max(response.equilibrium_error, response.superposition_error) < 1e-8
+    weight = names["scene"].gearbox.weight
+    loads = response.history("main_bearing", names["hub_loads"], weight, gravity=9.80665)
+    assert loads.shape == (1, 6)
+    assert names["again"].points == names["shaft"].points
+    years = names["lived"].bearings["main_bearing"].years
+    assert 0 < years["L10mr"] < float("inf")
+    assert {result.STUDY for result in names.values() if isinstance(result, Result)} == {
+        *("check", "study", "advise", "loads", "life"),
+        *("compare", "uncertainty", "validate", "part", "export"),
+    }
+
+
+def test_what_a_script_prints_is_one_short_line(names: Names) -> None:
+    own = {
+        name: value
+        for name, value in names.items()
+        if type(value).__module__.startswith("fe_drivetrain.")
+    }
+    own["life of a bearing"] = names["lived"].bearings["main_bearing"]
+    own["level of the adviser"] = names["advised"].advice.results[0]
+    assert len(own) > 20
+    for name, value in own.items():
+        for text in (repr(value), str(value)):
+            assert "\n" not in text, name
+            assert len(text) <= LONGEST + len(type(value).__name__) + len("(), ..."), name
+
+
+def test_every_class_has_an_instance_whose_line_is_short(names: Names) -> None:
+    """So that the test above leaves none out but options and errors."""
+    made = {type(value) for value in names.values()}
+    classes = {name for name in fe_drivetrain.__all__ if inspect.isclass(names[name])}
+    without = {name for name in classes if not any(issubclass(t, names[name]) for t in made)}
+    assert without == {"InputError", "LifeOptions", "LoadOptions", "Quantity", "Site"}
+    for value in (names["LifeOptions"](), names["LoadOptions"](), names["Site"](mean_wind=8.5)):
+        assert len(repr(value)) < 1000
