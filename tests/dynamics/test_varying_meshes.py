@@ -145,7 +145,7 @@ def test_a_mesh_that_is_not_there() -> None:
 def test_the_examples_of_the_docs_run() -> None:
     text = (Path(__file__).parents[2] / "docs" / "transients.md").read_text(encoding="utf-8")
     blocks = re.findall(r"```python\n(.*?)```", text, flags=re.S)
-    assert len(blocks) == 5
+    assert len(blocks) == 6
     found: dict[str, Any] = {}
     for block in blocks:
         exec(block, found)
