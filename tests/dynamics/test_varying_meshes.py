@@ -142,10 +142,11 @@ def test_a_mesh_that_is_not_there() -> None:
         varying_equations(park()[0], {"stage 9 mesh": Meshing(1.6, 128.0)})
 
 
-def test_the_examples_of_the_docs_run() -> None:
+def test_the_examples_of_the_docs_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     text = (Path(__file__).parents[2] / "docs" / "transients.md").read_text(encoding="utf-8")
     blocks = re.findall(r"```python\n(.*?)```", text, flags=re.S)
-    assert len(blocks) == 6
+    assert len(blocks) == 7
+    monkeypatch.chdir(tmp_path)  # which a page writes a table to
     found: dict[str, Any] = {}
     for block in blocks:
         exec(block, found)
@@ -154,6 +155,8 @@ def test_the_examples_of_the_docs_run() -> None:
     assert found["turned"].converged
     radial = found["on_rollers"].bearings.radial("stage 1 pin 1 upwind")
     assert radial[-1] > radial[0] > 1e5
+    stops = found["shaken"].braking.events[0]
+    assert stops == (pytest.approx(0.2 + 20 * 6 / 300, rel=1e-6), "stops")
     # errors of some microns against teeth of a GN/m
     assert 1e2 < abs(found["answer"].forces).max() < 1e5
 
