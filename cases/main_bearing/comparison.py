@@ -195,7 +195,7 @@ def _by_quantity(label: str, reference: Floats, model: Floats) -> list[Record]:
         rows.append(
             {
                 "comparison": label,
-                "quantity": f"{quantity} [k{UNITS[quantity]}]".replace("N m", "N\u00a0m"),
+                "quantity": f"{quantity} [k{UNITS[quantity]}]",
                 "rms of FE": float(result.reference_rms[:, k].mean()) / 1e3,
                 "RMSE": float(result.rmse[:, k].mean()) / 1e3,
                 "bias, beam less FE": float(result.bias[:, k].mean()) / 1e3,

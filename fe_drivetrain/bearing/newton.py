@@ -78,7 +78,8 @@ class Found(NamedTuple):
 
     def part(self, cases: slice) -> "Found":
         """Results of some of the cases, in the same memory."""
-        return Found(*(values[cases] for values in self))
+        steps, evaluations = self.steps[cases], self.evaluations[cases]
+        return Found(self.displacements[cases], steps, evaluations, self.residuals[cases])
 
 
 class _Place(NamedTuple):

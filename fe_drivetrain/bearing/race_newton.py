@@ -79,7 +79,14 @@ class Solved(NamedTuple):
 
     def part(self, cases: slice) -> "Solved":
         """Results of some of the cases, in the same memory."""
-        return Solved(*(values[cases] for values in self))
+        return Solved(
+            self.unknowns[cases],
+            self.rollers[cases],
+            self.moments[cases],
+            self.steps[cases],
+            self.evaluations[cases],
+            self.residuals[cases],
+        )
 
 
 class _Motion(NamedTuple):

@@ -109,10 +109,6 @@ class SpringLaws:
             Periods at t = 0, and periods a second, of each spring or one for all.
         turns : array_like
             (m, n) periods for each degree of freedom, or one number for all.
-
-        Returns
-        -------
-        springs : SpringLaws
         """
         m, rows = len(self.rows), self.rows.shape
         periods = np.array(np.broadcast_to(np.asarray(turns, dtype=np.float64), rows))
@@ -127,10 +123,6 @@ class SpringLaws:
             Waves (w, p, 4), by `wave_table` or `fourier_wave`, stacked.
         wave : array_like
             Number of the wave of each spring, or one for all; `CONSTANT` for none.
-
-        Returns
-        -------
-        springs : SpringLaws
 
         Raises
         ------
@@ -159,10 +151,6 @@ class SpringLaws:
         phase, turns : array_like
             Periods of the error at psi = 0 and for each period of psi, see `SpringLaws`.
 
-        Returns
-        -------
-        springs : SpringLaws
-
         Raises
         ------
         InputError
@@ -185,10 +173,6 @@ class SpringLaws:
         ----------
         power, speed : array_like
             Values of each spring, or one for all, see `SpringLaws`.
-
-        Returns
-        -------
-        springs : SpringLaws
         """
         m = len(self.rows)
         return replace(self, power=_each(power, m), speed=_each(speed, m))
@@ -232,7 +216,12 @@ def spring_laws(
     zero, no_table = np.zeros(m), np.zeros((0, 1, 4))
     springs = SpringLaws(
         H,
-        *(_each(v, m) for v in (stiffness, damping, lower, upper, exponent, offset)),
+        stiffness=_each(stiffness, m),
+        damping=_each(damping, m),
+        lower=_each(lower, m),
+        upper=_each(upper, m),
+        exponent=_each(exponent, m),
+        offset=_each(offset, m),
         wave=np.full(m, CONSTANT),
         phase=zero,
         frequency=zero,

@@ -184,8 +184,7 @@ def digest(
     require_samples(file, len(history), reading.every, MIN_SAMPLES)
     loads, speed = entering(scene, history)[:: reading.every], speed[:: reading.every]
     check_speed(one.rated, speed)
-    n = len(loads)
-    step = history.step * reading.every
+    n, step = len(loads), history.step * reading.every
     sums = _Sums(one)
     chunk = int(np.clip(-(-n // WINDOWS), 1, MOST))
     done = 0

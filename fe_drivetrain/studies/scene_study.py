@@ -232,10 +232,19 @@ def study(
         check_one_tilting_bearing(scene)
     found, steps = Findings(), Steps(report)
     at = _solved(found, steps, scene, loads, weight, quick, seat)
+    options = {**at.entered.given.asked(), "slopes": slopes, "weight": weight, "quick": quick}
+    return _studied(found, steps, at, slopes, {**options, "seat": seat})
+
+
+def _studied(
+    found: Findings, steps: Steps, at: _Solved, slopes: Sequence[float], options: dict[str, Any]
+) -> StudyResult:
+    """Reactions to the loads, errors of every level and of closed forms, effect of spreads."""
+    quick = bool(options["quick"])
     _answer(found, at, quick)
     _stiffness(found, at.levels.units)
     with steps.step("reactions of all load steps"):
-        reactions, secants = _reactions(found, at, slopes, report)
+        reactions, secants = _reactions(found, at, slopes, steps.report)
     with steps.step("beams against FE"):
         errors, judgement, measures = _errors(found, at, slopes)
         models, forms = _closed_forms(found, at)
@@ -244,8 +253,6 @@ def study(
     uncertainty = _uncertainty(found, steps, at.scene, level, facts.mean, quick)
     stated = _stated(at.model, facts.gravity)
     _state(found, at, facts, stated)
-    options = {**at.entered.given.asked(), "slopes": slopes, "weight": weight, "quick": quick}
-    options["seat"] = seat
     return StudyResult(
         secants=secants,
         reaction_statistics=reactions,

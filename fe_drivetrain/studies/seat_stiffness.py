@@ -66,7 +66,7 @@ class SeatStiffness:
         return [
             {
                 "plane": plane,
-                **{f"{estimator} [MN\u00a0m/rad]": k / 1e6 for estimator, k in values.items()},
+                **{f"{estimator} [MN m/rad]": k / 1e6 for estimator, k in values.items()},
                 "spread [%]": self.spread(plane),
             }
             for plane, values in self.by_plane.items()

@@ -288,7 +288,7 @@ def test_an_exponent_is_fitted_and_judged_with_its_band() -> None:
         source="second order",
     )
     page.exponent("the same", x, error, -1.0, within=0.05, why="scatter", source="first order")
-    right, wrong = page.verdicts
+    right, wrong = page.checks
     assert found == right.computed == pytest.approx(np.polyfit(np.log(x), np.log(error), 1)[0])
     assert (right.passed, wrong.passed) == (True, False)
     assert (right.measure, right.tolerance, right.relative) == ("order", 0.05, True)

@@ -58,7 +58,7 @@ def test_rows_state_every_estimator_and_their_spread(
 ) -> None:
     assert studied.to_dict()["tables"]["seat_stiffness"] == seat.rows()
     for row in seat.rows():
-        values = [row[f"{name} [MN\u00a0m/rad]"] for name in ESTIMATORS]
+        values = [row[f"{name} [MN m/rad]"] for name in ESTIMATORS]
         assert row["spread [%]"] == pytest.approx(100.0 * np.ptp(values) / np.median(values))
     assert seat.both("energy") == tuple(k["energy"] for k in seat.by_plane.values())
 

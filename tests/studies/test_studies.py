@@ -161,6 +161,8 @@ def test_the_json_of_a_result_is_strict_and_names_its_schema(result: Result) -> 
     assert found["answer"] == list(result.answer)
     assert len(found["checks"]) == len(result.checks)
     assert found["tables"].keys() == result.all_tables().keys() >= result.tables.keys()
+    # keys and units can be typed: no space that does not break
+    assert "\u00a0" not in json.dumps(found["tables"], ensure_ascii=False)
 
 
 def test_a_result_cannot_be_changed_and_prints_in_one_line(result: Result) -> None:

@@ -35,8 +35,7 @@ def cached_mesh(
 
     Parameters
     ----------
-    shaft, bearings, housings, sizes, bonded, bands : see
-    `fe_drivetrain.elasticity.mesh.generation.generate`
+    shaft, bearings, housings, sizes, bonded, bands : see `mesh.generation.generate`
         Arguments of `fe_drivetrain.elasticity.mesh.generation.generate`.
     cache : Cache or None
         Cache of meshes; the user's if not given.

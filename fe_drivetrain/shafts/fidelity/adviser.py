@@ -444,9 +444,8 @@ def recovered_errors(
         else:
             rows = [FORCES.index(c) for c in components]
             columns = quantities[numbers[0]].columns(length, n)
-            found |= zip(
-                numbers, reaction_error(model, response, owner, rows, columns), strict=True
-            )
+            each = reaction_error(model, response, owner, rows, columns)
+            found |= zip(numbers, each, strict=True)
     return [found[k] for k in range(len(quantities))]
 
 
@@ -484,10 +483,8 @@ def _share(quantity: Quantity, model: LevelModel, length: float) -> float:
     if owner == "hub":
         return 1.0
     kind = FORCES[:3] if component in FORCES[:3] else FORCES[3:]
-    of_kind = [
-        replace(quantity, name=f"{name}.{c}") for name in model.reaction_matrices for c in kind
-    ]
-    sizes = [float(np.linalg.norm(other.of(model, length))) for other in of_kind]
+    others = [replace(quantity, name=f"{n}.{c}") for n in model.reaction_matrices for c in kind]
+    sizes = [float(np.linalg.norm(other.of(model, length))) for other in others]
     own = float(np.linalg.norm(quantity.of(model, length)))
     return own / max(own, *(size for size in sizes if np.isfinite(size)))
 
