@@ -34,6 +34,7 @@ from fe_drivetrain.dynamics.equations import (
 from fe_drivetrain.dynamics.integration import Phase, integrate, transient
 from fe_drivetrain.dynamics.machines import slip_line
 from fe_drivetrain.dynamics.mechanism import Act
+from fe_drivetrain.dynamics.mesh_errors import harmonic_error
 from fe_drivetrain.dynamics.modes import system_modes
 from fe_drivetrain.dynamics.motion import Motion, State
 from fe_drivetrain.dynamics.roller_seats import seat, without_bearings
@@ -400,7 +401,7 @@ def test_a_base_that_tilts_a_disc_that_spins(tmp_path: Path) -> None:
 
 
 def everything() -> tuple[Equations, Travelling, list[Act]]:
-    """Planets that travel, with a mesh by clock and gap, generator, brake, base and rollers."""
+    """Planets that travel; meshes by clock and angle, with errors and a gap; and all else."""
     carriers = moving_plane()
     system = carriers.system
     n, speed = len(system.names), 300.0
@@ -410,10 +411,13 @@ def everything() -> tuple[Equations, Travelling, list[Act]]:
     mesh = [i for i, name in enumerate(system.spring_names) if "sun-planet" in name]
     wave, low = np.full(count, -1), np.zeros(count)
     wave[mesh], low[mesh[0]] = 0, -1e-6
+    turns = np.zeros((count, n))
+    turns[mesh[1:], system.place("sun rx")] = 200.0
     laws = (
         spring_laws(s.rows, s.stiffness, 1e-6 * s.stiffness, lower=low, upper=-low)
-        .in_phase(frequency=900.0)
+        .in_phase(frequency=900.0, turns=turns)
         .with_waves(fourier_wave([0.1], [0.05])[None], wave)
+        .with_errors(harmonic_error([2e-7], [0.0]).table[None], wave)
     )
     row = np.eye(n)[system.place("sun rx")]
     machine = slip_line(row, 50.0, 10.0, 20.0)
