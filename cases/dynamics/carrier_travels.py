@@ -13,10 +13,11 @@ from fe_drivetrain.dynamics import (
     Rim,
     State,
     System,
+    TravellingCarriers,
     azimuths,
     contact_ratios,
     generalised_alpha,
-    integrate_travelling,
+    integrate,
     library_machine,
     machine_meshing,
     machine_system,
@@ -140,21 +141,19 @@ def a_turn(machine: Machine, count: int, steps: int) -> tuple[Turn, float]:
     carriers = travelling(machine, held_generator=True)
     load = loads(machine, carriers.system)
     zero = np.zeros(len(load))
-    found = integrate_travelling(
+    found = integrate(
         varying_equations(carriers.system, {}, damping=1e-4),
-        carriers,
-        SPEED,
-        steady(load),
+        [steady(load), TravellingCarriers(carriers, SPEED)],
         4 * np.pi / SPEED,
         2 * np.pi / SPEED / (steps * count),
         generalised_alpha(0.3),
         State(np.asarray(np.linalg.solve(carriers.system.K, load), dtype=np.float64), zero, zero),
         every=steps,
     )
-    assert found.motion.converged
+    assert found.converged
     second = slice(count, 2 * count)
-    turn = Turn(found.azimuth[second], carriers.system.spring_names, found.motion.forces[second])
-    return turn, found.motion.relative_imbalance
+    turn = Turn(found.azimuth[second], carriers.system.spring_names, found.forces[second])
+    return turn, found.relative_imbalance
 
 
 def at_rest(machine: Machine, count: int) -> Turn:
@@ -181,15 +180,13 @@ def ring_lines(machine: Machine, steps: int) -> Floats:
     load = system.load_on("rotor", TORQUE * np.eye(6)[3])
     zero, turn = np.zeros(len(load)), 2 * np.pi / SPEED
     count = steps * RING
-    found = integrate_travelling(
+    found = integrate(
         varying_equations(system, planetary, damping=3e-5, harmonics=max(1, steps // 6)),
-        carriers,
-        SPEED,
-        steady(load),
+        [steady(load), TravellingCarriers(carriers, SPEED)],
         1.2 * turn,
         turn / count,
         generalised_alpha(0.2),
         State(np.asarray(np.linalg.solve(system.K, load), dtype=np.float64), zero, zero),
     )
-    last = found.motion.q[-count - 1 : -1, system.place("stage 1 rim 3 cos ux")]
+    last = found.q[-count - 1 : -1, system.place("stage 1 rim 3 cos ux")]
     return np.asarray(np.abs(np.fft.rfft(last)) * 2 / count)

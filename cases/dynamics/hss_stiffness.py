@@ -154,4 +154,4 @@ def least_torque(one: Rated, factor: float, dt: float) -> tuple[float, float]:
     table = published.with_values(one.table, {f"shafts.{last}.stiffness": k})
     found = shutdown(table, one.torque, one.speed, 0.0, when, dt=dt, ratios=one.ratios)
     least = -peak_between(-found.ratio("HSS"))
-    return least, found.transient.motion.relative_imbalance
+    return least, found.motion.relative_imbalance

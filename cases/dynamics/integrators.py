@@ -15,12 +15,12 @@ from fe_drivetrain.dynamics import (
     Loads,
     Scheme,
     State,
+    StepControl,
     equations_of_motion,
     exact_steps,
     fourier_wave,
     generalised_alpha,
     integrate,
-    integrate_adaptively,
     modal_superposition,
     spring_laws,
     steady,
@@ -274,15 +274,15 @@ def check_control(run: Run, page: Page) -> None:
     exact = exact_steps(equations, loads, 2.0, 0.5)[1][-1]
     rows: list[Record] = []
     for tolerance in (1e-3, 1e-4, 1e-5) if run.quick else (1e-3, 1e-4, 1e-5, 1e-6, 1e-7):
-        found = integrate_adaptively(equations, loads, 2.0, 0.01, tolerance)
+        found = integrate(equations, loads, 2.0, StepControl(0.01, tolerance))
         rows.append(
             {
                 "tolerance of a step": tolerance,
-                "steps": len(found.steps),
-                "made again": found.rejected,
-                "lengths": found.matrices,
-                "largest estimate": float(found.errors.max()),
-                "error at the end": float(np.abs(found.motion.q[-1] - exact).max()),
+                "steps": len(found.control.steps),
+                "made again": found.control.rejected,
+                "lengths": found.control.matrices,
+                "largest estimate": float(found.control.errors.max()),
+                "error at the end": float(np.abs(found.q[-1] - exact).max()),
             }
         )
     page.holds(

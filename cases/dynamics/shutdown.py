@@ -169,7 +169,7 @@ def check_instants(page: Page, quick: bool) -> list[Record]:
                 braked = SEQUENCE.braked + late
                 when = StopSequence(SEQUENCE.off, SEQUENCE.pitched, 0.0, braked, braked + 1.0)
                 found = stopped_by(one.of, one.brake, when, step)
-                motion = found.transient.motion
+                motion = found.motion
                 peaks.append(peak_between(found.ratio("HSS")[motion.times >= braked]))
                 lost = max(lost, motion.relative_imbalance)
             values[f"{letter}, HSS: least peak over rated"] = min(peaks)
@@ -199,7 +199,7 @@ def check_stops(page: Page, stopped: list[Stopped], dt: float) -> None:
         for one in stopped:
             when = StopSequence(SEQUENCE.off, SEQUENCE.pitched, 0.0, braked, braked + 2.0)
             found = stopped_by(one.of, one.brake, when, step)
-            motion = found.transient.motion
+            motion = found.motion
             for shaft in ("LSS", "HSS"):
                 after = found.ratio(shaft)[motion.times >= braked]
                 values[f"{one.of.letter}, {shaft}: peak over rated"] = peak_between(after)
@@ -227,7 +227,7 @@ def check_losses(page: Page, dt: float) -> list[Record]:
                 found = stopped_by(one, 0.0, when, step, **given)
                 torque = found.ratio("shafts" if "lumped" in given else "HSS")
                 values[f"{one.letter}, {kind}: least over rated"] = -peak_between(-torque)
-                lost = max(lost, found.transient.motion.relative_imbalance)
+                lost = max(lost, found.motion.relative_imbalance)
         return InTime(values, lost)
 
     found = converge_in_time(run, dt)
@@ -272,7 +272,7 @@ def check_loss(page: Page, one: Rated, found: ConvergenceInTime) -> Record:
 
 def row_of(one: Stopped) -> Record:
     """Peaks and ranges of a shutdown."""
-    t = one.done.transient.motion.times
+    t = one.done.motion.times
     low, high = one.done.ratio("LSS"), one.done.ratio("HSS")
     after = t >= SEQUENCE.braked
     return {
@@ -285,7 +285,7 @@ def row_of(one: Stopped) -> Record:
         "HSS, least": float(high.min()),
         "LSS, range over that in normal operation": float(np.ptp(low)) / NORMAL,
         "largest torque that the brake held": float(
-            np.abs(one.done.transient.brake[one.done.transient.held]).max()
+            np.abs(one.done.motion.braking.torque[one.done.motion.braking.held]).max()
             / abs(one.done.torque / one.done.speeds["generator"])
         ),
     }
@@ -337,9 +337,9 @@ def verdicts(rows: list[Record], instants: list[Record]) -> list[Record]:
 
 def check_frequencies(page: Page, one: Stopped) -> Record:
     """Spectra while the brake slips and while it holds, against modes."""
-    t = one.done.transient.motion.times
+    t = one.done.motion.times
     torque = one.done.ratio("HSS")
-    first = one.done.transient.events[0][0]
+    first = one.done.motion.braking.events[0][0]
     ringing, resolution = peak_of(t, torque, SEQUENCE.braked, first)
     mode = float(natural_modes(one.done.system).frequencies[1])
     page.equals(
@@ -388,11 +388,11 @@ def peak_of(t: Floats, values: Floats, begin: float, end: float) -> tuple[float,
 
 def show(page: Page, one: Stopped) -> None:
     """Torques of the slow and the fast shaft."""
-    t = one.done.transient.motion.times
+    t = one.done.motion.times
     every = slice(None, None, max(1, len(t) // 4000))
     page.chart(
         f"Drivetrain {one.of.letter}: torque over rated torque; events: "
-        + ", ".join(f"{what} {when:.2f} s" for when, what in one.done.transient.events[:4]),
+        + ", ".join(f"{what} {when:.2f} s" for when, what in one.done.motion.braking.events[:4]),
         [trace(name, t[every], one.done.ratio(name)[every]) for name in ("LSS", "HSS")],
         "time [s]",
         "torque over rated",

@@ -30,7 +30,7 @@ class Stopped(NamedTuple):
     @property
     def stops(self) -> float:
         """When the disc stands for good [s]."""
-        return [t for t, what in self.done.transient.events if what == "sticks"][-1]
+        return [t for t, what in self.done.motion.braking.events if what == "sticks"][-1]
 
 
 def stop(one: Rated, dt: float, late: float = 0.0, end: float = SEQUENCE.end) -> Stopped:
@@ -51,7 +51,7 @@ def stop(one: Rated, dt: float, late: float = 0.0, end: float = SEQUENCE.end) ->
 
     def excess(brake: float) -> float:
         found = done(brake, braked + 1.0)
-        after = found.transient.motion.times >= braked
+        after = found.motion.times >= braked
         return peak_between(found.ratio("LSS")[after]) - PEAK
 
     # the peak goes with the torque of the brake, as long as the disc turns
@@ -114,7 +114,7 @@ def check_dips(page: Page, dt: float) -> list[Record]:
                 for end, sign in ends.items():
                     values[f"{name}: {end} over rated"] = sign * peak_between(sign * fast)
                 values[f"{name}: at the end over rated"] = float(fast[-1])
-                lost = max(lost, found.transient.motion.relative_imbalance)
+                lost = max(lost, found.motion.relative_imbalance)
         return InTime(values, lost)
 
     found = converge_in_time(run, dt)
@@ -153,7 +153,7 @@ def check_backlash(page: Page, stopped: list[Stopped], quick: bool) -> list[Reco
                 low = -peak_between(-found.ratio("LSS"))
                 values[f"{name}, LSS: least over rated"] = low
                 parted[name] = time_parted(one.of, found)
-                motion = found.transient.motion
+                motion = found.motion
                 lost = max(lost, motion.relative_imbalance)
                 all_met = all_met and motion.converged
         return InTime(values, lost, all_met)
@@ -193,4 +193,4 @@ def time_parted(one: Rated, found: Shutdown) -> float:
     """Share of the time in which teeth of a mesh do not touch [%]."""
     shafts = {shaft.name for shaft in one.table.shafts}
     meshes = [i for i, e in enumerate(found.system.elements) if e.name not in shafts]
-    return 100.0 * float((found.transient.motion.forces[:, meshes] == 0.0).any(axis=1).mean())
+    return 100.0 * float((found.motion.forces[:, meshes] == 0.0).any(axis=1).mean())

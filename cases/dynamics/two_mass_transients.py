@@ -9,10 +9,10 @@ from fe_drivetrain.comparison import InTime, converge_in_time, peak_between
 from fe_drivetrain.dynamics import (
     AVERAGE,
     Brake,
+    Motion,
     Phase,
     Scheme,
     State,
-    Transient,
     equations_of_motion,
     generalised_alpha,
     integrate,
@@ -122,7 +122,7 @@ def transients(
     return row
 
 
-def braked(dt: float) -> Transient:
+def braked(dt: float) -> Motion:
     """Drivetrain D with a brake that slips, sticks and lets go."""
     one = drivetrains()[3]
     system = two_masses(one.table, "free")
@@ -132,20 +132,20 @@ def braked(dt: float) -> Transient:
     brake = Brake(disc, BRAKE * one.torque, 0.5)
     speed = np.full(2, one.speed)
     zero = np.zeros(2)
-    return transient([Phase(16.0, shaft, steady(zero), brake)], dt, State(zero, speed, zero))
+    return transient([Phase(16.0, shaft, [brake])], dt, State(zero, speed, zero))
 
 
 def of_brake(dt: float, _: int) -> InTime:
     """Torques over rated, and when the disc stops."""
     found, rated = braked(dt), drivetrains()[3].torque
-    shaft = found.motion.forces[:, 0] / rated
-    stops = found.events[0][0]
+    shaft = found.forces[:, 0] / rated
+    stops = found.braking.events[0][0]
     values = {
-        "largest torque of the shaft over rated": peak_between(shaft[found.motion.times < stops]),
+        "largest torque of the shaft over rated": peak_between(shaft[found.times < stops]),
         "least torque of the shaft over rated": -peak_between(-shaft),
         "disc stops after [s]": stops,
     }
-    return InTime(values, found.motion.relative_imbalance)
+    return InTime(values, found.relative_imbalance)
 
 
 def show(page: Page) -> None:
@@ -163,15 +163,14 @@ def show(page: Page) -> None:
         energy=1e-9,
         why="average acceleration conserves the energy of a linear system, and events end steps",
     )
-    found = braked(2e-3)
-    check_brake(page, found, J, k, one)
-    motion = found.motion
+    motion = braked(2e-3)
+    check_brake(page, motion, J, k, one)
     page.chart(
         "Drivetrain D as two masses: "
-        + ", ".join(f"{what} at {when:.3f} s" for when, what in found.events),
+        + ", ".join(f"{what} at {when:.3f} s" for when, what in motion.braking.events),
         [
             trace("shaft", motion.times, motion.forces[:, 0] / one.torque),
-            trace("brake", motion.times, found.brake / one.torque),
+            trace("brake", motion.times, motion.braking.torque[:, 0] / one.torque),
             trace(
                 "generator's speed over its first", motion.times, motion.velocity[:, 1] / one.speed
             ),
@@ -181,10 +180,10 @@ def show(page: Page) -> None:
     )
 
 
-def check_brake(page: Page, found: Transient, J: Floats, k: float, one: Rated) -> None:
+def check_brake(page: Page, motion: Motion, J: Floats, k: float, one: Rated) -> None:
     """Check torques while the brake slips and holds, and the frequency at standstill."""
-    motion = found.motion
-    slipping = (motion.times > 0.5) & (motion.times < found.events[0][0])
+    torque, held = motion.braking.torque[:, 0], motion.braking.held[:, 0]
+    slipping = (motion.times > 0.5) & (motion.times < motion.braking.events[0][0])
     page.equals(
         "drivetrain D, brake of 1.2 rated: largest torque of the shaft over rated",
         float(motion.forces[slipping].max() / one.torque),
@@ -195,21 +194,21 @@ def check_brake(page: Page, found: Transient, J: Floats, k: float, one: Rated) -
     )
     page.vanishes(
         "drivetrain D: torque of the brake that holds less that of the shaft, over rated",
-        float(np.abs(found.brake + motion.forces[:, 0])[found.held].max() / one.torque),
+        float(np.abs(torque + motion.forces[:, 0])[held].max() / one.torque),
         within=1e-7,
         why="round-off of a step in which the disc stops",
         source="equilibrium of a disc that stands",
     )
     page.at_most(
         "drivetrain D: largest torque of the brake over its friction",
-        float(np.abs(found.brake).max() / (BRAKE * one.torque)),
+        float(np.abs(torque).max() / (BRAKE * one.torque)),
         1.0 + 1e-7,
         why="the instant of slipping is found to a billionth of a step",
         source="dry friction",
         measure="identity",
     )
     held = np.sqrt(k / J[0]) / (2.0 * np.pi)
-    after = motion.times > found.events[-1][0]
+    after = motion.times > motion.braking.events[-1][0]
     turned = motion.times[after][1:][np.diff(np.sign(motion.velocity[after, 0])) != 0]
     page.equals(
         "drivetrain D, disc held: frequency of the rotor [Hz]",

@@ -18,10 +18,10 @@ from fe_drivetrain.dynamics import (
     Loads,
     Scheme,
     State,
+    StepControl,
     equations_of,
     generalised_alpha,
     integrate,
-    integrate_adaptively,
     library_machine,
     machine_meshing,
     machine_system,
@@ -244,9 +244,9 @@ def methods(
         found_steps: list[float] = []
 
         def chosen(tolerance: float = tolerance, steps: list[float] = found_steps) -> Floats:
-            by = integrate_adaptively(equations, loads, duration, 1e-4, tolerance, start=start)
-            steps.append(float(by.steps.mean()))
-            return by.motion.end.q
+            by = integrate(equations, loads, duration, StepControl(1e-4, tolerance), start=start)
+            steps.append(float(by.control.steps.mean()))
+            return by.end.q
 
         add("steps by a tolerance", 1e-4, chosen)
         rows[-1]["step [s]"] = found_steps[0]

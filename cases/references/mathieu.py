@@ -5,7 +5,8 @@ from scipy.integrate import solve_ivp
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.dynamics.equations import equations_of_motion, fourier_wave, spring_laws, steady
-from fe_drivetrain.dynamics.integration import State, integrate
+from fe_drivetrain.dynamics.integration import integrate
+from fe_drivetrain.dynamics.motion import State
 
 
 def exact_growth(depth: float, frequency: float) -> float:

@@ -145,7 +145,7 @@ def judge_bounces(page: Page, rows: list[Record]) -> float:
         beyond="the instant of contact falls between steps: energy appears or is lost, which each "
         "run shows",
         program="integrates with the steps it is given and states the energy that appears",
-        remedy="steps by a tolerance (`integrate_adaptively`), or shorter ones",
+        remedy="steps by a tolerance (`StepControl`), or shorter ones",
     )
     page.section("Time step")
     page.sweep(

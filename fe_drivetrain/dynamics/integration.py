@@ -1,303 +1,38 @@
-"""Time integration in equal steps: Newmark and generalised alpha, with a record of the energy.
+"""Integration in time of equations of motion and all that acts on them: one engine.
 
-The unknown of a step is the change of the displacements (Park et al. 2021, Table 1, Eq 29-34), so
-that a turning drivetrain loses no digits to its angle. Laws of springs are met by Newton's method
-in each step, to a stated tolerance, or the run says in how many steps they were not.
-
-What loads and the clock of stiffnesses that vary with time put in is what goes into motion and
-strain, and what dampers take out; the rest is the error of the integration (`Motion.imbalance`).
+Springs with laws, dead zones, generators, rolling bearings, carriers that travel, brakes that stick
+and a base that moves act together; steps are equal, or as long as their error allows. Laws and
+bearings are met by Newton's method in each step, to a stated tolerance, or the run says in how many
+steps they were not.
 """
 
-from dataclasses import dataclass
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from math import ceil
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.short_repr import short_repr
-from fe_drivetrain.dynamics.equations import Equations, Loads
-from fe_drivetrain.dynamics.steady_state import restoring
-from fe_drivetrain.dynamics.time_steps import (
-    CLOCK,
-    DISSIPATED,
-    KINETIC,
-    STRAIN,
-    WORK,
-    Drive,
-    Laws,
-    Matrices,
-    Stop,
-    march,
-)
-
-TOLERANCE = 1e-10
-"""Tolerance of Newton's method: change of an elongation over its maximum so far."""
-
-
-@dataclass(frozen=True)
-class Scheme:
-    """Newmark's method, or generalised alpha (Chung and Hulbert 1993, with their signs).
-
-    Attributes
-    ----------
-    name : str
-        Name for charts.
-    beta, gamma : float
-        Newmark's parameters; Park et al. 2021 call them alpha and beta.
-    alpha_m, alpha_f : float
-        Shares of the step's beginning in the balance of inertia and of other forces.
-    """
-
-    name: str
-    beta: float
-    gamma: float
-    alpha_m: float = 0.0
-    alpha_f: float = 0.0
-
-    def coefficients(self, dt: float) -> Floats:
-        """(8,) as `march` takes them."""
-        b, g = self.beta, self.gamma
-        return np.array(
-            [
-                1.0 / (b * dt**2),
-                g / (b * dt),
-                1.0 / (b * dt),
-                0.5 / b - 1.0,
-                1.0 - g / b,
-                dt * (1.0 - 0.5 * g / b),
-                self.alpha_m,
-                self.alpha_f,
-            ]
-        )
-
-
-AVERAGE = Scheme("average acceleration", 0.25, 0.5)
-"""Constant average acceleration, the trapezoidal rule: unconditionally stable, no damping."""
-
-LINEAR = Scheme("linear acceleration", 1.0 / 6.0, 0.5)
-"""Stable while the step is below 0.551 of the shortest period."""
-
-
-def generalised_alpha(spectral_radius: float) -> Scheme:
-    """Generalised alpha with a spectral radius at infinite frequency (Chung and Hulbert 1993).
-
-    Parameters
-    ----------
-    spectral_radius : float
-        Factor of the highest frequencies in each step: 1 leaves them, 0 removes them in one.
-
-    Returns
-    -------
-    scheme : Scheme
-        Scheme of second order, with the minimum damping of low frequencies for that of high ones.
-
-    Raises
-    ------
-    InputError
-        The radius is not between 0 and 1.
-    """
-    r = spectral_radius
-    if not 0.0 <= r <= 1.0:
-        raise InputError(f"spectral radius is {r:g} but must be 0 to 1: change it")
-    m, f = (2.0 * r - 1.0) / (r + 1.0), r / (r + 1.0)
-    return Scheme(f"generalised alpha, {r:g}", 0.25 * (1.0 - m + f) ** 2, 0.5 - m + f, m, f)
-
-
-@dataclass(frozen=True)
-class State:
-    """State of a system at a time.
-
-    Attributes
-    ----------
-    q, velocity, acceleration : Floats
-        Displacements (n,) and their rates.
-    time : float
-        Time [s].
-    """
-
-    q: Floats
-    velocity: Floats
-    acceleration: Floats
-    time: float = 0.0
-
-    __repr__ = short_repr
-
-
-@dataclass(frozen=True)
-class Motion:
-    """A history of motion.
-
-    Attributes
-    ----------
-    times : Floats
-        Times (k,) [s].
-    q, velocity : Floats
-        Values (k, w) of the rows that were watched, and their rates: of all degrees of freedom
-        where none were named.
-    forces : Floats
-        Forces (k, m) of all springs with their dampers: [N], or [N m].
-    energies : Floats
-        (k, 5): kinetic and strain energy, and since the beginning work of the loads, what dampers
-        and machines took out, and what the clock of varying stiffnesses put in [J].
-    iterations : int
-        Newton steps, all.
-    most_iterations : int
-        Maximum number of Newton steps in one time step.
-    not_converged : int
-        Time steps in which Newton's method did not converge.
-    end : State
-        State at the last step.
-    """
-
-    times: Floats
-    q: Floats
-    velocity: Floats
-    forces: Floats
-    energies: Floats
-    iterations: int
-    most_iterations: int
-    not_converged: int
-    end: State
-
-    __repr__ = short_repr
-
-    @property
-    def converged(self) -> bool:
-        """Whether Newton's method converged in every time step."""
-        return self.not_converged == 0
-
-    @property
-    def energy(self) -> Floats:
-        """(k,) kinetic and strain energy [J]."""
-        return np.asarray(self.energies[:, KINETIC] + self.energies[:, STRAIN])
-
-    @property
-    def imbalance(self) -> Floats:
-        """(k,) energy that appeared from nowhere since the beginning [J]: error of the integration.
-
-        Below zero where a scheme damps.
-        """
-        e = self.energies
-        gained = self.energy - self.energy[0]
-        return np.asarray(gained + e[:, DISSIPATED] - e[:, WORK] - e[:, CLOCK])
-
-    @property
-    def relative_imbalance(self) -> float:
-        """Maximum imbalance over the maximum of the energies."""
-        return float(np.abs(self.imbalance).max() / max(np.abs(self.energies).max(), 1e-300))
-
-
-@dataclass(frozen=True)
-class Stepper:
-    """Equations prepared for a scheme and a length of step; see `prepared`.
-
-    Attributes
-    ----------
-    equations : Equations
-        Equations of motion of the system.
-    matrices : Matrices
-        Matrices of the step, with the inverse.
-    laws : Laws
-        Laws of springs that are more than a constant stiffness.
-    """
-
-    equations: Equations
-    matrices: Matrices
-    laws: Laws
-
-
-def prepared(
-    equations: Equations, dt: float, scheme: Scheme = AVERAGE, driven: bool = True
-) -> Stepper:
-    """The constant matrix of a step inverted, and the laws in the form of the compiled loop.
-
-    Parameters
-    ----------
-    equations : Equations
-        Equations of motion of the system.
-    dt : float
-        Length of a step [s].
-    scheme : Scheme
-        Time integration scheme.
-    driven : bool
-        Whether a stiffness that varies with an angle acts on that angle; without, as Park et al.
-        2021 have it, energy is not conserved.
-
-    Returns
-    -------
-    stepper : Stepper
-
-    Raises
-    ------
-    InputError
-        The step is not positive, or the matrix is singular.
-    """
-    if not (np.isfinite(dt) and dt > 0.0):
-        raise InputError(f"time step is {dt:g} s but must be above 0 s: change it")
-    s = equations.springs
-    which = np.flatnonzero(s.special)
-    varies = (s.wave >= 0) | (s.error >= 0)
-    turning = [i for i in which if varies[i] and s.turns[i].any()]
-    angle = np.full(len(s.rows), -1)
-    angle[turning] = len(which) + np.arange(len(turning))
-    R = np.ascontiguousarray(np.vstack([s.rows[which], s.turns[turning]]))
-    constant = ~s.special
-    K, C = equations.K, equations.C
-    factors = scheme.coefficients(dt)
-    A = (1.0 - scheme.alpha_m) * factors[0] * equations.mass + (1.0 - scheme.alpha_f) * (
-        factors[1] * C + K
-    )
-    inverse = np.linalg.inv(A)
-    columns = np.ascontiguousarray(inverse @ R.T)
-    matrices = Matrices(
-        float(dt),
-        factors,
-        equations.mass,
-        np.ascontiguousarray(C),
-        np.ascontiguousarray(K),
-        np.asarray(s.rows[constant].T @ (s.stiffness * s.offset)[constant], dtype=np.float64),
-        R,
-        np.ascontiguousarray(inverse),
-        columns,
-        np.ascontiguousarray(R @ columns),
-    )
-    laws = Laws(
-        np.arange(len(which)),
-        angle[which],
-        s.stiffness[which],
-        s.damping[which],
-        s.lower[which],
-        s.upper[which],
-        s.exponent[which],
-        s.offset[which],
-        s.wave[which],
-        s.phase[which],
-        s.frequency[which],
-        s.power[which],
-        s.speed[which],
-        s.waves,
-        s.error[which],
-        s.error_phase[which],
-        s.error_turns[which],
-        s.errors,
-        driven,
-    )
-    return Stepper(equations, matrices, laws)
-
-
-def at_rest(equations: Equations) -> State:
-    """No displacement, no velocity, at time 0; accelerations follow from the loads."""
-    zero = np.zeros(len(equations.mass))
-    return State(zero, zero, zero)
+from fe_drivetrain.dynamics.brakes import Brake
+from fe_drivetrain.dynamics.equations import Equations
+from fe_drivetrain.dynamics.loop_forms import Stop
+from fe_drivetrain.dynamics.mechanism import Acting, Mechanism, mechanism_of
+from fe_drivetrain.dynamics.motion import Motion, State, StepHistory, at_rest
+from fe_drivetrain.dynamics.pace import ControlledPace, Pace
+from fe_drivetrain.dynamics.schemes import AVERAGE, Scheme
+from fe_drivetrain.dynamics.step_control import StepControl
+from fe_drivetrain.dynamics.stepper import TOLERANCE, Stepper, prepared, run_steps
+from fe_drivetrain.dynamics.stick_slip import Course
 
 
 def integrate(
     equations: Equations,
-    loads: Loads,
+    acting: Acting,
     duration: float,
-    dt: float,
+    step: float | StepControl,
     scheme: Scheme = AVERAGE,
     start: State | None = None,
     *,
@@ -306,149 +41,178 @@ def integrate(
     driven: bool = True,
     tolerance: float = TOLERANCE,
 ) -> Motion:
-    """Integrate in equal steps.
+    """Integrate in time.
 
     Parameters
     ----------
     equations : Equations
         Equations of motion of the system.
-    loads : Loads
-        Loads on the system.
-    duration, dt : float
-        Duration of the whole motion and length of a step [s]; the number of steps is rounded up.
+    acting : Loads, or sequence
+        Loads, or a list of all that acts: `Loads`, further `SpringLaws` such as generators,
+        `RollingBearings`, `TravellingCarriers`, `Brake`, `BaseMotion`.
+    duration : float
+        Duration of the whole motion [s].
+    step : float or StepControl
+        Length of equal steps [s], whose number is rounded up; or the tolerance of their error, for
+        steps of their own choice.
     scheme : Scheme
         `AVERAGE`, `LINEAR`, or one of `generalised_alpha`.
     start : State, optional
         Displacements, velocities and time at the beginning, at rest where left out; accelerations
         are those of the equations of motion.
     every : int
-        Steps from record to record.
+        Steps from record to record; those of events and of the end of a run with brakes or step
+        control are kept, too.
     watch : array_like, optional
         Rows (w, n) whose values and rates are recorded in place of all degrees of freedom.
     driven : bool
-        Whether a stiffness that varies with an angle acts on that angle, see `prepared`.
+        Whether a stiffness that varies with an angle acts on that angle; without, as Park et al.
+        2021 have it, energy is not conserved.
     tolerance : float
-        Tolerance of Newton's method: change of an elongation over its maximum so far.
+        Tolerance of Newton's method: change of an elongation, or of a bearing's motion, over its
+        maximum so far.
 
     Returns
     -------
     motion : Motion
+        Motion, converged in every step, or it says in how many it did not.
 
     Raises
     ------
     InputError
-        The step or the duration is not positive.
+        The step or the duration is not positive, no step is short enough, or what acts does not fit
+        the equations or each other.
     """
     if not (np.isfinite(duration) and duration > 0.0):
         raise InputError(f"duration is {duration:g} s but must be above 0 s: change it")
-    stepper = prepared(equations, dt, scheme, driven)
-    begin = settled(equations, loads, start or at_rest(equations), driven)
-    steps = ceil(duration / dt * (1.0 - 1e-12))
-    never = Stop(np.zeros(len(equations.mass)), 0.0)
-    motion, _, _ = run_steps(stepper, loads, begin, steps, every, watch, never, tolerance)
-    return motion
+    if every < 1:
+        raise InputError(f"every is {every} steps but must be at least 1: change it")
+    mechanism = mechanism_of(equations, acting, driven)
+    begin = start or at_rest(equations)
+    if not (mechanism.brakes or isinstance(step, StepControl)):
+        span = (ceil(duration / step * (1.0 - 1e-12)) if step > 0.0 else 0, every)
+        stepper = prepared(mechanism, step, scheme)
+        return _equal_steps(stepper, begin, span, watch, tolerance)
+    pace = _pace(step, scheme, tolerance)
+    if not isinstance(step, StepControl):
+        duration = ceil(duration / step * (1.0 - 1e-12)) * step
+    course = Course(pace, begin, mechanism.brakes)
+    course.phase(mechanism, begin.time + duration)
+    motion = _with_control(course.history(every), pace)
+    if watch is None:
+        return motion
+    seen = np.atleast_2d(np.asarray(watch, dtype=np.float64))
+    return replace(motion, q=motion.q @ seen.T, velocity=motion.velocity @ seen.T)
 
 
-def settled(equations: Equations, loads: Loads, state: State, driven: bool = True) -> State:
-    """The state with the accelerations of the equations of motion."""
-    force = restoring(equations, state.time, state.q, state.velocity, driven)[0]
-    a = np.linalg.solve(equations.mass, loads.at(state.time) - force)
-    return State(state.q, state.velocity, np.asarray(a), state.time)
-
-
-def run_steps(
+def _equal_steps(
     stepper: Stepper,
-    loads: Loads,
     begin: State,
-    steps: int,
-    every: int,
+    span: tuple[int, int],
     watch: ArrayLike | None,
-    stop: Stop,
+    tolerance: float,
+) -> Motion:
+    """Equal steps without events, in one call of the loop."""
+    (steps, every), mechanism = span, stepper.mechanism
+    mechanism.check_base(begin.time, begin.time + steps * stepper.model.matrices.dt)
+    none = np.zeros((0, len(begin.q)))
+    state = mechanism.settled(begin, mechanism.loads)
+    return run_steps(
+        stepper, mechanism.loads, state, steps, every, watch, Stop(none, np.zeros(0)), tolerance
+    ).motion
+
+
+@dataclass(frozen=True)
+class Phase:
+    """Part of a transient: what moves, and all that acts on it, until when [s]."""
+
+    until: float
+    equations: Equations
+    acting: Acting
+
+
+def transient(
+    phases: Sequence[Phase],
+    step: float | StepControl,
+    start: State,
+    scheme: Scheme = AVERAGE,
+    *,
     tolerance: float = TOLERANCE,
-) -> tuple[Motion, State, bool]:
-    """Some steps, which may end at an event.
+) -> Motion:
+    """Integrate a series of phases, each from the end of the one before.
 
     Parameters
     ----------
-    stepper : Stepper
-        Equations, scheme and step, from `prepared`.
-    loads : Loads
-        Loads on the system.
-    begin : State
-        State at the beginning, with its accelerations.
-    steps, every : int
-        Number of steps, and of steps from record to record, see `march`.
-    watch : array_like or None
-        Rows whose values and rates are recorded, see `integrate`.
-    stop : Stop
-        Event that ends the steps.
+    phases : Sequence[Phase]
+        Phases with the same degrees of freedom and bearings, and as many springs.
+    step : float or StepControl
+        Length of equal steps [s], the last one before an event being shorter; or the tolerance of
+        their error.
+    start : State
+        State at the beginning of the first phase.
+    scheme : Scheme
+        Time integration scheme of the steps.
     tolerance : float
-        Tolerance of Newton's method: change of an elongation over its maximum so far.
+        Tolerance of Newton's method, see `integrate`.
 
     Returns
     -------
     motion : Motion
-        Motion up to the last record.
-    before : State
-        State before the last step.
-    stopped : bool
-        Whether the event came in it.
+        A record at each step, and at each event.
+
+    Raises
+    ------
+    InputError
+        Phases do not follow each other, or have other springs or bearings; or what acts does not
+        fit.
     """
-    equations, n = stepper.equations, len(stepper.equations.mass)
-    s = equations.springs
-    seen = np.eye(n) if watch is None else np.atleast_2d(np.asarray(watch, dtype=np.float64))
-    rows = np.ascontiguousarray(np.vstack([seen, s.rows]))
-    k = steps // every + 1
-    times, places, rates = np.empty(k), np.empty((k, len(rows))), np.empty((k, len(rows)))
-    law_forces, energies = np.empty((k, len(stepper.laws.row))), np.empty((k, 5))
-    counts: Ints = np.zeros(3, dtype=np.int64)
-    state = np.zeros((6, n))
-    state[0], state[1], state[2] = begin.q, begin.velocity, begin.acceleration
-    state[3:] = state[:3]
-    drive = Drive(
-        np.ascontiguousarray(loads.patterns),
-        np.ascontiguousarray(loads.times),
-        np.ascontiguousarray(loads.histories),
-    )
-    done = march(
-        steps,
-        every,
-        begin.time,
-        stepper.matrices,
-        stepper.laws,
-        drive,
-        stop,
-        tolerance,
-        state,
-        rows,
-        times,
-        places,
-        rates,
-        law_forces,
-        energies,
-        counts,
-    )
-    k = done // every + 1
-    w, law = len(seen), s.special
-    forces = np.empty((k, len(s.rows)))
-    forces[:, ~law] = ((places[:k, w:] - s.offset) * s.stiffness + rates[:k, w:] * s.damping)[
-        :, ~law
-    ]
-    forces[:, law] = law_forces[:k]
-    constant = ~law
-    # the constant of a spring's energy that its offset leaves
-    energies[:k, STRAIN] += 0.5 * float((s.stiffness * s.offset**2)[constant].sum())
-    dt = stepper.matrices.dt
-    before = State(state[3], state[4], state[5], begin.time + (done - 1) * dt)
-    motion = Motion(
-        times[:k],
-        places[:k, :w],
-        rates[:k, :w],
-        forces,
-        energies[:k],
-        int(counts[0]),
-        int(counts[1]),
-        int(counts[2]),
-        State(state[0], state[1], state[2], begin.time + done * dt),
-    )
-    return motion, before, stop.sign != 0.0 and stop.sign * float(stop.row @ state[1]) <= 0.0
+    mechanisms = [mechanism_of(phase.equations, phase.acting) for phase in phases]
+    _check_phases(mechanisms)
+    brakes: list[Brake] = []
+    for one in mechanisms:
+        brakes += [brake for brake in one.brakes if not any(brake is known for known in brakes)]
+    pace = _pace(step, scheme, tolerance)
+    course = Course(pace, start, brakes)
+    for phase, mechanism in zip(phases, mechanisms, strict=True):
+        if not phase.until > course.state.time:
+            raise InputError(
+                f"a phase ends at {phase.until:g} s but begins at {course.state.time:g} s: give "
+                "them in the order of time"
+            )
+        course.phase(mechanism, phase.until)
+    return _with_control(course.history(1), pace)
+
+
+def _pace(step: float | StepControl, scheme: Scheme, tolerance: float) -> Pace:
+    if isinstance(step, StepControl):
+        return ControlledPace(scheme, step, tolerance)
+    return Pace(scheme, step, tolerance)
+
+
+def _with_control(motion: Motion, pace: Pace) -> Motion:
+    """A history with the lengths of its steps, where they were chosen."""
+    if not isinstance(pace, ControlledPace):
+        return motion
+    found = StepHistory(np.array(pace.steps), np.array(pace.errors), pace.rejected, pace.matrices)
+    return replace(motion, control=found)
+
+
+def _check_phases(mechanisms: Sequence[Mechanism]) -> None:
+    """Refuse phases whose records do not fit each other."""
+    springs = {len(one.equations.springs.rows) for one in mechanisms}
+    if len(springs) > 1:
+        raise InputError(
+            f"phases have {' and '.join(map(str, sorted(springs)))} springs but must have equally "
+            "many: give a machine that is off no damping, instead of leaving it out"
+        )
+    seats = {tuple(seat.name for seat in one.bearings.seats) for one in mechanisms}
+    if len(seats) > 1:
+        raise InputError(
+            f"phases have {' and '.join(str(len(names)) for names in sorted(seats))} rolling "
+            "bearings, but must have the same: give each phase those of the others"
+        )
+    if len({one.carriers is None for one in mechanisms}) > 1:
+        raise InputError(
+            "carriers travel in some phases and stand in others, which is not possible: give all "
+            "phases the same travelling carriers"
+        )

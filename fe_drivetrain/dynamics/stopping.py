@@ -12,17 +12,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.dynamics.brakes import Brake, Phase, Transient, transient
+from fe_drivetrain.dynamics.brakes import Brake
 from fe_drivetrain.dynamics.equations import (
     Equations,
     equations_of_motion,
     joined_laws,
     spring_laws,
-    summed,
     varying,
 )
-from fe_drivetrain.dynamics.integration import State
+from fe_drivetrain.dynamics.integration import Phase, transient
 from fe_drivetrain.dynamics.machines import slip_line
+from fe_drivetrain.dynamics.motion import Motion, State
 from fe_drivetrain.dynamics.steady_state import wind_up
 from fe_drivetrain.dynamics.torsion.damping import shaft_damping
 from fe_drivetrain.dynamics.torsion.gear_table import (
@@ -79,19 +79,19 @@ class Shutdown:
         Speed of each mass, over that of the rotor.
     torque : float
         Rated torque at the rotor [N m].
-    transient : Transient
+    motion : Motion
         Angles, speeds, torques; springs are the elements of the system, and the generator.
     """
 
     system: Torsional
     speeds: dict[str, float]
     torque: float
-    transient: Transient
+    motion: Motion
 
     def ratio(self, element: str) -> Floats:
         """(k,) torque of an element over its torque in steady operation at rated torque."""
         names = [e.name for e in self.system.elements]
-        forces = self.transient.motion.forces[:, names.index(element)]
+        forces = self.motion.forces[:, names.index(element)]
         return np.asarray(forces / self.rated(element))
 
     def rated(self, element: str) -> float:
@@ -218,9 +218,9 @@ def shutdown(
     normal = varying(np.column_stack([to_rotor, pull.patterns[:, 0]]), [0.0], [[torque, 1.0]])
     velocity = rotor_speed * np.array([speeds[name] for name in system.names])
     start = wind_up(on, normal.at(0.0), velocity)
-    disc = Brake(to_generator, abs(brake * rated), when.braked, when.rise) if brake else None
-    phases = [Phase(when.off, on, normal), Phase(when.back or when.end, off, wind, disc)]
+    discs = [Brake(to_generator, abs(brake * rated), when.braked, when.rise)] if brake else []
+    phases = [Phase(when.off, on, normal), Phase(when.back or when.end, off, [wind, *discs])]
     if when.back is not None:
-        phases.append(Phase(when.end, on, summed(wind, pull), disc))
+        phases.append(Phase(when.end, on, [wind, pull, *discs]))
     found = transient(phases, dt, State(start.q, velocity, start.acceleration))
     return Shutdown(system, speeds, torque, found)

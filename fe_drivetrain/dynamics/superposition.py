@@ -16,7 +16,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.equations import Equations, Loads
-from fe_drivetrain.dynamics.integration import State, at_rest
+from fe_drivetrain.dynamics.motion import State, at_rest
 
 
 @dataclass(frozen=True)

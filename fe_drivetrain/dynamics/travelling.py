@@ -18,30 +18,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import ceil, pi
+from math import pi
 
 import numpy as np
 
 from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
-from fe_drivetrain.dynamics.equations import Equations, Loads
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.flexible import Flexible
-from fe_drivetrain.dynamics.integration import AVERAGE, TOLERANCE, Motion, Scheme, State, at_rest
 from fe_drivetrain.dynamics.levels import Level, machine_system
 from fe_drivetrain.dynamics.machine_rows import PlanetaryData
 from fe_drivetrain.dynamics.roller_seats import (
-    Rollers,
     Seat,
     planet_seats,
     rollers_of,
     without_bearings,
 )
-from fe_drivetrain.dynamics.steady_state import SpringsAt, gathered, springs_at
 from fe_drivetrain.dynamics.system import System
 from fe_drivetrain.dynamics.tables import Machine
-from fe_drivetrain.dynamics.time_steps import MOST_STEPS
 
 EXACT = 1e-9
 """Allowed error of the coefficients at another azimuth, over the maximum entry of the system."""
@@ -257,222 +252,21 @@ def travelling(
 
 
 @dataclass(frozen=True)
-class Travelled:
-    """A history of motion with carriers that travel.
+class TravellingCarriers:
+    """Carriers that travel in time, at steady speeds.
 
     Attributes
     ----------
-    motion : Motion
-        Displacements in space, and forces of springs.
-    azimuth : Floats
-        Reference angle (k,), such as that of the rotor [rad].
-    seats : tuple[Seat, ...]
-        Seats (b,) of the rolling bearings.
-    loads : Floats
-        Loads (k, b, 5) that they carry, see `OnRollers` [N, N m].
-    """
-
-    motion: Motion
-    azimuth: Floats
-    seats: tuple[Seat, ...]
-    loads: Floats
-
-
-def integrate_travelling(
-    equations: Equations,
-    carriers: Travelling,
-    speed: float,
-    loads: Loads,
-    duration: float,
-    dt: float,
-    scheme: Scheme = AVERAGE,
-    start: State | None = None,
-    *,
-    every: int = 1,
-    tolerance: float = TOLERANCE,
-) -> Travelled:
-    """Integrate in equal steps while carriers turn at steady speeds.
-
-    Parameters
-    ----------
-    equations : Equations
-        Equations of `carriers.system`, from `varying_equations`: meshes that vary, gaps, errors.
     carriers : Travelling
-        System whose carriers travel, from `travelling`.
+        System whose carriers travel, from `travelling`, with its rolling bearings.
     speed : float
         Reference speed [rad/s]; the angle is 0 at t = 0.
-    loads : Loads
-        Loads on the system, in space.
-    duration, dt : float
-        Duration of the whole motion and length of a step [s]; the number of steps is rounded up.
-    scheme : Scheme
-        Time integration scheme, see `integrate`.
-    start : State, optional
-        Displacements, velocities and time, at rest where left out.
-    every : int
-        Steps from record to record.
-    tolerance : float
-        Tolerance of Newton's method: residual over the forces, both on a unit diagonal.
-
-    Returns
-    -------
-    found : Travelled
-        Motion, converged in every step, or it says in how many it did not.
-
-    Raises
-    ------
-    InputError
-        The step or the duration is not positive, or the equations are of another system.
+    damping : float
+        Damping of its rolling bearings, see `rolling_bearings` [s].
     """
-    for name, value in (("duration", duration), ("time step", dt)):
-        if not (np.isfinite(value) and value > 0.0):
-            raise InputError(f"{name} is {value:g} s but must be above 0 s: change it")
-    if equations.springs.rows.shape != carriers.rows.shape:
-        raise InputError(
-            f"equations have rows of shape {equations.springs.rows.shape} but must have "
-            f"{carriers.rows.shape}: make them from the system of the carriers"
-        )
-    run = _Run(equations, carriers, speed, loads)
-    return run.march(
-        start or at_rest(equations),
-        ceil(duration / dt * (1.0 - 1e-12)),
-        dt,
-        scheme,
-        every,
-        tolerance,
-    )
 
+    __repr__ = short_repr
 
-@dataclass(frozen=True)
-class _At:
-    """Forces and their derivatives at a time and place, and what belongs to the energy."""
-
-    force: Floats
-    K: Floats
-    C: Floats
-    springs: SpringsAt
-    bearings: Floats
-    strain: float
-    lost: float
-    clock: float
-
-
-class _Run:
-    """A run of equal steps."""
-
-    def __init__(
-        self, equations: Equations, carriers: Travelling, speed: float, loads: Loads
-    ) -> None:
-        self.equations, self.carriers = equations, carriers
-        self.speed, self.loads = speed, loads
-        self.beside = equations.extra - carriers.system.extra
-        self.kinds = tuple(one.bearing for one in carriers.seats)
-
-    def forces(self, t: float, q: Floats, v: Floats) -> _At:
-        """All forces on the left side but inertia."""
-        angle, W = self.speed * t, self.speed
-        rows, turned, on_bearings = self.carriers.at(angle)
-        row_slopes, turned_slopes, bearing_slopes = self.carriers.slopes(angle)
-        extra = turned + self.beside
-        now = replace(
-            self.equations, springs=replace(self.equations.springs, rows=rows), extra=extra
-        )
-        at = springs_at(now, t, q, v, W * (row_slopes @ q))
-        force, K = gathered(now, at, q, v)
-        # dampers feel the turning of their rows, too
-        K = K + rows.T @ ((at.damped * W)[:, None] * row_slopes)
-        C = rows.T @ (at.damped[:, None] * rows) + now.damping
-        strain = float(at.energy.sum()) + 0.5 * float(q @ extra @ q)
-        clock = float(at.clock.sum()) + 0.5 * W * float(q @ turned_slopes @ q)
-        lost = float(at.lost.sum()) + float(v @ now.damping @ v)
-        F = np.zeros((len(self.kinds), 5))
-        if self.kinds:
-            rollers = Rollers(self.kinds, on_bearings)
-            u = np.asarray(on_bearings @ q)
-            F, tangents = rollers.carried(u)
-            force = force + np.einsum("bia,bi->a", on_bearings, F)
-            K = K + np.einsum("bia,bij,bjc->ac", on_bearings, tangents, on_bearings, optimize=True)
-            strain += rollers.energy(u)
-            clock += W * float(np.einsum("bi,bia,a->", F, bearing_slopes, q))
-        return _At(force, K, C, at, F, strain, lost, clock)
-
-    def march(
-        self,
-        begin: State,
-        steps: int,
-        dt: float,
-        scheme: Scheme,
-        every: int,
-        tolerance: float,
-    ) -> Travelled:
-        """All steps, and what is recorded of them."""
-        M, b = self.equations.mass, scheme.coefficients(dt)
-        am, af = b[6], b[7]
-        q, v = begin.q.astype(float), begin.velocity.astype(float)
-        now, outside = self.forces(begin.time, q, v), self.loads.at(begin.time)
-        a = np.linalg.solve(M, outside - now.force)
-        work = lost = clock = 0.0
-        iterations = most = missed = 0
-        kept = []
-        for s in range(steps + 1):
-            t = begin.time + s * dt
-            if s > 0:
-                outside1 = self.loads.at(t)
-                behind = am * (M @ a) + af * (now.force - outside)
-                step, then, count, converged = self.newton(
-                    t,
-                    q,
-                    v,
-                    np.asarray(a, dtype=np.float64),
-                    (1 - af) * outside1 - behind,
-                    b,
-                    tolerance,
-                )
-                iterations, most = iterations + count, max(most, count)
-                missed += not converged
-                work += 0.5 * float((outside + outside1) @ step)
-                lost += 0.5 * dt * (now.lost + then.lost)
-                clock += 0.5 * dt * (now.clock + then.clock)
-                v1 = b[1] * step + b[4] * v + b[5] * a
-                a = b[0] * step - b[2] * v - b[3] * a
-                q, v, now, outside = q + step, v1, then, outside1
-            if s % every == 0:
-                energies = np.array([0.5 * v @ M @ v, now.strain, work, lost, clock])
-                kept.append((np.array(t), q, v, now.springs.along, energies, now.bearings))
-        times, places, rates, forces, energies, carried = (
-            np.array(of) for of in zip(*kept, strict=True)
-        )
-        end = State(q, v, np.asarray(a, dtype=np.float64), begin.time + steps * dt)
-        motion = Motion(times, places, rates, forces, energies, iterations, most, missed, end)
-        return Travelled(motion, self.speed * times, self.carriers.seats, carried)
-
-    def newton(
-        self,
-        t: float,
-        q: Floats,
-        v: Floats,
-        a: Floats,
-        given: Floats,
-        b: Floats,
-        tolerance: float,
-    ) -> tuple[Floats, _At, int, bool]:
-        """Change of the displacements in a step."""
-        M, am, af = self.equations.mass, b[6], b[7]
-        step = np.zeros(len(q))
-        for count in range(MOST_STEPS + 1):
-            v1 = b[1] * step + b[4] * v + b[5] * a
-            inertia = (1 - am) * (M @ (b[0] * step - b[2] * v - b[3] * a))
-            then = self.forces(t, q + step, v1)
-            inside = (1 - af) * then.force
-            residual = given - inertia - inside
-            A = (1 - am) * b[0] * M + (1 - af) * (then.K + b[1] * then.C)
-            diagonal = np.abs(A.diagonal())
-            root = np.sqrt(diagonal)
-            size = max(float(np.abs(part / root).max()) for part in (given, inertia, inside))
-            if float(np.abs(residual / root).max()) <= tolerance * size:
-                return step, then, count, True
-            if count < MOST_STEPS:
-                scaled = scaled_to_unit_diagonal(A, diagonal)
-                change = np.linalg.solve(scaled, residual / root) / root
-                step = step + (1.0 if count < MOST_STEPS // 2 else 0.5) * change
-        return step, then, MOST_STEPS, False
+    carriers: Travelling
+    speed: float
+    damping: float = 0.0

@@ -19,7 +19,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.dynamics.bodies import Body, assemble
 from fe_drivetrain.dynamics.equations import Loads, equations_of, varying
-from fe_drivetrain.dynamics.integration import State
+from fe_drivetrain.dynamics.motion import State
 from fe_drivetrain.dynamics.springs import Place, Spring, bushing
 from fe_drivetrain.dynamics.superposition import energy_error, exact_steps
 from fe_drivetrain.dynamics.system import System, with_proportional_damping

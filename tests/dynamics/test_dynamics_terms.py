@@ -24,23 +24,25 @@ from fe_drivetrain.dynamics.equations import (
     spring_laws,
     varying,
 )
-from fe_drivetrain.dynamics.integration import State, integrate, settled
+from fe_drivetrain.dynamics.integration import integrate
 from fe_drivetrain.dynamics.levels import Level, assembly, machine_system
 from fe_drivetrain.dynamics.machine_parts import BearingData
+from fe_drivetrain.dynamics.mechanism import mechanism_of
 from fe_drivetrain.dynamics.mesh_errors import harmonic_error
 from fe_drivetrain.dynamics.meshing import Meshing, varying_equations
 from fe_drivetrain.dynamics.modes import system_modes
+from fe_drivetrain.dynamics.motion import State
 from fe_drivetrain.dynamics.response import frequency_response, mesh_response
 from fe_drivetrain.dynamics.roller_seats import static_on_rollers, without_bearings
-from fe_drivetrain.dynamics.roller_steps import integrate_on_rollers
+from fe_drivetrain.dynamics.rolling_bearings import rolling_bearings
 from fe_drivetrain.dynamics.springs import Place, bushing
 from fe_drivetrain.dynamics.static import static
 from fe_drivetrain.dynamics.steady_state import wind_up
-from fe_drivetrain.dynamics.step_control import integrate_adaptively
+from fe_drivetrain.dynamics.step_control import StepControl
 from fe_drivetrain.dynamics.superposition import exact_steps, modal_superposition
 from fe_drivetrain.dynamics.system import System
 from fe_drivetrain.dynamics.tables import library_machine
-from fe_drivetrain.dynamics.travelling import integrate_travelling, travelling_of
+from fe_drivetrain.dynamics.travelling import TravellingCarriers, travelling_of
 
 J = np.array([3.0, 1.0, 2.0])
 ROWS = np.array([[1.0, -1.0, 0.0], [0.0, 1.0, -1.0], [0.0, 0.0, 1.0]])
@@ -51,6 +53,10 @@ BEGIN = State(np.array([0.1, 0.0, 0.05]), np.array([0.0, 0.4, -0.2]), np.zeros(3
 
 def chain(damping: Floats = C) -> Equations:
     return equations_of_motion(J, spring_laws(ROWS, K, damping))
+
+
+def accelerations(equations: Equations) -> Floats:
+    return mechanism_of(equations, PUSH).settled(BEGIN, PUSH).acceleration
 
 
 def later(state: State, by: float) -> State:
@@ -64,9 +70,9 @@ def shifted(loads: Loads, by: float) -> Loads:
 def test_dense_damping_acts_from_the_first_instant() -> None:
     """Accelerations at the beginning of what already moves, and the steady state of it."""
     dense = equations_of_motion(J, spring_laws(ROWS, K), ROWS.T @ np.diag(C) @ ROWS)
-    one, other = (settled(e, PUSH, BEGIN).acceleration for e in (chain(), dense))
+    one, other = (accelerations(e) for e in (chain(), dense))
     assert_allclose(other, one, rtol=1e-12)
-    assert np.abs(one - settled(chain(0.0 * C), PUSH, BEGIN).acceleration).max() > 0.01
+    assert np.abs(one - accelerations(chain(0.0 * C))).max() > 0.01
     load, speed = [1.0, 0.0, -0.5], np.array([1.0, 1.0, 0.9])
     wound = [wind_up(e, load, speed).q for e in (chain(), dense)]
     assert_allclose(wound[1], wound[0], rtol=1e-9)
@@ -79,7 +85,7 @@ def test_what_begins_later_moves_as_what_begins_at_once() -> None:
     plain = equations_of_motion(J, spring_laws(ROWS, K, 0.01 * K))
     for name, motion in {
         "equal": lambda s, p: integrate(one, p, 1.0, 0.05, start=s),
-        "adaptive": lambda s, p: integrate_adaptively(one, p, 1.0, 0.1, 1e-3, start=s).motion,
+        "adaptive": lambda s, p: integrate(one, p, 1.0, StepControl(0.1, 1e-3), start=s),
     }.items():
         now, then = motion(BEGIN, PUSH), motion(later(BEGIN, by), shifted(PUSH, by))
         assert_allclose(then.times, now.times + by, err_msg=name)
@@ -178,7 +184,8 @@ def test_springs_with_laws_act_beside_rollers_as_without_them() -> None:
     pull = varying(load, [2.0, 2.01], [0.0, 1.0])
     begin = State(np.zeros(6), np.full(6, 1e-3), np.zeros(6), 2.0)
     one = integrate(equations, pull, 0.02, 1e-4, start=begin)
-    other = integrate_on_rollers(equations, bare, [], pull, 0.02, 1e-4, start=begin).motion
+    acting = [pull, rolling_bearings(bare, [])]
+    other = integrate(equations, acting, 0.02, 1e-4, start=begin)
     assert_allclose(other.times, one.times)
     assert_allclose(other.q, one.q, rtol=1e-7, atol=1e-9 * np.abs(one.q).max())
     assert_allclose(other.forces, one.forces, rtol=1e-6, atol=1e-7 * np.abs(one.forces).max())
@@ -239,9 +246,13 @@ def test_a_matrix_travels_as_its_springs_do() -> None:
     begin = State(1e-5 * rng.normal(size=n), np.zeros(n), np.zeros(n))
     pull = varying(1e3 * rng.normal(size=n), [0.0, 1e-3], [0.2, 1.0])
     one, other = (
-        integrate_travelling(
-            equations_of(kind.system, speed), kind, speed, pull, 5e-4, 1e-5, start=begin
-        ).motion
+        integrate(
+            equations_of(kind.system, speed),
+            [pull, TravellingCarriers(kind, speed)],
+            5e-4,
+            1e-5,
+            start=begin,
+        )
         for kind in kinds
     )
     assert_allclose(other.q, one.q, rtol=1e-7, atol=1e-9 * np.abs(one.q).max())
@@ -251,21 +262,20 @@ def test_a_matrix_travels_as_its_springs_do() -> None:
     beside = replace(beside, extra=beside.extra + 1e6 * np.eye(n))
     late = later(begin, 0.0)
     still = integrate(beside, pull, 5e-4, 1e-5, start=late)
-    stands = integrate_travelling(beside, kinds[0], 0.0, pull, 5e-4, 1e-5, start=late).motion
+    at_stand = TravellingCarriers(kinds[0], 0.0)
+    stands = integrate(beside, [pull, at_stand], 5e-4, 1e-5, start=late)
     assert_allclose(stands.q, still.q, rtol=1e-7, atol=1e-9 * np.abs(still.q).max())
     kept = [0, 1, 2, 4]
     scale = 1e-6 * still.energies.max()
     assert_allclose(stands.energies[:, kept], still.energies[:, kept], rtol=1e-5, atol=scale)
     # losses by trapezia of the power on one side, of the force on the other: apart by the square
-    finer = integrate_travelling(beside, kinds[0], 0.0, pull, 5e-4, 2.5e-6, start=late).motion
+    finer = integrate(beside, [pull, at_stand], 5e-4, 2.5e-6, start=late)
     exact = integrate(beside, pull, 5e-4, 2.5e-6, start=late)
     far, near = (
         a.energies[-1, 3] - b.energies[-1, 3] for a, b in ((stands, still), (finer, exact))
     )
     assert far / near == pytest.approx(16.0, rel=0.3)
-    moved = integrate_travelling(
-        beside, kinds[0], 0.0, shifted(pull, 2.0), 5e-4, 1e-5, start=later(begin, 2.0)
-    ).motion
+    moved = integrate(beside, [shifted(pull, 2.0), at_stand], 5e-4, 1e-5, start=later(begin, 2.0))
     assert_allclose(moved.times, stands.times + 2.0)
     assert moved.end.time == pytest.approx(stands.end.time + 2.0)
     assert_allclose(moved.q, stands.q, rtol=1e-7, atol=1e-9 * np.abs(still.q).max())

@@ -18,10 +18,11 @@ from fe_drivetrain.dynamics.equations import (
     spring_laws,
     steady,
 )
-from fe_drivetrain.dynamics.integration import Motion, State, integrate
+from fe_drivetrain.dynamics.integration import integrate
 from fe_drivetrain.dynamics.levels import Level, machine_system
 from fe_drivetrain.dynamics.mesh_errors import MeshError, error_of_slices, harmonic_error
 from fe_drivetrain.dynamics.meshing import Meshing, machine_meshing, varying_equations
+from fe_drivetrain.dynamics.motion import Motion, State
 from fe_drivetrain.dynamics.response import mesh_response
 from fe_drivetrain.dynamics.springs import Mesh, Place, gear_mesh
 from fe_drivetrain.dynamics.steady_state import errors_at, restoring, waves_at, wind_up

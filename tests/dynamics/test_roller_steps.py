@@ -15,17 +15,19 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.bodies import Body, assemble
 from fe_drivetrain.dynamics.equations import equations_of, steady
 from fe_drivetrain.dynamics.gear_pairs import contact_ratios
-from fe_drivetrain.dynamics.integration import State, generalised_alpha, integrate
+from fe_drivetrain.dynamics.integration import integrate
 from fe_drivetrain.dynamics.levels import machine_system, steady_load
 from fe_drivetrain.dynamics.meshing import Meshing, machine_meshing, varying_equations
 from fe_drivetrain.dynamics.modes import system_modes
+from fe_drivetrain.dynamics.motion import Motion, State
 from fe_drivetrain.dynamics.roller_seats import (
     planet_seats,
     seat,
     static_on_rollers,
     without_bearings,
 )
-from fe_drivetrain.dynamics.roller_steps import RollerMotion, integrate_on_rollers
+from fe_drivetrain.dynamics.rolling_bearings import rolling_bearings
+from fe_drivetrain.dynamics.schemes import generalised_alpha
 from fe_drivetrain.dynamics.springs import Place, bushing
 from fe_drivetrain.dynamics.system import System, with_proportional_damping
 from fe_drivetrain.dynamics.tables import library_machine
@@ -63,17 +65,16 @@ def in_time(
     duration: float,
     dt: float,
     turning: float = 0.0,
+    damping: float = 0.0,
     **given: object,
-) -> RollerMotion:
+) -> Motion:
     """From rest; `turning` is the damping of what holds the rotation [s]."""
     system = on_bushing(WEAK)
     seats = [seat("b", bearing, SHAFT, None, AT)]
     bare = with_proportional_damping(without_bearings(system, seats), turning)
-    return integrate_on_rollers(
+    return integrate(
         equations_of(bare),
-        bare,
-        seats,
-        steady(load_of(size, system)),
+        [steady(load_of(size, system)), rolling_bearings(bare, seats, damping)],
         duration,
         dt,
         **given,  # type: ignore[arg-type]
@@ -105,13 +106,13 @@ def test_damped_it_comes_to_rest_in_the_static_equilibrium() -> None:
     system = on_bushing(WEAK)
     still = static_on_rollers(system, load_of(10.0, system), [seat("b", loose(), SHAFT, None, AT)])
     found = in_time(loose(), 10.0, 0.3, 5e-4, 2e-3, damping=1e-3, scheme=generalised_alpha(0.6))
-    assert found.motion.converged
-    assert found.motion.q[-1] == pytest.approx(
+    assert found.converged
+    assert found.q[-1] == pytest.approx(
         still.static.q, rel=1e-6, abs=1e-6 * np.abs(still.static.q).max()
     )
-    assert found.radial("b")[-1] == pytest.approx(still.radial("b"), rel=1e-6)
+    assert found.bearings.radial("b")[-1] == pytest.approx(still.radial("b"), rel=1e-6)
     # the scheme damps, too
-    assert found.motion.imbalance[-1] < 0.0
+    assert found.imbalance[-1] < 0.0
 
 
 def test_small_vibrations_have_the_frequencies_of_the_tangent() -> None:
@@ -131,10 +132,9 @@ def test_small_vibrations_have_the_frequencies_of_the_tangent() -> None:
         push = size * np.abs(still.static.q).max() / np.abs(shape).max() * shape
         begin = State(still.static.q + push, np.zeros(6), np.zeros(6))
         period, steps = 1.0 / frequency, 400
-        found = integrate_on_rollers(
-            equations_of(bare), bare, seats, steady(load), period, period / steps, start=begin
-        )
-        end = found.motion.q[-1] - still.static.q
+        acting = [steady(load), rolling_bearings(bare, seats)]
+        found = integrate(equations_of(bare), acting, period, period / steps, start=begin)
+        end = found.q[-1] - still.static.q
         missed.append(float(np.abs(end - push).max() / np.abs(push).max()))
     # a period later it is where it was: steps turn by 2 atan(w dt / 2), 2e-5 of a turn too little
     assert missed[0] < 3e-3
@@ -143,13 +143,13 @@ def test_small_vibrations_have_the_frequencies_of_the_tangent() -> None:
 
 def test_energy_is_kept_but_for_the_error_of_the_steps() -> None:
     coarse, fine = (in_time(loose(), 10.0, 0.02, dt) for dt in (1e-4, 5e-5))
-    assert coarse.motion.converged
+    assert coarse.converged
     for found in (coarse, fine):
-        inside = np.abs(found.loads).max(axis=(1, 2))
+        inside = np.abs(found.bearings.loads).max(axis=(1, 2))
         assert inside.min() == 0.0  # it leaves its rollers, and comes back
-    lost = [one.motion.relative_imbalance for one in (coarse, fine)]
+    lost = [one.relative_imbalance for one in (coarse, fine)]
     assert lost[0] / lost[1] > 3.0
-    assert np.all(fine.motion.energies[:, 3] == 0.0)
+    assert np.all(fine.energies[:, 3] == 0.0)
 
 
 def test_a_linear_law_is_a_bushing_in_time() -> None:
@@ -162,25 +162,25 @@ def test_a_linear_law_is_a_bushing_in_time() -> None:
     exact = integrate(equations, steady(load_of(0.5, linear)), 0.01, 1e-4)
     found = in_time(bearing, 0.5, 0.01, 1e-4)
     scale = np.abs(exact.q).max()
-    assert found.motion.q == pytest.approx(exact.q, rel=1e-7, abs=1e-8 * scale)
+    assert found.q == pytest.approx(exact.q, rel=1e-7, abs=1e-8 * scale)
     # but for the energy of its preload
-    assert np.diff(found.motion.energy) == pytest.approx(
+    assert np.diff(found.energy) == pytest.approx(
         np.diff(exact.energy), abs=1e-8 * exact.energy.max()
     )
 
 
 def test_damping_takes_energy_out_and_refusals() -> None:
     found = in_time(tapered(), 10.0, 0.02, 2e-4, damping=1e-4)
-    lost = found.motion.energies[:, 3]
+    lost = found.energies[:, 3]
     assert np.all(np.diff(lost) >= 0.0)
-    assert lost[-1] > 0.05 * found.motion.energies[:, 1].max()
+    assert lost[-1] > 0.05 * found.energies[:, 1].max()
     finer = in_time(tapered(), 10.0, 0.02, 1e-4, damping=1e-4)
     # the tangent of a damper is that at the beginning of its step: exact balance all the same
-    assert found.motion.relative_imbalance / finer.motion.relative_imbalance > 3.0
+    assert found.relative_imbalance / finer.relative_imbalance > 3.0
     with pytest.raises(InputError, match="damping of bearings is -1 s"):
         in_time(tapered(), 1.0, 1.0, 0.1, damping=-1.0)
     with pytest.raises(InputError, match="no rolling bearing 'x': use one of b"):
-        found.of("x")
+        found.bearings.of("x")
 
 
 def test_planets_on_rollers_stay_in_their_equilibrium_and_leave_it_as_teeth_come_and_go() -> None:
@@ -196,11 +196,10 @@ def test_planets_on_rollers_stay_in_their_equilibrium_and_leave_it_as_teeth_come
     name = "stage 1 pin 1 upwind"
 
     def radial(meshing: dict[str, Meshing]) -> Floats:
-        found = integrate_on_rollers(
-            varying_equations(bare, meshing), bare, seats, steady(load), 3e-3, 1e-4, start=begin
-        )
-        assert found.motion.converged
-        return found.radial(name)
+        acting = [steady(load), rolling_bearings(bare, seats)]
+        found = integrate(varying_equations(bare, meshing), acting, 3e-3, 1e-4, start=begin)
+        assert found.converged
+        return found.bearings.radial(name)
 
     meshing = machine_meshing(machine, 2.31, contact_ratios(machine))
     assert radial({}) == pytest.approx(still.radial(name), rel=1e-7)

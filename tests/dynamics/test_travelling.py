@@ -18,13 +18,15 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.materials import Material
 from fe_drivetrain.dynamics.bodies import Body, assemble
 from fe_drivetrain.dynamics.elastic_ring import Rim, with_rim
-from fe_drivetrain.dynamics.equations import Equations, equations_of, steady
-from fe_drivetrain.dynamics.integration import State, generalised_alpha, integrate
+from fe_drivetrain.dynamics.equations import equations_of, steady
+from fe_drivetrain.dynamics.integration import integrate
 from fe_drivetrain.dynamics.levels import Level, azimuths, machine_system, steady_load
 from fe_drivetrain.dynamics.meshing import Meshing, varying_equations
 from fe_drivetrain.dynamics.modes import system_modes
+from fe_drivetrain.dynamics.motion import State
 from fe_drivetrain.dynamics.planetary import PlanetarySet, bodies_of, springs_of
 from fe_drivetrain.dynamics.roller_seats import planet_seats, static_on_rollers
+from fe_drivetrain.dynamics.schemes import generalised_alpha
 from fe_drivetrain.dynamics.springs import Spring
 from fe_drivetrain.dynamics.static import Turn, over_a_turn
 from fe_drivetrain.dynamics.superposition import exact_steps
@@ -32,7 +34,7 @@ from fe_drivetrain.dynamics.system import System
 from fe_drivetrain.dynamics.tables import library_machine
 from fe_drivetrain.dynamics.travelling import (
     Travelling,
-    integrate_travelling,
+    TravellingCarriers,
     travelling,
     travelling_of,
 )
@@ -85,17 +87,15 @@ def test_planets_that_travel_move_as_in_a_frame_that_turns_with_them() -> None:
     equations = equations_of(system, speed)
     missed = []
     for steps in (100, 200):
-        found = integrate_travelling(
+        found = integrate(
             equations,
-            carriers,
-            speed,
-            steady(np.zeros(len(q0))),
+            [TravellingCarriers(carriers, speed)],
             duration,
             duration / steps,
             start=begin,
         )
-        assert found.motion.converged
-        end = in_space(system, found.motion.q[-1], -speed * duration)
+        assert found.converged
+        end = in_space(system, found.q[-1], -speed * duration)
         missed.append(float(np.abs(end - exact).max() / np.abs(exact).max()))
     assert missed[0] / missed[1] == pytest.approx(4.0, rel=0.15)
     # at a standstill the answer is another one
@@ -112,10 +112,10 @@ def test_energy_is_kept_with_what_turning_the_rows_takes() -> None:
     )
     rng = np.random.default_rng(2)
     begin = State(1e-5 * rng.normal(size=n), np.zeros(n), np.zeros(n))
-    pull = steady(1e3 * rng.normal(size=n))
+    pull, turned_at = steady(1e3 * rng.normal(size=n)), TravellingCarriers(carriers, speed)
     for one in (equations, damped):
         lost = [
-            integrate_travelling(one, carriers, speed, pull, 2e-3, 2e-3 / steps, start=begin).motion
+            integrate(one, [pull, turned_at], 2e-3, 2e-3 / steps, start=begin)
             for steps in (200, 400)
         ]
         ratio = lost[0].relative_imbalance / lost[1].relative_imbalance
@@ -141,20 +141,18 @@ def test_a_slow_turn_is_quasi_static() -> None:
     zero = np.zeros(len(load))
     begin = State(np.linalg.solve(system.K, load), zero, zero)
     dt = 2 * pi / speed / (count * 10)
-    found = integrate_travelling(
+    found = integrate(
         equations,
-        carriers,
-        speed,
-        steady(load),
+        [steady(load), TravellingCarriers(carriers, speed)],
         4 * pi / speed,
         dt,
         generalised_alpha(0.3),
         begin,
         every=10,
     )
-    assert found.motion.converged
+    assert found.converged
     # the second turn
-    moving = Turn(found.azimuth[count:-1], system.spring_names, found.motion.forces[count:-1])
+    moving = Turn(found.azimuth[count:-1], system.spring_names, found.forces[count:-1])
     assert moving.azimuths == pytest.approx(2 * pi + azimuths(count), abs=1e-9)
     for name in ("stage 1 pin 1 upwind", "stage 1 pin 3 downwind"):
         mean = still.resultant(name).mean()
@@ -190,18 +188,16 @@ def test_planets_passing_bend_the_ring_and_mesh_lines_have_sidebands() -> None:
         equations = varying_equations(system, meshing, damping=2e-4)
         zero = np.zeros(len(load))
         begin = State(np.linalg.solve(system.K, load), zero, zero)
-        found = integrate_travelling(
+        found = integrate(
             equations,
-            carriers,
-            speed,
-            steady(load),
+            [steady(load), TravellingCarriers(carriers, speed)],
             2 * turn,
             turn / count,
             generalised_alpha(0.2),
             begin,
         )
-        assert found.motion.converged
-        second = found.motion.q[count:-1]
+        assert found.converged
+        second = found.q[count:-1]
         both = [second[:, system.place(f"rim {n} cos ux")] for n in (3, 2)]
         return np.abs(np.fft.rfft(both)) * 2 / count
 
@@ -233,31 +229,30 @@ def test_planets_on_rollers_travel() -> None:
         return found.static.q, np.hypot(found.loads[:, 1], found.loads[:, 2])
 
     zero = np.zeros(len(load))
-    found = integrate_travelling(
+    found = integrate(
         varying_equations(system, {}, damping=1e-4),
-        carriers,
-        speed,
-        steady(load),
+        [steady(load), TravellingCarriers(carriers, speed)],
         angle / speed,
         angle / speed / 60,
         generalised_alpha(0.3),
         State(still(0.0)[0], zero, zero),
     )
-    assert found.motion.converged
-    radial = np.hypot(found.loads[-1, :, 1], found.loads[-1, :, 2])
+    assert found.converged
+    radial = np.hypot(*found.bearings.loads[-1, :, 1:3].T)
     assert radial == pytest.approx(still(angle)[1], rel=5e-3)
     assert np.abs(radial / still(0.0)[1] - 1).max() > 2e-2
 
 
 def test_refusals() -> None:
     carriers = moving_plane()
-    other: Equations = equations_of(machine_system(GRC))
+    more = replace(carriers, rows=np.vstack([carriers.rows, carriers.rows]))
+    other = TravellingCarriers(travelling(GRC), 1.0)
+    with pytest.raises(InputError, match=r"a TravellingCarriers acts on \d+ degrees of freedom"):
+        integrate(equations_of(carriers.system), [other], 1.0, 0.1)
     with pytest.raises(InputError, match="make them from the system of the carriers"):
-        integrate_travelling(other, carriers, 1.0, steady(np.zeros(3)), 1.0, 0.1)
+        integrate(equations_of(carriers.system), [TravellingCarriers(more, 1.0)], 1.0, 0.1)
     with pytest.raises(InputError, match="time step is 0 s"):
-        integrate_travelling(
-            equations_of(carriers.system), carriers, 1.0, steady(np.zeros(3)), 1.0, 0.0
-        )
+        integrate(equations_of(carriers.system), [TravellingCarriers(carriers, 1.0)], 1.0, 0.0)
 
     def heavier(at: Mapping[int, float]) -> tuple[System, tuple[()]]:
         return assemble(

@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.equations import equations_of, steady
-from fe_drivetrain.dynamics.integration import State, integrate
+from fe_drivetrain.dynamics.integration import integrate
 from fe_drivetrain.dynamics.levels import Level, machine_system
 from fe_drivetrain.dynamics.meshing import (
     Meshing,
@@ -21,6 +21,7 @@ from fe_drivetrain.dynamics.meshing import (
     varying_equations,
     wave_of,
 )
+from fe_drivetrain.dynamics.motion import State
 from fe_drivetrain.dynamics.steady_state import wind_up
 from fe_drivetrain.dynamics.system import System
 from fe_drivetrain.dynamics.tables import library_machine
@@ -141,18 +142,21 @@ def test_a_mesh_that_is_not_there() -> None:
         varying_equations(park()[0], {"stage 9 mesh": Meshing(1.6, 128.0)})
 
 
-def test_the_examples_of_the_docs_run() -> None:
+def test_the_examples_of_the_docs_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     text = (Path(__file__).parents[2] / "docs" / "transients.md").read_text(encoding="utf-8")
     blocks = re.findall(r"```python\n(.*?)```", text, flags=re.S)
-    assert len(blocks) == 5
+    assert len(blocks) == 7
+    monkeypatch.chdir(tmp_path)  # which a page writes a table to
     found: dict[str, Any] = {}
     for block in blocks:
         exec(block, found)
     assert found["motion"].converged
     assert found["stopped"].ratio("HSS")[0] == pytest.approx(1.0, rel=1e-6)
-    assert found["turned"].motion.converged
-    radial = found["on_rollers"].radial("stage 1 pin 1 upwind")
+    assert found["turned"].converged
+    radial = found["on_rollers"].bearings.radial("stage 1 pin 1 upwind")
     assert radial[-1] > radial[0] > 1e5
+    stops = found["shaken"].braking.events[0]
+    assert stops == (pytest.approx(0.2 + 20 * 6 / 300, rel=1e-6), "stops")
     # errors of some microns against teeth of a GN/m
     assert 1e2 < abs(found["answer"].forces).max() < 1e5
 

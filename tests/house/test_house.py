@@ -92,8 +92,6 @@ FOR_USERS = {
     "bearing.subsurface": "procedure.md",
     # answers of a bearing to millions of loads, from one grid of solves
     "bearing.tables": "bearing.md",
-    "dynamics.roller_steps": "transients.md",
-    "dynamics.travelling": "transients.md",
     "export.formats.windio": "how-to/shafts-of-a-gearbox.md",
     "export.programs.ross_rotor": "how-to/housing-to-ross-and-exudyn.md",
     "gear.coupled_slices": "gear_rating.md",
