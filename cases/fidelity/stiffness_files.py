@@ -67,6 +67,7 @@ def stiffness_files(page: Page, folder: Path, scene: Scene, quantity: Quantity) 
         source="a free body",
     )
     (level_two,) = [level for level in page.tables["levels"] if level["level"] == LEVEL]
+    error = level_two["error against the last level [-]"]
     found = _rebuilt(scene, quantity, shaft, seats)
     page.vanishes(
         f"{quantity.name} of a model made of the files, less that of level {LEVEL}, relative",
@@ -81,7 +82,7 @@ def stiffness_files(page: Page, folder: Path, scene: Scene, quantity: Quantity) 
         "points, with the rings that stand on it, and every bearing with its housing on the "
         "ground (the nose, where there is one, stays in the scene). Put together, with the "
         "gearbox's springs, they are level 2 of the ladder: "
-        f"{100 * level_two['error against the last level [-]']:.2g} % from its top for {quantity.name}. fe-drivetrain export "
+        f"{100 * error:.2g} % from its top for {quantity.name}. fe-drivetrain export "
         "writes them in further formats, and with fixed-interface modes."
     )
     page.table(
