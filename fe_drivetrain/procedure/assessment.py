@@ -23,6 +23,7 @@ from fe_drivetrain.procedure.project import (
 from fe_drivetrain.procedure.sensors import sampling_rates
 from fe_drivetrain.procedure.tolerances import WIDEST, is_guess, why_vacuous
 from fe_drivetrain.report.results import DrivetrainRecord, Results, Verdict
+from fe_drivetrain.shafts.fidelity.quantity import ERROR_AGAINST_LAST, OWN_ERROR
 
 Evidence = Mapping[Claim, Found]
 
@@ -266,6 +267,8 @@ def needed_of(
     rows = figures.get(f"ladder_{record.name}") if machine else figures.get("levels")
     if not rows or (not machine and figures.get("quantity") != need.quantity):
         return None
+    if not machine and OWN_ERROR not in rows[0]:  # of an older program
+        return None
     if machine:
         levels = [(str(k), str(row["level"])) for k, row in enumerate(rows)]
         return levels, _of_ladder([row.get(need.quantity) for row in rows], need.tolerance)
@@ -286,11 +289,11 @@ def _of_ladder(values: Sequence[float | None], tolerance: float) -> int | None:
 
 def _of_advice(rows: Sequence[Mapping[str, Any]], tolerance: float) -> int | None:
     """Choice of the adviser: statics decides, or difference and band of the last are small."""
-    top = rows[-1]["estimate"]
+    top = rows[-1][OWN_ERROR]
     for k, row in enumerate(rows):
-        if row["estimate"] == 0.0:
+        if row[OWN_ERROR] == 0.0:
             return k
-        difference = 0.0 if row is rows[-1] else row["error"]
+        difference = 0.0 if row is rows[-1] else row[ERROR_AGAINST_LAST]
         if None not in (difference, top) and difference + top <= tolerance:
             return k
     return None

@@ -20,7 +20,12 @@ from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.shafts.fidelity.ablation import Effect, effects
 from fe_drivetrain.shafts.fidelity.adviser import Advice, LevelResult
 from fe_drivetrain.shafts.fidelity.adviser import advise as run_levels
-from fe_drivetrain.shafts.fidelity.quantity import Quantity, named_load
+from fe_drivetrain.shafts.fidelity.quantity import (
+    ERROR_AGAINST_LAST,
+    OWN_ERROR,
+    Quantity,
+    named_load,
+)
 from fe_drivetrain.studies.result import Result
 
 
@@ -188,8 +193,8 @@ def _level(result: LevelResult, unit: str) -> Record:
         "values": result.values,
         "time [s]": result.seconds,
         "time since the first level began [s]": result.waited,
-        "own error [-]": None if np.isnan(result.estimate) else result.estimate,
-        "error against the last level [-]": None if np.isnan(result.error) else result.error,
+        OWN_ERROR: None if np.isnan(result.estimate) else result.estimate,
+        ERROR_AGAINST_LAST: None if np.isnan(result.error) else result.error,
     }
 
 

@@ -35,6 +35,7 @@ from fe_drivetrain.procedure.signatures import content_digest
 from fe_drivetrain.procedure.steps import require_complete
 from fe_drivetrain.report.results import Results, Table, read_results
 from fe_drivetrain.report.seal import drivetrain_record
+from fe_drivetrain.shafts.fidelity.quantity import ERROR_AGAINST_LAST, OWN_ERROR
 from fe_drivetrain.studies.project_validation import validate as validate_project
 
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
@@ -199,9 +200,9 @@ def test_evidence_that_fails_is_quick_or_stale_does_not_count(
 def test_evidence_of_another_scene_does_not_count(small: Content, tmp_path: Path) -> None:
     scene = library_scene("two_bearings")
     levels = [
-        {"level": 0, "title": "statics", "estimate": None, "error": 0.5},
-        {"level": 1, "title": "beam", "estimate": 0.01, "error": 0.02},
-        {"level": 2, "title": "meridian", "estimate": 0.001, "error": 0.0},
+        {"level": 0, "title": "statics", OWN_ERROR: None, ERROR_AGAINST_LAST: 0.5},
+        {"level": 1, "title": "beam", OWN_ERROR: 0.01, ERROR_AGAINST_LAST: 0.02},
+        {"level": 2, "title": "meridian", OWN_ERROR: 0.001, ERROR_AGAINST_LAST: 0.0},
     ]
     figures = {"quantity": "main_bearing.Fz", "levels": levels}
     small["model"] |= {

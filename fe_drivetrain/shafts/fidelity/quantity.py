@@ -15,6 +15,10 @@ from fe_drivetrain.shafts.fidelity.ladder import LevelModel
 from fe_drivetrain.shafts.response.entering import Factors, factor_values
 from fe_drivetrain.shafts.response.model import scene_loads
 
+#: Errors of a level in the results of an advice: its own, and that against the last level.
+OWN_ERROR = "own error [-]"
+ERROR_AGAINST_LAST = "error against the last level [-]"
+
 
 @dataclass(frozen=True)
 class Quantity:
