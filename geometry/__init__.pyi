@@ -7,7 +7,7 @@ from .bolt_preload import assembly_preload as assembly_preload
 from .bolt_preload import coarse_thread as coarse_thread
 from .bolt_preload import yield_strength as yield_strength
 from .element_counts import check_counts as check_counts
-from .element_sizes import MOST_TURN as MOST_TURN
+from .element_sizes import MAX_TURN as MAX_TURN
 from .element_sizes import MeshSizes as MeshSizes
 from .element_sizes import size_name as size_name
 from .fits import WIDEST as WIDEST

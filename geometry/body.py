@@ -11,7 +11,7 @@ from pydantic import Field
 
 from fe_drivetrain.common.errors import InputError
 
-from .element_sizes import GROWTH, MOST_ELEMENTS
+from .element_sizes import GROWTH, MAX_ELEMENTS
 from .faces import CAD_TOLERANCE
 from .part import Part, dimension
 from .session import integrate_sizes
@@ -69,10 +69,10 @@ def name_and_size(
     # three quarters of a turn round each edge, elements growing away from it
     elements += _PER_VOLUME * length * 0.75 * math.pi / (GROWTH**2 * sizes.edge)
     elements *= copies
-    if elements > MOST_ELEMENTS:
+    if elements > MAX_ELEMENTS:
         raise InputError(
             f"body {name!r}: mesh sizes {sizes.size:g} m, and {sizes.edge:g} m along inner edges, "
-            f"make about {elements:.1g} elements, but must make at most {MOST_ELEMENTS:.0e}: "
+            f"make about {elements:.1g} elements, but must make at most {MAX_ELEMENTS:.0e}: "
             "choose larger ones"
         )
     gmsh.model.addPhysicalGroup(3, [volume], name=name)

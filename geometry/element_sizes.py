@@ -18,7 +18,7 @@ GROWTH = 0.4
 """Growth of the element size with the distance from a tightly curved face, m per m."""
 
 
-MOST_ELEMENTS = 1e6
+MAX_ELEMENTS = 1e6
 """More elements than this in one part, four million unknowns, are taken for a slip of the pen in
 its mesh size or in a detail."""
 
@@ -30,7 +30,7 @@ SIZE_PER_WALL = 3.0
 """Maximum mesh size, in thicknesses of the thinnest wall: elements flatter than this fold over."""
 
 
-LEAST_TURN, SOUND_TURN, MOST_TURN = 6, 8, 360
+MIN_TURN, SOUND_TURN, MAX_TURN = 6, 8, 360
 """Elements round any cylinder or sphere: minimum, minimum that seldom folds over, and maximum."""
 
 
@@ -45,8 +45,8 @@ class MeshSizes(Part):
     )
     elements_per_turn: int = Field(
         default=12,
-        ge=LEAST_TURN,
-        le=MOST_TURN,
+        ge=MIN_TURN,
+        le=MAX_TURN,
         description="minimum number of elements round any cylinder or sphere",
     )
 
@@ -146,14 +146,14 @@ def elements_within(name: str, volume: float, size: float) -> float:
     Raises
     ------
     InputError
-        They are more than `MOST_ELEMENTS`.
+        They are more than `MAX_ELEMENTS`.
     """
     elements = volume * _PER_VOLUME / size**3
-    if elements > MOST_ELEMENTS:
+    if elements > MAX_ELEMENTS:
         raise InputError(
             f"part {name!r}: mesh size {size_name(name)!r} is {size:g} m, which makes about "
-            f"{elements:.1g} elements, but must make at most {MOST_ELEMENTS:.0e}: choose "
-            f"{size * (elements / MOST_ELEMENTS) ** (1 / 3):.2g} m or more"
+            f"{elements:.1g} elements, but must make at most {MAX_ELEMENTS:.0e}: choose "
+            f"{size * (elements / MAX_ELEMENTS) ** (1 / 3):.2g} m or more"
         )
     return elements
 
@@ -206,13 +206,13 @@ def refuse_too_many(
     Raises
     ------
     InputError
-        They are more than `MOST_ELEMENTS`.
+        They are more than `MAX_ELEMENTS`.
     """
-    if elements > MOST_ELEMENTS:
+    if elements > MAX_ELEMENTS:
         raise InputError(
             f"part {name!r}: a bore, fillet or narrow face at x = {x[0]:.6g} to {x[1]:.6g} m, "
             f"y = {y[0]:.6g} to {y[1]:.6g} m needs elements of {size:.2g} m, which make about "
-            f"{elements:.1g} elements, but must make at most {MOST_ELEMENTS:.0e}: leave that "
+            f"{elements:.1g} elements, but must make at most {MAX_ELEMENTS:.0e}: leave that "
             "detail out, enlarge it, or lower elements_per_turn"
         )
 
@@ -249,15 +249,15 @@ def refuse_fine_edges(length: float, size: float) -> None:
     Raises
     ------
     InputError
-        They are more than `MOST_ELEMENTS`.
+        They are more than `MAX_ELEMENTS`.
     """
     # an eighth of a turn round each edge, elements growing away from it
     elements = _PER_VOLUME * length * math.pi / 8 / (GROWTH**2 * size)
-    if elements > MOST_ELEMENTS:
+    if elements > MAX_ELEMENTS:
         raise InputError(
             f"mesh size 'bearing_edge' is {size:g} m, which makes about {elements:.1g} elements, "
-            f"but must make at most {MOST_ELEMENTS:.0e}: choose "
-            f"{size * elements / MOST_ELEMENTS:.2g} m or more"
+            f"but must make at most {MAX_ELEMENTS:.0e}: choose "
+            f"{size * elements / MAX_ELEMENTS:.2g} m or more"
         )
 
 

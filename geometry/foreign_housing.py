@@ -14,7 +14,7 @@ from fe_drivetrain.common.errors import InputError
 from .bearing import Bearing
 from .bolt_preload import assembly_preload, coarse_thread, yield_strength
 from .housing import Housing
-from .part import LARGEST, Part
+from .part import MAXIMUM, Part
 
 Vector = tuple[float, float, float]
 
@@ -24,7 +24,7 @@ UNITS = {"mm": 1e-3, "m": 1.0, "in": 0.0254}
 STEP_ENDINGS = (".step", ".stp")
 MESH_ENDINGS = (".msh", ".vtu", ".inp")
 
-LARGEST_PRELOAD = 1e9
+MAX_PRELOAD = 1e9
 """Maximum preload of a bolt [N]."""
 
 
@@ -110,7 +110,7 @@ class Bolts(Part):
         "unit; the hole's length where left out",
     )
     preload: float | None = Field(
-        default=None, gt=0, le=LARGEST_PRELOAD, description="tension of each bolt, tightened [N]"
+        default=None, gt=0, le=MAX_PRELOAD, description="tension of each bolt, tightened [N]"
     )
     property_class: Literal["4.6", "5.6", "6.8", "8.8", "10.9", "12.9"] | None = Field(
         default=None, description="property class of the bolts, in place of their preload"
@@ -255,9 +255,9 @@ class ForeignFile(Part):
             )
         for key in ("rotate", "translate"):
             value = getattr(self, key, None)
-            if value is not None and max(map(abs, value)) > LARGEST:
+            if value is not None and max(map(abs, value)) > MAXIMUM:
                 raise InputError(
-                    f"{key} of {self.what()} is {list(value)}, but at most {LARGEST:g} each: "
+                    f"{key} of {self.what()} is {list(value)}, but at most {MAXIMUM:g} each: "
                     "reduce it"
                 )
         return self
@@ -413,11 +413,11 @@ class CondensedHousing(Part):
                 "check its rows"
             )
         least = float(np.linalg.eigvalsh(0.5 * (scaled + scaled.T))[0])
-        if least < _LEAST or K.diagonal().max() > _STIFFEST:
+        if least < _MINIMUM or K.diagonal().max() > _STIFFEST:
             raise InputError(
                 f"a housing's stiffness has a minimum eigenvalue of {least:.2g} of its diagonal "
                 f"and a maximum entry of {K.diagonal().max():.2g}, but must hold every motion (at "
-                f"least {_LEAST:g}) with at most {_STIFFEST:g} [N/m, N m/rad]: check its units"
+                f"least {_MINIMUM:g}) with at most {_STIFFEST:g} [N/m, N m/rad]: check its units"
             )
         return self
 
@@ -427,7 +427,7 @@ class CondensedHousing(Part):
         return np.array(self.stiffness, dtype=np.float64)
 
 
-_SYMMETRIC, _LEAST, _STIFFEST = 1e-6, 1e-9, 1e16
+_SYMMETRIC, _MINIMUM, _STIFFEST = 1e-6, 1e-9, 1e16
 
 SEAT_TOLERANCE = 1e-4
 """Allowed difference of a seat's radius from the bearing's raceway, over the radius."""

@@ -16,7 +16,7 @@ from .part import LENGTH_TOLERANCE
 from .session import gmsh_session, integrate_sizes
 from .shaft import Segment, Shaft
 
-HIGHEST_ORDER = 6
+MAX_ORDER = 6
 """Maximum order of triangles: gmsh's nodes are equally spaced, too poor for higher orders."""
 
 GROWTH = 0.5
@@ -39,7 +39,7 @@ def meridian_triangles(
     size : float
         Maximum edge length, m.
     order : int
-        Order of the triangles, 1 to `HIGHEST_ORDER`; all their nodes on a fillet lie on its arc.
+        Order of the triangles, 1 to `MAX_ORDER`; all their nodes on a fillet lie on its arc.
     per_fillet : int
         Number of elements along each fillet.
     corner : float
@@ -58,7 +58,7 @@ def meridian_triangles(
     """
     ranges = (
         ("size", size, 0 < size < math.inf, "greater than 0"),
-        ("order", order, 1 <= order <= HIGHEST_ORDER, f"between 1 and {HIGHEST_ORDER}"),
+        ("order", order, 1 <= order <= MAX_ORDER, f"between 1 and {MAX_ORDER}"),
         ("per_fillet", per_fillet, per_fillet >= 1, "1 or more"),
         ("corner", corner, 0 < corner < math.inf, "greater than 0"),
     )

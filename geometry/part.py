@@ -23,7 +23,7 @@ from fe_drivetrain.common.strict_yaml import no_truth_value, shown
 LENGTH_TOLERANCE = 1e-9
 """Two lengths closer than this (m) are the same length."""
 
-SMALLEST, LARGEST = 1e-6, 1e4
+MINIMUM, MAXIMUM = 1e-6, 1e4
 """A length (m) beyond these is a slip of the pen: CAD cannot tell it from nothing, or from far."""
 
 
@@ -87,19 +87,19 @@ def dimension(
     source : str
         Source of the default: a catalogue, or 'assumed: reason'.
     gt, ge : float or None
-        Lower bounds, exclusive and inclusive. A length lies between `SMALLEST` and `LARGEST`, too,
-        where it must be greater than 0; else it is at most `LARGEST`, with either sign.
+        Lower bounds, exclusive and inclusive. A length lies between `MINIMUM` and `MAXIMUM`, too,
+        where it must be greater than 0; else it is at most `MAXIMUM`, with either sign.
     le : float or None
-        Upper bound; of a length `LARGEST` where not given.
+        Upper bound; of a length `MAXIMUM` where not given.
     """
     if unit == "m":
-        ge = SMALLEST if gt == 0 else -LARGEST if ge is None else ge
+        ge = MINIMUM if gt == 0 else -MAXIMUM if ge is None else ge
     return Field(
         default,
         description=f"{of}, {unit}" if unit != "-" else of,
         gt=gt,
         ge=ge,
-        le=LARGEST if unit == "m" and le is None else le,
+        le=MAXIMUM if unit == "m" and le is None else le,
         json_schema_extra={"unit": unit, "source": source},
     )
 

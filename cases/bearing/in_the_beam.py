@@ -338,8 +338,8 @@ def roller_table(page: Page, files: dict[str, list[Answer]]) -> None:
         "at least as much larger as it says."
     )
     page.answer(
-        f"Between loop and constant K_R the largest roller changes by {largest_change(ratios):.0f} "
-        f"% at most, roller 1 by {largest_change(ones):.0f} %; the thesis's factor of more than 2 "
+        f"Between loop and constant K_R the largest roller changes by {max_change(ratios):.0f} "
+        f"% at most, roller 1 by {max_change(ones):.0f} %; the thesis's factor of more than 2 "
         f"is not an effect of the loop, but of 145 MN m/rad: {min(soft):.1f} to {max(soft):.1f}."
     )
 
@@ -370,7 +370,7 @@ def peak_ratios(files: dict[str, list[Answer]], constant: str, rollers: int | sl
     return [float(loop / fixed) for loop, fixed in peaks if fixed > 0.0]
 
 
-def largest_change(ratios: list[float]) -> float:
+def max_change(ratios: list[float]) -> float:
     """Largest change among ratios, up or down [%]."""
     return 100.0 * (max(*ratios, *(1.0 / ratio for ratio in ratios)) - 1.0)
 

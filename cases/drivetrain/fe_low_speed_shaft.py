@@ -187,7 +187,7 @@ def in_three_dimensions(run: Run, shaft: Shaft) -> Solid:
         if turn == turns[0]:
             with run.step("front face free to deform"):
                 averaged = lss.solid_stiffness(mesh, rigid=False)
-    series = grid_convergence(1 / np.array(turns), stiffness, least_order=1.0)
+    series = grid_convergence(1 / np.array(turns), stiffness, min_order=1.0)
     return Solid(unknowns, stiffness, averaged, series)
 
 

@@ -121,8 +121,8 @@ def rows_of(name: str, torque: float) -> list[Record]:
                 "radius [mm]": 1e3 * pitch.radius,
                 "half width [mm]": 1e3 * contact.half_width,
                 "pressure [MPa]": contact.pressure / 1e6,
-                "largest shear stress [MPa]": contact.largest_shear[0] / 1e6,
-                "depth of it [mm]": 1e3 * contact.largest_shear[1],
+                "largest shear stress [MPa]": contact.max_shear[0] / 1e6,
+                "depth of it [mm]": 1e3 * contact.max_shear[1],
             }
         )
     return rows

@@ -117,7 +117,7 @@ def torque_rows(page: Page, quick: bool) -> list[Record]:
         values, lost = {}, 0.0
         for one in drivetrains():
             for factor in FACTORS:
-                least, error = least_torque(one, factor, dt)
+                least, error = min_torque(one, factor, dt)
                 values[f"{one.letter}, {100 * factor:g} %: least torque over rated"] = least
                 lost = max(lost, error)
         return InTime(values, lost)
@@ -146,7 +146,7 @@ def torque_rows(page: Page, quick: bool) -> list[Record]:
     ]
 
 
-def least_torque(one: Rated, factor: float, dt: float) -> tuple[float, float]:
+def min_torque(one: Rated, factor: float, dt: float) -> tuple[float, float]:
     """Torque of the high-speed shaft over rated, and the error of the energy."""
     when = StopSequence(off=0.1, pitched=1e3, left=1.0, end=1.5)
     last = len(one.table.shafts) - 1

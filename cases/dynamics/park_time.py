@@ -60,7 +60,7 @@ CHAIN = (
     "generator",
 )
 PUSHED = "none: nacelle 6250 N"
-LEAST, LARGEST = "least force of a mesh over the static one", "largest force over the static one"
+MINIMUM, MAXIMUM = "least force of a mesh over the static one", "largest force over the static one"
 PERIOD = "period of the mesh force [s]"
 #: Of all meshes at the step, in periods: none is printed.
 PHASES = (0.0, 0.25, 0.5, 0.75)
@@ -106,8 +106,8 @@ def run(run: Run, page: Page) -> None:
     page.answer(
         f"The 'constant period of approximately 0.4 s' is the first mode after a torque step: "
         f"{steps[0][PERIOD]:.3f} s with the meshes as printed and {steps[2][PERIOD]:.3f} s with "
-        f"all of them wound twice; the force goes from {steps[0][LEAST]:.3f} to "
-        f"{steps[0][LARGEST]:.3f} of the static one, as Figure 7 has it.",
+        f"all of them wound twice; the force goes from {steps[0][MINIMUM]:.3f} to "
+        f"{steps[0][MAXIMUM]:.3f} of the static one, as Figure 7 has it.",
         answer_of_step(least),
         f"An eccentric {largest} changes the planetary mesh force most, by {changes[largest]:.2g} "
         "% of its mean, by the weight of its offset mass; the nacelle's force changes it by "
@@ -165,7 +165,7 @@ def torque_step(page: Page) -> list[Record]:
             page,
             f"torque step, {name}",
             found,
-            {PERIOD: 5e-3, LARGEST: 5e-3},
+            {PERIOD: 5e-3, MAXIMUM: 5e-3},
             energy=1e-6,
             why="average acceleration keeps the energy of a linear system to round-off, here of "
             "angles that turn freely",
@@ -183,7 +183,7 @@ def torque_step(page: Page) -> list[Record]:
         )
     page.between(
         "torque step, as printed: least mesh force over the static one",
-        float(rows[0][LEAST]),
+        float(rows[0][MINIMUM]),
         -0.02,
         0.02,
         why="the first mode has more than 99.5 % of the force",
@@ -207,8 +207,8 @@ def stepped_free(system: System) -> ConvergenceInTime:
         force = motion.forces[:, mesh] / static[mesh]
         values = {
             PERIOD: mean_period(motion.times, force),
-            LEAST: -peak_between(-force),
-            LARGEST: peak_between(force),
+            MINIMUM: -peak_between(-force),
+            MAXIMUM: peak_between(force),
         }
         return InTime(values, motion.relative_imbalance)
 
@@ -227,14 +227,14 @@ def step_in_space(
             page,
             f"torque step, {name}",
             found,
-            {LEAST: SETTLED, LARGEST: SETTLED},
+            {MINIMUM: SETTLED, MAXIMUM: SETTLED},
             energy=1e-2,
             why=FEW,
-            open_for=(LEAST, LARGEST),
+            open_for=(MINIMUM, MAXIMUM),
         )
         by_phase = [of_step(system, dt, harmonics, phase) for phase in PHASES[1:]]
-        ends = [one.values[LEAST] for one in (found.finest, *by_phase)]
-        least[name] = Range(found.value(LEAST), found.band(LEAST), min(ends), max(ends))
+        ends = [one.values[MINIMUM] for one in (found.finest, *by_phase)]
+        least[name] = Range(found.value(MINIMUM), found.band(MINIMUM), min(ends), max(ends))
         motion, force = stepped(system, dt, harmonics)
         angles[name] = {body: motion.q[:, system.place(f"{body} rx")] for body in CHAIN}
         traces.append(trace(f"{name}, sun-planet", motion.times, force[:, 0]))
@@ -245,7 +245,7 @@ def step_in_space(
         ]
         page.table(f"Mesh forces over the static ones, {name}", rows)
         page.table(
-            f"{name}: {LEAST}, by the phase of the meshes at the step",
+            f"{name}: {MINIMUM}, by the phase of the meshes at the step",
             [[phase, end] for phase, end in zip(PHASES, ends, strict=True)],
             ["phase [periods]", "least"],
         )
@@ -266,8 +266,8 @@ def of_step(system: System, dt: float, harmonics: int, phase: float = 0.0) -> In
     """Least and largest force of all meshes after the step."""
     motion, force = stepped(system, dt, harmonics, phase)
     values = {
-        LEAST: -max(peak_between(-one) for one in force.T),
-        LARGEST: max(peak_between(one) for one in force.T),
+        MINIMUM: -max(peak_between(-one) for one in force.T),
+        MAXIMUM: max(peak_between(one) for one in force.T),
     }
     return InTime(values, motion.relative_imbalance, motion.converged)
 
@@ -461,8 +461,8 @@ def show_verdicts(
             [
                 "least force, torsional",
                 "0",
-                f"{steps[0][LEAST]:.3f} of static, constant meshes",
-                "agrees: a torque step" if abs(steps[0][LEAST]) < 0.02 else "differs",
+                f"{steps[0][MINIMUM]:.3f} of static, constant meshes",
+                "agrees: a torque step" if abs(steps[0][MINIMUM]) < 0.02 else "differs",
             ],
             [
                 "least force in 3D",

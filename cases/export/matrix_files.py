@@ -6,7 +6,7 @@ from fe_drivetrain import export
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.export.matrix_readers import READERS
 from fe_drivetrain.cases.export.samples import matrices, samples, show
-from fe_drivetrain.common import MissingToolError, largest_difference, scratch_folder
+from fe_drivetrain.common import MissingToolError, max_difference, scratch_folder
 from fe_drivetrain.report.suite import Page, Record, Run, column
 
 WRITTEN = "the matrix before it was written"
@@ -43,7 +43,7 @@ def run(run: Run, page: Page) -> None:
                         "read by": library,
                         "matrix": kind,
                         "size [bytes]": path.stat().st_size,
-                        DIFFERENCE: largest_difference(read(path, kind), written[kind]),
+                        DIFFERENCE: max_difference(read(path, kind), written[kind]),
                     }
                     for kind in kinds
                     if kind in written

@@ -5,7 +5,7 @@ import numpy as np
 from fe_drivetrain import export
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.export.samples import frequencies, matrices, samples, show
-from fe_drivetrain.common import largest_difference, scratch_folder
+from fe_drivetrain.common import max_difference, scratch_folder
 from fe_drivetrain.export import pynastran
 from fe_drivetrain.report.suite import Page, Run, Target, column, grouped
 
@@ -45,7 +45,7 @@ def run(run: Run, page: Page) -> None:
                 size, back = path.stat().st_size, export.read_superelement(path, format)
             name, found, written = f"{label}, {format}", matrices(back), matrices(element)
             for kind in written:
-                worst = largest_difference(found[kind], written[kind])
+                worst = max_difference(found[kind], written[kind])
                 what = f"{name}: {kind} read less {kind} written, of a unit diagonal"
                 page.vanishes(what, worst, within=tolerance, why=digits, source=WRITTEN)
                 rows.append(

@@ -7,7 +7,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.export.sample_elastodyn import TEXT
 from fe_drivetrain.cases.export.samples import FACTOR, frequencies, show
-from fe_drivetrain.common import largest_difference, scratch_folder
+from fe_drivetrain.common import max_difference, scratch_folder
 from fe_drivetrain.drivetrain_file import Scene, library_scene
 from fe_drivetrain.export import (
     Superelement,
@@ -148,9 +148,7 @@ def spring_element(run: Run, page: Page, scene: Scene, path: Path) -> None:
         exact(
             page,
             "SubDyn: 21 terms of a bearing with its housing read less written, of a unit diagonal",
-            largest_difference(
-                np.triu(subdyn.read_spring(path).stiffness), np.triu(bearing.stiffness)
-            ),
+            max_difference(np.triu(subdyn.read_spring(path).stiffness), np.triu(bearing.stiffness)),
         )
     page.equals(
         "SubDyn spring of 3947.8 N/m with 100 kg: frequency [Hz]",

@@ -8,7 +8,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.export.rotor_scenes import ORDER, QUICK_SCENES, SCENES, scene_and_units
 from fe_drivetrain.cases.export.samples import show
-from fe_drivetrain.common import Floats, largest_difference
+from fe_drivetrain.common import Floats, max_difference
 from fe_drivetrain.drivetrain_file import library_scene
 from fe_drivetrain.export import craig_bampton_shaft, free_frequencies, natural_frequencies
 from fe_drivetrain.export.programs import ross_rotor
@@ -96,12 +96,12 @@ def check_scene(
     page.vanishes(
         f"{name}: stiffness as ROSS assembles it, largest difference from this project's elements "
         "and supports, with a unit diagonal",
-        largest_difference(K, own),
+        max_difference(K, own),
         within=1e-10,
         why="the same theory with the same shear coefficient: exact but for rounding",
         source=source,
     )
-    errors.append(error := largest_errors(rotor, exact))
+    errors.append(error := max_errors(rotor, exact))
     check_answers(page, name, error)
     page.vanishes(
         f"{name}: lowest {COUNT} natural frequencies, largest relative difference from this "
@@ -209,7 +209,7 @@ def free_shaft(run: Run, page: Page) -> None:
         )
 
 
-def largest_errors(rotor: ross_rotor.Rotor, exact: UnitLoadResponse) -> Floats:
+def max_errors(rotor: ross_rotor.Rotor, exact: UnitLoadResponse) -> Floats:
     """Largest errors (2,) of deflections and of reactions under unit loads, over their kind.
 
     Translations, rotations, forces and moments are taken each for themselves, and so under forces,

@@ -11,7 +11,7 @@ import numpy as np
 from fe_drivetrain import export
 from fe_drivetrain.common import (
     Floats,
-    largest_difference,
+    max_difference,
 )
 from fe_drivetrain.comparison import GridConvergence, grid_convergence
 from fe_drivetrain.drivetrain_file import Component, SomeComponent, material_of
@@ -33,7 +33,7 @@ from fe_drivetrain.report import (
 from fe_drivetrain.report.suite import Page, Run, column
 from fe_drivetrain.shafts.fidelity import (
     COARSER,
-    LEAST_ORDER,
+    MIN_ORDER,
     LevelModel,
     SolidComponent,
     coarser,
@@ -56,7 +56,7 @@ SOLVED_REASON = (
     "motions that are small beside the largest"
 )
 
-_LEAST = 1e-6  # percent: what is exact has a place on a logarithmic axis
+_MINIMUM = 1e-6  # percent: what is exact has a place on a logarithmic axis
 _CHANGE = "change over the diagonal [-]"
 
 
@@ -103,7 +103,7 @@ def band_of(sizes: Sequence[float], values: Sequence[float]) -> GridConvergence:
     InputError
         A coarse mesh had to be made as fine as a finer one.
     """
-    return grid_convergence(sizes, values, least_order=LEAST_ORDER)
+    return grid_convergence(sizes, values, min_order=MIN_ORDER)
 
 
 def all_levels(run: Run, component: SomeComponent) -> Ladder:
@@ -254,7 +254,7 @@ def show_ladder(run: Run, page: Page, ladder: Ladder, quantities: Sequence[Quant
     page.text(
         f"Band: three meshes, sizes times {COARSER[0]:g}, {COARSER[1]:g} and 1. Stress is "
         "singular at inner edges, energy converges there as h^1.09 at best (Williams 1952), and "
-        f"coarse meshes are not there yet: no better order than {LEAST_ORDER:g} is relied upon."
+        f"coarse meshes are not there yet: no better order than {MIN_ORDER:g} is relied upon."
     )
 
 
@@ -322,7 +322,7 @@ def _against_time(ladder: Ladder, name: str, errors: Sequence[float], own: float
         trace(
             f"level {model.level}, {model.title}",
             [seconds],
-            [max(100 * error, _LEAST)],
+            [max(100 * error, _MINIMUM)],
             points=True,
             marker={"size": 11},
         )
@@ -364,7 +364,7 @@ def show_files(run: Run, page: Page, element: Superelement) -> None:
                     "format": name,
                     "file": path.name,
                     "bytes": path.stat().st_size,
-                    _CHANGE: largest_difference(back.stiffness, element.stiffness),
+                    _CHANGE: max_difference(back.stiffness, element.stiffness),
                     "the format keeps [-]": 10.0**-form.digits,
                 }
             )

@@ -170,7 +170,7 @@ def judge(page: Page, one: Seated, cuts: tuple[int, ...]) -> list[Record]:
     return rows
 
 
-def largest_error(one: Seated, rows: list[Record]) -> float:
+def max_error(one: Seated, rows: list[Record]) -> float:
     """Largest error of an entry against its limit, of the root of both diagonal terms."""
     errors = [
         abs(row[MERIDIAN] - row[LIMIT]) / float(one.unit[i, j])
@@ -188,7 +188,7 @@ def run(run: Run, page: Page) -> None:
     cuts = QUICK_CUTS if run.quick else CUTS
     shafts = [seated(run, name, cuts) for name in SEATS]
     rows = {one.name: judge(page, one, cuts) for one in shafts}
-    largest = max(largest_error(one, rows[one.name]) for one in shafts)
+    largest = max(max_error(one, rows[one.name]) for one in shafts)
     milliseconds = [one.milliseconds for one in shafts]
     page.answer(
         f"Between rigid ends and a rigid seat the meridian has every stiffness of the solids "

@@ -29,7 +29,7 @@ QUANTITIES = {
     FORCE: "Force: of the first bearing along z, of all hub loads",
 }
 
-_LEAST = 1e-3  # percent: a place on a logarithmic axis
+_MINIMUM = 1e-3  # percent: a place on a logarithmic axis
 
 
 @dataclass(frozen=True)
@@ -175,4 +175,4 @@ def _bars(key: str, found: Sequence[Compared]) -> Chart:
         for part, title in _TITLES.items()
     }
     caption = f"{QUANTITIES[key]}; beside each scene its length over its largest diameter"
-    return bars(caption, groups, f"change [%]; {_LEAST:g} stands for less", least=_LEAST)
+    return bars(caption, groups, f"change [%]; {_MINIMUM:g} stands for less", least=_MINIMUM)

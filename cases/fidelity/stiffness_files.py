@@ -10,7 +10,7 @@ import numpy as np
 from fe_drivetrain import export
 from fe_drivetrain.common import (
     Floats,
-    largest_difference,
+    max_difference,
     symmetry_error,
 )
 from fe_drivetrain.drivetrain_file import Scene
@@ -132,7 +132,7 @@ class _Written:
             export.write_superelement(path, element, format)
             names.append(path.name)
             again = export.read_superelement(path, format)
-            worst = max(worst, largest_difference(again.stiffness, element.stiffness))
+            worst = max(worst, max_difference(again.stiffness, element.stiffness))
         return cls(what, element, again, names, worst)
 
 

@@ -25,7 +25,7 @@ from fe_drivetrain.geometry import MeshSizes, unit_solids
 from fe_drivetrain.pages import bands
 from fe_drivetrain.report import trace
 from fe_drivetrain.report.suite import Page, Record, Run, column
-from fe_drivetrain.shafts.fidelity import LEAST_ORDER, unit_numbers
+from fe_drivetrain.shafts.fidelity import MIN_ORDER, unit_numbers
 from fe_drivetrain.shafts.response import (
     LOADS,
     bearing_unit_stiffness,
@@ -56,12 +56,12 @@ SIZES = {False: 0.1, True: 0.14}
 RATIO = 1.35
 
 #: Of their difference: the error of the finer one, to element size zero.
-TO_ZERO = 1.0 / (RATIO**LEAST_ORDER - 1.0)
+TO_ZERO = 1.0 / (RATIO**MIN_ORDER - 1.0)
 
 #: Relative step of the differences.
 STEP = 1e-3
 
-_LEAST = 1e-3
+_MINIMUM = 1e-3
 
 #: What is looked at: its name at the cheap level.
 HUB = tuple(f"hub.stiffness.{m}" for m in MOTIONS)
@@ -352,17 +352,17 @@ def _show_elasticities(page: Page, found: Study, top: Slopes, coarse: Slopes) ->
     )
     page.table(
         "Relative change of each quantity for the relative change of each value, where it "
-        f"is {_LEAST:g} or more",
+        f"is {_MINIMUM:g} or more",
         [
             dict(row) | {key: round(row[key], 4) for key in numbers}
             for row in rows
-            if max(abs(row[key]) for key in numbers[:3]) >= _LEAST
+            if max(abs(row[key]) for key in numbers[:3]) >= _MINIMUM
         ],
     )
     page.text(
         "Dimensions were changed by moving the nodes of one mesh, so that no noise of remeshing "
         f"is in the differences. The band is the error that a mesh {RATIO:g} times coarser in the "
-        f"housing indicates to element size zero, at an order of {LEAST_ORDER:g}. What is "
+        f"housing indicates to element size zero, at an order of {MIN_ORDER:g}. What is "
         "left between the levels is how the shaft holds the seat: the cheap one holds it in shape "
         "or on average, and so gives ring and housing another share of the flexibility; part of "
         "what it assigns to the ring is the shaft's."

@@ -4,7 +4,7 @@ import gmsh
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats, largest_difference
+from fe_drivetrain.common import Floats, max_difference
 from fe_drivetrain.drivetrain_file import Scene, change_scene, library_scene
 from fe_drivetrain.elasticity.mesh import write
 from fe_drivetrain.foreign import mesh_parts, placed_housing
@@ -60,7 +60,7 @@ def check_meshes(run: Run, page: Page, joint: Scene, own: Floats) -> list[Record
         rows.append(row(name, "6x6 spring", own, read))
         page.vanishes(
             f"{name}: largest difference of stiffness, relative to its diagonal",
-            largest_difference(read, own),
+            max_difference(read, own),
             within=1e-10,
             why="the same nodes and elements, so that round-off of the solver is all that differs",
             source="the mesh that was written",

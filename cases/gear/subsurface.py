@@ -49,8 +49,8 @@ def meshes() -> dict[str, tuple[Pair, float, float, float]]:
 
 def check_constants(page: Page, unit: LineContact) -> None:
     """Stress below a line contact, over its pressure and half width."""
-    shear, depth = unit.largest_shear
-    mises, deep = unit.largest_von_mises()
+    shear, depth = unit.max_shear
+    mises, deep = unit.max_von_mises()
     for name, ours, exact in (
         ("largest shear stress over the pressure", shear / unit.pressure, 0.3003),
         ("its depth over the half width", depth / unit.half_width, 0.7862),
@@ -79,8 +79,8 @@ def contact_rows(page: Page, found: dict[str, LineContact]) -> list[Record]:
                 "radius [mm]": 1e3 * contact.radius,
                 "half width [mm]": 1e3 * contact.half_width,
                 "pressure [MPa]": contact.pressure / 1e6,
-                "largest shear stress [MPa]": contact.largest_shear[0] / 1e6,
-                "depth of it [mm]": 1e3 * contact.largest_shear[1],
+                "largest shear stress [MPa]": contact.max_shear[0] / 1e6,
+                "depth of it [mm]": 1e3 * contact.max_shear[1],
                 "working angle [deg]": float(np.degrees(mesh.working_angle)),
             }
         )

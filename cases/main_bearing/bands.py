@@ -24,7 +24,7 @@ FACTORS = (1.8, 1.35)
 #: Stress is singular where ring, shaft and housing meet, and meshes are not nested: three of them
 #: cannot show an order that is to be relied upon. Energy converges with about the element's size,
 #: the mean rotation of the seat with less (order 0.75 over finer meshes than here).
-LEAST_ORDER = 0.5
+MIN_ORDER = 0.5
 
 #: Meshes whose mean sizes are nearer than this say nothing of each other.
 _APART = 1.05
@@ -33,7 +33,7 @@ NOTE = (
     f"Bands (±): from this mesh and two coarser ones, sizes times {FACTORS[1]:g} and "
     f"{FACTORS[0]:g}, over the mean sizes that their elements really have. The band reaches from "
     "the value to its limit at the order observed and, since meshes are not nested and stress is "
-    f"singular, to that of order {LEAST_ORDER:g}, whichever is farther, and farther still where "
+    f"singular, to that of order {MIN_ORDER:g}, whichever is farther, and farther still where "
     "the three show no order."
 )
 
@@ -185,7 +185,7 @@ class Series:
         """What the series shows of a figure, which may be made of several."""
         values = [figure(level) for level in self.levels]
         sizes = [level["size"] for level in self.levels]
-        return grid_convergence(sizes, values, least_order=LEAST_ORDER)
+        return grid_convergence(sizes, values, min_order=MIN_ORDER)
 
     def band(self, figure: Figure) -> float | None:
         """Half width of a figure's band, in its unit; None where nothing says how wide it is.

@@ -85,8 +85,7 @@ class Converged:
                 "in the scene"
             )
         return {
-            q: grid_convergence(sizes, v, least_order=bands.LEAST_ORDER)
-            for q, v in self.values.items()
+            q: grid_convergence(sizes, v, min_order=bands.MIN_ORDER) for q, v in self.values.items()
         }
 
     @cached_property
@@ -141,18 +140,18 @@ def judge(page: Page, one: Converged) -> None:
             band=100.0 * one.found[quantity].uncertainty / abs(one.limits[quantity]),
         )
     kinds = ("at the", "K_R")
-    largest_error = {w: max(abs(e) for q, e in one.errors.items() if w in q) for w in kinds}
-    largest_band = {
+    max_error = {w: max(abs(e) for q, e in one.errors.items() if w in q) for w in kinds}
+    max_band = {
         w: max(100 * c.relative_uncertainty for q, c in one.found.items() if w in q) for w in kinds
     }
-    page.found(f"error of the reactions with sizes x {one.last:g} [%]", largest_error["at the"])
+    page.found(f"error of the reactions with sizes x {one.last:g} [%]", max_error["at the"])
     page.answer(
         f"With sizes x {one.last:g} ({one.unknowns[-2]:,} unknowns) the reactions are within "
-        f"{largest_error['at the']:.2g} % and K_R within {largest_error['K_R']:.2g} % of their "
+        f"{max_error['at the']:.2g} % and K_R within {max_error['K_R']:.2g} % of their "
         "values extrapolated to element size zero, at first order.",
         "The finest mesh's own band, to the limit at the observed order or at order "
-        f"{bands.LEAST_ORDER:g}, whichever is farther, is at most ± {largest_band['at the']:.2g} % "
-        f"of the reactions and ± {largest_band['K_R']:.2g} % of K_R.",
+        f"{bands.MIN_ORDER:g}, whichever is farther, is at most ± {max_band['at the']:.2g} % "
+        f"of the reactions and ± {max_band['K_R']:.2g} % of K_R.",
     )
 
 
@@ -211,7 +210,7 @@ NOTE = (
     "are not nested, so the series is not quite regular, the observed order of three of them "
     "means little, and the extrapolation is an estimate. The band of the finest mesh reaches "
     f"to the limit at the observed order, where there is one, and to that of order "
-    f"{bands.LEAST_ORDER:g}; where differences of the last three meshes do not shrink as they "
+    f"{bands.MIN_ORDER:g}; where differences of the last three meshes do not shrink as they "
     "should, also over their range."
 )
 

@@ -297,7 +297,7 @@ def secant_section(page: Page, work: Worked) -> None:
     page.chart(
         "K_R about y of each load case against the thrust on the bearing over its rotation: level "
         "at the elastic centre; at the axis a line whose slope is the arm of the thrust. Cases "
-        f"that turn the bearing by less than {secant_stiffness.LEAST_ROTATION:g} of the root mean "
+        f"that turn the bearing by less than {secant_stiffness.MIN_ROTATION:g} of the root mean "
         f"square ({100 * left_out:.0f} %) have no secant and are not shown; in scatter and "
         "stiffness they count",
         [line for key, unit in work.finest.items() for line in secant_traces(key, unit)],

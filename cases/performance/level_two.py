@@ -11,7 +11,7 @@ from threadpoolctl import threadpool_limits
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.torsion_meridian import torsion_bounds
-from fe_drivetrain.common import RUNS, Floats, Times, largest_difference
+from fe_drivetrain.common import RUNS, Floats, Times, max_difference
 from fe_drivetrain.drivetrain_file import MATERIALS, library_scene
 from fe_drivetrain.elasticity.revolution import (
     Meridian,
@@ -177,7 +177,7 @@ def checked_reference(run: Run, page: Page, name: str, body: Shaft) -> tuple[Flo
     fine, before = FINE_FILLETED if name == "filleted" else FINE
     with run.step(f"{name}: reference"):
         reference = end_stiffness(body, STEEL, **fine)
-        band = largest_difference(end_stiffness(body, STEEL, **before), reference)
+        band = max_difference(end_stiffness(body, STEEL, **before), reference)
     if name != "filleted":
         with run.step(f"{name}: bounds of torsion"):
             bounds = torsion_bounds(body, STEEL.shear_modulus, 0.05, 20)
@@ -228,7 +228,7 @@ def settings(run: Run, name: str, body: Shaft, reference: Floats) -> list[Record
                             "setting": f"order {order}, {layers} layers, elements of {share:g} "
                             "diameters",
                             "seconds": timed(work, repeats(run))[0].median,
-                            "error": largest_difference(K, reference),
+                            "error": max_difference(K, reference),
                             "work": work,
                         }
                     )

@@ -286,8 +286,8 @@ def show_time(page: Page, benchmark: Benchmark, rows: Sequence[Row], plan: Plan)
             if row.reaches:
                 return float(f"{row.seconds / mine.seconds:.3g}")
             return f"error {small(row.error)}" if row.error is not None else None
-        if row.least_seconds is not None:
-            return f"> {row.least_seconds / mine.seconds:.2g}"
+        if row.min_seconds is not None:
+            return f"> {row.min_seconds / mine.seconds:.2g}"
         return row.trouble
 
     by_mesh(

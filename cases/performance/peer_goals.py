@@ -50,7 +50,7 @@ def goals(benchmark: Benchmark, rows: Sequence[Row], motions: int) -> list[Recor
         if n < COMPARED_FROM or ours is None or not others:
             continue
         peer, lean = rounds.fastest_peer(here), rounds.leanest_direct_peer(here)
-        late = [r.least_seconds for r in others if r.least_seconds is not None]
+        late = [r.min_seconds for r in others if r.min_seconds is not None]
         name, least, known = "none reaches it", None, False
         if peer is not None:
             name, least, known = peer.variant.name, peer.seconds, True

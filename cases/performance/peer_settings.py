@@ -4,7 +4,7 @@ from typing import Any
 
 from fe_drivetrain.cases.performance.peers import (
     BENCHMARKS,
-    MOST_MOTIONS,
+    MAX_MOTIONS,
     TOOLS,
     Limits,
     Plan,
@@ -54,7 +54,7 @@ RANGES = {
     "time_limit": (1.0, 86400.0, False),
     "memory_limit": (0.5, 4096.0, False),
     "threads": (1, 256, True),
-    "right_hand_sides": (1, MOST_MOTIONS, True),
+    "right_hand_sides": (1, MAX_MOTIONS, True),
 }
 
 

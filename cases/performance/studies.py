@@ -224,8 +224,7 @@ def shaft_study(run: Run) -> Study:
             values = np.array([_exact(outcomes, element, name).values for name in names])
             widths = [level.size / level.refinement for level in levels]
             limits[element] = [
-                grid_convergence(widths, v, safety=SAFETY, least_order=CORNER_ORDER)
-                for v in values.T
+                grid_convergence(widths, v, safety=SAFETY, min_order=CORNER_ORDER) for v in values.T
             ]
     return Study(
         "stepped hollow shaft",
@@ -326,7 +325,7 @@ def tilt_study(run: Run) -> Study:
     for element in elements:
         values = np.array([_exact(outcomes, element, name).values for name in names])
         limits[element] = [
-            grid_convergence(factors, v, safety=SAFETY, least_order=1.0) for v in values.T
+            grid_convergence(factors, v, safety=SAFETY, min_order=1.0) for v in values.T
         ]
     return Study(
         "tilt stiffness of the housing",

@@ -24,7 +24,7 @@ from fe_drivetrain.report.suite import Page, Record, Run
 BOUNDS = (1e-2, 1e-3, 1e-4)
 
 #: On the front, a slower choice is better by more than this share of the error.
-LEAST_GAIN = 0.05
+MIN_GAIN = 0.05
 
 SYMBOLS = {"auto": "circle", "multigrid": "diamond"}
 DIRECT_SYMBOL, FELL_BACK_SYMBOL = "square", "x"
@@ -150,7 +150,7 @@ def front_of(study: Study, quantity: int) -> list[int]:
     """Outcomes on the Pareto front, as far as the reference can rank them."""
     error = study.error(quantity)
     ranked = np.where(error >= study.floor(quantity), error, np.nan)
-    return [int(k) for k in pareto_front(study.seconds(), ranked, LEAST_GAIN)]
+    return [int(k) for k in pareto_front(study.seconds(), ranked, MIN_GAIN)]
 
 
 def symbol_of(outcome: Outcome) -> str:

@@ -53,7 +53,7 @@ def run(run: Run, page: Page) -> None:
         page.holds(
             "the best of the meshes gives the torsional stiffness closer with curved quadratic "
             "tetrahedra than with straight ones",
-            least_error(study, CURVED) < least_error(study, STRAIGHT),
+            min_error(study, CURVED) < min_error(study, STRAIGHT),
             why="chords leave out a share of the section, by second order of the mesh size, and a "
             "finer field inside does not bring it back",
             source="the same meshes with their curvature taken away",
@@ -149,7 +149,7 @@ def assembly_goal(run: Run, page: Page, study: Study, settings: Sequence[Setting
     )
 
 
-def least_error(study: Study, element: str) -> float:
+def min_error(study: Study, element: str) -> float:
     """Relative error of the torsional stiffness, the least of all meshes and solvers."""
     errors = study.error(0)
     return min(

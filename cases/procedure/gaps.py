@@ -65,7 +65,7 @@ SHAPES = {
 }
 #: Name, station, directions and their shares, stiffness [N/m].
 Support = tuple[str, int, dict[int, float], float]
-LARGEST, LEAST = "largest torque over that before", "least torque over that before"
+MAXIMUM, MINIMUM = "largest torque over that before", "least torque over that before"
 
 
 @case(
@@ -259,8 +259,8 @@ def dips(page: Page) -> None:
         {
             "depth": depth,
             "duration [s]": seconds,
-            "largest torque / before": found.value(f"{depth:g} for {seconds:g} s: {LARGEST}"),
-            "least torque / before": found.value(f"{depth:g} for {seconds:g} s: {LEAST}"),
+            "largest torque / before": found.value(f"{depth:g} for {seconds:g} s: {MAXIMUM}"),
+            "least torque / before": found.value(f"{depth:g} for {seconds:g} s: {MINIMUM}"),
             "reversals": reversals[depth, seconds],
         }
         for depth, seconds in DIPS
@@ -305,8 +305,8 @@ def simulate_dips(
         torques = np.stack([np.ones_like(time), -brake])
         motions = driven_motions(system, torques, step)
         torque = element_torques(system, motions)[0]
-        values[f"{depth:g} for {seconds:g} s: {LARGEST}"] = peak_between(torque)
-        values[f"{depth:g} for {seconds:g} s: {LEAST}"] = -peak_between(-torque)
+        values[f"{depth:g} for {seconds:g} s: {MAXIMUM}"] = peak_between(torque)
+        values[f"{depth:g} for {seconds:g} s: {MINIMUM}"] = -peak_between(-torque)
         lost = max(lost, motions_energy_error(system, torques, motions))
         reversals[depth, seconds] = int(np.count_nonzero(np.diff(np.sign(torque))))
         if seconds == 0.15:
@@ -339,8 +339,8 @@ def tables(page: Page) -> None:
         {
             "table": name,
             "element": element,
-            "largest torque / before": found.value(f"{name}, {element}: {LARGEST}"),
-            "least torque / before": found.value(f"{name}, {element}: {LEAST}"),
+            "largest torque / before": found.value(f"{name}, {element}: {MAXIMUM}"),
+            "least torque / before": found.value(f"{name}, {element}: {MINIMUM}"),
         }
         for name in SHAPES
         for element in elements
@@ -362,8 +362,8 @@ def simulate_shapes(system: Torsional, elements: list[str], step: float) -> InTi
         found = element_torques(system, motions)
         for element in elements:
             share = found[names.index(element)] / found[names.index(element), 0]
-            values[f"{name}, {element}: {LARGEST}"] = peak_between(share)
-            values[f"{name}, {element}: {LEAST}"] = -peak_between(-share)
+            values[f"{name}, {element}: {MAXIMUM}"] = peak_between(share)
+            values[f"{name}, {element}: {MINIMUM}"] = -peak_between(-share)
         lost = max(lost, motions_energy_error(system, torques, motions))
     return InTime(values, lost)
 

@@ -45,7 +45,10 @@ RPM = 2.0 * np.pi / 60.0  # rad/s
 DEPTHS, SECONDS = (0.2, 0.5, 0.8, 1.0), (0.1, 0.15, 0.25, 0.5)  # of the torque, s
 MARGIN = "least margin of an excited frequency"
 FORCE = "largest force of misalignment on a bearing [kN]"
-MOST, LEAST = "largest torque of the main shaft in a dip", "least torque of the main shaft in a dip"
+MAXIMUM, MINIMUM = (
+    "largest torque of the main shaft in a dip",
+    "least torque of the main shaft in a dip",
+)
 
 
 @case(
@@ -214,7 +217,7 @@ def dips(page: Page, machine: Machine, torque: float) -> None:
     rear = machine.speeds[-1] ** 2 * machine.generator.inertia
     most = max(row["largest [kN m]"] for row in rows)
     page.at_most(
-        f"{MOST}, over that before",
+        f"{MAXIMUM}, over that before",
         1e3 * most / torque,
         1.0 + 2.0 * max(DEPTHS) * front / (front + rear),
         why="without damping two steps leave an amplitude of twice one step at most",
@@ -222,9 +225,9 @@ def dips(page: Page, machine: Machine, torque: float) -> None:
         measure="reaction",
         band=1e3 * band / torque,
     )
-    page.found(f"{MOST} [kN m]", most, band, (DIPS,))
+    page.found(f"{MAXIMUM} [kN m]", most, band, (DIPS,))
     least = min(row["least [kN m]"] for row in rows)
-    page.found(f"{LEAST} [kN m]", least, band, (REVERSALS,))
+    page.found(f"{MINIMUM} [kN m]", least, band, (REVERSALS,))
     curves = [
         trace(name, found.steps[-1] * np.arange(len(q))[::4], torque * q[::4] / 1e3)
         for name, q in shown.items()

@@ -25,7 +25,7 @@ STEPPED = Shaft(
 )
 MATERIAL = MATERIALS["steel"]
 
-MOST_SECONDS = 1800.0
+MAX_SECONDS = 1800.0
 
 #: Steps that take less than this are done several times [s].
 SHORT_SECONDS = 60.0
@@ -86,7 +86,7 @@ def grown(
     """
     command = ["-m", __name__, str(size), str(turn), method, str(repeats)]
     try:
-        done = run_python(*command, timeout=MOST_SECONDS)
+        done = run_python(*command, timeout=MAX_SECONDS)
         done.check_returncode()
     except (subprocess.CalledProcessError, subprocess.TimeoutExpired):
         return None

@@ -132,6 +132,6 @@ def limit_of(cuts: tuple[int, ...], values: list[float]) -> tuple[float, float, 
             abs(values[-1] - values[-2]),
             "what the finer of two meshes of the solid changed",
         )
-    grid = grid_convergence(sizes, values, least_order=1.0)
+    grid = grid_convergence(sizes, values, min_order=1.0)
     band = max(grid.extrapolated_uncertainty, abs(values[-1] - grid.extrapolated))
     return grid.extrapolated, band, f"the band of three meshes of the solid ({grid.behaviour})"

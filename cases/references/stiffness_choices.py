@@ -37,7 +37,7 @@ SHORT_SECONDS = 2.0
 REPEATS = RUNS
 
 #: Largest systems that each direct solver is tried on, unknowns.
-MOST_UNKNOWNS = {"superlu": 12_000, "cholmod": 70_000, "pardiso": 70_000}
+MAX_UNKNOWNS = {"superlu": 12_000, "cholmod": 70_000, "pardiso": 70_000}
 #: Largest systems on which an iteration is driven further than `FAR_ENOUGH`.
 SWEPT = 60_000
 FAR_ENOUGH = 1e-6
@@ -324,7 +324,7 @@ def solved(
 def _worth_a_try(unknowns: int, how: Solve) -> bool:
     if how.method == "multigrid" and how.tolerance < FAR_ENOUGH:
         return unknowns <= SWEPT
-    return unknowns <= MOST_UNKNOWNS.get(how.method, np.inf)
+    return unknowns <= MAX_UNKNOWNS.get(how.method, np.inf)
 
 
 def repeated(

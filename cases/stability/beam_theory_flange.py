@@ -10,7 +10,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import end_flexibilities as shafts
 from fe_drivetrain.cases.stability.clamped_plates import boss_rotation
 from fe_drivetrain.common import Floats
-from fe_drivetrain.comparison import least_safe
+from fe_drivetrain.comparison import min_safe
 from fe_drivetrain.elasticity.interfaces import fixed, rigid_face, rigid_point
 from fe_drivetrain.elasticity.mesh import generate
 from fe_drivetrain.elasticity.revolution import seat_stiffness
@@ -231,7 +231,7 @@ def check_solid(run: Run, page: Page) -> None:
 def show(page: Page, found: Map, shown: int, inset: float) -> None:
     """Answer, charts, table and limit."""
     thick, error = found.thick, found.error
-    low = least_safe(thick, error[shown], 10.0)
+    low = min_safe(thick, error[shown], 10.0)
     worst = np.abs(found.thin).max()
     page.answer(
         f"A shaft of L = {LENGTH:g} d held by the rim of a flange of {SHOWN:g} d: the beam, "
@@ -292,8 +292,8 @@ def show_errors(page: Page, found: Map, shown: int, low: float | None) -> None:
         [
             {
                 "flange over d": ratio,
-                "beam: 5 %": least_safe(thick, error[i], 5.0),
-                "beam: 10 %": least_safe(thick, error[i], 10.0),
+                "beam: 5 %": min_safe(thick, error[i], 5.0),
+                "beam: 10 %": min_safe(thick, error[i], 10.0),
                 "beam and yielding plate [%]": np.abs(found.thin[i]).max(),
             }
             for i, ratio in enumerate(found.ratios)

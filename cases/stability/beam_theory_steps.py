@@ -9,7 +9,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import end_flexibilities as shafts
 from fe_drivetrain.cases.references.torsion_meridian import torsion_bounds
 from fe_drivetrain.common import Floats
-from fe_drivetrain.comparison import least_safe
+from fe_drivetrain.comparison import min_safe
 from fe_drivetrain.elasticity.revolution import dofs, harmonic_response, meridian, surface_loads
 from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
 from fe_drivetrain.report import dashed, map_traces
@@ -56,7 +56,7 @@ class Map:
 
     def least(self, percent: Floats, level: float) -> float | None:
         """Least length from which on errors are below a level [%]."""
-        return least_safe(self.lengths, percent, level)
+        return min_safe(self.lengths, percent, level)
 
 
 def stepped(length: float, ratio: float, fillet: float = 0.0) -> Shaft:

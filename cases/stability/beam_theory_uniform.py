@@ -12,7 +12,7 @@ from fe_drivetrain.cases.references import rigid_ended_shafts
 from fe_drivetrain.cases.references.shaft_theory import Tube, flexure_stress
 from fe_drivetrain.cases.references.solid_shafts import straight
 from fe_drivetrain.common import Bools, Floats
-from fe_drivetrain.comparison import least_safe
+from fe_drivetrain.comparison import min_safe
 from fe_drivetrain.elasticity.revolution import (
     along_sides,
     dofs,
@@ -91,7 +91,7 @@ class Map:
 
     def least(self, percent: Floats, level: float) -> float | None:
         """Least length from which on errors are below a level [%]."""
-        return least_safe(self.lengths, percent, level)
+        return min_safe(self.lengths, percent, level)
 
 
 def flexibility(length: float, bore: float, finer: bool = False) -> Floats:

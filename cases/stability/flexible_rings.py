@@ -8,7 +8,7 @@ from fe_drivetrain.bearing import (
     Bearing,
     Races,
     catalogue_bearing,
-    contact_softness,
+    contact_compliance,
     equilibrium,
     equilibrium_on_races,
 )
@@ -157,7 +157,7 @@ def damping(wall: float, clearance: float, factor: float, n: int) -> Record:
 def few(wall: float, share: float, n: int) -> Record:
     """The same with shapes of the races that are softer than a share of a contact."""
     _, softness = Races(bearing(), ring(wall)).shapes(ALL)
-    count = int((softness > share * contact_softness(bearing())).sum())
+    count = int((softness > share * contact_compliance(bearing())).sum())
     record: Record = {"wall [mm]": 1e3 * wall, SHARE: share, "shapes": count}
     return record | _error(wall, ring(wall), count, n)
 

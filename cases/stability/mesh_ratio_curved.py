@@ -266,7 +266,7 @@ def show_facets(
         for kind, rows in grouped([r for r in as_meshed if r["elements"] == name], "tie"):
             tied = [r for r in rows if np.isfinite(r["torque lost"])]
             turns, lost = column(tied, "elements round"), column(tied, "torque lost")
-            least = least_round(turns, lost)
+            least = min_round(turns, lost)
             safe = least if (nodes, kind) == (10, "standard") else safe
             traces.append(curve(f"{name}, {kind}", turns, lost))
             page.limit(
@@ -428,7 +428,7 @@ def curve(name: str, x: Sequence[int], y: Any, line: dict[str, str] | None = Non
     return trace(name, x, np.maximum(y, 1e-16), mode="lines+markers", line=line or {})
 
 
-def least_round(turns: Sequence[int], lost: Sequence[float]) -> float | None:
+def min_round(turns: Sequence[int], lost: Sequence[float]) -> float | None:
     """Least number of elements from which on all lose less than is accepted; None if all do."""
     bad = [turn for turn, value in zip(turns, lost, strict=True) if value > LOST]
     if not bad:

@@ -128,7 +128,7 @@ def over_rigid(found: Sequence[Tilts], coupling: str) -> Floats:
 
 def extrapolated(sizes: Sequence[float], values: ArrayLike) -> GridConvergence:
     """Limit of ever finer meshes of a rigid band, whose edges are singular."""
-    return grid_convergence(sizes, values, expected_order=1.0, least_order=0.5)
+    return grid_convergence(sizes, values, expected_order=1.0, min_order=0.5)
 
 
 @case(

@@ -15,7 +15,7 @@ from fe_drivetrain.cases.references import thin_bodies as bodies
 from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import FOUR_DIGITS, safe_range
 from fe_drivetrain.drivetrain_file import (
-    HIGHEST_POISSON_RATIO,
+    MAX_POISSON_RATIO,
     change_scene,
     coarser_scene,
     library_scene,
@@ -227,7 +227,7 @@ def sweeps(quick: bool) -> dict[str, Sweep]:
         "distance of Poisson's ratio from 1/2": Sweep(
             nearly_incompressible,
             of(DISTANCES, QUICK_DISTANCES),
-            f"refuses ratios above {HIGHEST_POISSON_RATIO:g} in a scene",
+            f"refuses ratios above {MAX_POISSON_RATIO:g} in a scene",
         ),
         "mesh sizes of a main bearing with an averaged joint, factor": Sweep(
             averaged, of(FACTORS, QUICK_FACTORS)

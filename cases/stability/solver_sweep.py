@@ -132,7 +132,7 @@ def measured(value: float, problem: Problem, reference: Floats) -> Point:
     )
 
 
-def largest_safe(points: Sequence[Point], is_safe: Callable[[Point], bool]) -> float | None:
+def max_safe(points: Sequence[Point], is_safe: Callable[[Point], bool]) -> float | None:
     """The last value before the first that is not safe, None where all are or the first is not."""
     safe = [is_safe(p) for p in points]
     if all(safe) or not safe[0]:
@@ -142,12 +142,12 @@ def largest_safe(points: Sequence[Point], is_safe: Callable[[Point], bool]) -> f
 
 def safe_by_multigrid(points: Sequence[Point]) -> float | None:
     """Up to where multigrid converges."""
-    return largest_safe(points, lambda p: p.iterations["multigrid"].converged)
+    return max_safe(points, lambda p: p.iterations["multigrid"].converged)
 
 
 def safe_by_factor(points: Sequence[Point]) -> float | None:
     """Up to where a refined direct solution has four digits."""
-    return largest_safe(points, lambda p: p.factored_error(True) <= FOUR_DIGITS)
+    return max_safe(points, lambda p: p.factored_error(True) <= FOUR_DIGITS)
 
 
 def check_multigrid(page: Page, points: Sequence[Point], source: str) -> None:

@@ -41,7 +41,7 @@ def sweep(page: Page, name: str, factors: Floats) -> None:
     exact = exact[exact > 1e-6 * exact[-1]]
     system = machine_system(machine, Level.RIGID)
     errors = {
-        way: np.array([largest_error(system, float(f), way, exact) for f in factors])
+        way: np.array([max_error(system, float(f), way, exact) for f in factors])
         for way in (BY_ROWS, BY_MATRIX)
     }
     error = errors[BY_ROWS]
@@ -91,7 +91,7 @@ def sweep(page: Page, name: str, factors: Floats) -> None:
     page.data(name, {"factor": factors, **errors})
 
 
-def largest_error(system: System, factor: float, way: str, exact: Floats) -> float:
+def max_error(system: System, factor: float, way: str, exact: Floats) -> float:
     """Largest error of the nearest frequency to each; other modes go up and away."""
     found = frequencies(system, factor, way)
     nearest = np.array([found[np.abs(found / f - 1.0).argmin()] for f in exact])

@@ -29,7 +29,7 @@ from fe_drivetrain.cases.stability.locking_curves import (
 )
 from fe_drivetrain.common import InputError
 from fe_drivetrain.comparison import band_of, last_within
-from fe_drivetrain.drivetrain_file import HIGHEST_POISSON_RATIO
+from fe_drivetrain.drivetrain_file import MAX_POISSON_RATIO
 from fe_drivetrain.elasticity.operator import incompatible
 from fe_drivetrain.report import crosses, marked
 from fe_drivetrain.report.suite import Page, Run
@@ -193,9 +193,7 @@ def near_half(run: Run, page: Page) -> None:
     with run.step("round-off"):
         settled = solids.press(27, 2, 0.5 - distances[0], averaged).excess
         lost, refused = towards_half(distances, settled)
-        highest, finer = (
-            solids.press(27, n, HIGHEST_POISSON_RATIO, averaged).excess for n in (2, 4)
-        )
+        highest, finer = (solids.press(27, n, MAX_POISSON_RATIO, averaged).excess for n in (2, 4))
     kept, changes = list(lost), np.abs(list(lost.values()))
     check_highest(page, highest, abs(highest - finer))
     nearest = last_within(kept, changes, DIGITS)
@@ -210,8 +208,8 @@ def near_half(run: Run, page: Page) -> None:
             if refused
             else f"{changes.max():.0e} of it at {kept[-1]:g}"
         ),
-        program=f"a material with nu above {HIGHEST_POISSON_RATIO:g} is refused",
-        remedy=f"nu = {HIGHEST_POISSON_RATIO:g}, whose stiffness is that of 1/2 to "
+        program=f"a material with nu above {MAX_POISSON_RATIO:g} is refused",
+        remedy=f"nu = {MAX_POISSON_RATIO:g}, whose stiffness is that of 1/2 to "
         f"{abs(highest - settled):.0e}",
     )
     page.section("How near to 1/2")
@@ -251,7 +249,7 @@ def check_highest(page: Page, highest: float, change: float) -> None:
         accepted = False
     page.equals(
         "cylinder, hexahedra of 27 nodes, averaged: stiffness over the exact one at the largest nu "
-        f"that a material may have, {HIGHEST_POISSON_RATIO:g}",
+        f"that a material may have, {MAX_POISSON_RATIO:g}",
         1.0 + highest,
         1.0,
         within=CRITERION,
@@ -264,7 +262,7 @@ def check_highest(page: Page, highest: float, change: float) -> None:
         "a material with nu = 1/2 - 1e-7 is refused",
         not accepted,
         why="nearer to 1/2 digits of the stiffness are lost without a warning",
-        source=f"materials.Material: at most {HIGHEST_POISSON_RATIO:g}",
+        source=f"materials.Material: at most {MAX_POISSON_RATIO:g}",
     )
 
 

@@ -26,7 +26,7 @@ QUICK_UNIFORM = ((0.19, 10), (0.11, 17))
 START = (0.25, 14)
 STEPS, QUICK_STEPS = 4, 1
 #: Refinement ends at so many unknowns.
-MOST = 60_000
+MAXIMUM = 60_000
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ def solve_all(
         imbalances.append(solved.imbalance)
         error = rows[-1]["true error [%]"] / 100
         run.report(f"adaptive: {solved.unknowns:,} unknowns, error {error:.2g}")
-        if solved.unknowns > MOST:
+        if solved.unknowns > MAXIMUM:
             break
     return rows, imbalances, solved
 

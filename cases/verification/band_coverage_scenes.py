@@ -35,7 +35,7 @@ from fe_drivetrain.shafts.response import mesh_scene
 
 SCENES, QUICK = 60, 1
 #: A finer mesh than this has a reference of a hundred thousand elements: those are left out.
-MOST_CELLS, QUICK_CELLS = 9000, 2500
+MAX_CELLS, QUICK_CELLS = 9000, 2500
 #: The first scene of so few elements: a quick run does not mesh those before it.
 QUICK_FIRST = 5
 #: Factors on the mesh sizes of the reference, coarse first: the first two, and more where these do
@@ -67,7 +67,7 @@ def quantities(scene: Scene) -> list[Quantity]:
 
 def drawn(run: Run, count: int) -> Iterator[tuple[int, Scene]]:
     """The first scenes that can be meshed, and in few enough elements."""
-    most, seed = (QUICK_CELLS, QUICK_FIRST - 1) if run.quick else (MOST_CELLS, -1)
+    most, seed = (QUICK_CELLS, QUICK_FIRST - 1) if run.quick else (MAX_CELLS, -1)
     while count > 0:
         seed += 1
         scene = random_scene(seed)
@@ -284,7 +284,7 @@ def show(page: Page, rows: list[Record], found: list[Record]) -> None:
     page.text(
         "Shafts have sharp steps, a fillet, tapers and bores, on one bearing or two of every "
         "interface, on the ground or on a bedplate that gives; all follow from the seed. Scenes of "
-        f"more than {MOST_CELLS:,} elements are left out. The reference is half way from "
+        f"more than {MAX_CELLS:,} elements are left out. The reference is half way from "
         f"a mesh of sizes times {FINER[1]:g}, or finer, to the limit at first order, and half of "
         "that way is added to the error where a band is judged. Of a reaction, error and band are "
         "of the norm over the hub's loads. Every "

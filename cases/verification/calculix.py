@@ -161,10 +161,10 @@ def differences(
     reactions = [
         np.vstack([of[n] for n in theirs.reactions]) for of in (ours.reactions, theirs.reactions)
     ]
-    least_force = _NOTHING * np.abs(reactions[0][:, columns]).max(axis=0)
+    min_force = _NOTHING * np.abs(reactions[0][:, columns]).max(axis=0)
     base = base_forces(model, ours)
     bases = [
-        _relative(base[name][..., columns], forces, least_force)
+        _relative(base[name][..., columns], forces, min_force)
         for name, forces in theirs.base_forces.items()
     ]
     stored = {
@@ -175,9 +175,9 @@ def differences(
     for point, k in model.springs:
         motion = ours.motions[point.name][:, columns]
         total += 0.5 * np.einsum("im,ij,jm->m", motion, k, motion)
-    least_energy = _NOTHING * total
+    min_energy = _NOTHING * total
     energies = [
-        _relative(stored[part], energy[None], least_energy)
+        _relative(stored[part], energy[None], min_energy)
         for part, energy in theirs.strain_energy.items()
     ]
     found = (

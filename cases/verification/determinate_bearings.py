@@ -57,7 +57,7 @@ class Carried:
         return np.asarray(np.linalg.norm(self.joint[3:], axis=0))
 
     @property
-    def largest_moment(self) -> float:
+    def max_moment(self) -> float:
         """Largest moment of the hub loads [N m]."""
         return float(self.moments[HUB].max())
 

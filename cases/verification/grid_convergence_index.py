@@ -165,8 +165,8 @@ def without_order(page: Page) -> None:
     """What is reported of irregular series, with and without a least order."""
     rows: list[Record] = []
     for name, given in IRREGULAR.items():
-        for label, least_order in ((name, None), (f"{name}; least order 1", 1.0)):
-            found = grid_convergence((1.0, 0.5, 0.25), given, least_order=least_order)
+        for label, min_order in ((name, None), (f"{name}; least order 1", 1.0)):
+            found = grid_convergence((1.0, 0.5, 0.25), given, min_order=min_order)
             finite = np.isfinite(found.uncertainty)
             rows.append(
                 {

@@ -9,7 +9,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.scaling import least_eigenvalue, symmetry_error
+from fe_drivetrain.common.scaling import min_eigenvalue, symmetry_error
 from fe_drivetrain.dynamics.levels import Level, machine_system
 from fe_drivetrain.dynamics.machine_parts import STEEL, RotorBody
 from fe_drivetrain.dynamics.machine_rows import MachineTable, ParallelData, PlanetaryData
@@ -155,9 +155,9 @@ def _of_matrices(system: System) -> list[Fact]:
     M, K = system.mass, system.K
     return [
         Fact("mass is symmetric", symmetry_error(M), ROUNDINGS * n * EPS),
-        Fact("mass is positive", -least_eigenvalue(M), 0.0),
+        Fact("mass is positive", -min_eigenvalue(M), 0.0),
         Fact("stiffness is symmetric", symmetry_error(K), ROUNDINGS * n * EPS),
-        Fact("stiffness is not negative", -least_eigenvalue(K), ROUNDINGS * n * EPS),
+        Fact("stiffness is not negative", -min_eigenvalue(K), ROUNDINGS * n * EPS),
     ]
 
 

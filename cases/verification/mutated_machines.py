@@ -25,7 +25,7 @@ MACHINES_TRIED, TABLES_TRIED, QUICK, FEWEST = 300, 200, 40, 20
 TABLES = ("drivetrain_a", "drivetrain_b", "drivetrain_c", "nrel_750kw")
 SEED = 20163
 #: Of those that are tried: so many are taken, and so many refused, or the case would test little.
-LEAST = 0.1
+MINIMUM = 0.1
 FACTS = (
     "mass symmetric and positive, stiffness symmetric and not negative, no motion of 0 Hz beside "
     "turning, Rayleigh's quotients, twice the frequencies of four times the stiffness, turning at "
@@ -125,7 +125,7 @@ def check(page: Page, name: str, rows: list[Record]) -> None:
         page.at_least(
             f"{name} with slips: share that is {what}",
             share,
-            LEAST,
+            MINIMUM,
             why="else the slips would be too large, or too small, to test anything",
             source="counted",
         )

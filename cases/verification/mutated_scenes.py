@@ -80,7 +80,7 @@ def check(page: Page, found: list[Outcome], worst: dict[str, tuple[float, str]])
             error,
             1.0,
             why=f"{scene_mutants.ROUNDINGS} roundings times the condition of the motions, at most "
-            f"{scene_mutants.MOST:g} of the largest",
+            f"{scene_mutants.MAXIMUM:g} of the largest",
             source="independent of the solver: statics, Maxwell, Hooke, volumes",
         )
     page.holds(

@@ -69,9 +69,9 @@ FOREIGN_WORDS = (
 )
 #: What round-off may change, relative to the largest of its kind: so many roundings times the
 #: condition number of the motions, between these bounds.
-ROUNDINGS, MOST = 20, 1e-6
+ROUNDINGS, MAXIMUM = 20, 1e-6
 #: The least of it by level: level 2 solves some 10,000 unknowns, whose condition is about 1e7.
-LEAST = {1: 1e-12, 2: 1e7 * float(np.finfo(np.float64).eps)}
+MINIMUM = {1: 1e-12, 2: 1e7 * float(np.finfo(np.float64).eps)}
 
 
 @dataclass(frozen=True)
@@ -333,7 +333,7 @@ def _round_off(model: LevelModel) -> float:
     """What round-off may change in answers from the motions of a level, relative."""
     scaled = _scaled(model.compliance)
     condition = float(np.linalg.cond(scaled)) if scaled.size else 1.0
-    return min(max(ROUNDINGS * np.finfo(float).eps * condition, LEAST[model.level]), MOST)
+    return min(max(ROUNDINGS * np.finfo(float).eps * condition, MINIMUM[model.level]), MAXIMUM)
 
 
 def weight_over_mass(scene: Scene, model: LevelModel) -> float | None:

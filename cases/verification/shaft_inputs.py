@@ -69,7 +69,7 @@ def beside_beam(
     load: Load,
     at: Floats,
     solid: Supported,
-    over_largest: bool = False,
+    over_max: bool = False,
 ) -> list[Any]:
     """Curves of a deflection: the beam with shear at places x [m], the solid at its stations.
 
@@ -85,12 +85,12 @@ def beside_beam(
         (n,) [m].
     solid : Supported
         What the solid does under the load.
-    over_largest : bool
+    over_max : bool
         Over the largest deflection of the beam; in mm otherwise.
     """
     beam, means = shaft.beam(load, at).motions[:, 0], solid.motions[:, 0]
     largest = np.abs(beam).max()
-    curve, points = (of / largest if over_largest else 1e3 * of for of in (beam, means))
+    curve, points = (of / largest if over_max else 1e3 * of for of in (beam, means))
     solids = trace(f"{name}, solid", shaft.stations, points, True)
     return [trace(f"{name}, beam", at, curve), solids]
 

@@ -64,7 +64,7 @@ def run(run: Run, page: Page) -> None:
             band = mesh_band(refinements, reactions)
         target = Target(REACTION, float(frame.reactions[END, 0]), within, why, FRAME)
         page.meets(reactions[-1], target, band, name)
-        traces += inputs.beside_beam(name, SHAFT, load, fine, solids[-1], over_largest=True)
+        traces += inputs.beside_beam(name, SHAFT, load, fine, solids[-1], over_max=True)
     differences = {row["load"]: row["solid"] / row["frame"] - 1 for row in rows}
     page.answer(
         "The frame meets the closed forms with shear to round-off. The solid, held and loaded "

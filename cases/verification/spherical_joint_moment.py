@@ -62,7 +62,7 @@ def run(run: Run, page: Page) -> None:
         points.append(shown | {"x": list(LOADS)})
         if form == "bonded":
             continue
-        spherical, worst = mesh, found.largest_moment
+        spherical, worst = mesh, found.max_moment
         values = worst, found.distance / found.radius, found.from_statics, found.apart
         for value, (what, reason) in zip(values, CHECKS.items(), strict=True):
             page.meets(value, Target(what, 0.0, 1e-9, *reason), of=form)

@@ -20,7 +20,7 @@ LARGE, SMALL, LENGTH, BORE = 0.6, 0.4, 0.6, 0.2
 RATIOS, QUICK_RATIOS = (0.3, 0.45, 0.6, 0.75, 0.85, 0.95), (0.3, 0.6, 0.9)  # of the chart
 SERIES, SOLID, RATIO = "series sum", "three dimensions", "small over large diameter"
 TOO_STIFF, ADDED = "series too stiff by [%]", "added length over small diameter"
-LEAST, MOST = "least (upper bound of stiffness)", "most (lower bound of stiffness)"
+MINIMUM, MAXIMUM = "least (upper bound of stiffness)", "most (lower bound of stiffness)"
 
 
 def bored_or_solid(run: Run, page: Page, bore: float) -> Record:
@@ -56,7 +56,7 @@ def over_ratio(ratio: float, halvings: int) -> Record:
     shaft = solid_shafts.stepped((LARGE, ratio * LARGE), LENGTH)
     bounds = torsion_bounds(shaft, G, LARGE / 6, halvings)
     least, most = (added_length(shaft, G, k) for k in (bounds.upper, bounds.lower))
-    return {RATIO: ratio, LEAST: least, MOST: most}
+    return {RATIO: ratio, MINIMUM: least, MAXIMUM: most}
 
 
 @case(
@@ -84,7 +84,7 @@ def run(run: Run, page: Page) -> None:
     show_inputs(page, *sizes, sharp, steel=STEEL)
     title = "Length of the thin part that twists as the step does beside the series sum, solid "
     title += "shaft, sharp step: between the two bounds"
-    page.sweep(title, sweep, RATIO, {LEAST: LEAST, MOST: MOST}, axis=ADDED, table=False)
+    page.sweep(title, sweep, RATIO, {MINIMUM: MINIMUM, MAXIMUM: MAXIMUM}, axis=ADDED, table=False)
     page.table("Torsional stiffness [N m/rad] between ends that turn as rigid planes", rows)
     page.text(
         "The bounds come from scalar problems in the meridian (Michell 1899), in fourth-order "

@@ -48,7 +48,7 @@ from .geometry import pitch_ratio as pitch_ratio
 from .races import SOFTEST_LEFT_OUT as SOFTEST_LEFT_OUT
 from .races import Races as Races
 from .races import RacesEquilibrium as RacesEquilibrium
-from .races import contact_softness as contact_softness
+from .races import contact_compliance as contact_compliance
 from .races import equilibrium_on_races as equilibrium_on_races
 from .races import rigid_races as rigid_races
 from .races import roller_motions as roller_motions
@@ -64,7 +64,7 @@ from .stored_energy import energy_of as energy_of
 from .subsurface import Exposure as Exposure
 from .subsurface import HardenedCase as HardenedCase
 from .subsurface import exposure as exposure
-from .subsurface import largest_shear as largest_shear
+from .subsurface import max_shear as max_shear
 from .subsurface import shear_at_depth as shear_at_depth
 from .subsurface import stresses_below_ellipse as stresses_below_ellipse
 from .tables import ReducedTable as ReducedTable

@@ -21,7 +21,7 @@ from fe_drivetrain.bearing.contact import (
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 
-MOST_CLEARANCE = 0.01
+MAX_CLEARANCE = 0.01
 """Clearance or preload over the diameter of rolling elements from which no bearing is left."""
 
 LAMINAE = 30
@@ -229,9 +229,9 @@ def pitch_ratio(row: Row) -> float:
     return row.diameter * cos(row.angle) / (2.0 * row.radius)
 
 
-def largest_clearance(row: Row) -> float:
+def max_clearance(row: Row) -> float:
     """A clearance [m] that any row of these sizes can have, next to the largest one."""
-    allowed = MOST_CLEARANCE * row.diameter
+    allowed = MAX_CLEARANCE * row.diameter
     return allowed if isinstance(row, RollerRow) else min(allowed, 0.45 * row.groove_distance)
 
 
@@ -265,7 +265,7 @@ def _check_row(row: Row, what: str, n: int) -> None:
         )
     if not (isfinite(row.place) and isfinite(row.phase)):
         raise InputError("place and first angle of a row must be finite numbers [m, rad]")
-    if not (isfinite(row.clearance) and abs(row.clearance) <= MOST_CLEARANCE * row.diameter):
+    if not (isfinite(row.clearance) and abs(row.clearance) <= MAX_CLEARANCE * row.diameter):
         raise InputError(
             f"clearance of {1e6 * row.clearance:g} µm along the contact of {what}s of "
             f"{1e3 * row.diameter:g} mm: beyond 1 % of their diameter there is no bearing left; "

@@ -103,7 +103,7 @@ class Races:
         values, vectors = np.linalg.eigh(self._scaled)
         values, vectors = values[::-1], vectors[:, ::-1]
         if count is None:
-            count = int((values > SOFTEST_LEFT_OUT * contact_softness(self.bearing)).sum())
+            count = int((values > SOFTEST_LEFT_OUT * contact_compliance(self.bearing)).sum())
         count = min(count, int((values > 0.0).sum()))
         return vectors[:, :count] / roller_lengths(self.bearing)[:, None], values[:count]
 
@@ -439,7 +439,7 @@ def _scales(bearing: Bearing, targets: Floats) -> Floats:
     return np.asarray(np.maximum(_deflections(bearing, targets), 1e-30) ** (row.law.exponent - 1.0))
 
 
-def contact_softness(bearing: Bearing) -> float:
+def contact_compliance(bearing: Bearing) -> float:
     """Softness of the stiffest contact at a typical approach, with which races are compared.
 
     Parameters

@@ -85,7 +85,7 @@ def stresses_below_ellipse(
     return np.column_stack([along(x2, y2), along(y2, x2), normal]) / (2.0 * np.pi)
 
 
-def largest_shear(stresses: Floats) -> Floats:
+def max_shear(stresses: Floats) -> Floats:
     """Half of the maximum difference of the principal stresses [Pa].
 
     Parameters
@@ -193,7 +193,7 @@ def exposure(depths: Floats, stresses: Floats, race: HardenedCase) -> Exposure:
             f"depths from {depths[0]:g} to {depths[-1]:g} m: let them reach from the case into "
             f"the core, on both sides of {race.depth:g} m"
         )
-    share = largest_shear(stresses) / race.strength(depths)
+    share = max_shear(stresses) / race.strength(depths)
     places = [int(np.where(part, share, -1.0).argmax()) for part in (inside, ~inside)]
     shares, where = share[places], depths[places]
     return Exposure(float(shares[0]), float(shares[1]), float(where[0]), float(where[1]))
@@ -230,7 +230,7 @@ def shear_at_depth(contact: PointContact, loads: ArrayLike, depth: float) -> Flo
     given = np.asarray(loads, dtype=np.float64)
     a, b = contact.half_axes
     over = np.geomspace(*_OVER, _TABLE)
-    shear = largest_shear(stresses_below_ellipse(over * b, (a, b), 1.0))
+    shear = max_shear(stresses_below_ellipse(over * b, (a, b), 1.0))
     size = b * np.cbrt(np.maximum(given, (depth / (b * _OVER[1])) ** 3))
     found = np.exp(np.interp(np.log(depth / size), np.log(over), np.log(shear)))
     return np.asarray(np.where(given > 0.0, contact.pressure(given) * found, 0.0))

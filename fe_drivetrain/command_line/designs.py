@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from fe_drivetrain.studies.design_comparison import Varied
 
 #: Most designs of one comparison.
-_MOST = 50
+_MAXIMUM = 50
 
 
 @dataclass(frozen=True)
@@ -149,9 +149,9 @@ def parse_values(text: str) -> Varied:
         raise InputError(f"--vary {text!r} is no KEY=VALUES: {shape}") from error
     if not key or not np.isfinite(values).all():
         raise InputError(f"--vary {text!r} is no KEY=VALUES: {shape}")
-    if not 2 <= len(set(values)) == len(values) <= _MOST:
+    if not 2 <= len(set(values)) == len(values) <= _MAXIMUM:
         raise InputError(
-            f"--vary {key} has {len(set(values))} different values but must have 2 to {_MOST}, "
+            f"--vary {key} has {len(set(values))} different values but must have 2 to {_MAXIMUM}, "
             f"none of them twice: {shape}"
         )
     return Varied(key, tuple(values))
@@ -173,8 +173,8 @@ def _designs(
             f"there is nothing to compare {scenes[0]} with: give a second scene, or values of a "
             "parameter with --vary"
         )
-    if len(scenes) > _MOST:
-        raise InputError(f"{len(scenes)} scenes are given but {_MOST} can be compared at once")
+    if len(scenes) > _MAXIMUM:
+        raise InputError(f"{len(scenes)} scenes are given but {_MAXIMUM} can be compared at once")
     stems = [Path(name).stem for name in scenes]
     unique = len(set(stems)) == len(stems)
     names = stems if unique else list(scenes)

@@ -139,7 +139,7 @@ def _logged(result: ValidateResult, file: Path) -> tuple[Entry, ...]:
     from datetime import UTC, datetime
     from importlib.metadata import version
 
-    from fe_drivetrain.common.made_by import program_hash
+    from fe_drivetrain.common.provenance import program_hash
     from fe_drivetrain.procedure.iteration_log import next_entry, read_log, write_log
 
     log = read_log(file)

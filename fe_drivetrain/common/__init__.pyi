@@ -29,8 +29,8 @@ from .processes import Processes as Processes
 from .progress import Progress as Progress
 from .progress import silent as silent
 from .scaling import diagonal_roots as diagonal_roots
-from .scaling import largest_difference as largest_difference
-from .scaling import least_eigenvalue as least_eigenvalue
+from .scaling import max_difference as max_difference
+from .scaling import min_eigenvalue as min_eigenvalue
 from .scaling import scaled_solve as scaled_solve
 from .scaling import scaled_to_unit_diagonal as scaled_to_unit_diagonal
 from .scaling import symmetry_error as symmetry_error

@@ -26,8 +26,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from fe_drivetrain.common.cache import CACHE_VARIABLE, user_cache
 from fe_drivetrain.common.errors import InputError, MissingToolError
-from fe_drivetrain.common.made_by import machine, program_hash
 from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.common.provenance import machine, program_hash
 from fe_drivetrain.common.threads import (
     CORES_VARIABLE,
     held_to_one_thread,

@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import ArrayLike
 
-_LOWEST = -1074  # the power of two of the smallest number
+_MINIMUM = -1074  # the power of two of the smallest number
 _HALF = 26  # bits of the lower part of a significand
 _AT_ONCE = 1 << 24  # parts of 27 bits of so many numbers have a sum below 2**53
 
@@ -31,7 +31,7 @@ class ExactSum:
 
     def __float__(self) -> float:
         """The nearest double."""
-        return float(Fraction(self.units, 1 << -_LOWEST))
+        return float(Fraction(self.units, 1 << -_MINIMUM))
 
 
 def exact_sum(values: ArrayLike) -> ExactSum:
@@ -63,7 +63,7 @@ def exact_sum(values: ArrayLike) -> ExactSum:
         places = power - first
         for part, shift in ((upper, _HALF), (lower, 0)):
             for place, total in enumerate(np.bincount(places, part)):
-                bits = first + place - 53 + shift - _LOWEST
+                bits = first + place - 53 + shift - _MINIMUM
                 number = int(total)
                 # what a shift to the right takes away is zero: no value has bits below the lowest
                 units += number << bits if bits >= 0 else number >> -bits

@@ -22,7 +22,7 @@ Kind = Literal["results", "reports"]
 """The results of one case, or the folder above those of several."""
 
 _SCHEMA, _VERSION = "fe-drivetrain folder", 1
-_LARGEST = 50_000_000  # bytes; of a manifest of ours some hundred a file
+_MAXIMUM = 50_000_000  # bytes; of a manifest of ours some hundred a file
 _PIECE = 1 << 20
 
 
@@ -110,7 +110,7 @@ def read_manifest(folder: Path) -> Manifest | None:
     """
     file = folder / MANIFEST
     try:
-        if file.is_symlink() or file.stat().st_size > _LARGEST or not file.is_file():
+        if file.is_symlink() or file.stat().st_size > _MAXIMUM or not file.is_file():
             raise _damaged(file)
         content = json.loads(file.read_text(encoding="utf-8"))
     except FileNotFoundError:

@@ -12,7 +12,7 @@ STATUS = Path("/proc/self/status")
 # Of mallopt(3): from which size on an array is mapped by itself, and from how much free memory on
 # the system gets it back.
 _OPTIONS = {"MALLOC_MMAP_THRESHOLD_": -3, "MALLOC_TRIM_THRESHOLD_": -1}
-_MOST = 2**30
+_MAXIMUM = 2**30
 
 # Of gc.set_threshold: passes through what is younger before one through all; 10 is Python's own.
 _SELDOM = 100
@@ -44,7 +44,7 @@ def keep_freed_memory() -> None:
     library = ctypes.CDLL(None)
     for name, number in _OPTIONS.items():
         if hasattr(library, "mallopt") and name not in os.environ:
-            library.mallopt(number, _MOST)
+            library.mallopt(number, _MAXIMUM)
 
 
 def peak_memory() -> int | None:

@@ -19,7 +19,7 @@ from pydantic.fields import FieldInfo
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.regular_files import (
-    MOST_BYTES,
+    MAX_BYTES,
     NotRegularError,
     TooLargeError,
     content_of,
@@ -103,7 +103,7 @@ def require_readable(path: str | Path, kind: str) -> None:
         There is no such file, it is no regular file, or it is too large.
     """
     try:
-        require_regular(path, MOST_BYTES)
+        require_regular(path, MAX_BYTES)
     except (OSError, ValueError) as error:
         raise unreadable(path, kind, error) from error
 

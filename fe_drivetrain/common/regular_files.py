@@ -11,7 +11,7 @@ import stat
 from io import BufferedReader
 from pathlib import Path
 
-MOST_BYTES = 300_000_000
+MAX_BYTES = 300_000_000
 """Largest size of a file that is read whole, where nothing else is said [bytes]."""
 
 _KINDS = {
@@ -88,7 +88,7 @@ def require_regular(path: str | os.PathLike[str], most: int | None = None) -> No
         raise TooLargeError(most)
 
 
-def content_of(path: str | os.PathLike[str], most: int = MOST_BYTES) -> bytes:
+def content_of(path: str | os.PathLike[str], most: int = MAX_BYTES) -> bytes:
     """All bytes of a regular file.
 
     Parameters
@@ -113,7 +113,7 @@ def content_of(path: str | os.PathLike[str], most: int = MOST_BYTES) -> bytes:
     return content
 
 
-def text_of(path: str | os.PathLike[str], most: int = MOST_BYTES, encoding: str = "utf-8") -> str:
+def text_of(path: str | os.PathLike[str], most: int = MAX_BYTES, encoding: str = "utf-8") -> str:
     r"""The text of a regular file, whose lines end with ``\n`` however they end in the file.
 
     Raises

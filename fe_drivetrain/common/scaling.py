@@ -35,7 +35,7 @@ def scaled_to_unit_diagonal(matrix: Floats, diagonal: Floats | None = None) -> F
     return np.asarray(matrix / np.outer(size, size))
 
 
-def largest_difference(matrix: Floats, reference: Floats) -> float:
+def max_difference(matrix: Floats, reference: Floats) -> float:
     """Largest entry of the difference of two (n, n) matrices, the reference of unit diagonal."""
     return float(np.abs(scaled_to_unit_diagonal(matrix - reference, reference.diagonal())).max())
 
@@ -46,7 +46,7 @@ def symmetry_error(matrix: Floats) -> float:
     return float(np.abs(scaled - scaled.T).max())
 
 
-def least_eigenvalue(matrix: Floats) -> float:
+def min_eigenvalue(matrix: Floats) -> float:
     """The least eigenvalue of a symmetric (n, n) matrix, with a unit diagonal."""
     scaled = scaled_to_unit_diagonal(matrix)
     return float(np.linalg.eigvalsh(0.5 * (scaled + scaled.T))[0])

@@ -25,7 +25,7 @@ from .sweeps import decades as decades
 from .sweeps import fitted_exponent as fitted_exponent
 from .sweeps import in_words as in_words
 from .sweeps import last_within as last_within
-from .sweeps import least_safe as least_safe
+from .sweeps import min_safe as min_safe
 from .sweeps import safe_range as safe_range
 from .time_weighted import sample_weights as sample_weights
 from .time_weighted import weighted_rms as weighted_rms

@@ -132,7 +132,7 @@ def grid_convergence(
     *,
     safety: float = SAFETY,
     expected_order: float | None = None,
-    least_order: float | None = None,
+    min_order: float | None = None,
     round_off: float = 1e-12,
 ) -> GridConvergence:
     """Judge a series of three meshes or more.
@@ -149,7 +149,7 @@ def grid_convergence(
         Order of the theory. A higher observed one is not believed; where they are more than a tenth
         apart, the safety factor is 3, as Roache has it where the observed order is unreasonable
         (2011, J. Fluids Eng. 133, 115501); the tenth is recalled of Oberkampf and Roy 2010, 8.7.
-    least_order : float or None
+    min_order : float or None
         Order to count on at the worst, as where stress is singular. The band then holds the limits
         at that order, too, and where no order is observed, it is the one that is used. Oberkampf
         and Roy take 0.5 for the least that is believed.
@@ -175,9 +175,9 @@ def grid_convergence(
 
     order = observed_order(h[-3:], v[-3:])
     slowest = None
-    if least_order is not None:
+    if min_order is not None:
         coarse = (-2,) if order <= _TOO_HIGH else (-2, -3)
-        pairs = (richardson(h[[k, -1]], v[[k, -1]], least_order) for k in coarse)
+        pairs = (richardson(h[[k, -1]], v[[k, -1]], min_order) for k in coarse)
         slowest = max(pairs, key=lambda limit: abs(limit - fine))
     if np.isnan(order):
         return _without_order(h, v, safety, slowest)
@@ -387,5 +387,5 @@ def band_of(sizes: ArrayLike, values: ArrayLike, order: float | None = None) -> 
         return found.uncertainty
     # differences that do not shrink: at least of first order, as whatever is not singular is
     return grid_convergence(
-        sizes, values, expected_order=order, least_order=1.0, round_off=SOLVER_ROUND_OFF
+        sizes, values, expected_order=order, min_order=1.0, round_off=SOLVER_ROUND_OFF
     ).uncertainty

@@ -103,7 +103,7 @@ class ConvergenceInTime:
         """Half width of what the step leaves uncertain, in the unit of the quantity."""
         values = [one.values[key] for one in self.by_step]
         return grid_convergence(
-            self.steps, values, expected_order=2.0, least_order=1.0, round_off=SOLVER_ROUND_OFF
+            self.steps, values, expected_order=2.0, min_order=1.0, round_off=SOLVER_ROUND_OFF
         ).uncertainty
 
     def harmonics_band(self, key: str) -> float:
@@ -113,7 +113,7 @@ class ConvergenceInTime:
         sizes = [1.0 / count for count in self.harmonics]
         values = [one.values[key] for one in self.by_harmonics]
         return grid_convergence(
-            sizes, values, expected_order=1.0, least_order=0.25, round_off=SOLVER_ROUND_OFF
+            sizes, values, expected_order=1.0, min_order=0.25, round_off=SOLVER_ROUND_OFF
         ).uncertainty
 
     def band(self, key: str) -> float:

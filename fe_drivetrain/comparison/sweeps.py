@@ -86,7 +86,7 @@ def last_within(x: ArrayLike, error: ArrayLike, criterion: float) -> float | Non
     return float(np.asarray(x, dtype=float)[count - 1]) if count else None
 
 
-def least_safe(x: ArrayLike, error: ArrayLike, level: float) -> float | None:
+def min_safe(x: ArrayLike, error: ArrayLike, level: float) -> float | None:
     """Least x from which on an error is below a level, to the end of the sweep.
 
     Parameters

@@ -14,8 +14,8 @@ from .entrance import AT_HUB as AT_HUB
 from .entrance import Entrance as Entrance
 from .joint_springs import joint_stiffness as joint_stiffness
 from .joint_springs import roller_lines as roller_lines
-from .materials import HIGHEST_POISSON_RATIO as HIGHEST_POISSON_RATIO
 from .materials import MATERIALS as MATERIALS
+from .materials import MAX_POISSON_RATIO as MAX_POISSON_RATIO
 from .materials import Material as Material
 from .named_scenes import read_drivetrain as read_drivetrain
 from .nose import Nose as Nose

@@ -7,12 +7,12 @@ from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from fe_drivetrain.common.strict_yaml import no_truth_value, shown
 
-HIGHEST_POISSON_RATIO = 0.499999
+MAX_POISSON_RATIO = 0.499999
 """Nearer to 1/2 lambda swamps mu, and stiffnesses lose digits without a word
 (``cases/stability/volumetric_locking.py``); and here already they are those of 1/2."""
 
 
-LOWEST_DENSITY = 50.0
+MIN_DENSITY = 50.0
 """Of anything that carries a load [kg/m^3]; lower ones are in t/m^3 or g/cm^3."""
 
 
@@ -27,16 +27,16 @@ class Material(BaseModel):
         float, Field(ge=1e6, le=1e13, description="modulus E [Pa], as in 2.1e11 for steel")
     ]
     poisson_ratio: Annotated[
-        float, Field(gt=-1, le=HIGHEST_POISSON_RATIO, description="Poisson's ratio nu [-]")
+        float, Field(gt=-1, le=MAX_POISSON_RATIO, description="Poisson's ratio nu [-]")
     ]
     density: Annotated[float, Field(ge=0, le=1e5, description="density rho [kg/m^3]")]
 
     @field_validator("density")
     @classmethod
     def _in_si_units(cls, density: float) -> float:
-        if 0 < density < LOWEST_DENSITY:
+        if 0 < density < MIN_DENSITY:
             raise ValueError(
-                f"must be 0 (no mass), or from {LOWEST_DENSITY:g} to 1e5 kg/m^3: "
+                f"must be 0 (no mass), or from {MIN_DENSITY:g} to 1e5 kg/m^3: "
                 f"{1000 * density:g} if it is in t/m^3 or g/cm^3"
             )
         return density

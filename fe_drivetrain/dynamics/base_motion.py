@@ -30,7 +30,7 @@ from fe_drivetrain.dynamics.system import System
 UNITS = ("m", "m", "m", "rad", "rad", "rad")
 """Units of the base's motions in a file."""
 
-LEAST = 4
+MINIMUM = 4
 """Least number of samples, as many as a cubic spline takes."""
 
 FINER = 16
@@ -100,9 +100,9 @@ def base_motion(motions: ArrayLike, times: ArrayLike, displacements: ArrayLike) 
     S, t = np.asarray(motions, dtype=np.float64), np.asarray(times, dtype=np.float64)
     S = S[:, None] if S.ndim == 1 else S
     g = np.asarray(displacements, dtype=np.float64).reshape(len(t), -1)
-    if len(t) < LEAST or not (np.isfinite(t).all() and (np.diff(t) > 0.0).all()):
+    if len(t) < MINIMUM or not (np.isfinite(t).all() and (np.diff(t) > 0.0).all()):
         raise InputError(
-            f"a base's motion has {len(t)} samples but must have at least {LEAST}, whose times "
+            f"a base's motion has {len(t)} samples but must have at least {MINIMUM}, whose times "
             "ascend: correct them"
         )
     if g.shape[1] != S.shape[1] or not np.isfinite(g).all():

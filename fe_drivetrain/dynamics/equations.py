@@ -20,7 +20,7 @@ from scipy.interpolate import CubicSpline
 
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.scaling import least_eigenvalue
+from fe_drivetrain.common.scaling import min_eigenvalue
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.system import System
 
@@ -469,7 +469,7 @@ def equations_of_motion(
         )
     if not np.allclose(M, M.T, rtol=0.0, atol=1e-9 * np.abs(M).max()):
         raise InputError("the mass matrix is not symmetric, but must be: correct it")
-    if not ((M.diagonal() > 0.0).all() and least_eigenvalue(M) > 0.0):
+    if not ((M.diagonal() > 0.0).all() and min_eigenvalue(M) > 0.0):
         raise InputError(
             "the mass matrix has a motion without inertia, but time integration needs a mass for "
             "each degree of freedom: add one, or condense that degree of freedom"

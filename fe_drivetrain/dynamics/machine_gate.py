@@ -18,9 +18,9 @@ from fe_drivetrain.gear.functions import involute_of
 #: Distance of radii of three digits from the centre distance, over it, that is allowed.
 ROUNDED = 1e-3
 #: Maximum sum of two profile shifts [modules].
-MOST_SHIFTS = 3.0
+MAX_SHIFTS = 3.0
 #: Play of teeth along the line of action [modules] that is no play any more.
-MOST_PLAY = 0.5
+MAX_PLAY = 0.5
 #: Diameters of the smaller gear that a face may be wide.
 WIDEST = 5.0
 #: Radius of gyration of a gear over its own radius: it carries part of its shaft, or is a point.
@@ -145,11 +145,11 @@ def _check_distance(stage: GearData, teeth: int, name: str) -> None:
         raise InputError(f"{name}: {error}: correct the teeth, module, helix or distance") from None
     opened = float(involute_of(working)) - float(involute_of(transverse_angle(normal, helix)))
     shifts = opened * teeth / (2 * tan(normal))
-    if abs(shifts) > MOST_SHIFTS:
+    if abs(shifts) > MAX_SHIFTS:
         raise InputError(
             f"{name}: a centre distance of {stage.centre_distance:g} m asks for profile shifts of "
             f"{shifts:.3g} modules in sum (a working pressure angle of {degrees(working):.3g} deg) "
-            f"but the maximum is {MOST_SHIFTS:g}: correct the teeth, module, helix or distance"
+            f"but the maximum is {MAX_SHIFTS:g}: correct the teeth, module, helix or distance"
         )
 
 
@@ -160,10 +160,10 @@ def _check_teeth(stage: PlanetaryData | ParallelData, name: str) -> dict[str, fl
     pairs = stage_pairs(stage, name)
     for mesh, pair in pairs.items():
         play = pair.backlash / pair.first.normal_module
-        if play > MOST_PLAY:
+        if play > MAX_PLAY:
             raise InputError(
                 f"{name}, {mesh}: play of the teeth is {1e3 * pair.backlash:.4g} mm but must be "
-                f"at most {MOST_PLAY:g} modules: profile shifts of "
+                f"at most {MAX_PLAY:g} modules: profile shifts of "
                 f"{pair.first.shift:g} and {pair.second.shift:g} are not those of a centre "
                 f"distance of {pair.centre_distance:g} m, of {pair.shift_sum:.4g} in sum; correct "
                 "one of them"

@@ -7,22 +7,22 @@ from pydantic import Field, model_validator
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.materials import Material
-from fe_drivetrain.geometry.part import SMALLEST, Assumption, Part, dimension
+from fe_drivetrain.geometry.part import MINIMUM, Assumption, Part, dimension
 from fe_drivetrain.shafts.beam.frame import CrossSection, round_section
 
 STEEL = Material(youngs_modulus=2.06e11, poisson_ratio=0.3, density=7850.0)
 """Steel of shafts, where nothing else is given."""
 
 #: What no machine's inertia [kg m^2], mass [kg], stiffness [N/m, N m/rad] or damping is beyond.
-MOST_INERTIA, MOST_MASS, MOST_STIFFNESS, MOST_DAMPING = 1e10, 1e7, 1e20, 1e12
+MAX_INERTIA, MAX_MASS, MAX_STIFFNESS, MAX_DAMPING = 1e10, 1e7, 1e20, 1e12
 #: Minimum inertia [kg m^2]: where a table has none, a body may turn with so little.
-LEAST_INERTIA = 1e-9
+MIN_INERTIA = 1e-9
 #: What no shaft is longer than, no centre distance, face or diameter larger than [m].
-LONGEST, LARGEST_GEAR = 100.0, 20.0
+LONGEST, MAX_GEAR = 100.0, 20.0
 
 Teeth = Annotated[int, Field(ge=5, le=5000)]
-Radius = Annotated[float, Field(ge=SMALLEST, le=LARGEST_GEAR)]
-Stiffness = Annotated[float, Field(ge=0, le=MOST_STIFFNESS)]
+Radius = Annotated[float, Field(ge=MINIMUM, le=MAX_GEAR)]
+Stiffness = Annotated[float, Field(ge=0, le=MAX_STIFFNESS)]
 Six = tuple[Stiffness, Stiffness, Stiffness, Stiffness, Stiffness, Stiffness]
 """Along and about three axes [N/m, N m/rad]."""
 
@@ -30,13 +30,13 @@ Six = tuple[Stiffness, Stiffness, Stiffness, Stiffness, Stiffness, Stiffness]
 class RotorBody(Part):
     """A body that is symmetric about its axis along x."""
 
-    inertia: float = dimension(of="polar inertia", unit="kg m^2", ge=LEAST_INERTIA, le=MOST_INERTIA)
+    inertia: float = dimension(of="polar inertia", unit="kg m^2", ge=MIN_INERTIA, le=MAX_INERTIA)
     mass: float | None = dimension(
         None,
         of="mass",
         unit="kg",
         ge=0,
-        le=MOST_MASS,
+        le=MAX_MASS,
         source="assumed: of a disc of the polar inertia, 2 J / r^2",
     )
     transverse: float | None = dimension(
@@ -44,7 +44,7 @@ class RotorBody(Part):
         of="inertia across",
         unit="kg m^2",
         ge=0,
-        le=MOST_INERTIA,
+        le=MAX_INERTIA,
         source="assumed: of a disc, J / 2, and m b^2 / 12 of a gear as wide as its face",
     )
 
@@ -84,7 +84,7 @@ class GeneratorBody(RotorBody):
         of="mass",
         unit="kg",
         ge=0,
-        le=MOST_MASS,
+        le=MAX_MASS,
         source="assumed: stands on its foundation, and turns alone",
     )
     stiffness: float = dimension(
@@ -92,7 +92,7 @@ class GeneratorBody(RotorBody):
         of="electrical stiffness",
         unit="N m/rad",
         ge=0,
-        le=MOST_STIFFNESS,
+        le=MAX_STIFFNESS,
         source="assumed: off the grid, or of variable speed: nothing holds its angle",
     )
 
@@ -105,17 +105,17 @@ class ShaftData(Part):
 
     name: str = Field(description="name of the shaft")
     length: float = dimension(of="length", gt=0, le=LONGEST)
-    outer: float | None = dimension(None, of="outer diameter", gt=0, le=LARGEST_GEAR)
-    inner: float = dimension(0.0, of="inner diameter", ge=0, le=LARGEST_GEAR)
+    outer: float | None = dimension(None, of="outer diameter", gt=0, le=MAX_GEAR)
+    inner: float = dimension(0.0, of="inner diameter", ge=0, le=MAX_GEAR)
     torsion: float | None = dimension(
-        None, of="torsional stiffness", unit="N m/rad", gt=0, le=MOST_STIFFNESS
+        None, of="torsional stiffness", unit="N m/rad", gt=0, le=MAX_STIFFNESS
     )
     bending: float | None = dimension(
         None,
         of="stiffness of the hinge at its middle in bending",
         unit="N m/rad",
         gt=0,
-        le=MOST_STIFFNESS,
+        le=MAX_STIFFNESS,
         source="assumed: that of the solid steel bar that has the torsional stiffness",
     )
     kind: Literal["shaft", "coupling", "rigid"] = Field(

@@ -13,9 +13,9 @@ from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.machine_parts import (
-    LARGEST_GEAR,
-    MOST_DAMPING,
-    MOST_STIFFNESS,
+    MAX_DAMPING,
+    MAX_GEAR,
+    MAX_STIFFNESS,
     BearingData,
     GeneratorBody,
     PinData,
@@ -98,14 +98,14 @@ class GearData(Part):
     hand: Literal[-1, 0, 1] = Field(
         default=0, description="1 right, -1 left, of a stage with a helix; 0 spur"
     )
-    centre_distance: float = dimension(of="centre distance", gt=0, le=LARGEST_GEAR)
-    face_width: float = dimension(of="face width in contact", gt=0, le=LARGEST_GEAR)
+    centre_distance: float = dimension(of="centre distance", gt=0, le=MAX_GEAR)
+    face_width: float = dimension(of="face width in contact", gt=0, le=MAX_GEAR)
     mesh_damping: float = dimension(
         0.0,
         of="damping of each mesh",
         unit="N s/m",
         ge=0,
-        le=MOST_DAMPING,
+        le=MAX_DAMPING,
         source="assumed: meshes without damping",
     )
     slices: int = Field(
@@ -202,10 +202,10 @@ class PlanetaryData(GearData):
         description="teeth of the pinion cutter of the ring, for its roots",
     )
     sun_planet: float = dimension(
-        of="mesh stiffness, N/m or", unit="N m/rad", gt=0, le=MOST_STIFFNESS
+        of="mesh stiffness, N/m or", unit="N m/rad", gt=0, le=MAX_STIFFNESS
     )
     ring_planet: float = dimension(
-        of="mesh stiffness, N/m or", unit="N m/rad", gt=0, le=MOST_STIFFNESS
+        of="mesh stiffness, N/m or", unit="N m/rad", gt=0, le=MAX_STIFFNESS
     )
     pins: tuple[PinData, ...] = Field(default=(), description="bearings of each planet")
 
@@ -280,7 +280,7 @@ class ParallelData(GearData):
     gear: RotorBody = Field(description="gear")
     pinion: RotorBody = Field(description="pinion")
     stiffness: float = dimension(
-        of="mesh stiffness, N/m or", unit="N m/rad", gt=0, le=MOST_STIFFNESS
+        of="mesh stiffness, N/m or", unit="N m/rad", gt=0, le=MAX_STIFFNESS
     )
 
     _bodies = field_validator("gear", "pinion", mode="wrap")(in_its_field)

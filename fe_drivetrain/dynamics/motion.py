@@ -145,7 +145,7 @@ class Motion:
         and machines took out, and what the clock of varying stiffnesses put in [J].
     iterations : int
         Newton steps, all.
-    most_iterations : int
+    max_iterations : int
         Maximum number of Newton steps in one time step.
     not_converged : int
         Time steps in which Newton's method did not converge.
@@ -169,7 +169,7 @@ class Motion:
     forces: Floats
     energies: Floats
     iterations: int
-    most_iterations: int
+    max_iterations: int
     not_converged: int
     end: State
     bearings: BearingHistory = NO_BEARINGS
@@ -235,7 +235,7 @@ def joined(parts: Sequence[Motion]) -> Motion:
         behind([part.forces for part in parts]),
         behind(energies),
         sum(part.iterations for part in parts),
-        max(part.most_iterations for part in parts),
+        max(part.max_iterations for part in parts),
         sum(part.not_converged for part in parts),
         parts[-1].end,
         bearings if bearings.seats else NO_BEARINGS,

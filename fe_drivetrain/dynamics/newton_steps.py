@@ -26,7 +26,7 @@ from fe_drivetrain.dynamics.law_loops import (
 from fe_drivetrain.dynamics.loop_forms import MOVED_ROW, PHASE_ROW, TILTED_ROW, Model, Work
 
 #: Newton steps after which a time step counts as not converged; half of them at full length.
-MOST_STEPS = 40
+MAX_STEPS = 40
 
 
 @njit(cache=True, error_model="numpy")
@@ -135,14 +135,14 @@ def newton(
     _forces_at(model, rolling, t, w, tangent)
     _residual(share, S, y)
     count, converged = 0, False
-    while not converged and count < MOST_STEPS:
+    while not converged and count < MAX_STEPS:
         before = _unbalance(model.kinds, y) if bearings else 0.0
         _jacobian(share, S, tangent, A)
         for i in range(r):
             y[CHANGE, i] = y[RESIDUAL, i]
         _solve(A, y)
         count += 1
-        length = 1.0 if bearings or count <= MOST_STEPS // 2 else 0.5
+        length = 1.0 if bearings or count <= MAX_STEPS // 2 else 0.5
         converged = True
         for i in range(r):
             y[NEW, i] += length * y[CHANGE, i]

@@ -12,7 +12,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.motion import State, thinned
 from fe_drivetrain.dynamics.schemes import Scheme
 from fe_drivetrain.dynamics.sections import Section
-from fe_drivetrain.dynamics.step_control import MOST_HALVINGS, Estimate, StepControl
+from fe_drivetrain.dynamics.step_control import MAX_HALVINGS, Estimate, StepControl
 from fe_drivetrain.dynamics.stepper import Piece, Stepper, prepared, run_steps
 
 #: Steps between looks at whether a brake still holds.
@@ -182,7 +182,7 @@ class ControlledPace(Pace):
     def _shorten(self) -> None:
         self.rejected += 1
         self.dt *= 0.5
-        if self.dt < self.control.first * 0.5**MOST_HALVINGS:
+        if self.dt < self.control.first * 0.5**MAX_HALVINGS:
             raise InputError(
                 f"no step down to {self.dt:.1e} s keeps its error within "
                 f"{self.control.tolerance:g}: raise the tolerance"

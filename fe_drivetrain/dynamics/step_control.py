@@ -19,7 +19,7 @@ from fe_drivetrain.dynamics.motion import State
 from fe_drivetrain.dynamics.schemes import Scheme
 
 #: Halvings of the first step, after which the integration gives up.
-MOST_HALVINGS = 24
+MAX_HALVINGS = 24
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from fe_drivetrain.shafts.fidelity.shaft_bands import banded_meridian, banded_so
 from fe_drivetrain.shafts.fidelity.shafts import beam_shaft, reference_points
 
 #: Sections of a beam up to which the meridian is solved for its band.
-MOST_BANDED = 100
+MAX_BANDED = 100
 
 
 def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None) -> Superelement:
@@ -27,7 +27,7 @@ def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None
 
     Its band is, of a beam, the difference to the meridian and the meridian's own; of the meridian
     and of a solid see `fe_drivetrain.shafts.fidelity.shaft_bands`. A beam of more than
-    `MOST_BANDED` sections has none: its meridian is graded to each step and takes gigabytes.
+    `MAX_BANDED` sections has none: its meridian is graded to each step and takes gigabytes.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None
         if band is None:
             mesh += (
                 "; the band is not known, for the meridian that it rests on is solved for at most "
-                f"{MOST_BANDED} sections and there are {len(scene.shaft.pieces)}"
+                f"{MAX_BANDED} sections and there are {len(scene.shaft.pieces)}"
             )
         level_and_mesh = "1 Timoshenko beam", mesh
     elif level == 2:
@@ -79,7 +79,7 @@ def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None
 
 def _beam_band(scene: Scene, body: Condensed, at: Sequence[str] | None) -> StiffnessBands | None:
     """How far the beam is from its limit, relative; None where the meridian is too large."""
-    if len(scene.shaft.pieces) > MOST_BANDED:
+    if len(scene.shaft.pieces) > MAX_BANDED:
         return None
     meridian, band = banded_meridian(scene, at)
     return band + StiffnessBands.of_difference(meridian.stiffness, body.stiffness)

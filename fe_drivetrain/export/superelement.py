@@ -11,7 +11,7 @@ import numpy as np
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.scaling import least_eigenvalue, symmetry_error
+from fe_drivetrain.common.scaling import min_eigenvalue, symmetry_error
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import point_motions
 from fe_drivetrain.common.stiffness_bands import StiffnessBands
@@ -157,7 +157,7 @@ class Superelement:
                     f"superelement {self.name!r}: its {kind} of shape {np.shape(matrix)} must be "
                     f"({6 * n}, {6 * n}) and finite: six degrees of freedom for each of {n} points"
                 )
-            asymmetry, least = symmetry_error(matrix), least_eigenvalue(matrix)
+            asymmetry, least = symmetry_error(matrix), min_eigenvalue(matrix)
             if asymmetry > ALLOWED or least < -ALLOWED:
                 fault = (
                     f"is not symmetric, by {asymmetry:.2g} of its diagonal"
@@ -212,7 +212,7 @@ class Superelement:
         """What a reader can check, by name."""
         found = {
             "asymmetry": symmetry_error(self.stiffness),
-            "least eigenvalue": least_eigenvalue(self.stiffness),
+            "least eigenvalue": min_eigenvalue(self.stiffness),
         }
         if not self.supported:
             found["force against rigid motions"] = self.rigid_error()

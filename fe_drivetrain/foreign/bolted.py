@@ -17,7 +17,7 @@ from fe_drivetrain.elasticity.mesh.facets import facet_points
 from fe_drivetrain.elasticity.mesh.mesh import FACETS, Mesh
 from fe_drivetrain.elasticity.mesh.shared_facets import facet_keys
 
-MOST_BETWEEN_RIMS = 0.1
+MAX_BETWEEN_RIMS = 0.1
 """Share of the open facets that may stay joined without a warning."""
 
 SIDES = ("joint 1", "joint 2")

@@ -30,13 +30,13 @@ from fe_drivetrain.elasticity.interfaces.constraints import ReferencePoint
 from fe_drivetrain.elasticity.mesh.facets import MEANS, face_weights
 from fe_drivetrain.elasticity.mesh.mesh import Mesh
 
-MOST_PATCHES = 400
+MAX_PATCHES = 400
 """Maximum number of patches of a foot: its contact is a dense problem."""
 
-_LEAST_AREA = 0.2  # of the mean area of patches: smaller ones join their neighbours
+_MIN_AREA = 0.2  # of the mean area of patches: smaller ones join their neighbours
 _NOTHING = 1e-9  # of the maximum force or lift: round-off, no change of contact
 _TOGETHER = 30  # passes in which all wrong patches change at once, then one by one
-_MOST_PASSES = 2000
+_MAX_PASSES = 2000
 
 
 class Patches(NamedTuple):
@@ -98,10 +98,10 @@ def foot_patches(mesh: Mesh, name: str, size: float, n_dofs: int) -> Patches:
     keys = np.column_stack([cell, np.round(normal)])
     _, patch = np.unique(keys, axis=0, return_inverse=True)
     patch = _joined(patch.ravel(), at, weight)
-    if (total := patch.max() + 1) > MOST_PATCHES:
+    if (total := patch.max() + 1) > MAX_PATCHES:
         raise InputError(
             f"{name}.housing: its foot has {total} patches of {size:g} m but must have at most "
-            f"{MOST_PATCHES}: make them larger"
+            f"{MAX_PATCHES}: make them larger"
         )
     points, areas, directions = [], [], []
     for number in range(total):
@@ -123,7 +123,7 @@ def _joined(patch: Ints, at: Floats, weight: Floats) -> Ints:
     """Patches numbered from 0, those of little area with the nearest other."""
     areas = np.bincount(patch, weight)
     centres = np.array([np.bincount(patch, weight * x) for x in at.T]).T / areas[:, None]
-    large = areas > _LEAST_AREA * areas.mean()
+    large = areas > _MIN_AREA * areas.mean()
     for small in np.flatnonzero(~large):
         away = np.linalg.norm(centres - centres[small], axis=1)
         away[~large] = np.inf
@@ -301,7 +301,7 @@ class ClampedFoot:
     ) -> tuple[Bools, Floats]:
         """Change what is pressed until no patch is pulled and none is in the ground."""
         pressed = start
-        for number in range(_MOST_PASSES):
+        for number in range(_MAX_PASSES):
             u, forces = solved(pressed)
             pressing, lift = forces[:, 0, 0], u[6 : 6 + 3 * len(pressed) : 3, 0]
             pulled = pressed & (pressing < -_NOTHING * np.abs(forces).max(initial=0.0))
@@ -314,7 +314,7 @@ class ClampedFoot:
             some = wrong if number < _TOGETHER else wrong[:1]
             pressed[some] = ~pressed[some]
         raise InputError(
-            f"contact of the foot does not settle in {_MOST_PASSES} passes: make its patches larger"
+            f"contact of the foot does not settle in {_MAX_PASSES} passes: make its patches larger"
         )
 
     @property

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache, user_cache
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.made_by import file_digest
+from fe_drivetrain.common.provenance import file_digest
 from fe_drivetrain.elasticity.mesh.checks import refuse_unsound
 from fe_drivetrain.elasticity.mesh.generation import (
     ATTEMPTS,
@@ -27,7 +27,7 @@ from fe_drivetrain.elasticity.mesh.generation import (
 from fe_drivetrain.elasticity.mesh.linear import renumbered
 from fe_drivetrain.elasticity.mesh.measures import inverted_cells, volume
 from fe_drivetrain.elasticity.mesh.mesh import Mesh, boundary
-from fe_drivetrain.foreign.bolted import MOST_BETWEEN_RIMS, SIDES, joined_between_rims, opened
+from fe_drivetrain.foreign.bolted import MAX_BETWEEN_RIMS, SIDES, joined_between_rims, opened
 from fe_drivetrain.foreign.known_healing import read_step, reader_versions
 from fe_drivetrain.foreign.picking import Surface
 from fe_drivetrain.foreign.reading import read_in_process
@@ -99,7 +99,7 @@ def kept_part(
             f"{facts['volume after healing [m^3]']:.9g} m^3",
             stacklevel=3,
         )
-    if (share := facts.get("joined between rims", 0.0)) > MOST_BETWEEN_RIMS:
+    if (share := facts.get("joined between rims", 0.0)) > MAX_BETWEEN_RIMS:
         warnings.warn(
             f"{Path(source.file).name}: {100 * share:.2g} % of the joint beside its bolts stays "
             "joined, where elements reach from one bolt's pressed face to the next: choose smaller "

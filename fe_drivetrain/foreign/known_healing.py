@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.common.cache import user_cache
-from fe_drivetrain.common.made_by import file_digest, machine, source_hash, versions
+from fe_drivetrain.common.provenance import file_digest, machine, source_hash, versions
 from fe_drivetrain.foreign.reading import Arrays, read_in_process
 
 

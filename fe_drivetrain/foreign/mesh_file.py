@@ -16,7 +16,7 @@ import numpy as np
 
 from fe_drivetrain.common.errors import InputError
 
-MOST_NODES = 3_000_000
+MAX_NODES = 3_000_000
 _FARTHEST = 1e9  # any coordinate, in the file's unit
 _FORMATS = {".msh": "gmsh", ".vtu": "vtu", ".inp": "abaqus"}
 # as TETRAHEDRON_EDGES of `elasticity.mesh.shapes`, which would bring scikit-fem into this short
@@ -85,10 +85,10 @@ def _opened(path: str) -> Any:
 def _positions(name: str, mesh: Any) -> Any:
     """Positions (n, 3) of the nodes."""
     points = np.asarray(mesh.points, dtype=float)
-    if points.ndim != 2 or points.shape[1] != 3 or not 4 <= len(points) <= MOST_NODES:
+    if points.ndim != 2 or points.shape[1] != 3 or not 4 <= len(points) <= MAX_NODES:
         raise InputError(
             f"{name} has nodes of shape {points.shape} but must have x, y and z of at most "
-            f"{MOST_NODES} nodes"
+            f"{MAX_NODES} nodes"
         )
     return points
 

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import scratch_folder
 from fe_drivetrain.common.reading import why_unreadable
-from fe_drivetrain.common.regular_files import MOST_BYTES, require_regular
+from fe_drivetrain.common.regular_files import MAX_BYTES, require_regular
 from fe_drivetrain.common.threads import thread_limits
 
 Arrays = dict[str, NDArray[Any]]
@@ -44,7 +44,7 @@ class Limits:
         Maximum size of what it hands back [bytes].
     """
 
-    file: int = MOST_BYTES
+    file: int = MAX_BYTES
     memory: int = 6_000_000_000
     seconds: int = 900
     result: int = 1_000_000_000

@@ -15,8 +15,8 @@ import gmsh
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.foreign.face_messages import ROUND
 from fe_drivetrain.foreign.fitting import Fit, fitted_cylinder, fitted_plane, fitted_sphere
-from fe_drivetrain.foreign.words import ROUND
 
 _SAME = 1e-6  # of a solid's size: places that are the same
 _FLAT = 1e-6  # of its size: a face that deviates more from a plane is none

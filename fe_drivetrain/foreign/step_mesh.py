@@ -13,6 +13,7 @@ import gmsh
 import numpy as np
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.foreign.face_messages import nearly
 from fe_drivetrain.foreign.step_fit import lies_on
 from fe_drivetrain.foreign.step_heal import VOLUME_TOLERANCE, reason, where
 from fe_drivetrain.foreign.step_joint import (
@@ -28,9 +29,8 @@ from fe_drivetrain.foreign.step_solid import (
     seat_cylinders,
 )
 from fe_drivetrain.foreign.step_solids import Place, all_placed, became, common, outside
-from fe_drivetrain.foreign.words import nearly
 
-LARGEST_MESH = 400_000
+MAX_MESH = 400_000
 """Maximum number of elements of a part."""
 
 
@@ -437,10 +437,10 @@ def mesh(survey: dict[str, Any], size: float, per_turn: int, optimise: bool) -> 
     """
     name = survey["name"]
     elements = 6 * math.sqrt(2) * survey["after"]["volume"] / size**3
-    if elements > LARGEST_MESH:
+    if elements > MAX_MESH:
         raise InputError(
             f"{name}: elements of {size:g} mm make about {elements:.1g}, but must make at most "
-            f"{LARGEST_MESH:.0g}: choose {size * (elements / LARGEST_MESH) ** (1 / 3):.2g} mm or "
+            f"{MAX_MESH:.0g}: choose {size * (elements / MAX_MESH) ** (1 / 3):.2g} mm or "
             "more for the housing"
         )
     for option, value in (
@@ -454,9 +454,9 @@ def mesh(survey: dict[str, Any], size: float, per_turn: int, optimise: bool) -> 
     try:
         for dim in (1, 2, 3):
             gmsh.model.mesh.generate(dim)
-            if dim == 2 and (n := _count(2)) > LARGEST_MESH:
+            if dim == 2 and (n := _count(2)) > MAX_MESH:
                 raise InputError(
-                    f"{name}: {n} triangles are on its faces, but at most {LARGEST_MESH:.0g} may "
+                    f"{name}: {n} triangles are on its faces, but at most {MAX_MESH:.0g} may "
                     "be: leave out small fillets, threads and lettering"
                 )
         gmsh.model.mesh.setOrder(2)

@@ -15,13 +15,13 @@ import gmsh
 import numpy as np
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.foreign.face_messages import nearly
 from fe_drivetrain.foreign.step_fit import area_and_middle, recognised
 from fe_drivetrain.foreign.step_heal import counted, free_edges, heal, reason, sewn
-from fe_drivetrain.foreign.step_solids import MOST_SOLIDS, glue, keep, outside, solids
-from fe_drivetrain.foreign.words import nearly
+from fe_drivetrain.foreign.step_solids import MAX_SOLIDS, glue, keep, outside, solids
 
-_MOST_FACES = 20_000
-_LEAST_VOLUME = 1e-9  # of the cube of its size
+_MAX_FACES = 20_000
+_MIN_VOLUME = 1e-9  # of the cube of its size
 _FARTHEST = 1e9  # any number of a place, in the file's unit
 _ALIGNED = 1e-6  # sine of the angle between directions that are the same
 SAME = 1e-6  # of a solid's size: places that are the same
@@ -63,9 +63,9 @@ def opened(
     gmsh.option.setNumber("Geometry.OCCImportLabels", 1)
     _read(path)
     closed = _closed(path, sound=known is not None)
-    if not 1 <= (n := len(gmsh.model.getEntities(3))) <= MOST_SOLIDS:
+    if not 1 <= (n := len(gmsh.model.getEntities(3))) <= MAX_SOLIDS:
         raise InputError(
-            f"{name} has {n} solids but must have 1 to {MOST_SOLIDS}: save the "
+            f"{name} has {n} solids but must have 1 to {MAX_SOLIDS}: save the "
             "parts that carry, as solids, in a file of their own"
         )
     if part is not None:
@@ -119,7 +119,7 @@ def _closed(path: str, sound: bool) -> str:
 
 def _refuse_flat(name: str, box: Sequence[float], volume: float) -> None:
     """Refuse a solid that encloses next to nothing."""
-    if abs(volume) < _LEAST_VOLUME * math.dist(box[:3], box[3:]) ** 3:
+    if abs(volume) < _MIN_VOLUME * math.dist(box[:3], box[3:]) ** 3:
         x, y, z = ((a + b) / 2 for a, b in zip(box[:3], box[3:], strict=True))
         raise InputError(
             f"{name}: its solid round ({x:.4g}, {y:.4g}, {z:.4g}) mm encloses "
@@ -160,9 +160,9 @@ def _read(path: str) -> None:
 
 
 def _refuse_many_faces(name: str, faces: int) -> None:
-    if faces > _MOST_FACES:
+    if faces > _MAX_FACES:
         raise InputError(
-            f"{name} has {faces} faces but must have at most {_MOST_FACES}: leave out "
+            f"{name} has {faces} faces but must have at most {_MAX_FACES}: leave out "
             "threads, lettering and other small details"
         )
 

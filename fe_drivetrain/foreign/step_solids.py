@@ -14,7 +14,7 @@ import gmsh
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.foreign.step_fit import area_and_middle
 
-MOST_SOLIDS = 100
+MAX_SOLIDS = 100
 """Maximum number of solids of a file."""
 
 _TOUCH = 1e-6  # of the size: faces of two solids that are closer are one

@@ -15,14 +15,14 @@ from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.elasticity.mesh.facets import facet_points
 from fe_drivetrain.elasticity.mesh.measures import enclosed_volume, mass_moments, scaled_jacobians
 from fe_drivetrain.elasticity.mesh.mesh import Mesh, boundary
+from fe_drivetrain.foreign.face_messages import nearly
 from fe_drivetrain.foreign.holes import Cylinder, cylinders, planes
 from fe_drivetrain.foreign.known_healing import read_step
 from fe_drivetrain.foreign.picking import Surface
 from fe_drivetrain.foreign.reading import read_in_process
-from fe_drivetrain.foreign.words import nearly
 from fe_drivetrain.geometry.foreign_housing import MESH_ENDINGS, STEP_ENDINGS
 
-_MOST_ROWS = 24
+_MAX_ROWS = 24
 _TURNS = {0: "", 1: "rotate: [0, 0, -90]", 2: "rotate: [0, 90, 0]"}  # of an axis to x
 
 
@@ -178,7 +178,7 @@ def _of_step(path: Path) -> Survey:
         float(volume),
         apart,
         tuple(_bore(f"S{k}", seat) for k, seat in enumerate(data["seats"], 1)),
-        tuple(_plane(f"P{k}", plane) for k, plane in enumerate(planes[:_MOST_ROWS], 1)),
+        tuple(_plane(f"P{k}", plane) for k, plane in enumerate(planes[:_MAX_ROWS], 1)),
     )
 
 
@@ -232,7 +232,7 @@ def _solid_lines(
                 f"{solid['volume'] / 1e6:.6g} dm^3",
                 f"centre {_xyz(solid['centre'])}",
             )
-            for number, solid in enumerate(data["solids"][:_MOST_ROWS], 1)
+            for number, solid in enumerate(data["solids"][:_MAX_ROWS], 1)
         ]
         lines += _table(rows, after["solids"])
     if "unmeshed" in data:
@@ -244,7 +244,7 @@ def _bore_lines(data: Mapping[str, Any]) -> tuple[list[str], list[Mark]]:
     """Bores of a STEP file, which may be seats, and marks at them."""
     marks: list[Mark] = []
     rows: list[tuple[str, ...]] = []
-    for number, seat in enumerate(data["seats"][:_MOST_ROWS], 1):
+    for number, seat in enumerate(data["seats"][:_MAX_ROWS], 1):
         x, y, z = (seat["length"] / 2 * np.array(seat["axis"])).tolist()
         marks.append(Mark(f"S{number}", tuple(seat["centre"]), (x, y, z)))
         round_ = seat["kind"] == "Cylinder"
@@ -263,14 +263,14 @@ def _bore_lines(data: Mapping[str, Any]) -> tuple[list[str], list[Mark]]:
     lines = ["", "Bores, the widest first; one of them is the seat [mm]:"]
     lines += _table(rows, len(data["seats"]))
     almost = [face for face in data["faces"] if "nearly" in face]
-    return lines + [f"  no bore: {nearly(face)}" for face in almost[:_MOST_ROWS]], marks
+    return lines + [f"  no bore: {nearly(face)}" for face in almost[:_MAX_ROWS]], marks
 
 
 def _plane_lines(planes: Sequence[Mapping[str, Any]]) -> tuple[list[str], list[Mark]]:
     """Planes of a STEP file, which may hold the part, and marks at them."""
     marks: list[Mark] = []
     rows: list[tuple[str, ...]] = []
-    for number, plane in enumerate(planes[:_MOST_ROWS], 1):
+    for number, plane in enumerate(planes[:_MAX_ROWS], 1):
         marks.append(Mark(f"P{number}", tuple(plane["middle"]), normal=tuple(plane["normal"])))
         rows.append(
             (
@@ -362,12 +362,12 @@ def _of_mesh(path: Path) -> Survey:
     lines += [*_cylinder_lines(round_faces), *_flat_lines(flat), ""]
     for what, prefix in (("solids", "solid "), ("faces", "face "), ("sets of nodes", "nodes ")):
         names = sorted(key.removeprefix(prefix) for key in found if key.startswith(prefix))
-        more = f" and {len(names) - _MOST_ROWS} more" if len(names) > _MOST_ROWS else ""
-        lines.append(f"{what} by label: {', '.join(names[:_MOST_ROWS]) or 'none'}{more}")
+        more = f" and {len(names) - _MAX_ROWS} more" if len(names) > _MAX_ROWS else ""
+        lines.append(f"{what} by label: {', '.join(names[:_MAX_ROWS]) or 'none'}{more}")
     bores, faces = _bores_of(round_faces), _planes_of(flat)
     marks = [
         Mark(bore.name, bore.centre, _triple(one.length / 2 * one.axis))
-        for bore, one in zip(bores[:_MOST_ROWS], round_faces, strict=False)
+        for bore, one in zip(bores[:_MAX_ROWS], round_faces, strict=False)
     ]
     marks += [Mark(face.name, face.point, normal=face.normal) for face in faces]
     return Survey(
@@ -393,7 +393,7 @@ def _cylinder_lines(round_faces: Sequence[Cylinder]) -> list[str]:
             f"point: {_list(one.centre)}",
             f"length {one.length:.6g}",
         )
-        for number, one in enumerate(round_faces[:_MOST_ROWS], 1)
+        for number, one in enumerate(round_faces[:_MAX_ROWS], 1)
     ]
     title = "Cylinders, holes first, the widest first, in the file's unit:"
     return ["", title, *_table(rows, len(round_faces))]
@@ -407,7 +407,7 @@ def _flat_lines(flat: Sequence[tuple[float, Floats, Floats]]) -> list[str]:
             f"point: {_list(middle)}",
             f"normal: {_list(normal)}",
         )
-        for number, (size, middle, normal) in enumerate(flat[:_MOST_ROWS], 1)
+        for number, (size, middle, normal) in enumerate(flat[:_MAX_ROWS], 1)
     ]
     title = "Planes, the largest first; the part is held by one or more of them:"
     return ["", title, *_table(rows, len(flat))]
@@ -431,7 +431,7 @@ def _bores_of(round_faces: Sequence[Cylinder]) -> tuple[Bore, ...]:
 def _planes_of(flat: Sequence[tuple[float, Floats, Floats]]) -> tuple[Plane, ...]:
     return tuple(
         Plane(f"P{number}", float(size), _triple(middle), _triple(normal))
-        for number, (size, middle, normal) in enumerate(flat[:_MOST_ROWS], 1)
+        for number, (size, middle, normal) in enumerate(flat[:_MAX_ROWS], 1)
     )
 
 

@@ -135,12 +135,12 @@ class LineContact:
         return np.stack([xx, poisson_ratio * (xx + zz), zz, xz], axis=-1)
 
     @property
-    def largest_shear(self) -> tuple[float, float]:
+    def max_shear(self) -> tuple[float, float]:
         """Maximum shear stress in the plane of x and z, and its depth [Pa, m]."""
         stress, depth = _largest("shear", 0.3)
         return stress * self.pressure, depth * self.half_width
 
-    def largest_von_mises(self, poisson_ratio: float = 0.3) -> tuple[float, float]:
+    def max_von_mises(self, poisson_ratio: float = 0.3) -> tuple[float, float]:
         """Maximum von Mises stress and its depth.
 
         Parameters

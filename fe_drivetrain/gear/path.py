@@ -31,7 +31,7 @@ class ContactPath:
 
 
 #: Play along the line of action [modules] that profile shifts of few digits leave.
-LEAST_PLAY = -0.02
+MIN_PLAY = -0.02
 
 
 def check_meshing(ratio: float, play: float, teeth: tuple[int, int]) -> None:
@@ -49,7 +49,7 @@ def check_meshing(ratio: float, play: float, teeth: tuple[int, int]) -> None:
     Raises
     ------
     InputError
-        The contact ratio is below 1, or the play below `LEAST_PLAY`.
+        The contact ratio is below 1, or the play below `MIN_PLAY`.
     """
     which = f"gears of {teeth[0]} and {abs(teeth[1])} teeth"
     if not ratio >= 1.0:
@@ -58,7 +58,7 @@ def check_meshing(ratio: float, play: float, teeth: tuple[int, int]) -> None:
             "before the next ones meet: give larger tip diameters, another centre distance, or "
             "the helix with its hand"
         )
-    if not play >= LEAST_PLAY:
+    if not play >= MIN_PLAY:
         raise InputError(
             f"the teeth of {which} are too thick for their centre distance, by {-play:.4g} "
             "modules along the line of action: give the profile shifts that belong to it, or "

@@ -19,7 +19,7 @@ from fe_drivetrain.turbine_loads.histories.sites import WIND_BIN
 from fe_drivetrain.turbine_loads.histories.windows import COLUMNS
 
 _SHOWN = 20
-_MOST_BINS = 60
+_MAX_BINS = 60
 _MEAN = COLUMNS.index("mean")
 
 
@@ -73,7 +73,7 @@ def _statistics(page: Page, result: LoadsResult) -> None:
     page.table(
         f"Bending moment by mean wind speed and turbulence intensity in {100 * TURBULENCE_BIN:g} "
         "%; every channel is in wind_and_turbulence.csv",
-        bending_rows(statistics)[:_MOST_BINS],
+        bending_rows(statistics)[:_MAX_BINS],
     )
     wind, moments = statistics.of_windows("wind speed"), statistics.of_windows("bending moment")
     page.chart(

@@ -11,7 +11,7 @@ from fe_drivetrain.studies.load_tables import difference_rows
 from fe_drivetrain.turbine_loads.histories.sets import CHANCE
 from fe_drivetrain.turbine_loads.histories.spectra import SEGMENT
 
-_MOST = 40  # differences that are shown
+_MAXIMUM = 40  # differences that are shown
 
 
 def beside(page: Page, found: Comparison) -> None:
@@ -30,7 +30,7 @@ def beside(page: Page, found: Comparison) -> None:
         page.table(
             f"{one.wind}: what differs by more than the scatter of seeds (Student's test at "
             f"{CHANCE:.0%}, seeds of both sets scattering equally), farthest first",
-            difference_rows(one.wind, one.beyond[:_MOST], names),
+            difference_rows(one.wind, one.beyond[:_MAXIMUM], names),
             ["quantity", names[0], names[1], "ratio", "scatter of seeds", "allowed difference"],
         )
         _spectra(page, one, names)

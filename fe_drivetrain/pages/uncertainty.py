@@ -16,7 +16,7 @@ from fe_drivetrain.shafts.uncertainty.sampling import SHARE
 from fe_drivetrain.studies.input_effects import InputEffects, QuantityEffects, Scatter
 from fe_drivetrain.studies.input_uncertainty import UncertaintyResult, half_bands, horizontal_bars
 
-_LEAST = 1e-4  # smaller numbers in tables are round-off
+_MINIMUM = 1e-4  # smaller numbers in tables are round-off
 _SEEN = 0.01  # smallest total Sobol index in the table
 
 
@@ -317,7 +317,7 @@ def _short(value: float, digits: int = 3) -> float:
 
 def _small(value: float, digits: int = 3) -> float:
     """The same, with 0 instead of round-off."""
-    return 0.0 if abs(value) < _LEAST else _short(value, digits)
+    return 0.0 if abs(value) < _MINIMUM else _short(value, digits)
 
 
 def _percent(share: float) -> Cell:

@@ -12,7 +12,7 @@ from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.plots.style import LEGEND, PALETTE, styled
 
-LEAST = 1e-8
+MINIMUM = 1e-8
 """Relative errors that are smaller are drawn here: a logarithmic axis has no zero."""
 
 _NOTHING = 1e-9  # share of the diagonal: round-off, of what symmetry makes zero
@@ -209,7 +209,7 @@ def error_traces(
             "mode": "markers",
             "name": names[k],
             "x": rounded([seconds[k]]),
-            "y": rounded([100.0 * max(errors[k], LEAST)]),
+            "y": rounded([100.0 * max(errors[k], MINIMUM)]),
             "marker": {"size": 14 if k == chosen else 9},
         }
         for k in known
@@ -240,7 +240,7 @@ def error_against_time(
     seconds : sequence of float
         Wall time of each [s].
     errors : sequence of float
-        Relative errors; a model whose error is not known is left out, and less than `LEAST` drawn
+        Relative errors; a model whose error is not known is left out, and less than `MINIMUM` drawn
         there.
     tolerance : float
         Allowed relative error.

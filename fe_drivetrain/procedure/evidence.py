@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Literal
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.made_by import program_hash
+from fe_drivetrain.common.provenance import program_hash
 from fe_drivetrain.common.reading import value_changes
 from fe_drivetrain.drivetrain_file.reading import parse_scene
 from fe_drivetrain.drivetrain_file.scene import Scene

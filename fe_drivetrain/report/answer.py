@@ -17,7 +17,7 @@ from fe_drivetrain.report.number_text import (
 from fe_drivetrain.report.results import Figure, Results, Verdict
 
 _DIGITS = 3  # of a value without a band
-_MOST_DIGITS = 7  # of a value with one
+_MAX_DIGITS = 7  # of a value with one
 
 
 def headline(results: Results) -> Figure | Verdict | None:
@@ -79,9 +79,9 @@ def value_with_band(found: Figure | Verdict) -> str:
     if place > 0:
         value, band = round(value, -place), round(band, -place)
     certain = math.floor(math.log10(abs(value) or band)) - place + 1
-    if value and certain > _MOST_DIGITS:
+    if value and certain > _MAX_DIGITS:
         percent = formatted(100.0 * band / abs(value), 2, "%")
-        whole = with_unit(formatted(found.computed, _MOST_DIGITS, unit), unit)
+        whole = with_unit(formatted(found.computed, _MAX_DIGITS, unit), unit)
         return f"{whole} ± {percent}\u00a0%"
     digits = max(certain, _DIGITS)
     text = f"{formatted(value, digits, unit)} ± {formatted(band, 2, unit)}"

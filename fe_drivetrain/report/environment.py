@@ -7,7 +7,7 @@ from functools import lru_cache
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
-from fe_drivetrain.common.made_by import program_commit, program_hash
+from fe_drivetrain.common.provenance import program_commit, program_hash
 from fe_drivetrain.report.results import Environment
 
 _PACKAGES = (

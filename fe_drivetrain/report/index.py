@@ -47,7 +47,7 @@ WORDS = {
 PROBLEMS = "problems.json"
 """Beside the pages: why cases have no results, for who writes the pages next."""
 
-_MOST = 1e9  # share of a tolerance, as the page sorts it
+_MAXIMUM = 1e9  # share of a tolerance, as the page sorts it
 
 
 @dataclass(frozen=True)
@@ -255,8 +255,8 @@ def _write(page: Path, template: str, **content: Any) -> None:
 def _listings() -> jinja2.Environment:
     environment = templates()
     environment.filters |= {
-        "share": lambda verdict: min(share_of_tolerance(verdict), _MOST),
-        "share_text": lambda share: f"{100 * share:.3g}\u00a0%" if share < _MOST else "∞",
+        "share": lambda verdict: min(share_of_tolerance(verdict), _MAXIMUM),
+        "share_text": lambda share: f"{100 * share:.3g}\u00a0%" if share < _MAXIMUM else "∞",
         "answer": answer_sentence,
         "with_band": value_with_band,
         "sparkline": sparkline,

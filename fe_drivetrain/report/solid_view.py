@@ -30,9 +30,9 @@ if TYPE_CHECKING:
     from fe_drivetrain.shafts.response.model import Model
     from fe_drivetrain.shafts.response.unit_loads import Response
 
-MOST_TRIANGLES = 100_000
+MAX_TRIANGLES = 100_000
 """Of a surface: with its values it then takes less than 3 MB."""
-MOST_BYTES = 3_000_000
+MAX_BYTES = 3_000_000
 """Of a file: as many loads are in it as fit, one at least."""
 
 SHOWN_LOADS = {
@@ -189,7 +189,7 @@ def write_solid_view(
         The mesh; parts of other elements than curved tetrahedra as `Parts`.
     fields : Mapping[str, Floats]
         (n, 3) displacements of its nodes [m] by the load in words, the first of which is shown
-        first. Those that come last are left out where the file would be larger than `MOST_BYTES`.
+        first. Those that come last are left out where the file would be larger than `MAX_BYTES`.
     lame : mapping
         Lame's constants (lambda, mu) [Pa] of the material of each part, by the part's name.
     path : Path
@@ -198,7 +198,7 @@ def write_solid_view(
     Returns
     -------
     bool
-        False, and nothing written, where the surface has more than `MOST_TRIANGLES`.
+        False, and nothing written, where the surface has more than `MAX_TRIANGLES`.
     """
     bodies = mesh if isinstance(mesh, Parts) else _parts_of(mesh)
     surface = _surface(bodies)
@@ -210,7 +210,7 @@ def write_solid_view(
     # in letters of 6 bits: positions and triangles; then displacements and stresses of each load
     count, vertices = len(surface.triangles), len(nodes)
     shape, field = (8 / 6 * size for size in (6 * vertices + 12 * count, 8 * vertices))
-    most = max(1, int((MOST_BYTES - shape) / max(field, 1.0)))
+    most = max(1, int((MAX_BYTES - shape) / max(field, 1.0)))
     content = {
         "middle": middle.tolist(),
         "reach": reach,
@@ -241,9 +241,9 @@ def _surface(bodies: Parts) -> _Surface | None:
         sum(len(of) * len(pieces[of.shape[1]]) for of in facets.values())
         for pieces in (_FINE, _COARSE)
     )
-    if least > MOST_TRIANGLES:
+    if least > MAX_TRIANGLES:
         return None
-    pieces = _FINE if fine <= MOST_TRIANGLES else _COARSE
+    pieces = _FINE if fine <= MAX_TRIANGLES else _COARSE
     parts, shown, triangles = [], [], []
     first = vertices = 0
     for part, of in facets.items():

@@ -26,7 +26,7 @@ from fe_drivetrain.turbine_loads.histories.model_errors import (
     model_errors,
 )
 
-_MOST = 12
+_MAXIMUM = 12
 """Histories that are counted, evenly over all: a count takes longer than a reaction."""
 
 
@@ -109,7 +109,7 @@ def design_measures(
         Reactions by which levels are judged: "NAME, force" and "NAME, moment".
     """
     count = len(loads.each)
-    chosen = np.unique(np.linspace(0, count - 1, min(count, _MOST)).astype(int))
+    chosen = np.unique(np.linspace(0, count - 1, min(count, _MAXIMUM)).astype(int))
     steps = [loads.given.histories[k].step for k in chosen]
     weight, gravity = scene.gearbox.weight, loads.given.gravity
 

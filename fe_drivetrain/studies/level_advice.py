@@ -12,7 +12,7 @@ from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.scene import Scene
-from fe_drivetrain.plots.figures import LEAST, error_traces
+from fe_drivetrain.plots.figures import MINIMUM, error_traces
 from fe_drivetrain.report.charts import chart
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
@@ -202,7 +202,7 @@ def _against_time(advice: Advice) -> Chart:
     traces = error_traces(*advice.ladder, advice.tolerance, advice.chosen)
     return chart(
         "Error over time; for the last level its estimated own error. The largest marker is the "
-        f"level that is accurate enough. Errors of zero are drawn at {100 * LEAST:g} %",
+        f"level that is accurate enough. Errors of zero are drawn at {100 * MINIMUM:g} %",
         traces,
         x="time [s]",
         y="error [%]",

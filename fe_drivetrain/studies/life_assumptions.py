@@ -13,7 +13,7 @@ from math import floor, log10
 
 import numpy as np
 
-from fe_drivetrain.bearing.geometry import Bearing, largest_clearance
+from fe_drivetrain.bearing.geometry import Bearing, max_clearance
 from fe_drivetrain.bearing_life.life.lubricants import GRADES, SUPPLIES
 from fe_drivetrain.bearing_life.life.rated import RatedBearing
 from fe_drivetrain.bearing_life.life.roller_damage import LifeRules, damage_of_steps
@@ -225,7 +225,7 @@ def _of_clearance(one: OneBearing, rules: LifeRules) -> Iterator[WhatIf]:
     if "clearance" in one.entry.model_fields_set:
         return
     bearing = one.rated.bearing
-    most = min(largest_clearance(row) for row in bearing.rows)
+    most = min(max_clearance(row) for row in bearing.rows)
     play = min(_rounded(PLAYED * one.rated.pitch_diameter), most)
     yield _changed(
         one,

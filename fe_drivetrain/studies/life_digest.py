@@ -17,8 +17,8 @@ from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.made_by import file_digest, program_hash
 from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.common.provenance import file_digest, program_hash
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.shafts.response.cached import whole_content
 from fe_drivetrain.shafts.response.entering import entering
@@ -33,7 +33,7 @@ from fe_drivetrain.turbine_loads.hub_loads.turbines import vertical_forces
 WINDOWS = 60
 """Parts of a file, over which the damage map follows the time."""
 
-MOST = 512
+MAXIMUM = 512
 """Steps at a time, at most."""
 
 
@@ -186,7 +186,7 @@ def digest(
     check_speed(one.rated, speed)
     n, step = len(loads), history.step * reading.every
     sums = _Sums(one)
-    chunk = int(np.clip(-(-n // WINDOWS), 1, MOST))
+    chunk = int(np.clip(-(-n // WINDOWS), 1, MAXIMUM))
     done = 0
     for steps in one.path.steps(loads, speed, step, chunk):
         sums.add(steps, damage_of_steps(steps, one.rated, rules), (done + 0.5 * chunk) * step)

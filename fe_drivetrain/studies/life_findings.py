@@ -63,7 +63,7 @@ def answers(
             words = f"Bearing {life.name} lives {shown} {_under(life, site)} (L10mr, ± two "
             words += "standard errors of files of the same wind"
         words += f"; L10r {in_years(years['L10r'])}, L10 {in_years(years['L10'])})"
-        found.answer(f"{words}{_takes_most(life, rules)}{_overloaded(life)}.")
+        found.answer(f"{words}{_takes_longest(life, rules)}{_overloaded(life)}.")
 
 
 def _under(life: BearingLife, site: Site | None) -> str:
@@ -76,7 +76,7 @@ def _under(life: BearingLife, site: Site | None) -> str:
     )
 
 
-def _takes_most(life: BearingLife, rules: LifeRules) -> str:
+def _takes_longest(life: BearingLife, rules: LifeRules) -> str:
     """Ring and wind that take most of the life."""
     parts = life.damage.of_rows(rules.lubricant is not None)
     row, ring = np.unravel_index(int(np.argmax(parts)), parts.shape)
@@ -101,11 +101,11 @@ def _overloaded(life: BearingLife) -> str:
     of, rated = life.limits, life.bearing.rated
     if of.static_safety >= 1.0:
         return ""
-    if of.largest_pressure <= rated.static_pressure:
-        why = f"P0 of {1e-3 * of.largest_static:,.0f} kN, above C0 of {1e-3 * rated.static:,.0f} kN"
+    if of.max_pressure <= rated.static_pressure:
+        why = f"P0 of {1e-3 * of.max_static:,.0f} kN, above C0 of {1e-3 * rated.static:,.0f} kN"
     else:
         why = (
-            f"{1e-6 * of.largest_pressure:,.0f} MPa contact pressure, above the "
+            f"{1e-6 * of.max_pressure:,.0f} MPa contact pressure, above the "
             f"{1e-6 * rated.static_pressure:,.0f} MPa limit"
         )
     return f"; not usable: static safety S0 is {of.static_safety:.2g}, {why}"
@@ -162,7 +162,7 @@ def _beyond_limits(found: Findings, life: BearingLife, row: Record) -> None:
         (
             "S0 below 1 [% of time]",
             f"static safety is below 1, {of.static_safety:.2g} at least, with "
-            f"{1e-6 * of.largest_pressure:,.0f} MPa on a raceway",
+            f"{1e-6 * of.max_pressure:,.0f} MPa on a raceway",
         ),
         ("load above C/2 [% of time]", "the load is above C/2, beyond the range of ISO 281"),
         (
@@ -181,12 +181,12 @@ def _beyond_limits(found: Findings, life: BearingLife, row: Record) -> None:
         share = row[key]
         if isinstance(share, float) and share > 0.0:
             found.note(f"Bearing {name}: in {share:.3g} % of the time {words}.")
-    pressed = centrifugal_load(life.bearing.rated.bearing, of.largest_speed_rpm)
-    if pressed > PRESSED_OUT * of.largest_roller:
+    pressed = centrifugal_load(life.bearing.rated.bearing, of.max_speed_rpm)
+    if pressed > PRESSED_OUT * of.max_roller_load:
         found.note(
-            f"Bearing {name}: at {of.largest_speed_rpm:,.0f} 1/min a rolling element is pressed on "
+            f"Bearing {name}: at {of.max_speed_rpm:,.0f} 1/min a rolling element is pressed on "
             f"the outer race by {1e-3 * pressed:.3g} kN of its own, beside a largest load of "
-            f"{1e-3 * of.largest_roller:.3g} kN: centrifugal loads are in no life here."
+            f"{1e-3 * of.max_roller_load:.3g} kN: centrifugal loads are in no life here."
         )
     if of.reversals:
         found.note(

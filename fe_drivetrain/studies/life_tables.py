@@ -45,11 +45,11 @@ def limit_rows(lives: Sequence[BearingLife]) -> list[Record]:
             {
                 "bearing": life.name,
                 "min S0": of.static_safety,
-                "max pressure [MPa]": 1e-6 * of.largest_pressure,
-                "max roller load [kN]": 1e-3 * of.largest_roller,
-                "max P0 / C0": of.largest_static / rated.static,
-                "max P / C": of.largest_load / rated.dynamic,
-                "max P / C of the rollers": of.largest_reference / rated.dynamic,
+                "max pressure [MPa]": 1e-6 * of.max_pressure,
+                "max roller load [kN]": 1e-3 * of.max_roller_load,
+                "max P0 / C0": of.max_static / rated.static,
+                "max P / C": of.max_load / rated.dynamic,
+                "max P / C of the rollers": of.max_reference / rated.dynamic,
                 "load above C/2 [% of time]": share * of.heavy,
                 "S0 below 1 [% of time]": share * of.weak,
                 "kappa below 0.1 [% of time]": share * of.thin,
@@ -97,10 +97,10 @@ def file_rows(lives: Sequence[BearingLife]) -> list[Record]:
             }
             row |= {f"{kind} [years]": v for kind, v in one.damage.lives("years").items()}
             row |= {
-                "max P [kN]": 1e-3 * of.largest_load,
-                "max P0 [kN]": 1e-3 * of.largest_static,
-                "max roller load [kN]": 1e-3 * of.largest_roller,
-                "max pressure [MPa]": 1e-6 * of.largest_pressure,
+                "max P [kN]": 1e-3 * of.max_load,
+                "max P0 [kN]": 1e-3 * of.max_static,
+                "max roller load [kN]": 1e-3 * of.max_roller_load,
+                "max pressure [MPa]": 1e-6 * of.max_pressure,
                 "min S0": of.static_safety,
                 "standing [s]": of.standing,
             }

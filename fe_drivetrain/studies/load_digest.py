@@ -12,7 +12,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError, require_known
-from fe_drivetrain.common.made_by import file_digest, program_hash
+from fe_drivetrain.common.provenance import file_digest, program_hash
 from fe_drivetrain.studies.history_options import HistoryOptions, require_between
 from fe_drivetrain.studies.load_planes import PLANES, PlaneDigest, plane_digest
 from fe_drivetrain.studies.unused import own_speeds

@@ -22,7 +22,7 @@ from fe_drivetrain.shafts.response.unit_loads import Response
 from fe_drivetrain.studies.study_loads import EnteredLoads
 
 #: Load steps that are taken, evenly over all.
-_MOST = 5000
+_MAXIMUM = 5000
 _AXES = {4: ("y", "tilt"), 5: ("z", "yaw")}
 
 
@@ -68,7 +68,7 @@ def tilt_secants(
     loads : EnteredLoads
         Hub loads.
     """
-    every = -(-len(loads.together) // _MOST)
+    every = -(-len(loads.together) // _MAXIMUM)
     weights = loads.given.weights[::every]
     factors = factors_of(loads.together[::every], scene.gearbox.weight).values
     return tuple(

@@ -7,7 +7,7 @@ from fe_drivetrain.bearing.contact import point_contact
 from fe_drivetrain.bearing.subsurface import (
     HardenedCase,
     exposure,
-    largest_shear,
+    max_shear,
     shear_at_depth,
     stresses_below_ellipse,
 )
@@ -27,7 +27,7 @@ def below_line(depths: np.ndarray) -> np.ndarray:
 
 
 def test_a_line_has_its_largest_shear_at_0_786_of_the_half_width() -> None:
-    shear = largest_shear(below_line(DEPTHS))
+    shear = max_shear(below_line(DEPTHS))
     assert shear.max() == pytest.approx(0.300, abs=5e-4)
     assert DEPTHS[shear.argmax()] == pytest.approx(0.786, abs=0.03)
 
@@ -68,7 +68,7 @@ def test_a_thin_case_crushes_its_core_and_a_thick_one_does_not() -> None:
     double = exposure(DEPTHS, 2.0 * stresses, HardenedCase(1.0, 0.6, 0.8, 0.2))
     assert double.core == pytest.approx(2.0 * thin.core)
     uniform = exposure(DEPTHS, stresses, HardenedCase(0.5, 0.5, 3.0, 0.0))
-    assert uniform.case == pytest.approx(2.0 * largest_shear(stresses).max())
+    assert uniform.case == pytest.approx(2.0 * max_shear(stresses).max())
 
 
 def test_shear_of_a_history_is_that_of_each_load() -> None:
@@ -79,7 +79,7 @@ def test_shear_of_a_history_is_that_of_each_load() -> None:
     for load, shear in zip(loads[1:], found[1:], strict=True):
         axes = tuple(axis * np.cbrt(load) for axis in contact.half_axes)
         stresses = stresses_below_ellipse([2e-3], axes, float(contact.pressure(load)))
-        assert shear == pytest.approx(largest_shear(stresses)[0], rel=2e-3)
+        assert shear == pytest.approx(max_shear(stresses)[0], rel=2e-3)
     # eight times the load at twice the depth is twice the stress
     assert shear_at_depth(contact, 8.0 * loads, 4e-3) == pytest.approx(2.0 * found, rel=1e-12)
     with pytest.raises(InputError, match="depth"):

@@ -77,7 +77,7 @@ def history() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return loads, rng.uniform(8, 20, 40), rng.uniform(0.5, 2, 40)
 
 
-def largest_of_all(of_rows) -> np.ndarray:
+def max_of_all(of_rows) -> np.ndarray:
     """(n,) of pressures by row, ring and roller."""
     return np.max([p.max(axis=1) for row in of_rows for p in row], axis=0)
 
@@ -132,7 +132,7 @@ def test_chunks_order_and_repetition_do_not_matter(history, damage: Damage) -> N
     twice = damage + damage
     assert_allclose(twice.lives()["L10mr"], damage.lives()["L10mr"], rtol=1e-14)
     assert_allclose(damage.times(2.0).totals["L10m"], twice.totals["L10m"], rtol=1e-14)
-    assert twice.limits.largest_load == damage.limits.largest_load
+    assert twice.limits.max_load == damage.limits.max_load
 
 
 def test_life_goes_with_the_fourth_power_of_all_loads(history, damage: Damage) -> None:
@@ -141,7 +141,7 @@ def test_life_goes_with_the_fourth_power_of_all_loads(history, damage: Damage) -
     doubled = damage_of_history(steps, RATED, RULES)
     assert_allclose(doubled.totals["L10r"], 16.0 * damage.totals["L10r"], rtol=1e-6)
     assert_allclose(doubled.totals["L10"], 2 ** (10 / 3) * damage.totals["L10"], rtol=1e-12)
-    assert_allclose(doubled.limits.largest_roller, 2 * damage.limits.largest_roller, rtol=1e-6)
+    assert_allclose(doubled.limits.max_roller_load, 2 * damage.limits.max_roller_load, rtol=1e-6)
 
 
 def test_damage_stands_where_the_load_is() -> None:
@@ -183,10 +183,10 @@ def test_limits_of_the_methods_are_timed(history) -> None:
     P, P0 = RATED.equivalent_load(steps.loads), RATED.static_load(steps.loads)
     of_rollers = 6.71e6 / step_lives(RATED, steps.laminae, RULES) ** 0.25
     assert 0 < found.limits.heavy == (np.maximum(P, of_rollers) > 0.5 * 6.71e6).sum()
-    assert_allclose(found.limits.largest_reference, of_rollers.max(), rtol=1e-12)
-    p = largest_of_all(pressures(BEARING, equilibrium(BEARING, steps.loads).displacements))
+    assert_allclose(found.limits.max_reference, of_rollers.max(), rtol=1e-12)
+    p = max_of_all(pressures(BEARING, equilibrium(BEARING, steps.loads).displacements))
     assert (P0 > 1.66e7).sum() < found.limits.weak == ((P0 > 1.66e7) | (p > 4e9)).sum()
-    assert_allclose(found.limits.largest_pressure, p.max(), rtol=1e-6)
+    assert_allclose(found.limits.max_pressure, p.max(), rtol=1e-6)
     assert found.limits.thin == found.limits.thick == 0.0
     slow = damage_of_steps(
         next(steps_of(rigid_rings(BEARING), loads, 1.0, 1.0)),
@@ -201,11 +201,11 @@ def test_a_moment_alone_brings_the_static_safety_of_the_rollers_below_1() -> Non
     """P0 of a moment is 0, and so is P; pressure in line contact goes with the root of the load."""
     model = rigid_rings(BEARING)
     one = damage_of_steps(next(steps_of(model, [0, 0, 0, 2e6, 0], 18.0, 1.0)), RATED, RULES).limits
-    M = 2e6 * (4.8e9 / one.largest_pressure) ** 2
+    M = 2e6 * (4.8e9 / one.max_pressure) ** 2
     found = damage_of_steps(next(steps_of(model, [0, 0, 0, M, 0], 18.0, 1.0)), RATED, RULES).limits
-    assert found.largest_pressure == pytest.approx(4.8e9, rel=1e-6)
+    assert found.max_pressure == pytest.approx(4.8e9, rel=1e-6)
     assert found.static_safety == pytest.approx((4.0 / 4.8) ** 2, rel=1e-6)
-    assert found.largest_load == found.largest_static == 0.0
+    assert found.max_load == found.max_static == 0.0
     assert found.weak == found.heavy == 1.0
 
 

@@ -169,7 +169,7 @@ def test_loads_beyond_half_of_the_rating_are_timed_apart_from_those_below() -> N
     steps = Steps(loads, (laminae,), np.full(4, 18.0), seconds, np.ones(4, dtype=bool))
     found = damage_of_steps(steps, rated, LifeRules()).limits
     assert (found.heavy, found.weak) == (14.0, 8.0)
-    assert (found.largest_load, found.largest_static) == (2.5e6, 2.5e6)
+    assert (found.max_load, found.max_static) == (2.5e6, 2.5e6)
 
 
 def test_a_filter_in_the_circuit_keeps_oil_cleaner_than_a_bath() -> None:

@@ -9,7 +9,7 @@ from fe_drivetrain.bearing.catalogue import catalogue_bearing
 from fe_drivetrain.bearing.races import Races, equilibrium_on_races, rigid_races, roller_motions
 from fe_drivetrain.bearing_life.coupled.body import LinearBody, factors_of, in_housings, linear_body
 from fe_drivetrain.bearing_life.coupled.newton import coupled_equilibrium
-from fe_drivetrain.bearing_life.coupled.on_races import LEAST, body_on_races
+from fe_drivetrain.bearing_life.coupled.on_races import MINIMUM, body_on_races
 from fe_drivetrain.bearing_life.rings.assembly import assembly_equilibrium
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
@@ -47,7 +47,7 @@ def test_on_rigid_races_it_is_the_coupled_equilibrium(body: LinearBody) -> None:
     found = assembly_equilibrium(body_on_races(body, rigid_races(BEARING)), FACTORS, shapes=48)
     exact = coupled_equilibrium(body, {"bearing": BEARING}, FACTORS)
     assert found.converged.all()
-    assert_allclose(found.of("bearing"), exact.rollers("bearing"), atol=50 * LEAST * 1e5)
+    assert_allclose(found.of("bearing"), exact.rollers("bearing"), atol=50 * MINIMUM * 1e5)
     assert_allclose(found.bearing_loads("bearing"), exact.of("bearing"), rtol=1e-4, atol=20.0)
 
 

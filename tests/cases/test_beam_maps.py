@@ -6,7 +6,7 @@ import pytest
 from fe_drivetrain.cases.references import end_flexibilities as ends
 from fe_drivetrain.cases.references.shaft_theory import Tube
 from fe_drivetrain.cases.stability.clamped_plates import boss_rotation
-from fe_drivetrain.comparison.sweeps import least_safe
+from fe_drivetrain.comparison.sweeps import min_safe
 from fe_drivetrain.report.maps import LEVELS, map_traces
 
 
@@ -41,12 +41,12 @@ def test_elements_and_beam_agree_in_torsion():
 def test_least_safe_of_a_power_law_is_exact():
     x = np.geomspace(0.5, 30.0, 9)
     error = -20.0 / x**2
-    assert least_safe(x, error, 1.0) == pytest.approx(np.sqrt(20.0), rel=1e-12)
-    assert least_safe(x, error, 1e-3) is None
-    assert least_safe(x, error, 100.0) == x[0]
+    assert min_safe(x, error, 1.0) == pytest.approx(np.sqrt(20.0), rel=1e-12)
+    assert min_safe(x, error, 1e-3) is None
+    assert min_safe(x, error, 100.0) == x[0]
     # what comes back above the level is not safe before
     error[6] = 3.0
-    assert x[6] < least_safe(x, error, 1.0) < x[7]
+    assert x[6] < min_safe(x, error, 1.0) < x[7]
 
 
 def test_lines_of_a_map_are_where_the_error_is():

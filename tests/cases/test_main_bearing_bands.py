@@ -9,7 +9,7 @@ from fe_drivetrain.cases.main_bearing import (
 )
 from fe_drivetrain.cases.main_bearing.bands import (
     FACTORS,
-    LEAST_ORDER,
+    MIN_ORDER,
     Series,
 )
 from fe_drivetrain.cases.main_bearing.shown import check_series
@@ -38,7 +38,7 @@ def test_band_holds_the_limit_whatever_the_order(order):
     assert series.percent(lambda f: float(f["K_R"][0, 1])) == pytest.approx(100 * band / 5.1)
     # and reaches to the limit at the least order
     difference = 0.1 * (FACTORS[1] ** order - 1.0)
-    assert band >= 0.999 * difference / (FACTORS[1] ** LEAST_ORDER - 1.0)
+    assert band >= 0.999 * difference / (FACTORS[1] ** MIN_ORDER - 1.0)
     # what no mesh changes has none
     assert series.band(lambda f: float(f["K_R"][0, 0])) < 1e-10
     assert "at most" in series.largest("K_R")

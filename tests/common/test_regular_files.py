@@ -14,7 +14,7 @@ from fe_drivetrain import export
 from fe_drivetrain.bearing import catalogue
 from fe_drivetrain.common import regular_files
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.made_by import file_digest
+from fe_drivetrain.common.provenance import file_digest
 from fe_drivetrain.common.regular_files import NotRegularError, TooLargeError, opened, text_of
 from fe_drivetrain.drivetrain_file.reading import read_component, read_scene
 from fe_drivetrain.dynamics.tables import read_machine

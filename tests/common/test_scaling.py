@@ -5,8 +5,8 @@ import pytest
 
 from fe_drivetrain.common.scaling import (
     diagonal_roots,
-    largest_difference,
-    least_eigenvalue,
+    max_difference,
+    min_eigenvalue,
     scaled_solve,
     scaled_to_unit_diagonal,
     symmetry_error,
@@ -21,14 +21,14 @@ MATRIX = UNIT * np.outer(SIZES, SIZES)
 def test_the_sizes_of_units_drop_out():
     np.testing.assert_allclose(scaled_to_unit_diagonal(MATRIX), UNIT, rtol=1e-15)
     np.testing.assert_allclose(diagonal_roots(MATRIX.diagonal()), SIZES, rtol=1e-15)
-    assert least_eigenvalue(MATRIX) == pytest.approx(np.linalg.eigvalsh(UNIT)[0], rel=1e-14)
+    assert min_eigenvalue(MATRIX) == pytest.approx(np.linalg.eigvalsh(UNIT)[0], rel=1e-14)
 
 
 def test_rows_without_diagonal_stay_as_they_are():
     np.testing.assert_array_equal(
         scaled_to_unit_diagonal(np.diag([4.0, 0.0, -9.0])), np.diag([1.0, 0.0, -9.0])
     )
-    assert least_eigenvalue(np.diag([4.0, 0.0, -9.0])) == -9.0
+    assert min_eigenvalue(np.diag([4.0, 0.0, -9.0])) == -9.0
 
 
 def test_errors_are_relative_to_the_diagonal_of_their_row_and_column():
@@ -36,7 +36,7 @@ def test_errors_are_relative_to_the_diagonal_of_their_row_and_column():
     change[1, 3] = 0.01
     assert symmetry_error((UNIT + change) * np.outer(SIZES, SIZES)) == pytest.approx(0.01)
     other = MATRIX + change * np.outer(SIZES, SIZES)
-    assert largest_difference(other, MATRIX) == pytest.approx(0.01)
+    assert max_difference(other, MATRIX) == pytest.approx(0.01)
 
 
 @pytest.mark.parametrize("shape", [(4,), (4, 3)])

@@ -97,7 +97,7 @@ def test_higher_order_than_expected_is_not_believed():
 def test_least_order_widens_the_band_to_its_limit():
     sizes = np.array([1.0, 0.5, 0.25])
     values = 5.0 + sizes**2
-    found = grid_convergence(sizes, values, least_order=1.0)
+    found = grid_convergence(sizes, values, min_order=1.0)
     slowest = richardson(sizes[-2:], values[-2:], 1.0)
     assert found.extrapolated == pytest.approx(5.0)
     assert found.extrapolated_uncertainty == pytest.approx(abs(slowest - 5.0))
@@ -109,7 +109,7 @@ def test_mixture_of_two_orders_keeps_the_limit_in_its_band(first, second):
     """A first-order share that asserts itself late: the least order keeps the band wide enough."""
     sizes = np.array([1.0, 0.7, 0.5, 0.35])
     values = 5.0 + first * sizes + second * sizes**2
-    found = grid_convergence(sizes, values, least_order=1.0)
+    found = grid_convergence(sizes, values, min_order=1.0)
     assert abs(found.extrapolated - 5.0) <= found.extrapolated_uncertainty
     assert abs(found.finest - 5.0) <= found.uncertainty
 
@@ -156,7 +156,7 @@ def test_divergence_has_no_band(values):
 
 def test_least_order_gives_a_band_where_no_order_is_seen():
     for values, behaviour in (([1.0, 1.1, 1.3], "divergent"), ([1.0, 1.2, 1.1], "oscillatory")):
-        found = grid_convergence([1.0, 0.5, 0.25], values, least_order=1.0)
+        found = grid_convergence([1.0, 0.5, 0.25], values, min_order=1.0)
         slowest = 2 * values[-1] - values[-2]
         assert found.behaviour == behaviour
         assert found.extrapolated == pytest.approx(slowest)
@@ -211,8 +211,8 @@ def test_round_off_is_converged(value, rng):
 @given(st.floats(0.5, 4.0), st.floats(0.1, 10), st.floats(0.1, 10), st.sampled_from(RATIOS))
 def test_units_do_not_matter(order, metre, newton, sizes):
     values = 3.0 + np.array(sizes) ** order
-    one = grid_convergence(sizes, values, least_order=1.0)
-    other = grid_convergence(metre * np.array(sizes), newton * values, least_order=1.0)
+    one = grid_convergence(sizes, values, min_order=1.0)
+    other = grid_convergence(metre * np.array(sizes), newton * values, min_order=1.0)
     assert other.order == pytest.approx(one.order, rel=1e-6)
     assert other.uncertainty == pytest.approx(newton * one.uncertainty, rel=1e-6)
     assert other.gci_fine == pytest.approx(one.gci_fine, rel=1e-6)

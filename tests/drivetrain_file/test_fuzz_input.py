@@ -29,14 +29,14 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.reading import change_scene, parse_scene, read_scene
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.elasticity.mesh.mesh import Mesh
-from fe_drivetrain.geometry.part import LARGEST, SMALLEST
+from fe_drivetrain.geometry.part import MAXIMUM, MINIMUM
 from fe_drivetrain.report.suite import case as case_module
 from fe_drivetrain.report.suite.case import Case
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.run import Run
 from fe_drivetrain.shafts.response.model import mesh_scene
 from fe_drivetrain.turbine_loads.hub_loads.files import read_hub_loads
-from fe_drivetrain.turbine_loads.hub_loads.histories import LARGEST_LOAD
+from fe_drivetrain.turbine_loads.hub_loads.histories import MAX_LOAD
 
 SCENE: dict[str, Any] = {
     "title": "small",
@@ -143,7 +143,7 @@ def test_a_wrong_value_is_refused_or_taken_as_it_is(path: tuple[Any, ...], value
     if path[-1] in ("length", "outer_diameter", "width", "shaft", "wall") and path[:1] != (
         "title",
     ):
-        assert not isinstance(found, float) or SMALLEST <= found <= LARGEST
+        assert not isinstance(found, float) or MINIMUM <= found <= MAXIMUM
 
 
 @given(st.sampled_from(PATHS), st.text(max_size=12))
@@ -265,7 +265,7 @@ def read(content: str | bytes, suffix: str) -> Any:
             one_sentence(error)
             return None
     assert np.isfinite(history.loads).all()
-    assert np.abs(history.loads).max() <= LARGEST_LOAD
+    assert np.abs(history.loads).max() <= MAX_LOAD
     assert (np.diff(history.time) > 0.0).all()
     return history
 

@@ -162,7 +162,7 @@ def test_steps_follow_the_equations_with_angles_errors_and_gaps(
         errors.append(np.abs(motion.q[-1] - found.y[:2, -1]).max())
         lost.append(motion.relative_imbalance)
         assert motion.converged
-        assert motion.most_iterations <= 6
+        assert motion.max_iterations <= 6
     assert errors[0] / errors[1] > 3.0 if damping == 0.0 else errors[0] > errors[1]
     assert errors[1] < 1e-4
     assert lost[1] < 1e-4

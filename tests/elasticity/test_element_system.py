@@ -17,7 +17,7 @@ from fe_drivetrain.elasticity.operator.incompressible import (
     unlocked_functions,
 )
 from fe_drivetrain.elasticity.solve.element_system import Cut, cut, parts
-from fe_drivetrain.elasticity.solve.own_rows import assembled, keep, kept, own_rows, own_trace
+from fe_drivetrain.elasticity.solve.rank_rows import assembled, keep, kept, own_rows, own_trace
 from fe_drivetrain.elasticity.solve.reduction import GROUND
 
 

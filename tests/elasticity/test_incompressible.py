@@ -8,7 +8,7 @@ from pydantic import ValidationError
 from fe_drivetrain.common.components import STRESSES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import rigid_motions
-from fe_drivetrain.drivetrain_file.materials import HIGHEST_POISSON_RATIO, Material
+from fe_drivetrain.drivetrain_file.materials import MAX_POISSON_RATIO, Material
 from fe_drivetrain.drivetrain_file.reading import change_scene
 from fe_drivetrain.elasticity.interfaces.constraints import held_nodes
 from fe_drivetrain.elasticity.mesh.blocks import Block, brick
@@ -198,7 +198,7 @@ def test_elements_without_a_remedy_are_refused():
 
 
 def test_nearer_to_a_half_than_digits_allow_is_refused():
-    highest = HIGHEST_POISSON_RATIO
+    highest = MAX_POISSON_RATIO
     assert Material(youngs_modulus=1e9, poisson_ratio=highest, density=0.0).lame[0] > 1e14
     for nu in (0.4999995, 0.5 - 1e-16, 0.5):
         with pytest.raises(ValidationError, match="less than or equal to"):

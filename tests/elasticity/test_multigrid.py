@@ -230,15 +230,15 @@ def test_smoother_knows_the_largest_eigenvalue(flatness):
     inverse = np.linalg.inv(np.einsum("ninj->nij", blocks))
     D = linalg.block_diag(*np.linalg.inv(inverse))
     true = linalg.eigh(K.toarray(), D, eigvals_only=True)[-1]
-    bound = multigrid.largest_eigenvalue(K, inverse)
+    bound = multigrid.max_eigenvalue(K, inverse)
     assert true <= bound < 1.5 * true
 
 
 def test_a_hierarchy_that_is_not_positive_is_found_out(monkeypatch):
     """A smoother told a third of its largest eigenvalue: the direct solver answers, and says so."""
     system, F = cantilever(2.0, 0.3)
-    right = multigrid.largest_eigenvalue
-    monkeypatch.setattr(multigrid, "largest_eigenvalue", lambda *given: right(*given) / 3.0)
+    right = multigrid.max_eigenvalue
+    monkeypatch.setattr(multigrid, "max_eigenvalue", lambda *given: right(*given) / 3.0)
     solution = solvers.factorise(system, "multigrid").solve(F)
     assert solution.diagnostics.method != "multigrid"
     assert "multigrid stopped" in solution.diagnostics.reason

@@ -123,7 +123,7 @@ def test_more_processes_have_less_memory_each(with_petsc, monkeypatch):
 def test_parts_that_stop_short_are_put_together(with_petsc, monkeypatch):
     system, F, exact = answered("mortar")
     monkeypatch.setenv(petsc.MPI_VARIABLE, "mpiexec -n 2")
-    monkeypatch.setattr(petsc, "MOST", 3)
+    monkeypatch.setattr(petsc, "MAXIMUM", 3)
     found = solve(system, F, "petsc", tolerance=1e-10)
     assert "petsc stopped after 3 iterations" in found.diagnostics.reason
     assert (np.abs(found.x - exact.x) < 1e-8 * np.abs(exact.x).max(axis=0)).all()
@@ -146,7 +146,7 @@ def test_processes_that_die_are_a_mistake_and_not_a_hang(with_petsc, jointed, mo
 def test_an_iteration_that_stops_short_falls_back_and_says_so(with_petsc, jointed, monkeypatch):
     system, F, exact = jointed
     monkeypatch.setenv(petsc.MPI_VARIABLE, "mpiexec -n 1")
-    monkeypatch.setattr(petsc, "MOST", 3)
+    monkeypatch.setattr(petsc, "MAXIMUM", 3)
     found = solve(system, F[:, :1], "petsc", tolerance=1e-10)
     assert found.diagnostics.method not in petsc.METHODS
     assert "petsc stopped after 3 iterations" in found.diagnostics.reason

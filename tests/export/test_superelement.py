@@ -8,7 +8,7 @@ from coarse_scenes import coarse_scene
 
 from fe_drivetrain import export
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.scaling import largest_difference
+from fe_drivetrain.common.scaling import max_difference
 from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.drivetrain_file.reading import library_component, library_scene
 from fe_drivetrain.elasticity.solve.condensation import keep_points
@@ -183,7 +183,7 @@ def test_a_beam_of_a_thousand_sections_has_no_band_and_says_why() -> None:
     element = shaft_superelement(scene.model_copy(update={"shaft": shaft}), 1)
     assert element.band is None
     assert f"at most 100 sections and there are {len(cut)}" in element.origin.mesh
-    assert largest_difference(whole.stiffness, element.stiffness) < 1e-8
+    assert max_difference(whole.stiffness, element.stiffness) < 1e-8
 
 
 def test_torsion_of_the_free_shaft_is_g_j_over_l() -> None:

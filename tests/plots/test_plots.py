@@ -6,7 +6,7 @@ import pytest
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.elasticity.solve.solvers import Diagnostics
 from fe_drivetrain.export.superelement import Superelement
-from fe_drivetrain.plots.figures import LEAST, figure, load_lines, stiffness_map
+from fe_drivetrain.plots.figures import MINIMUM, figure, load_lines, stiffness_map
 from fe_drivetrain.plots.style import PALETTE
 from fe_drivetrain.shafts.fidelity.adviser import Advice, LevelResult
 from fe_drivetrain.shafts.fidelity.ladder import Cost, LevelModel
@@ -73,7 +73,7 @@ def test_the_ladder_is_drawn_with_its_tolerance_and_what_is_enough() -> None:
     assert [trace.y[0] for trace in shown.data] == pytest.approx([20.0, 1.0, 5.0])
     assert shown.data[1].marker.size > shown.data[0].marker.size
     exact = Advice(Quantity("gearbox.Fz"), 0.05, [result(0, 1e-3, 0.0, 0.0)], 0).plot()
-    assert exact.data[0].y[0] == 100 * LEAST
+    assert exact.data[0].y[0] == 100 * MINIMUM
 
 
 def test_own_traces_take_the_colours_of_the_pages() -> None:

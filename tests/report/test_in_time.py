@@ -19,7 +19,7 @@ from fe_drivetrain.report.suite.in_time import check_in_time
 from fe_drivetrain.report.suite.page import Page
 
 END, FORCE = "displacement at the end [m]", "largest force [N]"
-LEAST = "least force after it [N]"
+MINIMUM = "least force after it [N]"
 SECONDS = 3.0
 
 
@@ -44,7 +44,7 @@ def of_mesh(
     values = {
         END: float(motion.q[-1, 0]),
         FORCE: peak_between(force),
-        LEAST: -peak_between(-force[force.argmax() :]),
+        MINIMUM: -peak_between(-force[force.argmax() :]),
     }
     return InTime(values, motion.relative_imbalance, motion.converged)
 
@@ -73,7 +73,7 @@ def test_bands_cover_peaks_of_random_meshes() -> None:
             damping=rng.uniform(0.05, 1.0),
         )
         found, exact = converge_in_time(mesh, 2e-3, 8), mesh(2.5e-4, 64).values
-        held += [abs(found.value(key) - exact[key]) <= found.band(key) for key in (FORCE, LEAST)]
+        held += [abs(found.value(key) - exact[key]) <= found.band(key) for key in (FORCE, MINIMUM)]
     assert np.mean(held) >= 0.95
 
 

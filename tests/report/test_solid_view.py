@@ -114,10 +114,10 @@ def test_loads_that_do_not_fit_are_left_out(
     for count in (1, 2):
         write_solid_view(mesh, dict(list(fields.items())[:count]), lame, path)
         sizes.append(path.stat().st_size)
-    monkeypatch.setattr(solid_view, "MOST_BYTES", sizes[1] + (sizes[1] - sizes[0]) // 2)
+    monkeypatch.setattr(solid_view, "MAX_BYTES", sizes[1] + (sizes[1] - sizes[0]) // 2)
     write_solid_view(mesh, fields, lame, path)
     assert len(json.loads(path.read_text("utf-8"))["loads"]) == 2
-    monkeypatch.setattr(solid_view, "MOST_BYTES", 1)
+    monkeypatch.setattr(solid_view, "MAX_BYTES", 1)
     write_solid_view(mesh, fields, lame, path)
     assert len(json.loads(path.read_text("utf-8"))["loads"]) == 1
 
@@ -128,18 +128,18 @@ def test_of_a_fine_surface_there_are_corners_alone_and_of_one_too_fine_nothing(
     mesh = bonded_model.mesh
     facets = sum(len(boundary(mesh, part)) for part in mesh.part_names)
     lame = dict.fromkeys(mesh.part_names, STEEL)
-    monkeypatch.setattr(solid_view, "MOST_TRIANGLES", facets)
+    monkeypatch.setattr(solid_view, "MAX_TRIANGLES", facets)
     assert write_solid_view(mesh, {"down": u}, lame, tmp_path / "coarse.json")
     coarse = json.loads((tmp_path / "coarse.json").read_text("utf-8"))
     assert sum(part["count"] for part in coarse["parts"]) == facets
-    monkeypatch.setattr(solid_view, "MOST_TRIANGLES", facets - 1)
+    monkeypatch.setattr(solid_view, "MAX_TRIANGLES", facets - 1)
     assert not write_solid_view(mesh, {"down": u}, lame, tmp_path / "none.json")
     assert not (tmp_path / "none.json").exists()
 
 
 def test_a_surface_of_the_largest_size_takes_less_than_3_mb() -> None:
     """Half as many vertices as triangles: 14 and 12 bytes for each, in letters of 6 bits."""
-    triangles = solid_view.MOST_TRIANGLES
+    triangles = solid_view.MAX_TRIANGLES
     vertices = 0.5 * triangles
     assert (14.0 * vertices + 12.0 * triangles) * 8.0 / 6.0 < LIMIT
 

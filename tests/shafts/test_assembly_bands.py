@@ -116,7 +116,7 @@ def test_a_series_without_order_says_so_and_is_wide(values: tuple[float, ...], w
 def test_values_that_agree_by_chance_get_no_narrow_band() -> None:
     """Two meshes that differ by a hundredth of what the first two do show no convergence."""
     for last in (1.0999, 1.1, 1.1001):
-        found = grid_convergence([1.8, 1.35, 1.0], [1.0, 1.1, last], least_order=0.5)
+        found = grid_convergence([1.8, 1.35, 1.0], [1.0, 1.1, last], min_order=0.5)
         assert found.uncertainty > 0.25
 
 

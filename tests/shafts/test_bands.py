@@ -7,7 +7,7 @@ import pytest
 from coarse_scenes import coarse_scene
 
 from fe_drivetrain.cases.verification.random_shafts import random_scene
-from fe_drivetrain.common.scaling import largest_difference
+from fe_drivetrain.common.scaling import max_difference
 from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.drivetrain_file.reading import library_scene
 from fe_drivetrain.drivetrain_file.scene import Scene
@@ -124,5 +124,5 @@ def test_a_unit_has_a_band_that_holds_a_finer_mesh_whatever_its_joint(joint: str
     scene = coarse_scene(kind, **changes)
     stiffness, band = banded_unit(scene, "main_bearing")
     finer = scene.model_copy(update={"mesh": scene.mesh.scaled(0.5, 20)})
-    error = largest_difference(stiffness, unit_stiffness(finer, "main_bearing", "rigid"))
+    error = max_difference(stiffness, unit_stiffness(finer, "main_bearing", "rigid"))
     assert 0 < error < band.largest < 10 * error

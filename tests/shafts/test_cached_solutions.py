@@ -10,13 +10,13 @@ import pytest
 from coarse_scenes import coarse_scene
 from kept_entries import entry, rewrite
 
-from fe_drivetrain.common import made_by
+from fe_drivetrain.common import provenance
 from fe_drivetrain.common.cache import Cache
-from fe_drivetrain.common.made_by import arithmetic, source_hash
+from fe_drivetrain.common.provenance import arithmetic, source_hash
 from fe_drivetrain.drivetrain_file.reading import change_scene
 from fe_drivetrain.shafts.fidelity import bearing_units
 from fe_drivetrain.shafts.fidelity.bearing_units import unit_bounds, unit_stiffness
-from fe_drivetrain.shafts.response import cached, makers
+from fe_drivetrain.shafts.response import cached, solution_keys
 from fe_drivetrain.shafts.response.cached import cached_response, solved_content
 from fe_drivetrain.shafts.response.model import Model
 from fe_drivetrain.shafts.response.unit_loads import Response
@@ -109,7 +109,7 @@ def test_another_mesh_solver_or_maker_is_solved_again(
     assert not cached_response(moved, cache=cache).kept
     assert not cached_response(bonded_model, "superlu", cache=cache).kept
     assert not cached_response(bonded_model, seed=1, cache=cache).kept
-    monkeypatch.setattr(makers, "_programs", lambda: {"code": "of an older version"})
+    monkeypatch.setattr(solution_keys, "_programs", lambda: {"code": "of an older version"})
     assert not cached_response(bonded_model, cache=cache).kept
     assert len(solves) == 5
 
@@ -215,8 +215,8 @@ def test_a_program_has_one_hash_wherever_its_cases_lie(
         for package, folder in folders.items():
             folder.mkdir(parents=True, exist_ok=True)
             (folder / "one.py").write_text(package)
-        monkeypatch.setattr(made_by, "files", folders.__getitem__)
-        found.append(made_by.program_hash.__wrapped__())
+        monkeypatch.setattr(provenance, "files", folders.__getitem__)
+        found.append(provenance.program_hash.__wrapped__())
         (folders["fe_drivetrain.cases"] / "one.py").write_text("changed")
-        assert made_by.program_hash.__wrapped__() != found[-1]
+        assert provenance.program_hash.__wrapped__() != found[-1]
     assert found[0] == found[1]

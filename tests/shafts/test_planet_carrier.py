@@ -7,7 +7,7 @@ import pytest
 from test_component import coarse
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.scaling import largest_difference
+from fe_drivetrain.common.scaling import max_difference
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.drivetrain_file.component import CarrierComponent, material_of
 from fe_drivetrain.elasticity.mesh.symmetry import turns
@@ -209,7 +209,7 @@ def test_recovered_stresses_cover_what_a_finer_mesh_says(
         element = component_superelement(carrier, what, at, solids=(solid, solid))
         supports = carrier.supports if what == "supported" else {}
         better = stiffness_on_supports(finer.body, supports, at)
-        error = largest_difference(element.stiffness, better)
+        error = max_difference(element.stiffness, better)
         assert element.band is not None
         assert error < element.band.largest < 10 * error
         allowed = element.band.half_widths(element.stiffness)

@@ -125,13 +125,13 @@ def test_aerofoil_lift_line_and_stall() -> None:
     small = np.deg2rad(1.0)
     lift, drag = polar(rotor, rotor.zero_lift_angle + np.array([-small, small]))
     assert (lift[1] - lift[0]) / (2.0 * small) == pytest.approx(rotor.lift_slope, rel=0.01)
-    np.testing.assert_allclose(drag, rotor.least_drag, rtol=0.05)
+    np.testing.assert_allclose(drag, rotor.min_drag, rtol=0.05)
     angle = np.deg2rad(np.linspace(0.0, 25.0, 501))
     lift, drag = polar(rotor, angle)
     peak = angle[np.argmax(lift)]
     assert abs(peak - rotor.stall_angle) < np.deg2rad(2.0)
     assert lift[-1] < 0.8 * lift.max()
-    assert drag[-1] > 10.0 * rotor.least_drag
+    assert drag[-1] > 10.0 * rotor.min_drag
 
 
 # --- loads ---------------------------------------------------------------------------------------

@@ -8,7 +8,7 @@ from .launching import how_to_install as how_to_install
 from .launching import launch as launch
 from .launching import parse as parse
 from .problems import BENCHMARKS as BENCHMARKS
-from .problems import MOST_MOTIONS as MOST_MOTIONS
+from .problems import MAX_MOTIONS as MAX_MOTIONS
 from .problems import Benchmark as Benchmark
 from .rounds import EQUAL as EQUAL
 from .rounds import Plan as Plan

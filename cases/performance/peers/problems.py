@@ -82,7 +82,7 @@ def with_motions(problem: Problem, number: int) -> Problem:
     problem : Problem
         With a moved face across x, and a motion along an axis or about x.
     number : int
-        Of motions, up to `MOST_MOTIONS`: translations, rotation about x, stretches and shear in
+        Of motions, up to `MAX_MOTIONS`: translations, rotation about x, stretches and shear in
         the face, and tilts.
     """
     own = problem.motions[0]
@@ -115,7 +115,7 @@ _MOTIONS = (
     _gradient((0, 1, 1.0)),
     _gradient((0, 2, 1.0)),
 )
-MOST_MOTIONS = len(_MOTIONS) + 1
+MAX_MOTIONS = len(_MOTIONS) + 1
 
 
 def hollow_shaft() -> Benchmark:

@@ -31,7 +31,7 @@ class Row:
         What each run measured, see `fe_drivetrain.cases.performance.peers.runner.measure`.
     trouble : str
         Why there is nothing, or no more, in words.
-    least_seconds : float or None
+    min_seconds : float or None
         The least that it takes, where it was ended or not begun [s].
     error : float or None
         Of the stiffness, against the exact solution of the same equations, the largest of all
@@ -42,7 +42,7 @@ class Row:
     unknowns: int
     found: list[dict[str, Any]] = field(default_factory=list)
     trouble: str = ""
-    least_seconds: float | None = None
+    min_seconds: float | None = None
     error: float | None = None
 
     @property
@@ -135,7 +135,7 @@ def run_rounds(
     rows = {variant: Row(variant, unknowns) for variant, _ in variants}
     earlier = list(earlier)
     for row in rows.values():
-        row.trouble, row.least_seconds = foreseen(row, earlier, plan.limits)
+        row.trouble, row.min_seconds = foreseen(row, earlier, plan.limits)
     for number in range(plan.repetitions):
         turn = number * len(variants) // plan.repetitions
         order = [*variants[turn:], *variants[:turn]][:: -1 if number % 2 else 1]
@@ -150,7 +150,7 @@ def run_rounds(
                 continue
             row.trouble = in_words(outcome, plan.limits)
             if outcome.status == "over time":
-                row.least_seconds = plan.limits.seconds
+                row.min_seconds = plan.limits.seconds
     return list(rows.values())
 
 
@@ -172,7 +172,7 @@ def foreseen(row: Row, earlier: Sequence[Row], limits: Limits) -> tuple[str, flo
 
     Returns
     -------
-    trouble, least_seconds : tuple
+    trouble, min_seconds : tuple
         In words, or empty; and the least time that it takes [s].
     """
     mine = [r for r in earlier if r.variant == row.variant and r.unknowns < row.unknowns]
@@ -181,7 +181,7 @@ def foreseen(row: Row, earlier: Sequence[Row], limits: Limits) -> tuple[str, flo
         return "", None
     last = mine[-1]
     if last.trouble:
-        return f"not run: {last.trouble.removeprefix('not run: ')} before", last.least_seconds
+        return f"not run: {last.trouble.removeprefix('not run: ')} before", last.min_seconds
     done = [r for r in mine if r.found]
     growths = (
         ("s", limits.seconds, [r.seconds for r in done]),

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.scaling import least_eigenvalue, scaled_solve
+from fe_drivetrain.common.scaling import min_eigenvalue, scaled_solve
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.drivetrain_file.entrance import AT_HUB, Entrance
@@ -200,7 +200,7 @@ def linear_body(
         raise InputError("a bearing's point stands on a rigid support besides: leave one out")
     others = np.setdiff1d(np.arange(len(left)), at)
     inner = K[np.ix_(others, others)]
-    if least_eigenvalue(inner) < _FREE:
+    if min_eigenvalue(inner) < _FREE:
         raise InputError(
             "the shaft turns freely about its axis: bearings hold no torque, so give the gearbox "
             "a stiffness against rotation about x"
@@ -259,7 +259,7 @@ def in_housings(body: LinearBody, housings: Mapping[str, ArrayLike]) -> LinearBo
                 f"{', '.join(body.bearings)}"
             )
         k = np.asarray(stiffness, dtype=float)
-        if k.shape != (6, 6) or not np.isfinite(k).all() or not least_eigenvalue(k) > _FREE:
+        if k.shape != (6, 6) or not np.isfinite(k).all() or not min_eigenvalue(k) > _FREE:
             raise InputError(
                 f"the housing of {name!r} must have a finite 6x6 stiffness that resists every "
                 "motion: take it with the bearing bonded, without the joint that the rollers are"

@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from fe_drivetrain.bearing.races import Races, contact_softness, roller_lengths, roller_motions
+from fe_drivetrain.bearing.races import Races, contact_compliance, roller_lengths, roller_motions
 from fe_drivetrain.bearing_life.coupled.body import LinearBody
 from fe_drivetrain.bearing_life.rings.assembly import RollerAssembly
 from fe_drivetrain.common.errors import InputError
 
-LEAST = 1e-6
+MINIMUM = 1e-6
 """Minimum compliance of races over that of a contact: stiffer ones get it, to have an inverse."""
 
 
@@ -49,7 +49,7 @@ def body_on_races(body: LinearBody, races: Races) -> RollerAssembly:
     bearing = races.bearing
     lengths = roller_lengths(bearing)
     values, vectors = np.linalg.eigh(races.compliance * np.outer(lengths, lengths))
-    values = np.maximum(values, LEAST * contact_softness(bearing))
+    values = np.maximum(values, MINIMUM * contact_compliance(bearing))
     stiffness = (vectors / values) @ vectors.T
     A = np.vstack(roller_motions(bearing)) * lengths[:, None]
     pushed = stiffness @ A

@@ -42,9 +42,9 @@ class Limits:
         Time [s] above the limiting speed of the bearing, where its catalogue has one.
     reversals : float
         How often the direction of rotation changed, within each chunk of steps.
-    largest_load, largest_static, largest_roller : float
+    max_load, max_static, max_roller_load : float
         Maximum of P, of P_0 and of the load of one rolling element [N].
-    largest_reference, largest_pressure, largest_use, largest_speed_rpm : float
+    max_reference, max_pressure, max_use, max_speed_rpm : float
         Radial load that has the life of the rollers by their own exponent [N], C / L10r^(1/4), of
         balls C / L10r^(1/3); Hertz pressure of a lamina or a ball [Pa];
         one over the static safety [-]; speed [1/min].
@@ -58,13 +58,13 @@ class Limits:
     lost: float = 0.0
     fast: float = 0.0
     reversals: float = 0.0
-    largest_load: float = 0.0
-    largest_static: float = 0.0
-    largest_roller: float = 0.0
-    largest_reference: float = 0.0
-    largest_pressure: float = 0.0
-    largest_use: float = 0.0
-    largest_speed_rpm: float = 0.0
+    max_load: float = 0.0
+    max_static: float = 0.0
+    max_roller_load: float = 0.0
+    max_reference: float = 0.0
+    max_pressure: float = 0.0
+    max_use: float = 0.0
+    max_speed_rpm: float = 0.0
 
     def __add__(self, other: Limits) -> Limits:
         """Times add up, extremes stay."""
@@ -77,7 +77,7 @@ class Limits:
     @property
     def static_safety(self) -> float:
         """The least S_0 [-]; infinite without a load."""
-        return 1.0 / self.largest_use if self.largest_use else np.inf
+        return 1.0 / self.max_use if self.max_use else np.inf
 
 
 def limits_of(
@@ -108,7 +108,7 @@ def limits_of(
     time, speed = steps.seconds, np.abs(steps.speed_rpm)
     turns = speed >= standing_rpm
     runs = turns & steps.converged
-    pressures = largest_pressures(rated, steps.laminae)
+    pressures = max_pressures(rated, steps.laminae)
     use = static_use(rated, steps.loads, pressures)
     of_rollers = rated.dynamic * risk ** (1.0 / (BALL if rated.balls else LINE))
     heavy = (0.5 * rated.dynamic < P) | (0.5 * rated.dynamic < of_rollers)
@@ -122,17 +122,17 @@ def limits_of(
         lost=float(time[~steps.converged].sum()),
         fast=float(time[speed > limiting].sum()),
         reversals=float(np.count_nonzero(np.diff(np.sign(steps.speed_rpm[turns])))),
-        largest_load=float(P.max(initial=0.0)),
-        largest_static=float(rated.static_load(steps.loads).max(initial=0.0)),
-        largest_roller=max(float(q.sum(axis=2).max(initial=0.0)) for q in steps.laminae),
-        largest_reference=float(of_rollers.max(initial=0.0)),
-        largest_pressure=float(pressures.max(initial=0.0)),
-        largest_use=float(use.max(initial=0.0)),
-        largest_speed_rpm=float(speed.max(initial=0.0)),
+        max_load=float(P.max(initial=0.0)),
+        max_static=float(rated.static_load(steps.loads).max(initial=0.0)),
+        max_roller_load=max(float(q.sum(axis=2).max(initial=0.0)) for q in steps.laminae),
+        max_reference=float(of_rollers.max(initial=0.0)),
+        max_pressure=float(pressures.max(initial=0.0)),
+        max_use=float(use.max(initial=0.0)),
+        max_speed_rpm=float(speed.max(initial=0.0)),
     )
 
 
-def largest_pressures(rated: RatedBearing, laminae: Sequence[Floats]) -> Floats:
+def max_pressures(rated: RatedBearing, laminae: Sequence[Floats]) -> Floats:
     """Largest Hertz pressure of each step, on either race of any row, (n,) [Pa].
 
     Parameters
@@ -164,7 +164,7 @@ def static_use(rated: RatedBearing, loads: ArrayLike, pressures: ArrayLike) -> F
     loads : array_like
         (n, 5) on the bearing [N, N m].
     pressures : array_like
-        (n,) largest of the rollers [Pa], see `largest_pressures`.
+        (n,) largest of the rollers [Pa], see `max_pressures`.
 
     Returns
     -------

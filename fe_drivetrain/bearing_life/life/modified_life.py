@@ -18,10 +18,10 @@ from fe_drivetrain.bearing_life.life.reference_life import LINE, SLOPE, RowLoads
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError, require_known
 
-MOST = 50.0
+MAXIMUM = 50.0
 """Largest life factor."""
 
-LEAST = 0.1
+MINIMUM = 0.1
 """Smallest life factor."""
 
 BRANCHES = (
@@ -152,7 +152,7 @@ def life_factor(ratio: ArrayLike, kappa: ArrayLike, contact: Contact = "line") -
     with np.errstate(invalid="ignore"):
         bracket = np.maximum(np.where(slope == 0.0, 1.0, 1.0 - slope * x**of_ratio), 0.0)
     with np.errstate(divide="ignore"):
-        return np.asarray(np.minimum(LEAST * bracket**-power, MOST))
+        return np.asarray(np.minimum(MINIMUM * bracket**-power, MAXIMUM))
 
 
 def equivalent_loads(row: RowLoads) -> Floats:

@@ -21,7 +21,7 @@ from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.bearing.race_newton import Body
 from fe_drivetrain.bearing.races import (
     SOFTEST_LEFT_OUT,
-    contact_softness,
+    contact_compliance,
     roller_lengths,
     roller_motions,
     soft_springs,
@@ -40,8 +40,8 @@ from fe_drivetrain.elasticity.interfaces.constraints import eliminate
 from fe_drivetrain.elasticity.solve.reduction import reduce
 from fe_drivetrain.elasticity.solve.solvers import solve
 from fe_drivetrain.shafts.response.entering import Factors, factor_values
-from fe_drivetrain.shafts.response.kept import kept_arrays
 from fe_drivetrain.shafts.response.model import LOADS, Model, build_model, mesh_scene
+from fe_drivetrain.shafts.response.solved_arrays import kept_arrays
 
 #: Stiffness of the springs that hold the solids together while they are solved, over a contact's.
 WEAK = 0.05
@@ -104,7 +104,7 @@ class RollerAssembly:
         lengths = roller_lengths(self.together)
         values, vectors = np.linalg.eigh(self.stiffness / np.outer(lengths, lengths))
         if count is None:
-            softness = contact_softness(self.together)
+            softness = contact_compliance(self.together)
             count = int((values < 1.0 / (SOFTEST_LEFT_OUT * softness)).sum())
         return vectors[:, :count] / lengths[:, None], np.maximum(values[:count], 0.0)
 
@@ -365,7 +365,7 @@ def _model(scene: Scene, bearings: Mapping[str, Bearing]) -> tuple[Model, Floats
             for row in bearing.rows
         )
         # few are enough to say that the scene is no mechanism; they are taken out again
-        rollers = Rollers(count=3, stiffness=1.0 / contact_softness(bearing), rows=rows)
+        rollers = Rollers(count=3, stiffness=1.0 / contact_compliance(bearing), rows=rows)
         units.append(
             unit.model_copy(update={"interface": "rollers", "rollers": rollers, "stiffness": None})
         )
@@ -385,7 +385,7 @@ def _model(scene: Scene, bearings: Mapping[str, Bearing]) -> tuple[Model, Floats
         total = sum(bearing.counts)
         loads.append(columns[:, :total])
         moments.append(columns[:, total:])
-        springs.append(np.full(total, WEAK / contact_softness(bearing)))
+        springs.append(np.full(total, WEAK / contact_compliance(bearing)))
     whole = np.concatenate(springs)
     return (
         replace(

@@ -32,10 +32,10 @@ from fe_drivetrain.elasticity.solve.reduction import reduce
 from fe_drivetrain.elasticity.solve.solid import Assembly
 from fe_drivetrain.elasticity.solve.solvers import solve
 from fe_drivetrain.foreign.assembly import base_centre, mesh_parts
-from fe_drivetrain.shafts.response.kept import kept_arrays
+from fe_drivetrain.shafts.response.solved_arrays import kept_arrays
 
 #: Maximum radius of the bore over a row's pitch radius: above, it is another bearing's.
-LARGEST_BORE = 1.25
+MAX_BORE = 1.25
 
 MADE_BY: Mapping[str, Set[str] | None] = {
     "fe_drivetrain.bearing_life.rings": None,
@@ -247,7 +247,7 @@ def contact_rows(mesh: Mesh, face: str, centre: float, bearing: Bearing) -> Floa
             raise InputError(f"row {number} of {bearing.name} has balls: give rows of rollers")
         sin, cos = np.sin(row.angle), np.cos(row.angle)
         # where the contact line of a roller meets the bore
-        if not row.radius < bore < LARGEST_BORE * row.radius:
+        if not row.radius < bore < MAX_BORE * row.radius:
             raise InputError(
                 f"{bearing.name} has a pitch diameter of {2e3 * row.radius:g} mm, but the bore of "
                 f"its housing is {2e3 * bore:.6g} mm: give a bore larger than that by about "

@@ -57,7 +57,7 @@ UNDAMPED = "assumed: without damping"
 Teeth = Annotated[int, Field(ge=5, le=5000)]
 
 #: Cosines of working pressure angles of both meshes of a planet, 10 to 35 degrees, of each other.
-MOST_SHIFTED = cos(radians(10)) / cos(radians(35))
+MAX_SHIFTED = cos(radians(10)) / cos(radians(35))
 
 
 def _inertia(of: str) -> Any:
@@ -147,12 +147,12 @@ class PlanetaryStage(_Stage):
         """Refuse planets that both sun and ring cannot have at one centre distance, or overlap."""
         p = self.planet_over_sun
         inside = (self.speed_ratio - 1 - p) / (1 + p)
-        if not 1 / MOST_SHIFTED <= inside <= MOST_SHIFTED:
+        if not 1 / MAX_SHIFTED <= inside <= MAX_SHIFTED:
             ring, sun = self.teeth or (0, 0)
             raise InputError(
                 f"PlanetaryStage: ring and planet have {ring} - {self.planet_teeth} teeth, planet "
                 f"and sun {self.planet_teeth} + {sun}, which must be equal but for profile shifts, "
-                f"within a factor of {MOST_SHIFTED:.3g}: correct one of them"
+                f"within a factor of {MAX_SHIFTED:.3g}: correct one of them"
             )
         n = self.planets
         if n > 1 and not (1 + p) * sin(pi / n) > p:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fe_drivetrain.common.cache import Cache, user_cache
-from fe_drivetrain.common.made_by import machine, source_hash
+from fe_drivetrain.common.provenance import machine, source_hash
 from fe_drivetrain.elasticity.mesh.generation import generate
 from fe_drivetrain.elasticity.mesh.mesh import Mesh
 from fe_drivetrain.geometry import NO_BANDS, Band, Bearing, Housing, MeshSizes, Shaft

@@ -7,7 +7,7 @@ from fe_drivetrain.common.arrays import Bools, Floats, Ints
 # Fewer elements take less time than threads to start. Each cut leaves three layers of elements to
 # a second round: so two slabs first, and more where they are large; an even number, so that two
 # threads end together.
-_LEAST, _LARGE, _MOST = 800, 3000, 8
+_MINIMUM, _LARGE, _MAXIMUM = 800, 3000, 8
 
 
 def slabs(points: Floats, corners: Ints) -> list[list[Ints]]:
@@ -30,9 +30,9 @@ def slabs(points: Floats, corners: Ints) -> list[list[Ints]]:
         Every element once; a small mesh is one part.
     """
     n = len(corners)
-    if n < _LEAST:
+    if n < _MINIMUM:
         return [[np.arange(n)]]
-    count = 2 * min(max(1, n // (2 * _LARGE)), _MOST // 2)
+    count = 2 * min(max(1, n // (2 * _LARGE)), _MAXIMUM // 2)
     along = points[:, int(np.ptp(points, axis=0).argmax())]
     place: Floats = np.add.reduce([along[corner] for corner in corners.T])
     # every second number is a cut of the first round, the others are in the midst of its slabs

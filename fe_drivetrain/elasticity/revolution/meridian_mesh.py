@@ -21,13 +21,13 @@ from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.elasticity.mesh.shaft_section import shaft_quadrilaterals
 from fe_drivetrain.elasticity.revolution.lagrange import Element, lagrange_element
 from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
-from fe_drivetrain.geometry.meridian import HIGHEST_ORDER, meridian_triangles, outline
+from fe_drivetrain.geometry.meridian import MAX_ORDER, meridian_triangles, outline
 from fe_drivetrain.geometry.shaft import Segment
 
 Where = Callable[[Floats, Floats], NDArray[np.bool_]]
 """Function from x and radius [m], any shape, to whether a place is meant."""
 
-HIGHEST_QUADRILATERAL = 12
+MAX_QUADRILATERAL_ORDER = 12
 
 Place = tuple[float, float]
 
@@ -143,7 +143,7 @@ def meridian(
     plan = None
     if not filleted or per_fillet == 2:
         plan = _quadrilaterals(shaft, size, layers, corners)
-    highest = HIGHEST_ORDER if plan is None else HIGHEST_QUADRILATERAL
+    highest = MAX_ORDER if plan is None else MAX_QUADRILATERAL_ORDER
     order = (4 if plan is None else 6) if order is None else order
     _check_settings(
         (

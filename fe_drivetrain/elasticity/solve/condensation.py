@@ -17,7 +17,7 @@ from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.scaling import least_eigenvalue, scaled_solve, scaled_to_unit_diagonal
+from fe_drivetrain.common.scaling import min_eigenvalue, scaled_solve, scaled_to_unit_diagonal
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import point_motions, wrench_transport
 
@@ -296,7 +296,7 @@ def supported(
     F = np.hstack([np.eye(6 * n), body.gravity])
     K, free = on_supports(body.names, body.stiffness, supports, together)
     # translations and rotations have other units: judged with a unit diagonal
-    if least_eigenvalue(K) < _FREE:
+    if min_eigenvalue(K) < _FREE:
         raise InputError(
             f"the supports {', '.join(supports)} leave the body free to move: add a support, or "
             "stiffness to one"

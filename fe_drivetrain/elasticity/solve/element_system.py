@@ -23,7 +23,7 @@ from fe_drivetrain.elasticity.operator.incompressible import (
     full_rule,
     unlocked_functions,
 )
-from fe_drivetrain.elasticity.solve.own_rows import Reduction, Share
+from fe_drivetrain.elasticity.solve.rank_rows import Reduction, Share
 from fe_drivetrain.elasticity.solve.reduction import System, motions_with_points, reduce
 from fe_drivetrain.elasticity.solve.sums import Sums, sums_of
 

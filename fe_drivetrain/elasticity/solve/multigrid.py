@@ -27,11 +27,11 @@ from fe_drivetrain.elasticity.solve.stopping import LAST_DIGIT, energy_error, is
 
 MAX_ITERATIONS = 150
 
-LANCZOS_STEPS, _MOST_LEVELS = 12, 10
+LANCZOS_STEPS, _MAX_LEVELS = 12, 10
 
 # Diagonals whose rows single precision has the range for; no entry is larger than the diagonal's.
 _SINGLE = np.finfo(np.float32)
-_SMALLEST, _LARGEST = float(_SINGLE.tiny / _SINGLE.eps), float(_SINGLE.max)
+_MINIMUM, _MAXIMUM = float(_SINGLE.tiny / _SINGLE.eps), float(_SINGLE.max)
 
 
 @dataclass(frozen=True)
@@ -247,7 +247,7 @@ def _hierarchy(system: System, options: Options) -> Hierarchy:
     elif system.prolongation is not None:
         motions, body = system.prolongation @ motions, np.zeros(K.shape[0] // 3, dtype=np.int64)
     connected = _within_bodies(K, body) if options.apart else None
-    while K.shape[0] // K.blocksize[0] > options.coarsest and len(levels) < _MOST_LEVELS:
+    while K.shape[0] // K.blocksize[0] > options.coarsest and len(levels) < _MAX_LEVELS:
         if connected is None:
             connected = symmetric_strength_of_connection(K, options.strength)
         # Six degrees of freedom an aggregate below the first level: two blocks of three.
@@ -280,15 +280,15 @@ def _smoothing(K: sparse.bsr_array, options: Options) -> tuple[Rounded, Floats, 
     sizes[sizes <= 0.0] = 1.0
     inverse = np.empty_like(diagonal)
     kernels.invert(diagonal, inverse)
-    single = options.single and sizes.min() > _SMALLEST and sizes.max() < _LARGEST
+    single = options.single and sizes.min() > _MINIMUM and sizes.max() < _MAXIMUM
     data = np.empty(K.data.shape, np.float32) if single else K.data
     if single:
         kernels.rounded(K.data, data)
     blocks = Rounded(K.indptr, K.indices, data)
-    return blocks, inverse, largest_eigenvalue(blocks, inverse)
+    return blocks, inverse, max_eigenvalue(blocks, inverse)
 
 
-def largest_eigenvalue(K: Rounded | sparse.bsr_array, inverse: Floats) -> float:
+def max_eigenvalue(K: Rounded | sparse.bsr_array, inverse: Floats) -> float:
     """An upper bound of the eigenvalues of diag^-1 K, by a few steps of Lanczos.
 
     A single flat element has an eigenvalue far above the others, that a power method hardly sees;

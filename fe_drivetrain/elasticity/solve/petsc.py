@@ -32,8 +32,8 @@ from fe_drivetrain.common.files import lasting_scratch_folder
 from fe_drivetrain.common.interpreter import interpreters
 from fe_drivetrain.common.threads import cores, thread_limits
 from fe_drivetrain.elasticity.solve.element_system import ElementSystem
-from fe_drivetrain.elasticity.solve.hand_over import blockwise, hand_over
 from fe_drivetrain.elasticity.solve.multigrid import Iteration
+from fe_drivetrain.elasticity.solve.rank_files import blockwise, hand_over
 from fe_drivetrain.elasticity.solve.reduction import System
 from fe_drivetrain.elasticity.solve.rounding import worst
 
@@ -42,7 +42,7 @@ METHODS = ("petsc", "petsc-mumps")
 Facts = dict[str, Any]
 """Messages of processes about their work; see `Ranks`."""
 
-MOST = 400
+MAXIMUM = 400
 """Iterations: 30 to 50 of GAMG are usual, a rigid spherical joint took 94 and more."""
 
 MPI_VARIABLE = "FE_DRIVETRAIN_MPI"
@@ -155,7 +155,7 @@ class Ranks:
         """
         self._number += 1
         np.save(self._folder / f"f-{self._number}.npy", blockwise(F, self._order))
-        self._say({"number": self._number, "tolerance": tolerance, "most": MOST})
+        self._say({"number": self._number, "tolerance": tolerance, "most": MAXIMUM})
         found = self._answer()
         self.facts = self.facts | found
         files = [

@@ -38,7 +38,7 @@ if "fe_drivetrain" not in sys.modules:  # started by its path
     _package()
 
 from fe_drivetrain.common import memory  # noqa: E402
-from fe_drivetrain.elasticity.solve import own_rows, stopping  # noqa: E402
+from fe_drivetrain.elasticity.solve import rank_rows, stopping  # noqa: E402
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -144,18 +144,18 @@ class Rank:
 
     def _made(self, setup: dict[str, Any]) -> tuple[Any, Any, int]:
         """Rows like those of `_read`, and the number of elements that they were made of."""
-        share, reductions = own_rows.kept(self.folder / f"share-{self.comm.rank}.npz")
-        K = own_rows.assembled(share)
+        share, reductions = rank_rows.kept(self.folder / f"share-{self.comm.rank}.npz")
+        K = rank_rows.assembled(share)
         n = 3 * self.blocks
-        trace = self.comm.tompi4py().allreduce(own_rows.own_trace(K, share))
+        trace = self.comm.tompi4py().allreduce(rank_rows.own_trace(K, share))
         mean, *others = ((trace + r.trace) / n for r in reductions)
-        rows = own_rows.own_rows(K, share, reductions[0], mean)
+        rows = rank_rows.own_rows(K, share, reductions[0], mean)
         apart = None
         if setup["joined"]:
             ground = setup["ground"] * mean
-            apart = own_rows.own_rows(K, share, reductions[1], others[0], ground, True)
+            apart = rank_rows.own_rows(K, share, reductions[1], others[0], ground, True)
         elif setup["apart"]:
-            apart = own_rows.own_rows(K, share, reductions[0], mean, within_bodies=True)
+            apart = rank_rows.own_rows(K, share, reductions[0], mean, within_bodies=True)
         return rows, apart, len(share.cells)
 
     def _matrix(self, rows: Any) -> Any:

@@ -20,7 +20,7 @@ from fe_drivetrain.elasticity.interfaces.constraints import Elimination, Referen
 from fe_drivetrain.elasticity.mesh.bodies import connected_bodies
 from fe_drivetrain.elasticity.mesh.shapes import element_kind
 from fe_drivetrain.elasticity.operator import graph, kernels
-from fe_drivetrain.elasticity.solve.own_rows import passed_on
+from fe_drivetrain.elasticity.solve.rank_rows import passed_on
 from fe_drivetrain.elasticity.solve.sums import Sums, sums_of
 
 #: Ground under the faces of joints, relative to the mean stiffness of a degree of freedom. It is in

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.files import atomic_path
-from fe_drivetrain.common.scaling import least_eigenvalue
+from fe_drivetrain.common.scaling import min_eigenvalue
 from fe_drivetrain.export.formats.superelement_json import Rows, read_content
 from fe_drivetrain.export.superelement import FRAME
 
@@ -36,7 +36,7 @@ class StiffnessMatrix(BaseModel):
         if np.abs(k - k.T).max() > 1e-9 * size:
             raise ValueError(f"stiffness {self.name!r} is not symmetric")
         # Translations and rotations differ in unit: judge definiteness with a unit diagonal.
-        if least_eigenvalue(k) < -1e-9:
+        if min_eigenvalue(k) < -1e-9:
             raise ValueError(f"stiffness {self.name!r} is not positive semidefinite")
         return self
 

@@ -16,7 +16,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import require_readable
-from fe_drivetrain.common.scaling import largest_difference
+from fe_drivetrain.common.scaling import max_difference
 from fe_drivetrain.export.formats.statement import comment_lines, statement
 from fe_drivetrain.export.superelement import ALLOWED, Superelement
 
@@ -273,7 +273,7 @@ def _rigid_mass(element: Superelement) -> tuple[float, Floats]:
     rigid = np.zeros((6, 6))
     rigid[:3, :3] = mass * np.eye(3)
     rigid[3:, 3:] = M[3:, 3:]
-    if largest_difference(rigid, M) > ALLOWED:
+    if max_difference(rigid, M) > ALLOWED:
         raise InputError(
             f"superelement {element.name!r} has a mass that is no rigid body's with its centre at "
             f"{element.points[0]}, and SubDyn's joints take no other: leave the mass out"

@@ -27,7 +27,7 @@ from scipy import linalg, sparse
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError, MissingToolError
-from fe_drivetrain.common.scaling import diagonal_roots, largest_difference, scaled_to_unit_diagonal
+from fe_drivetrain.common.scaling import diagonal_roots, max_difference, scaled_to_unit_diagonal
 from fe_drivetrain.common.spatial import point_motions, wrench_transport
 from fe_drivetrain.export.craig_bampton import CraigBampton
 from fe_drivetrain.export.lumped_shaft import rigid_mass
@@ -405,7 +405,7 @@ def bodies_of(body: Superelement) -> list[tuple[float, Floats, Floats]]:
         centre = np.array([block[5, 1], block[3, 2], block[4, 0]]) / mass
         rebuilt[rows, rows] = rigid_mass(mass, centre, block[3:, 3:])
         found.append((mass, centre, block[3:, 3:]))
-    apart = largest_difference(rebuilt, body.mass)
+    apart = max_difference(rebuilt, body.mass)
     if apart > ALLOWED:
         raise InputError(
             f"superelement {body.name!r} has the mass of an elastic body, not of rigid ones at its "

@@ -15,7 +15,7 @@ from fe_drivetrain.report.pictures.view import View
 Place = tuple[float, float, float]
 
 _COLOUR = "#6ba292"
-_MOST = 16  # names in a picture
+_MAXIMUM = 16  # names in a picture
 _FROM = (0.6, 1.0, -0.55)
 _AWAY = 130  # pixels from a place to its name
 
@@ -50,7 +50,7 @@ def picture_of_part(
         sheet.solid(surface, sharp_edges(surface), _COLOUR)
         middle = view.project(points.mean(axis=0))
         seen = [mark for mark in marks if np.dot(mark[3], view.forward) <= 0.0]
-        for name, middle_of_it, reach, _ in seen[:_MOST]:
+        for name, middle_of_it, reach, _ in seen[:_MAXIMUM]:
             towards = -np.sign(np.dot(reach, view.forward))
             place = np.array(middle_of_it) + towards * np.array(reach)
             away = view.project(place) - middle

@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 
     from fe_drivetrain.drivetrain_file.scene import Scene
 
-MOST_FACES = 20_000
+MAX_FACES = 20_000
 """From a quarter of as many facets on curved ones are drawn by their corners."""
 WIDTH, MARGIN, STRIP = 900, 30, 56
 """Pixels of the picture, round the body, and below it for axes and scale."""
-_LEAST, _MOST = 140, 420  # pixels of its height
+_MINIMUM, _MAXIMUM = 140, 420  # pixels of its height
 _FINER = 2  # drawn larger, so that lines are smooth
 _EYE = np.array([-0.55, -1.0, 0.55]) / math.sqrt(0.55**2 + 1.0 + 0.55**2)
 _RIGHT = np.array([1.0, -0.55, 0.0]) / math.hypot(1.0, 0.55)
@@ -100,9 +100,9 @@ def sketch(*bodies: Body | Shaft | list[Faces]) -> bytes:
     seen = [_seen(faces.loops) for _, faces in groups]
     points = np.concatenate([at.reshape(-1, 2) for at in seen])
     low, high = points.min(axis=0), points.max(axis=0)
-    room = np.array([WIDTH, _MOST]) - 2 * MARGIN
+    room = np.array([WIDTH, _MAXIMUM]) - 2 * MARGIN
     scale = float((room / np.maximum(high - low, 1e-12 * float(np.abs(points).max()))).min())
-    height = max(_LEAST, round(scale * (high - low)[1]) + 2 * MARGIN)
+    height = max(_MINIMUM, round(scale * (high - low)[1]) + 2 * MARGIN)
     middle, half = 0.5 * (low + high), 0.5 * np.array([WIDTH, height])
     image = Image.new("RGB", (_FINER * WIDTH, _FINER * (height + STRIP)), "white")
     draw = ImageDraw.Draw(image)
@@ -155,7 +155,7 @@ def surface(points: Floats, cells: Ints) -> list[Faces]:
     facets = outside(cells)
     corners = 3 if facets.shape[1] in (3, 6) else 4
     at = points[facets]
-    if facets.shape[1] in (3, 4) or len(facets) > MOST_FACES // 4:
+    if facets.shape[1] in (3, 4) or len(facets) > MAX_FACES // 4:
         loops = at[:, :corners]
         return [Faces(loops, np.ones(loops.shape[:2], dtype=bool))]
     if corners == 3:
@@ -165,7 +165,7 @@ def surface(points: Floats, cells: Ints) -> list[Faces]:
     if at.shape[1] == 8:  # of serendipity elements: the middle follows from the rest
         middle = 0.5 * at[:, 4:].sum(axis=1) - 0.25 * at[:, :4].sum(axis=1)
         at = np.concatenate([at, middle[:, None]], axis=1)
-    return [_in_pieces(at, 3 if len(at) < MOST_FACES // 40 else 2)]
+    return [_in_pieces(at, 3 if len(at) < MAX_FACES // 40 else 2)]
 
 
 def _in_pieces(at: Floats, n: int) -> Faces:

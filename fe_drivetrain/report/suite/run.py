@@ -16,8 +16,8 @@ import numpy as np
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import Pool, pool
-from fe_drivetrain.common.made_by import arithmetic, program_hash
 from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.common.provenance import arithmetic, program_hash
 from fe_drivetrain.common.steps import Clock
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.scaling import largest_difference
+from fe_drivetrain.common.scaling import max_difference
 from fe_drivetrain.common.spatial import along_x, wrench_transport
 from fe_drivetrain.drivetrain_file.materials import Material
 
@@ -193,7 +193,7 @@ def element_integrals(
     while not section.uniform:
         points *= 2
         finer = _integrate(section, material, shear, begin, end, points)
-        change = largest_difference(result.flexibility, finer.flexibility)
+        change = max_difference(result.flexibility, finer.flexibility)
         result = finer
         # Gauss converges geometrically: after a change this small only rounding is left.
         if change <= 1e-12:

@@ -1,7 +1,7 @@
 from .ablation import simplified as simplified
 from .adviser import advise as advise
 from .adviser import banded_assembly as banded_assembly
-from .assembly_bands import LEAST_ORDER as LEAST_ORDER
+from .assembly_bands import MIN_ORDER as MIN_ORDER
 from .assembly_bands import all_reaction_errors as all_reaction_errors
 from .assembly_bands import cached_reaction_errors as cached_reaction_errors
 from .assembly_bands import reaction_error as reaction_error

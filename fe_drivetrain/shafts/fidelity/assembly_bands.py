@@ -25,29 +25,29 @@ import numpy as np
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.cache import Cache, user_cache
-from fe_drivetrain.common.made_by import source_hash
+from fe_drivetrain.common.provenance import source_hash
 from fe_drivetrain.comparison.convergence import DOUBTFUL, Behaviour, grid_convergence
 from fe_drivetrain.elasticity.solve.error_estimate import SAFETY, Lame, recovered_work
-from fe_drivetrain.geometry import MOST_TURN, MeshSizes
+from fe_drivetrain.geometry import MAX_TURN, MeshSizes
 from fe_drivetrain.shafts.fidelity.shaft_bands import APART
 from fe_drivetrain.shafts.response.cached import solved_content
 from fe_drivetrain.shafts.response.influence_fields import (
     influences_of_all_reactions,
     reaction_influences,
 )
-from fe_drivetrain.shafts.response.makers import mesh_hash, solved_by
 from fe_drivetrain.shafts.response.model import Model
+from fe_drivetrain.shafts.response.solution_keys import mesh_hash, solved_by
 from fe_drivetrain.shafts.response.unit_loads import Response
 
 #: Factors on mesh sizes of the two coarser assemblies.
 COARSER = (1.8, 1.35)
 
 #: Least ratio of the coarsest mean size of elements of a series to the finest (Celik et al. 2008).
-LEAST_RATIO = 1.3
+MIN_RATIO = 1.3
 
 #: Stress is singular where parts meet: no better order is relied upon. Of energy it is 1 at a
 #: crack, the sharpest of notches; half of that is the least that Oberkampf and Roy (2010) believe.
-LEAST_ORDER = 0.5
+MIN_ORDER = 0.5
 
 _SHOWN: dict[Behaviour, str] = {
     "monotone": "three meshes converge",
@@ -58,7 +58,7 @@ _SHOWN: dict[Behaviour, str] = {
 _FILE = "assembly_bands.py"  # of the estimate, beside the rooms that make a solution
 _TWO = "of coarser meshes there is only one, which shows no order of convergence"
 _NONE = (
-    f"coarser meshes cannot be made, or their elements are not {LEAST_RATIO:g} times as large: "
+    f"coarser meshes cannot be made, or their elements are not {MIN_RATIO:g} times as large: "
     "there is no series of meshes"
 )
 
@@ -111,7 +111,7 @@ def finer_mesh(sizes: MeshSizes | None, band: float) -> str:
     wider = f"ask for {argument('tolerance', round(enough / 100.0, 12))}" if enough < 100.0 else ""
     if sizes is None:
         return wider or "make its mesh finer"
-    half = sizes.scaled(0.5, min(2 * sizes.elements_per_turn, MOST_TURN))
+    half = sizes.scaled(0.5, min(2 * sizes.elements_per_turn, MAX_TURN))
     keys = ("shaft", "bearing", "bearing_edge", "housing", "elements_per_turn")
     smaller = {f"mesh.{key}": _rounded(getattr(half, key)) for key in keys}
     given = argument("change_scene.changes", smaller)
@@ -153,7 +153,7 @@ def assembly_band(
     for number in range(len(sizes) - 2, -1, -1):  # what folded over was meshed again, finer
         if sizes[number] > APART * sizes[kept[0]]:
             kept.insert(0, number)
-    if sizes[kept[0]] < LEAST_RATIO * sizes[-1]:
+    if sizes[kept[0]] < MIN_RATIO * sizes[-1]:
         kept = kept[-1:]
     h, table = np.array(sizes)[kept], np.array(values)[kept]
     if len(kept) == 1:
@@ -162,7 +162,7 @@ def assembly_band(
         missing = np.linalg.norm(table[0] - table[1]) / (h[0] / h[1] - 1.0)
         return AssemblyBand(DOUBTFUL * float(missing) / size, own, tuple(h), _TWO)
     found = [
-        grid_convergence(h, column, least_order=LEAST_ORDER)
+        grid_convergence(h, column, min_order=MIN_ORDER)
         for column in table.T
         if np.abs(column).max() > 1e-6 * size  # the rest is the mesh's asymmetry
     ]

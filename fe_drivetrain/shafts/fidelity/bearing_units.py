@@ -39,7 +39,7 @@ from fe_drivetrain.shafts.fidelity.unit_faces import (
 )
 from fe_drivetrain.shafts.response.cached import solved_content
 from fe_drivetrain.shafts.response.foot_contact import foot_holds, is_clamped
-from fe_drivetrain.shafts.response.kept import kept_together
+from fe_drivetrain.shafts.response.solved_arrays import kept_together
 
 _FREE = 1e-9  # of the largest stiffness: rollers hold a motion by far more, or not at all
 

@@ -24,7 +24,7 @@ from fe_drivetrain.shafts.fidelity.unit_faces import (
     without_shaft,
 )
 from fe_drivetrain.shafts.response.cached import solved_content
-from fe_drivetrain.shafts.response.kept import kept_together
+from fe_drivetrain.shafts.response.solved_arrays import kept_together
 
 
 def coupled_stiffness(

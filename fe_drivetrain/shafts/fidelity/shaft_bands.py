@@ -15,7 +15,7 @@ corners of rings decide, as on shafts with fillets, whose elements are of order 
 it falls from order 4 to 5 as at a crack, and of the band its safety factor alone is left over. So
 three orders are solved, and the band reaches to the limit at half of the rate that these show where
 that is slower than a crack's, and to that at half of a crack's rate at most, as series of meshes do
-(`assembly_bands.LEAST_ORDER`). With q the share of the error that one order more leaves, it is then
+(`assembly_bands.MIN_ORDER`). With q the share of the error that one order more leaves, it is then
 1.25 (1 + sqrt q) times that error.
 
 The solid is compared with a coarser mesh of it, by the mean size of the elements that there are,

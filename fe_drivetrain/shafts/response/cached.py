@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fe_drivetrain.common.cache import Cache, user_cache
-from fe_drivetrain.common.made_by import file_digest
+from fe_drivetrain.common.provenance import file_digest
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.elasticity.solve.solvers import Diagnostics
-from fe_drivetrain.shafts.response.makers import mesh_hash, solved_by
 from fe_drivetrain.shafts.response.model import Model
+from fe_drivetrain.shafts.response.solution_keys import mesh_hash, solved_by
 from fe_drivetrain.shafts.response.unit_loads import Response, unit_load_response
 
 Arrays = dict[str, NDArray[Any]]

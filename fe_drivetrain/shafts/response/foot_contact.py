@@ -22,7 +22,7 @@ from fe_drivetrain.elasticity.solve.solvers import solve
 from fe_drivetrain.foreign.assembly import bolt_springs, face_middle
 from fe_drivetrain.foreign.foot import ClampedFoot, foot_patches
 from fe_drivetrain.foreign.housing import placed_housing
-from fe_drivetrain.shafts.response.makers import mesh_hash, solved_by
+from fe_drivetrain.shafts.response.solution_keys import mesh_hash, solved_by
 
 # Iterations of multigrid, over those of other solids: 54 to 138 were seen with rigid seats, and 27
 # are expected. Loads are many, so that too few cost ten times the direct solution.

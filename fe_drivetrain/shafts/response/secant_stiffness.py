@@ -23,7 +23,7 @@ from fe_drivetrain.common.spatial import wrench_transport
 
 #: Of the root mean square rotation: a case that turns the bearing by less has no secant of its own,
 #: for M / theta tends to infinity wherever anything else causes a moment.
-LEAST_ROTATION = 0.1
+MIN_ROTATION = 0.1
 
 #: Relative scatter from which a single spring is called the wrong form.
 SCATTERS = 0.01
@@ -58,7 +58,7 @@ class Secant:
         is given; small rotations count little.
     secants : Floats
         (m,) of each case by itself [N m/rad]; NaN of those that turn the bearing by less than
-        `LEAST_ROTATION`.
+        `MIN_ROTATION`.
     """
 
     component: int
@@ -150,7 +150,7 @@ def secant(loads: Floats, motions: Floats, component: int, weights: Floats | Non
     stiffness = float(M @ theta) / square
     rest = float(np.linalg.norm(M - stiffness * theta))
     size = abs(stiffness) * np.sqrt(square)
-    kept = np.abs(each_theta) >= LEAST_ROTATION * np.sqrt(square / len(theta))
+    kept = np.abs(each_theta) >= MIN_ROTATION * np.sqrt(square / len(theta))
     secants = np.full(len(theta), np.nan)
     secants[kept] = each_M[kept] / each_theta[kept]
     return Secant(component, stiffness, rest / size if rest else 0.0, secants)

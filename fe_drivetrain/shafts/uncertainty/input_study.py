@@ -17,8 +17,8 @@ from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import Pool, pool
-from fe_drivetrain.common.made_by import program_hash
 from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.common.provenance import program_hash
 from fe_drivetrain.common.threads import cores
 from fe_drivetrain.drivetrain_file.scene import Coupling, Scene, Spread
 from fe_drivetrain.shafts.fidelity.adviser import Advice, LevelResult, advise
@@ -34,7 +34,7 @@ from fe_drivetrain.shafts.fidelity.quantity import Quantity
 from fe_drivetrain.shafts.fidelity.shafts import condensed_shaft, meridian_shaft
 from fe_drivetrain.shafts.response.cached import whole_content
 from fe_drivetrain.shafts.response.entering import Factors, factor_values
-from fe_drivetrain.shafts.response.makers import solved_by
+from fe_drivetrain.shafts.response.solution_keys import solved_by
 from fe_drivetrain.shafts.uncertainty.resolver import Resolver
 from fe_drivetrain.shafts.uncertainty.response_surface import (
     UnitSurface,

@@ -30,7 +30,7 @@ from fe_drivetrain.shafts.uncertainty.sampling import (
 
 #: Least relative step of the design: below it the noise of a new mesh, some 1e-4 of the
 #: stiffness, would drown the difference.
-LEAST_REACH = 0.01
+MIN_REACH = 0.01
 
 #: Values are taken from this quantile to the opposite one.
 EDGE = 0.05
@@ -124,7 +124,7 @@ def _design(scene: Scene, spreads: Mapping[str, Spread], seed: int) -> _Design:
     steps = []
     for value, spread in zip(values, known, strict=True):
         low, high = (math.log(spread.ppf(q) / value) for q in (EDGE, 1.0 - EDGE))
-        steps.append(np.array([min(low, -LEAST_REACH), max(high, LEAST_REACH)]))
+        steps.append(np.array([min(low, -MIN_REACH), max(high, MIN_REACH)]))
     moves = [
         {key: value * math.exp(step)}
         for key, value, t in zip(spreads, values, steps, strict=True)

@@ -2,7 +2,7 @@
 
 Widths are powers of two, and limits whole multiples of them, so that classes of one history are
 unions of those of another, and adding them is exact. A class is no wider than one 64th of the range
-of the history that spreads widest, or two `MOST`-ths of the range of all.
+of the history that spreads widest, or two `MAXIMUM`-ths of the range of all.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from numpy.typing import ArrayLike
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.short_repr import short_repr
 
-LEAST = 64
+MINIMUM = 64
 """Classes over the range of a history, at least."""
 
-MOST = 1024
+MAXIMUM = 1024
 """Classes of each quantity that a sum keeps, at most: histories may be far apart."""
 
 _FINEST = -60  # the power of two of a history that is zero
@@ -62,7 +62,7 @@ class Classes:
 
 
 def in_classes(
-    *columns: ArrayLike, weights: ArrayLike, least: int = LEAST, power: int | None = None
+    *columns: ArrayLike, weights: ArrayLike, least: int = MINIMUM, power: int | None = None
 ) -> Classes:
     """Put samples into classes.
 
@@ -111,7 +111,7 @@ def added(parts: Sequence[Classes]) -> Classes:
         axes = range(len(powers))
         first = tuple(min(part.first[axis] for part in coarse) for axis in axes)
         last = [max(part.first[axis] + part.amount.shape[axis] for part in coarse) for axis in axes]
-        too_many = [end - start > MOST for start, end in zip(first, last, strict=True)]
+        too_many = [end - start > MAXIMUM for start, end in zip(first, last, strict=True)]
         if not any(too_many):
             break
         powers = tuple(power + many for power, many in zip(powers, too_many, strict=True))

@@ -46,7 +46,7 @@ class Counting:
     ----------
     power : int
         Classes of ranges and of levels are 2^power wide, in the unit of the history; twice as wide,
-        and twice again, where there would be more than `classes.MOST` of them.
+        and twice again, where there would be more than `classes.MAXIMUM` of them.
     slopes : tuple of float
         Exponents of S-N curves.
     """

@@ -72,7 +72,7 @@ class Rotor:
     stall_width: float = _given(
         math.radians(3.0), "rad", "Leishman and Beddoes 1989, S1 = S2, usual for static polars"
     )
-    least_drag: float = _given(0.010, "-", "lift to drag ratio about 100 at the design angle")
+    min_drag: float = _given(0.010, "-", "lift to drag ratio about 100 at the design angle")
     elements: int = field(
         default=10, metadata={"unit": "-", "source": "Gauss-Legendre points along the blade"}
     )
@@ -174,7 +174,7 @@ def _polar(rotor: Rotor, attack: Floats, sin: Floats, cos: Floats) -> tuple[Floa
     full = rotor.lift_slope * (sin * cos_zero - cos * sin_zero)
     normal = full * (0.5 * (1.0 + root_attached)) ** 2
     suction = full * sin * root_attached
-    return normal * cos + suction * sin, rotor.least_drag + normal * sin - suction * cos
+    return normal * cos + suction * sin, rotor.min_drag + normal * sin - suction * cos
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,7 +15,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import why_unreadable
 from fe_drivetrain.common.regular_files import require_regular
 
-_MOST_BYTES = 8_000_000_000  # of one file of loads or wind, which memory holds whole
+_MAX_BYTES = 8_000_000_000  # of one file of loads or wind, which memory holds whole
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +99,7 @@ def existing_file(path: str | os.PathLike[str], kind: str = "hub loads") -> Path
     """The path of a regular file that may be read, and that memory can hold; else `InputError`."""
     file = Path(path)
     try:
-        require_regular(file, _MOST_BYTES)
+        require_regular(file, _MAX_BYTES)
         if not os.access(file, os.R_OK):
             raise PermissionError
     except (OSError, ValueError) as error:

@@ -35,7 +35,7 @@ TORQUE_SPEED = 0.99
 CUT_IN_SHARE, FULL_SHARE = 70.16224 / 121.6805, 91.21091 / 121.6805
 """Speeds over that of rated torque where region 1 1/2 begins and ends (Jonkman 2009, Table 7-1)."""
 
-LEAST_PITCH = math.radians(1.0)
+MIN_PITCH = math.radians(1.0)
 """From here on torque is that of region 3 whatever the speed, so that no gust brings dips."""
 
 _AZIMUTHS = 12
@@ -125,7 +125,7 @@ class Controller:
 
     def torque(self, speed: float, pitch: float = 0.0) -> float:
         """Torque of the generator at a speed [rad/s] and pitch [rad], without rate limit [N m]."""
-        if speed >= self.torque_speed or pitch >= LEAST_PITCH:
+        if speed >= self.torque_speed or pitch >= MIN_PITCH:
             if self.tuning.constant_power:
                 return self.rated_power / max(speed, 0.5 * self.rated_speed)
             return self.rated_torque
@@ -278,7 +278,7 @@ def steady_operation(turbine: Turbine, controller: Controller, wind_speed: float
     rotor = turbine.rotor
     operating_point(rotor, wind_speed)  # says what is wrong with the wind speed
     rated = controller.rated_speed
-    torque = controller.torque(rated, LEAST_PITCH)
+    torque = controller.torque(rated, MIN_PITCH)
 
     def left(pitch: float) -> float:
         return steady_state(rotor, wind_speed, rated, pitch).torque - torque

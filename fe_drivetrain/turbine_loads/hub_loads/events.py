@@ -50,7 +50,7 @@ class Statistics:
         Ranges.
     mean : float
         Median of the means.
-    least_mean : float or None
+    min_mean : float or None
         Smallest mean; not made to one where there is none.
     equivalent : float or None
         Damage-equivalent load at 1 Hz, slope 6; not made to one where there is none.
@@ -62,7 +62,7 @@ class Statistics:
     largest: float
     median: float
     mean: float
-    least_mean: float | None
+    min_mean: float | None
     equivalent: float | None
     begin: float
     end: float
@@ -234,12 +234,12 @@ def drawn_cycles(asked: Statistics, random: np.random.Generator) -> tuple[Floats
     side = np.zeros(len(ranges))
     side[1:] = random.permutation(np.repeat([1.0, -1.0], half))
     shift = side * random.uniform(0.0, 1.0, len(ranges))
-    if asked.least_mean is None:
+    if asked.min_mean is None:
         return ranges, asked.mean + shift * room
-    deepest = asked.mean - asked.least_mean
+    deepest = asked.mean - asked.min_mean
     if deepest > room[-1]:
         raise InputError(
-            f"event: the least mean {asked.least_mean:.3g} times rated torque leaves the smallest "
+            f"event: the least mean {asked.min_mean:.3g} times rated torque leaves the smallest "
             f"cycle, {ranges[-1]:.3g}, outside of the largest: raise one of them"
         )
     below = np.flatnonzero(side < 0.0)
@@ -278,15 +278,15 @@ def laid_out(
     rising[0] = falling[0] = False
     rise = sorted(zip(high[rising], low[rising], strict=True))
     fall = sorted(zip(low[falling], high[falling], strict=True), reverse=True)
-    of_largest = [[high[0]], [low[0]]]
+    of_max = [[high[0]], [low[0]]]
     if starts:
         first = [pair for pair in fall if pair[0] <= asked.begin]
         last = [pair for pair in fall if pair[0] > asked.begin]
-        parts = [*first, of_largest[1], *rise, of_largest[0], *last]
+        parts = [*first, of_max[1], *rise, of_max[0], *last]
     else:
         first = [pair for pair in rise if pair[0] > asked.begin]
         last = [pair for pair in rise if pair[0] <= asked.begin]
-        parts = [*first, of_largest[0], *fall, of_largest[1], *last]
+        parts = [*first, of_max[0], *fall, of_max[1], *last]
     return np.array([asked.begin, *(value for part in parts for value in part), asked.end])
 
 

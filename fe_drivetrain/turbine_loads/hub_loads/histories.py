@@ -24,7 +24,7 @@ from fe_drivetrain.turbine_loads.hub_loads.point_loads import PointLoads
 
 UNITS = ("N", "N", "N", "N m", "N m", "N m")
 
-LARGEST_LOAD = 1e12
+MAX_LOAD = 1e12
 """A hub load beyond this (N, N m) is a typing or unit error."""
 
 MIN_SAMPLES = 3
@@ -210,11 +210,11 @@ def require_sound(
                 "samples; a finite number is needed, so repair it or cut the history there"
             )
     for name, values in columns.items():
-        huge = np.flatnonzero(np.abs(values) > LARGEST_LOAD)
+        huge = np.flatnonzero(np.abs(values) > MAX_LOAD)
         if huge.size:
             raise InputError(
                 f"{source}: {name} is {values[huge[0]]:.3g} N or N m at {at(huge[0])}; a load must "
-                f"be at most {LARGEST_LOAD:.0e}, so check the unit in the column's heading"
+                f"be at most {MAX_LOAD:.0e}, so check the unit in the column's heading"
             )
     with np.errstate(over="ignore"):
         steps = np.diff(time)

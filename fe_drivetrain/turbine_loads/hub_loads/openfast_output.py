@@ -23,7 +23,7 @@ from fe_drivetrain.turbine_loads.hub_loads.channels import Channel, parse_number
 
 _WITH_TIME, _UNPACKED, _LONG_NAMES = 1, 3, 4
 _HEADER_LINES, _NAME_LINE = 8, 6
-_MOST_HEADER = 12  # bytes of a binary file up to its number of samples
+_MAX_HEADER = 12  # bytes of a binary file up to its number of samples
 _BLOCK = 1 << 21  # values that are unpacked at once
 
 
@@ -125,7 +125,7 @@ def _binary(
             count = min(rows, samples - start)
             part = _numbers(stream, kind.str, count * channels).reshape(count, channels)
             values[start : start + count] = (part[:, columns] - offset[columns]) / scale[columns]
-        if _begins_a_run(stream.read(_MOST_HEADER), size):
+        if _begins_a_run(stream.read(_MAX_HEADER), size):
             raise _MoreRunsError(
                 f"a second run begins after the {samples} samples of the first: give each run a "
                 "file of its own"
@@ -137,7 +137,7 @@ def _binary(
 
 def _begins_a_run(block: bytes, size: int) -> bool:
     """Whether bytes after a run are the header of another; other bytes may follow old files."""
-    if len(block) < _MOST_HEADER:
+    if len(block) < _MAX_HEADER:
         return False
     (identifier,) = np.frombuffer(block[:2], "<i2").tolist()
     at = 4 if identifier == _LONG_NAMES else 2

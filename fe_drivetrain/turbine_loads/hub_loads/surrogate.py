@@ -28,7 +28,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache, user_cache
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.made_by import machine, source_hash
+from fe_drivetrain.common.provenance import machine, source_hash
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.hub_loads.aero_rotor import (
     CUT_IN,

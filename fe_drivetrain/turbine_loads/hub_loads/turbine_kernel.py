@@ -55,7 +55,7 @@ class Control(NamedTuple):
     rated_torque: float
     rated_power: float
     constant_power: bool
-    least_pitch: float
+    min_pitch: float
     proportional: float
     integral: float
     doubling: float
@@ -228,7 +228,7 @@ def solved(matrix: Floats, right: Floats, result: Floats) -> None:
 @njit(cache=True)
 def asked_torque(control: Control, speed: float, pitch: float) -> float:
     """Torque that `Controller.torque` asks for."""
-    if speed >= control.torque_speed or pitch >= control.least_pitch:
+    if speed >= control.torque_speed or pitch >= control.min_pitch:
         if control.constant_power:
             return control.rated_power / max(speed, 0.5 * control.rated_speed)
         return control.rated_torque

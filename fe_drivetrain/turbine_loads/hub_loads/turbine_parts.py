@@ -13,7 +13,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.turbine_loads.hub_loads.controller import (
     CUT_IN_SHARE,
     FULL_SHARE,
-    LEAST_PITCH,
+    MIN_PITCH,
     SLIP,
     Controller,
 )
@@ -121,7 +121,7 @@ def kernel_parts(turbine: Turbine, physics: Physics, inflow: Inflow):  # type: i
         zero_lift=rotor.zero_lift_angle,
         stall=rotor.stall_angle,
         stall_width=rotor.stall_width,
-        drag=rotor.least_drag,
+        drag=rotor.min_drag,
         density=rotor.air_density,
         tip_radius=rotor.radius,
         tilt=rotor.shaft_tilt,
@@ -175,7 +175,7 @@ def kernel_control(controller: Controller, held: bool):  # type: ignore[no-untyp
         rated_torque=controller.rated_torque,
         rated_power=controller.rated_power,
         constant_power=tuning.constant_power,
-        least_pitch=LEAST_PITCH,
+        min_pitch=MIN_PITCH,
         proportional=controller.proportional,
         integral=controller.integral,
         doubling=controller.doubling,

@@ -7,7 +7,7 @@ import json
 from functools import cache as once
 from typing import Any
 
-from fe_drivetrain.common.made_by import arithmetic, source_hash, versions
+from fe_drivetrain.common.provenance import arithmetic, source_hash, versions
 from fe_drivetrain.elasticity.mesh.mesh import Mesh
 
 _ROOMS = (

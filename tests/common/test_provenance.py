@@ -3,7 +3,7 @@
 import subprocess
 from pathlib import Path
 
-from fe_drivetrain.common.made_by import commit_of
+from fe_drivetrain.common.provenance import commit_of
 
 
 def test_the_commit_is_that_of_the_clone_or_worktree(tmp_path: Path) -> None:

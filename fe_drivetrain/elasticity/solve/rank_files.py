@@ -11,7 +11,7 @@ from scipy import sparse
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.elasticity.mesh.bodies import connected_bodies
 from fe_drivetrain.elasticity.solve.element_system import ElementSystem, cut, parts, sizes
-from fe_drivetrain.elasticity.solve.own_rows import keep
+from fe_drivetrain.elasticity.solve.rank_rows import keep
 from fe_drivetrain.elasticity.solve.reduction import GROUND, Elements, System
 from fe_drivetrain.elasticity.solve.sums import Sums
 

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fe_drivetrain.common.cache import Cache, user_cache
-from fe_drivetrain.common.made_by import source_hash
+from fe_drivetrain.common.provenance import source_hash
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.shafts.response.cached import solved_content
-from fe_drivetrain.shafts.response.makers import solved_by
+from fe_drivetrain.shafts.response.solution_keys import solved_by
 
 
 def kept_arrays(
