@@ -23,7 +23,7 @@ from fe_drivetrain.export import (
 )
 from fe_drivetrain.report import Cell
 from fe_drivetrain.report.suite import Page
-from fe_drivetrain.shafts.fidelity import Quantity, shaft_level
+from fe_drivetrain.shafts.fidelity import ERROR_AGAINST_LAST, Quantity, shaft_level
 
 #: Level of the shaft that is written: exact elasticity of a body of revolution.
 LEVEL = 2
@@ -67,7 +67,6 @@ def stiffness_files(page: Page, folder: Path, scene: Scene, quantity: Quantity) 
         source="a free body",
     )
     (level_two,) = [level for level in page.tables["levels"] if level["level"] == LEVEL]
-    error = level_two["error against the last level [-]"]
     found = _rebuilt(scene, quantity, shaft, seats)
     page.vanishes(
         f"{quantity.name} of a model made of the files, less that of level {LEVEL}, relative",
@@ -82,8 +81,8 @@ def stiffness_files(page: Page, folder: Path, scene: Scene, quantity: Quantity) 
         "points, with the rings that stand on it, and every bearing with its housing on the "
         "ground (the nose, where there is one, stays in the scene). Put together, with the "
         "gearbox's springs, they are level 2 of the ladder: "
-        f"{100 * error:.2g} % from its top for {quantity.name}. fe-drivetrain export "
-        "writes them in further formats, and with fixed-interface modes."
+        f"{100 * level_two[ERROR_AGAINST_LAST]:.2g} % from its top for {quantity.name}. "
+        "fe-drivetrain export writes them in further formats, and with fixed-interface modes."
     )
     page.table(
         "Stiffness for other models; bands are of each kind of motion, relative to the diagonal "

@@ -200,9 +200,9 @@ def test_reactions_of_the_page_are_those_of_the_command(
     assert status == 0, error
     rows = {row["reaction"]: row for row in rows_of(Path("out/reactions.csv"))}
     for component, unit, values in zip(FORCES, 3 * ["kN"] + 3 * ["kN m"], reaction.T, strict=True):
-        row = rows.get(f"main_bearing, {component} [{unit}]", {"mean": "0", "largest": "0"})
+        row = rows.get(f"main_bearing, {component} [{unit}]", {"mean": "0", "max": "0"})
         assert float(row["mean"]) == pytest.approx(values.mean() / 1e3, rel=1e-8, abs=1e-6)
-        assert float(row["largest"]) == pytest.approx(values.max() / 1e3, rel=1e-8, abs=1e-6)
+        assert float(row["max"]) == pytest.approx(values.max() / 1e3, rel=1e-8, abs=1e-6)
 
 
 def test_the_study_of_lives_on_the_page_is_that_of_the_command(

@@ -71,7 +71,7 @@ class Limits:
         values = {}
         for field in fields(self):
             mine, its = getattr(self, field.name), getattr(other, field.name)
-            values[field.name] = max(mine, its) if field.name.startswith("largest") else mine + its
+            values[field.name] = max(mine, its) if field.name.startswith("max_") else mine + its
         return Limits(**values)
 
     @property
