@@ -166,7 +166,11 @@ def static_folder(folder: Path) -> str:
 
 def public_rooms() -> Iterator[str]:
     """Names of the rooms that have public names, in order."""
-    yield from sorted(name for name in house.rooms(house.folder_of) if name != "cases")
+    for name in sorted(house.rooms(house.folder_of).keys() - {"cases"}):
+        room, _, folder = name.rpartition(".")
+        shown = {public for public, origin in house.faces().get(room, {}).items() if origin == name}
+        if not room or shown <= {folder}:  # what a room shows of its folder is on the room's page
+            yield name
 
 
 def public_names(room: ModuleType) -> list[str]:

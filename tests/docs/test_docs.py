@@ -48,7 +48,10 @@ def test_the_example_scene_is_valid_and_can_be_meshed():
     assert set(mesh.part_names) == {"shaft", "main_bearing", "main_bearing.housing"}
 
 
-def test_the_library_example_of_the_readme_runs(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_library_example_of_the_readme_runs(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.chdir(tmp_path)
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     code = re.search(r"```python\n(.*?)```", readme, re.DOTALL).group(1)
     names: dict[str, Any] = {}
@@ -59,6 +62,7 @@ def test_the_library_example_of_the_readme_runs(capsys: pytest.CaptureFixture[st
     assert 0 < figure.band < figure.computed
     assert capsys.readouterr().out == f"{result!r}\n"
     assert names["errors"].data
+    assert (tmp_path / "errors.html").is_file()
 
 
 def test_the_example_of_load_histories_runs_and_the_mapping_is_valid(
