@@ -31,6 +31,9 @@ from fe_drivetrain.report.suite import Case, all_cases, settings_in_words
 #: Folders of modules without a list of names of their own, whose modules users import.
 MODULES_OF = {"export": "export.programs"}
 
+#: Folders whose names the room's face shows.
+INSIDE = {"dynamics": ("bodies", "time")}
+
 
 def write_all(folder: Path) -> None:
     """Write all pages below a folder; those that have not changed stay, and are not built again."""
@@ -242,8 +245,14 @@ def is_folder(room: str, name: str) -> bool:
 
 def modules_of(room: ModuleType) -> list[str]:
     """Modules of a room, whose docstrings have equations and sources."""
-    found = pkgutil.iter_modules(room.__path__, f"{room.__name__}.")
-    return [info.name for info in found if not info.ispkg]
+    inside = INSIDE.get(room.__name__.removeprefix("fe_drivetrain."), ())
+    folders = [room, *(importlib.import_module(f"{room.__name__}.{name}") for name in inside)]
+    return [
+        info.name
+        for folder in folders
+        for info in pkgutil.iter_modules(folder.__path__, f"{folder.__name__}.")
+        if not info.ispkg
+    ]
 
 
 def entry(module: ModuleType, name: str) -> list[str]:

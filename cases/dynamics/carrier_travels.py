@@ -27,7 +27,7 @@ from fe_drivetrain.dynamics import (
     travelling,
     varying_equations,
 )
-from fe_drivetrain.dynamics.static import Turn
+from fe_drivetrain.dynamics.bodies.static import Turn
 from fe_drivetrain.report import trace
 from fe_drivetrain.report.suite import Page, Run, check_in_time
 

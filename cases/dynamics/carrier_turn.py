@@ -17,7 +17,7 @@ from fe_drivetrain.dynamics import (
     over_a_turn,
     steady_load,
 )
-from fe_drivetrain.dynamics.static import Turn
+from fe_drivetrain.dynamics.bodies.static import Turn
 from fe_drivetrain.report import trace
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.fidelity.component_frames import carrier_frame

@@ -16,7 +16,7 @@ from fe_drivetrain.dynamics import (
     machine_system,
     system_modes,
 )
-from fe_drivetrain.dynamics.static import static
+from fe_drivetrain.dynamics.bodies.static import static
 from fe_drivetrain.report.suite import Page, Record, Run
 
 COSINE = float(np.cos(np.radians(20.0)) ** 2)

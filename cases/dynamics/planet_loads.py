@@ -7,8 +7,8 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.dynamics.bodies import PLANE, assemble
-from fe_drivetrain.dynamics.planetary import (
+from fe_drivetrain.dynamics.bodies.bodies import PLANE, assemble
+from fe_drivetrain.dynamics.bodies.planetary import (
     Inertias,
     PinBearing,
     PlanetarySet,
@@ -16,8 +16,8 @@ from fe_drivetrain.dynamics.planetary import (
     equal_angles,
     springs_of,
 )
-from fe_drivetrain.dynamics.springs import Mesh, Place, bushing
-from fe_drivetrain.dynamics.static import Static, static
+from fe_drivetrain.dynamics.bodies.springs import Mesh, Place, bushing
+from fe_drivetrain.dynamics.bodies.static import Static, static
 
 
 def shared_load(

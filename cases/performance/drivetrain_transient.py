@@ -31,9 +31,9 @@ from fe_drivetrain.dynamics import (
     varying_equations,
     wind_up,
 )
-from fe_drivetrain.dynamics.equations import equations_of_motion, joined_laws
-from fe_drivetrain.dynamics.machines import slip_line
-from fe_drivetrain.dynamics.steady_state import restoring
+from fe_drivetrain.dynamics.bodies.equations import equations_of_motion, joined_laws
+from fe_drivetrain.dynamics.bodies.steady_state import restoring
+from fe_drivetrain.dynamics.time.machines import slip_line
 from fe_drivetrain.report import marked
 from fe_drivetrain.report.suite import Page, Record, Run, check_in_time, goal, grouped
 

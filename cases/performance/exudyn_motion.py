@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.dynamics.equations import Equations, Loads
-from fe_drivetrain.dynamics.motion import State, at_rest
-from fe_drivetrain.dynamics.steady_state import restoring
+from fe_drivetrain.dynamics.bodies.equations import Equations, Loads
+from fe_drivetrain.dynamics.bodies.steady_state import restoring
+from fe_drivetrain.dynamics.time.motion import State, at_rest
 from fe_drivetrain.export.programs.exudyn_system import exudyn_version
 
 

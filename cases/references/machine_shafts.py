@@ -6,7 +6,7 @@ from fe_drivetrain.common import InputError
 from fe_drivetrain.common.reading import validated
 from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.dynamics import Machine
-from fe_drivetrain.dynamics.machine_parts import STEEL
+from fe_drivetrain.dynamics.bodies.machine_parts import STEEL
 
 #: Of a seat, over the shaft's diameter.
 SEAT = 0.2

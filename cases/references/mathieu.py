@@ -4,9 +4,14 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.dynamics.equations import equations_of_motion, fourier_wave, spring_laws, steady
-from fe_drivetrain.dynamics.integration import integrate
-from fe_drivetrain.dynamics.motion import State
+from fe_drivetrain.dynamics.bodies.equations import (
+    equations_of_motion,
+    fourier_wave,
+    spring_laws,
+    steady,
+)
+from fe_drivetrain.dynamics.time.integration import integrate
+from fe_drivetrain.dynamics.time.motion import State
 
 
 def exact_growth(depth: float, frequency: float) -> float:

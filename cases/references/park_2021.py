@@ -7,10 +7,10 @@ the rotations about y, z, x.
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.dynamics.bodies import Body, assemble, disc
-from fe_drivetrain.dynamics.modes import system_modes
-from fe_drivetrain.dynamics.springs import Spring
-from fe_drivetrain.dynamics.system import System
+from fe_drivetrain.dynamics.bodies.bodies import Body, assemble, disc
+from fe_drivetrain.dynamics.bodies.modes import system_modes
+from fe_drivetrain.dynamics.bodies.springs import Spring
+from fe_drivetrain.dynamics.bodies.system import System
 
 SOURCE = "Park et al. 2021, Front. Energy Res. 8:604414"
 #: Table 2: inertias about the axes [kg m^2].

@@ -10,8 +10,8 @@ from math import cos, radians
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.dynamics.bodies import PLANE, assemble
-from fe_drivetrain.dynamics.planetary import (
+from fe_drivetrain.dynamics.bodies.bodies import PLANE, assemble
+from fe_drivetrain.dynamics.bodies.planetary import (
     Inertias,
     PinBearing,
     PlanetarySet,
@@ -19,8 +19,8 @@ from fe_drivetrain.dynamics.planetary import (
     equal_angles,
     springs_of,
 )
-from fe_drivetrain.dynamics.springs import Mesh, Place, Spring, bushing
-from fe_drivetrain.dynamics.system import System
+from fe_drivetrain.dynamics.bodies.springs import Mesh, Place, Spring, bushing
+from fe_drivetrain.dynamics.bodies.system import System
 
 LIN_PARKER = "Lin and Parker 1999, J. Vib. Acoust. 121, 316, Table 2, as in a public program"
 COOLEY_PARKER = "Cooley and Parker 2012, J. Vib. Acoust. 134, 061014, as in a public program"

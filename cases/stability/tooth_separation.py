@@ -18,7 +18,7 @@ from fe_drivetrain.dynamics import (
     spring_laws,
     steady,
 )
-from fe_drivetrain.dynamics.steady_state import restoring
+from fe_drivetrain.dynamics.bodies.steady_state import restoring
 from fe_drivetrain.report import marked, trace
 from fe_drivetrain.report.suite import Page, Run, check_in_time
 

@@ -10,12 +10,12 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import min_eigenvalue, symmetry_error
-from fe_drivetrain.dynamics.levels import Level, machine_system
-from fe_drivetrain.dynamics.machine_parts import STEEL, RotorBody
-from fe_drivetrain.dynamics.machine_rows import MachineTable, ParallelData, PlanetaryData
-from fe_drivetrain.dynamics.modes import system_modes
-from fe_drivetrain.dynamics.static import static
-from fe_drivetrain.dynamics.system import System
+from fe_drivetrain.dynamics.bodies.levels import Level, machine_system
+from fe_drivetrain.dynamics.bodies.machine_parts import STEEL, RotorBody
+from fe_drivetrain.dynamics.bodies.machine_rows import MachineTable, ParallelData, PlanetaryData
+from fe_drivetrain.dynamics.bodies.modes import system_modes
+from fe_drivetrain.dynamics.bodies.static import static
+from fe_drivetrain.dynamics.bodies.system import System
 from fe_drivetrain.dynamics.torsion.gear_table import (
     GearTable,
     PlanetaryStage,

@@ -21,9 +21,9 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
-from fe_drivetrain.dynamics.bodies import assemble
-from fe_drivetrain.dynamics.levels import Level, assembly
-from fe_drivetrain.dynamics.tables import Machine
+from fe_drivetrain.dynamics.bodies.bodies import assemble
+from fe_drivetrain.dynamics.bodies.levels import Level, assembly
+from fe_drivetrain.dynamics.bodies.tables import Machine
 
 _SMALL = 1e-9
 

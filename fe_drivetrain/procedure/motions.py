@@ -15,9 +15,9 @@ from scipy.linalg import expm
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
-from fe_drivetrain.dynamics.equations import varying
-from fe_drivetrain.dynamics.stopping import torsional_equations
-from fe_drivetrain.dynamics.superposition import energy_error
+from fe_drivetrain.dynamics.bodies.equations import varying
+from fe_drivetrain.dynamics.time.stopping import torsional_equations
+from fe_drivetrain.dynamics.time.superposition import energy_error
 from fe_drivetrain.dynamics.torsion.system import Torsional
 
 

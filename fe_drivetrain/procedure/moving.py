@@ -17,12 +17,12 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import wrench_transport
-from fe_drivetrain.dynamics.bodies import Body, assemble
-from fe_drivetrain.dynamics.equations import Loads, equations_of, varying
-from fe_drivetrain.dynamics.motion import State
-from fe_drivetrain.dynamics.springs import Place, Spring, bushing
-from fe_drivetrain.dynamics.superposition import energy_error, exact_steps
-from fe_drivetrain.dynamics.system import System, with_proportional_damping
+from fe_drivetrain.dynamics.bodies.bodies import Body, assemble
+from fe_drivetrain.dynamics.bodies.equations import Loads, equations_of, varying
+from fe_drivetrain.dynamics.bodies.springs import Place, Spring, bushing
+from fe_drivetrain.dynamics.bodies.system import System, with_proportional_damping
+from fe_drivetrain.dynamics.time.motion import State
+from fe_drivetrain.dynamics.time.superposition import energy_error, exact_steps
 from fe_drivetrain.procedure.interface_loads import Body as TableBody
 from fe_drivetrain.procedure.interface_loads import Interface, LoadTable
 from fe_drivetrain.procedure.three_points import ThreePoints

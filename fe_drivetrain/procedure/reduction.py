@@ -19,10 +19,10 @@ from scipy import linalg
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.dynamics.equations import equations_of_motion, spring_laws, varying
-from fe_drivetrain.dynamics.modes import system_modes
-from fe_drivetrain.dynamics.superposition import modal_superposition
-from fe_drivetrain.dynamics.system import System
+from fe_drivetrain.dynamics.bodies.equations import equations_of_motion, spring_laws, varying
+from fe_drivetrain.dynamics.bodies.modes import system_modes
+from fe_drivetrain.dynamics.bodies.system import System
+from fe_drivetrain.dynamics.time.superposition import modal_superposition
 
 _KINDS = {"ux": "axial", "uy": "across", "uz": "across", "rx": "torsion"}
 _KINDS |= {"ry": "bending", "rz": "bending"}

@@ -11,7 +11,7 @@ from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 from fe_drivetrain.drivetrain_file.scene import Scene
-from fe_drivetrain.dynamics.tables import Machine, named_machine
+from fe_drivetrain.dynamics.bodies.tables import Machine, named_machine
 from fe_drivetrain.procedure.assessment import Measured, StepState, assessed, claims_of
 from fe_drivetrain.procedure.channels import missing_file
 from fe_drivetrain.procedure.evidence import (

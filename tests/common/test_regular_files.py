@@ -17,7 +17,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.provenance import file_digest
 from fe_drivetrain.common.regular_files import NotRegularError, TooLargeError, opened, text_of
 from fe_drivetrain.drivetrain_file.reading import read_component, read_scene
-from fe_drivetrain.dynamics.tables import read_machine
+from fe_drivetrain.dynamics.bodies.tables import read_machine
 from fe_drivetrain.dynamics.torsion.gear_table import read_gear_table
 from fe_drivetrain.export.calculix_results import read_dat
 from fe_drivetrain.export.formats import (

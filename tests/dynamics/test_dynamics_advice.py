@@ -8,7 +8,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import point_motions
 from fe_drivetrain.comparison.tolerances import digit
 from fe_drivetrain.drivetrain_file.reading import library_component
-from fe_drivetrain.dynamics.advice import (
+from fe_drivetrain.dynamics.bodies.advice import (
     RUNGS,
     Answer,
     Asked,
@@ -17,18 +17,18 @@ from fe_drivetrain.dynamics.advice import (
     ladder,
     needed_level,
 )
-from fe_drivetrain.dynamics.flexible import Flexible, Housing, carrier_element
-from fe_drivetrain.dynamics.levels import (
+from fe_drivetrain.dynamics.bodies.flexible import Flexible, Housing, carrier_element
+from fe_drivetrain.dynamics.bodies.levels import (
     Level,
     azimuths,
     machine_system,
     planetary_set,
     steady_load,
 )
-from fe_drivetrain.dynamics.modes import system_modes
-from fe_drivetrain.dynamics.static import Turn, over_a_turn, static
-from fe_drivetrain.dynamics.system import System
-from fe_drivetrain.dynamics.tables import library_machine
+from fe_drivetrain.dynamics.bodies.modes import system_modes
+from fe_drivetrain.dynamics.bodies.static import Turn, over_a_turn, static
+from fe_drivetrain.dynamics.bodies.system import System
+from fe_drivetrain.dynamics.bodies.tables import library_machine
 from fe_drivetrain.elasticity.solve.condensation import Condensed
 from fe_drivetrain.shafts.fidelity.component_frames import carrier_frame
 

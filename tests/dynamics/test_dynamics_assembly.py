@@ -6,8 +6,8 @@ import pytest
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import point_motions, wrench_transport
 from fe_drivetrain.drivetrain_file.materials import Material
-from fe_drivetrain.dynamics.bodies import Body, Superelement, assemble, disc
-from fe_drivetrain.dynamics.springs import (
+from fe_drivetrain.dynamics.bodies.bodies import Body, Superelement, assemble, disc
+from fe_drivetrain.dynamics.bodies.springs import (
     Mesh,
     Place,
     Spring,
@@ -17,7 +17,7 @@ from fe_drivetrain.dynamics.springs import (
     line_of_action,
     uniform_shaft,
 )
-from fe_drivetrain.dynamics.system import System, with_stiffness
+from fe_drivetrain.dynamics.bodies.system import System, with_stiffness
 from fe_drivetrain.shafts.beam.frame import (
     Member,
     SpatialFrame,

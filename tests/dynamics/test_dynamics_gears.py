@@ -9,7 +9,7 @@ import pytest
 
 from fe_drivetrain.cases.references.published_gears import nrel_5mw
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.dynamics.gear_pairs import (
+from fe_drivetrain.dynamics.bodies.gear_pairs import (
     contact_ratios,
     machine_pairs,
     mesh_courses,
@@ -17,9 +17,9 @@ from fe_drivetrain.dynamics.gear_pairs import (
     pitch_contacts,
     with_iso_stiffness,
 )
-from fe_drivetrain.dynamics.levels import Level, machine_system
-from fe_drivetrain.dynamics.meshing import machine_meshing, varying_equations
-from fe_drivetrain.dynamics.tables import Machine, library_machine
+from fe_drivetrain.dynamics.bodies.levels import Level, machine_system
+from fe_drivetrain.dynamics.bodies.meshing import machine_meshing, varying_equations
+from fe_drivetrain.dynamics.bodies.tables import Machine, library_machine
 from fe_drivetrain.gear.flank_stress import reduced_modulus, tooth_contact
 from fe_drivetrain.gear.pair_stiffness import constant_law
 

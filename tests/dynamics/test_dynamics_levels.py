@@ -5,8 +5,8 @@ import pytest
 
 from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.dynamics.bodies import assemble
-from fe_drivetrain.dynamics.levels import (
+from fe_drivetrain.dynamics.bodies.bodies import assemble
+from fe_drivetrain.dynamics.bodies.levels import (
     Level,
     assembly,
     azimuths,
@@ -15,13 +15,13 @@ from fe_drivetrain.dynamics.levels import (
     steady_load,
     torsional,
 )
-from fe_drivetrain.dynamics.machine_rows import PlanetaryData
-from fe_drivetrain.dynamics.modes import system_modes, turning_modes
-from fe_drivetrain.dynamics.planetary import check_assembly
-from fe_drivetrain.dynamics.springs import Place, bushing
-from fe_drivetrain.dynamics.static import over_a_turn, static
-from fe_drivetrain.dynamics.system import System, with_proportional_damping, without_massless
-from fe_drivetrain.dynamics.tables import MACHINES, Machine, library_machine, parse_machine
+from fe_drivetrain.dynamics.bodies.machine_rows import PlanetaryData
+from fe_drivetrain.dynamics.bodies.modes import system_modes, turning_modes
+from fe_drivetrain.dynamics.bodies.planetary import check_assembly
+from fe_drivetrain.dynamics.bodies.springs import Place, bushing
+from fe_drivetrain.dynamics.bodies.static import over_a_turn, static
+from fe_drivetrain.dynamics.bodies.system import System, with_proportional_damping, without_massless
+from fe_drivetrain.dynamics.bodies.tables import MACHINES, Machine, library_machine, parse_machine
 from fe_drivetrain.dynamics.torsion.gear_table import (
     GearTable,
     PlanetaryStage,

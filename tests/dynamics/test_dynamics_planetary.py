@@ -19,8 +19,8 @@ from fe_drivetrain.cases.references.published_planetary import (
 )
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.dynamics.bodies import Body, assemble
-from fe_drivetrain.dynamics.modes import (
+from fe_drivetrain.dynamics.bodies.bodies import Body, assemble
+from fe_drivetrain.dynamics.bodies.modes import (
     AXIAL,
     LATERAL,
     PLANET,
@@ -34,15 +34,15 @@ from fe_drivetrain.dynamics.modes import (
     system_modes,
     turning_modes,
 )
-from fe_drivetrain.dynamics.planetary import (
+from fe_drivetrain.dynamics.bodies.planetary import (
     bodies_of,
     check_assembly,
     equal_angles,
     excited_motion,
     springs_of,
 )
-from fe_drivetrain.dynamics.response import frequency_response
-from fe_drivetrain.dynamics.springs import Place, bushing
+from fe_drivetrain.dynamics.bodies.response import frequency_response
+from fe_drivetrain.dynamics.bodies.springs import Place, bushing
 from fe_drivetrain.gear.planets import sun_phases
 
 CENTRAL = ("carrier", "ring", "sun")

@@ -10,11 +10,11 @@ from fe_drivetrain.cases.references.published_planetary import (
     plane_system,
 )
 from fe_drivetrain.drivetrain_file.materials import Material
-from fe_drivetrain.dynamics.bodies import assemble
-from fe_drivetrain.dynamics.elastic_ring import Rim, with_rim
-from fe_drivetrain.dynamics.modes import distinct, system_modes
-from fe_drivetrain.dynamics.planetary import bodies_of, springs_of
-from fe_drivetrain.dynamics.system import System
+from fe_drivetrain.dynamics.bodies.bodies import assemble
+from fe_drivetrain.dynamics.bodies.elastic_ring import Rim, with_rim
+from fe_drivetrain.dynamics.bodies.modes import distinct, system_modes
+from fe_drivetrain.dynamics.bodies.planetary import bodies_of, springs_of
+from fe_drivetrain.dynamics.bodies.system import System
 
 STEEL = Material(youngs_modulus=210e9, poisson_ratio=0.3, density=7850.0)
 HARMONICS = tuple(range(2, 12))

@@ -13,20 +13,20 @@ from fe_drivetrain.bearing.rolling import equilibrium
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file import CarrierComponent, library_component
-from fe_drivetrain.dynamics.bodies import Body, assemble
-from fe_drivetrain.dynamics.flexible import Flexible
-from fe_drivetrain.dynamics.levels import assembly, machine_system, steady_load
-from fe_drivetrain.dynamics.roller_seats import (
+from fe_drivetrain.dynamics.bodies.bodies import Body, assemble
+from fe_drivetrain.dynamics.bodies.flexible import Flexible
+from fe_drivetrain.dynamics.bodies.levels import assembly, machine_system, steady_load
+from fe_drivetrain.dynamics.bodies.roller_seats import (
     OnRollers,
     machine_seat,
     planet_seats,
     seat,
     static_on_rollers,
 )
-from fe_drivetrain.dynamics.springs import Place, bushing
-from fe_drivetrain.dynamics.static import static
-from fe_drivetrain.dynamics.system import System
-from fe_drivetrain.dynamics.tables import library_machine
+from fe_drivetrain.dynamics.bodies.springs import Place, bushing
+from fe_drivetrain.dynamics.bodies.static import static
+from fe_drivetrain.dynamics.bodies.system import System
+from fe_drivetrain.dynamics.bodies.tables import library_machine
 from fe_drivetrain.shafts.fidelity.component_frames import carrier_frame
 
 AT = (0.3, 0.1, -0.2)

@@ -14,18 +14,18 @@ from fe_drivetrain.cases.references.published_planetary import (
     support,
 )
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.dynamics.bodies import Body, assemble
-from fe_drivetrain.dynamics.modes import system_modes
-from fe_drivetrain.dynamics.planetary import bodies_of, equal_angles, springs_of
-from fe_drivetrain.dynamics.response import (
+from fe_drivetrain.dynamics.bodies.bodies import Body, assemble
+from fe_drivetrain.dynamics.bodies.modes import system_modes
+from fe_drivetrain.dynamics.bodies.planetary import bodies_of, equal_angles, springs_of
+from fe_drivetrain.dynamics.bodies.response import (
     crossings,
     frequency_response,
     modal_response,
     speed_diagram,
 )
-from fe_drivetrain.dynamics.springs import Place, bushing
-from fe_drivetrain.dynamics.static import load_sharing, over_a_turn, static
-from fe_drivetrain.dynamics.system import System
+from fe_drivetrain.dynamics.bodies.springs import Place, bushing
+from fe_drivetrain.dynamics.bodies.static import load_sharing, over_a_turn, static
+from fe_drivetrain.dynamics.bodies.system import System
 from fe_drivetrain.dynamics.torsion.orders import Toothed, absolute_sun_orders, mesh_orders
 
 

@@ -13,9 +13,9 @@ from test_travelling import plane
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.drivetrain_file.materials import Material
-from fe_drivetrain.dynamics.bodies import Body, Superelement, assemble
-from fe_drivetrain.dynamics.elastic_ring import Rim
-from fe_drivetrain.dynamics.equations import (
+from fe_drivetrain.dynamics.bodies.bodies import Body, Superelement, assemble
+from fe_drivetrain.dynamics.bodies.elastic_ring import Rim
+from fe_drivetrain.dynamics.bodies.equations import (
     Equations,
     Loads,
     equations_of,
@@ -24,25 +24,25 @@ from fe_drivetrain.dynamics.equations import (
     spring_laws,
     varying,
 )
-from fe_drivetrain.dynamics.integration import integrate
-from fe_drivetrain.dynamics.levels import Level, assembly, machine_system
-from fe_drivetrain.dynamics.machine_parts import BearingData
-from fe_drivetrain.dynamics.mechanism import mechanism_of
-from fe_drivetrain.dynamics.mesh_errors import harmonic_error
-from fe_drivetrain.dynamics.meshing import Meshing, varying_equations
-from fe_drivetrain.dynamics.modes import system_modes
-from fe_drivetrain.dynamics.motion import State
-from fe_drivetrain.dynamics.response import frequency_response, mesh_response
-from fe_drivetrain.dynamics.roller_seats import static_on_rollers, without_bearings
-from fe_drivetrain.dynamics.rolling_bearings import rolling_bearings
-from fe_drivetrain.dynamics.springs import Place, bushing
-from fe_drivetrain.dynamics.static import static
-from fe_drivetrain.dynamics.steady_state import wind_up
-from fe_drivetrain.dynamics.step_control import StepControl
-from fe_drivetrain.dynamics.superposition import exact_steps, modal_superposition
-from fe_drivetrain.dynamics.system import System
-from fe_drivetrain.dynamics.tables import library_machine
-from fe_drivetrain.dynamics.travelling import TravellingCarriers, travelling_of
+from fe_drivetrain.dynamics.bodies.levels import Level, assembly, machine_system
+from fe_drivetrain.dynamics.bodies.machine_parts import BearingData
+from fe_drivetrain.dynamics.bodies.mesh_errors import harmonic_error
+from fe_drivetrain.dynamics.bodies.meshing import Meshing, varying_equations
+from fe_drivetrain.dynamics.bodies.modes import system_modes
+from fe_drivetrain.dynamics.bodies.response import frequency_response, mesh_response
+from fe_drivetrain.dynamics.bodies.roller_seats import static_on_rollers, without_bearings
+from fe_drivetrain.dynamics.bodies.springs import Place, bushing
+from fe_drivetrain.dynamics.bodies.static import static
+from fe_drivetrain.dynamics.bodies.steady_state import wind_up
+from fe_drivetrain.dynamics.bodies.system import System
+from fe_drivetrain.dynamics.bodies.tables import library_machine
+from fe_drivetrain.dynamics.time.integration import integrate
+from fe_drivetrain.dynamics.time.mechanism import mechanism_of
+from fe_drivetrain.dynamics.time.motion import State
+from fe_drivetrain.dynamics.time.rolling_bearings import rolling_bearings
+from fe_drivetrain.dynamics.time.step_control import StepControl
+from fe_drivetrain.dynamics.time.superposition import exact_steps, modal_superposition
+from fe_drivetrain.dynamics.time.travelling import TravellingCarriers, travelling_of
 
 J = np.array([3.0, 1.0, 2.0])
 ROWS = np.array([[1.0, -1.0, 0.0], [0.0, 1.0, -1.0], [0.0, 0.0, 1.0]])

@@ -17,10 +17,8 @@ from fe_drivetrain.bearing.contact_forces import forces
 from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.dynamics.base_motion import base_motion, on_base, read_base_motion
-from fe_drivetrain.dynamics.bodies import Body, assemble
-from fe_drivetrain.dynamics.brakes import Brake
-from fe_drivetrain.dynamics.equations import (
+from fe_drivetrain.dynamics.bodies.bodies import Body, assemble
+from fe_drivetrain.dynamics.bodies.equations import (
     Equations,
     equations_of,
     equations_of_motion,
@@ -31,20 +29,22 @@ from fe_drivetrain.dynamics.equations import (
     summed,
     varying,
 )
-from fe_drivetrain.dynamics.integration import Phase, integrate, transient
-from fe_drivetrain.dynamics.machines import slip_line
-from fe_drivetrain.dynamics.mechanism import Act
-from fe_drivetrain.dynamics.mesh_errors import harmonic_error
-from fe_drivetrain.dynamics.modes import system_modes
-from fe_drivetrain.dynamics.motion import Motion, State
-from fe_drivetrain.dynamics.roller_seats import seat, without_bearings
-from fe_drivetrain.dynamics.rolling_bearings import bearings_on, rolling_bearings
-from fe_drivetrain.dynamics.schemes import LINEAR, generalised_alpha
-from fe_drivetrain.dynamics.springs import Place, bushing
-from fe_drivetrain.dynamics.step_control import StepControl
-from fe_drivetrain.dynamics.superposition import exact_steps
-from fe_drivetrain.dynamics.system import System
-from fe_drivetrain.dynamics.travelling import Travelling, TravellingCarriers, travelling_of
+from fe_drivetrain.dynamics.bodies.mesh_errors import harmonic_error
+from fe_drivetrain.dynamics.bodies.modes import system_modes
+from fe_drivetrain.dynamics.bodies.roller_seats import seat, without_bearings
+from fe_drivetrain.dynamics.bodies.springs import Place, bushing
+from fe_drivetrain.dynamics.bodies.system import System
+from fe_drivetrain.dynamics.time.base_motion import base_motion, on_base, read_base_motion
+from fe_drivetrain.dynamics.time.brakes import Brake
+from fe_drivetrain.dynamics.time.integration import Phase, integrate, transient
+from fe_drivetrain.dynamics.time.machines import slip_line
+from fe_drivetrain.dynamics.time.mechanism import Act
+from fe_drivetrain.dynamics.time.motion import Motion, State
+from fe_drivetrain.dynamics.time.rolling_bearings import bearings_on, rolling_bearings
+from fe_drivetrain.dynamics.time.schemes import LINEAR, generalised_alpha
+from fe_drivetrain.dynamics.time.step_control import StepControl
+from fe_drivetrain.dynamics.time.superposition import exact_steps
+from fe_drivetrain.dynamics.time.travelling import Travelling, TravellingCarriers, travelling_of
 
 SHAFT = Place("shaft", (0.0, 0.0, 0.0))
 AT = (0.3, 0.1, -0.2)

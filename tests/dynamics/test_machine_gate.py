@@ -12,15 +12,15 @@ from fe_drivetrain.cases.references.published_planetary import LIN_PARKER_STAGE,
 from fe_drivetrain.cases.verification import mutated_machines as mutations
 from fe_drivetrain.cases.verification.machine_facts import machine_facts, own_energy, own_motion
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.dynamics.bodies import Body, assemble
-from fe_drivetrain.dynamics.gear_pairs import mesh_stresses
-from fe_drivetrain.dynamics.levels import Level, machine_system
-from fe_drivetrain.dynamics.machine_motions import turning_motion
-from fe_drivetrain.dynamics.machine_rows import MachineTable
-from fe_drivetrain.dynamics.modes import spring_frequencies, system_modes
-from fe_drivetrain.dynamics.planetary import PlanetarySet
-from fe_drivetrain.dynamics.springs import Spring
-from fe_drivetrain.dynamics.tables import MACHINES, Machine, library_machine, parse_machine
+from fe_drivetrain.dynamics.bodies.bodies import Body, assemble
+from fe_drivetrain.dynamics.bodies.gear_pairs import mesh_stresses
+from fe_drivetrain.dynamics.bodies.levels import Level, machine_system
+from fe_drivetrain.dynamics.bodies.machine_motions import turning_motion
+from fe_drivetrain.dynamics.bodies.machine_rows import MachineTable
+from fe_drivetrain.dynamics.bodies.modes import spring_frequencies, system_modes
+from fe_drivetrain.dynamics.bodies.planetary import PlanetarySet
+from fe_drivetrain.dynamics.bodies.springs import Spring
+from fe_drivetrain.dynamics.bodies.tables import MACHINES, Machine, library_machine, parse_machine
 from fe_drivetrain.dynamics.torsion.gear_table import GearTable, PlanetaryStage, parse_gear_table
 from fe_drivetrain.dynamics.torsion.orders import Toothed
 from fe_drivetrain.dynamics.torsion.system import Inertia, Torsional
@@ -163,7 +163,7 @@ def test_ratio_and_modes_of_a_machine_are_of_one_geometry(name: str) -> None:
 
 
 def test_the_gates_motion_is_that_of_the_facts() -> None:
-    from fe_drivetrain.dynamics.levels import assembly
+    from fe_drivetrain.dynamics.bodies.levels import assembly
 
     machine = library_machine("nrel_5mw")
     made = assembly(machine, Level.RIGID)

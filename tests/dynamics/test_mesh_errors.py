@@ -9,8 +9,8 @@ from scipy.integrate import solve_ivp
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.dynamics.bodies import Body, assemble
-from fe_drivetrain.dynamics.equations import (
+from fe_drivetrain.dynamics.bodies.bodies import Body, assemble
+from fe_drivetrain.dynamics.bodies.equations import (
     Equations,
     equations_of_motion,
     fourier_wave,
@@ -18,16 +18,16 @@ from fe_drivetrain.dynamics.equations import (
     spring_laws,
     steady,
 )
-from fe_drivetrain.dynamics.integration import integrate
-from fe_drivetrain.dynamics.levels import Level, machine_system
-from fe_drivetrain.dynamics.mesh_errors import MeshError, error_of_slices, harmonic_error
-from fe_drivetrain.dynamics.meshing import Meshing, machine_meshing, varying_equations
-from fe_drivetrain.dynamics.motion import Motion, State
-from fe_drivetrain.dynamics.response import mesh_response
-from fe_drivetrain.dynamics.springs import Mesh, Place, gear_mesh
-from fe_drivetrain.dynamics.steady_state import errors_at, restoring, waves_at, wind_up
-from fe_drivetrain.dynamics.system import System
-from fe_drivetrain.dynamics.tables import library_machine
+from fe_drivetrain.dynamics.bodies.levels import Level, machine_system
+from fe_drivetrain.dynamics.bodies.mesh_errors import MeshError, error_of_slices, harmonic_error
+from fe_drivetrain.dynamics.bodies.meshing import Meshing, machine_meshing, varying_equations
+from fe_drivetrain.dynamics.bodies.response import mesh_response
+from fe_drivetrain.dynamics.bodies.springs import Mesh, Place, gear_mesh
+from fe_drivetrain.dynamics.bodies.steady_state import errors_at, restoring, waves_at, wind_up
+from fe_drivetrain.dynamics.bodies.system import System
+from fe_drivetrain.dynamics.bodies.tables import library_machine
+from fe_drivetrain.dynamics.time.integration import integrate
+from fe_drivetrain.dynamics.time.motion import Motion, State
 from fe_drivetrain.gear.involute import Gear, meshing_without_backlash
 from fe_drivetrain.gear.loaded_error import TransmissionError, transmission_error
 from fe_drivetrain.gear.meshes import StiffnessTable, mesh_stiffness

@@ -12,25 +12,25 @@ from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.bearing.stored_energy import energy_of
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.dynamics.bodies import Body, assemble
-from fe_drivetrain.dynamics.equations import equations_of, steady
-from fe_drivetrain.dynamics.gear_pairs import contact_ratios
-from fe_drivetrain.dynamics.integration import integrate
-from fe_drivetrain.dynamics.levels import machine_system, steady_load
-from fe_drivetrain.dynamics.meshing import Meshing, machine_meshing, varying_equations
-from fe_drivetrain.dynamics.modes import system_modes
-from fe_drivetrain.dynamics.motion import Motion, State
-from fe_drivetrain.dynamics.roller_seats import (
+from fe_drivetrain.dynamics.bodies.bodies import Body, assemble
+from fe_drivetrain.dynamics.bodies.equations import equations_of, steady
+from fe_drivetrain.dynamics.bodies.gear_pairs import contact_ratios
+from fe_drivetrain.dynamics.bodies.levels import machine_system, steady_load
+from fe_drivetrain.dynamics.bodies.meshing import Meshing, machine_meshing, varying_equations
+from fe_drivetrain.dynamics.bodies.modes import system_modes
+from fe_drivetrain.dynamics.bodies.roller_seats import (
     planet_seats,
     seat,
     static_on_rollers,
     without_bearings,
 )
-from fe_drivetrain.dynamics.rolling_bearings import rolling_bearings
-from fe_drivetrain.dynamics.schemes import generalised_alpha
-from fe_drivetrain.dynamics.springs import Place, bushing
-from fe_drivetrain.dynamics.system import System, with_proportional_damping
-from fe_drivetrain.dynamics.tables import library_machine
+from fe_drivetrain.dynamics.bodies.springs import Place, bushing
+from fe_drivetrain.dynamics.bodies.system import System, with_proportional_damping
+from fe_drivetrain.dynamics.bodies.tables import library_machine
+from fe_drivetrain.dynamics.time.integration import integrate
+from fe_drivetrain.dynamics.time.motion import Motion, State
+from fe_drivetrain.dynamics.time.rolling_bearings import rolling_bearings
+from fe_drivetrain.dynamics.time.schemes import generalised_alpha
 
 AT = (0.3, 0.1, -0.2)
 SHAFT = Place("shaft", (0.0, 0.0, 0.0))

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.dynamics.equations import (
+from fe_drivetrain.dynamics.bodies.equations import (
     Equations,
     Loads,
     equations_of_motion,
@@ -21,12 +21,12 @@ from fe_drivetrain.dynamics.equations import (
     varying,
     wave_table,
 )
-from fe_drivetrain.dynamics.integration import integrate
-from fe_drivetrain.dynamics.motion import Motion, State
-from fe_drivetrain.dynamics.schemes import AVERAGE, LINEAR, generalised_alpha
-from fe_drivetrain.dynamics.steady_state import free_motions, restoring, waves_at, wind_up
-from fe_drivetrain.dynamics.step_control import StepControl
-from fe_drivetrain.dynamics.superposition import energy_error, exact_steps, modal_superposition
+from fe_drivetrain.dynamics.bodies.steady_state import free_motions, restoring, waves_at, wind_up
+from fe_drivetrain.dynamics.time.integration import integrate
+from fe_drivetrain.dynamics.time.motion import Motion, State
+from fe_drivetrain.dynamics.time.schemes import AVERAGE, LINEAR, generalised_alpha
+from fe_drivetrain.dynamics.time.step_control import StepControl
+from fe_drivetrain.dynamics.time.superposition import energy_error, exact_steps, modal_superposition
 
 
 def started(q: list[float], velocity: list[float], time: float = 0.0) -> State:

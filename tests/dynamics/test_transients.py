@@ -9,8 +9,7 @@ from numpy.testing import assert_allclose
 from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.dynamics.brakes import Brake
-from fe_drivetrain.dynamics.equations import (
+from fe_drivetrain.dynamics.bodies.equations import (
     equations_of_motion,
     joined_laws,
     spring_laws,
@@ -18,10 +17,11 @@ from fe_drivetrain.dynamics.equations import (
     summed,
     varying,
 )
-from fe_drivetrain.dynamics.integration import Phase, integrate, transient
-from fe_drivetrain.dynamics.machines import constant_power, grid_spring, slip_line
-from fe_drivetrain.dynamics.motion import Motion, State, at_rest
-from fe_drivetrain.dynamics.stopping import StopSequence, shutdown
+from fe_drivetrain.dynamics.time.brakes import Brake
+from fe_drivetrain.dynamics.time.integration import Phase, integrate, transient
+from fe_drivetrain.dynamics.time.machines import constant_power, grid_spring, slip_line
+from fe_drivetrain.dynamics.time.motion import Motion, State, at_rest
+from fe_drivetrain.dynamics.time.stopping import StopSequence, shutdown
 
 J = np.array([3.0, 1.0])
 SHAFT = equations_of_motion(J, spring_laws([[1.0, -1.0]], 50.0))

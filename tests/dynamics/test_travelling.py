@@ -16,23 +16,23 @@ from fe_drivetrain.cases.references.published_planetary import (
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.materials import Material
-from fe_drivetrain.dynamics.bodies import Body, assemble
-from fe_drivetrain.dynamics.elastic_ring import Rim, with_rim
-from fe_drivetrain.dynamics.equations import equations_of, steady
-from fe_drivetrain.dynamics.integration import integrate
-from fe_drivetrain.dynamics.levels import Level, azimuths, machine_system, steady_load
-from fe_drivetrain.dynamics.meshing import Meshing, varying_equations
-from fe_drivetrain.dynamics.modes import system_modes
-from fe_drivetrain.dynamics.motion import State
-from fe_drivetrain.dynamics.planetary import PlanetarySet, bodies_of, springs_of
-from fe_drivetrain.dynamics.roller_seats import planet_seats, static_on_rollers
-from fe_drivetrain.dynamics.schemes import generalised_alpha
-from fe_drivetrain.dynamics.springs import Spring
-from fe_drivetrain.dynamics.static import Turn, over_a_turn
-from fe_drivetrain.dynamics.superposition import exact_steps
-from fe_drivetrain.dynamics.system import System
-from fe_drivetrain.dynamics.tables import library_machine
-from fe_drivetrain.dynamics.travelling import (
+from fe_drivetrain.dynamics.bodies.bodies import Body, assemble
+from fe_drivetrain.dynamics.bodies.elastic_ring import Rim, with_rim
+from fe_drivetrain.dynamics.bodies.equations import equations_of, steady
+from fe_drivetrain.dynamics.bodies.levels import Level, azimuths, machine_system, steady_load
+from fe_drivetrain.dynamics.bodies.meshing import Meshing, varying_equations
+from fe_drivetrain.dynamics.bodies.modes import system_modes
+from fe_drivetrain.dynamics.bodies.planetary import PlanetarySet, bodies_of, springs_of
+from fe_drivetrain.dynamics.bodies.roller_seats import planet_seats, static_on_rollers
+from fe_drivetrain.dynamics.bodies.springs import Spring
+from fe_drivetrain.dynamics.bodies.static import Turn, over_a_turn
+from fe_drivetrain.dynamics.bodies.system import System
+from fe_drivetrain.dynamics.bodies.tables import library_machine
+from fe_drivetrain.dynamics.time.integration import integrate
+from fe_drivetrain.dynamics.time.motion import State
+from fe_drivetrain.dynamics.time.schemes import generalised_alpha
+from fe_drivetrain.dynamics.time.superposition import exact_steps
+from fe_drivetrain.dynamics.time.travelling import (
     Travelling,
     TravellingCarriers,
     travelling,

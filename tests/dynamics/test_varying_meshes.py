@@ -11,20 +11,20 @@ from numpy.testing import assert_allclose
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.dynamics.equations import equations_of, steady
-from fe_drivetrain.dynamics.integration import integrate
-from fe_drivetrain.dynamics.levels import Level, machine_system
-from fe_drivetrain.dynamics.meshing import (
+from fe_drivetrain.dynamics.bodies.equations import equations_of, steady
+from fe_drivetrain.dynamics.bodies.levels import Level, machine_system
+from fe_drivetrain.dynamics.bodies.meshing import (
     Meshing,
     contact_wave,
     machine_meshing,
     varying_equations,
     wave_of,
 )
-from fe_drivetrain.dynamics.motion import State
-from fe_drivetrain.dynamics.steady_state import wind_up
-from fe_drivetrain.dynamics.system import System
-from fe_drivetrain.dynamics.tables import library_machine
+from fe_drivetrain.dynamics.bodies.steady_state import wind_up
+from fe_drivetrain.dynamics.bodies.system import System
+from fe_drivetrain.dynamics.bodies.tables import library_machine
+from fe_drivetrain.dynamics.time.integration import integrate
+from fe_drivetrain.dynamics.time.motion import State
 from fe_drivetrain.gear.meshes import StiffnessTable
 
 

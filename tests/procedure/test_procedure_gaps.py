@@ -8,9 +8,9 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.drivetrain_file.materials import Material
-from fe_drivetrain.dynamics.bodies import assemble
-from fe_drivetrain.dynamics.levels import Level, assembly
-from fe_drivetrain.dynamics.tables import library_machine
+from fe_drivetrain.dynamics.bodies.bodies import assemble
+from fe_drivetrain.dynamics.bodies.levels import Level, assembly
+from fe_drivetrain.dynamics.bodies.tables import library_machine
 from fe_drivetrain.dynamics.torsion.gear_table import (
     GENERATOR,
     gear_masses,

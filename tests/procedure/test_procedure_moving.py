@@ -12,7 +12,7 @@ from test_procedure_interfaces import PLACES
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.reading import library_scene
-from fe_drivetrain.dynamics.superposition import exact_steps
+from fe_drivetrain.dynamics.time.superposition import exact_steps
 from fe_drivetrain.procedure import moving
 from fe_drivetrain.procedure.interface_loads import (
     LoadTable,

@@ -12,9 +12,9 @@ from fe_drivetrain.comparison.in_time import (
     converge_in_time,
     peak_between,
 )
-from fe_drivetrain.dynamics.equations import equations_of_motion, spring_laws, steady
-from fe_drivetrain.dynamics.integration import integrate
-from fe_drivetrain.dynamics.meshing import contact_wave
+from fe_drivetrain.dynamics.bodies.equations import equations_of_motion, spring_laws, steady
+from fe_drivetrain.dynamics.bodies.meshing import contact_wave
+from fe_drivetrain.dynamics.time.integration import integrate
 from fe_drivetrain.report.suite.in_time import check_in_time
 from fe_drivetrain.report.suite.page import Page
 

@@ -1,0 +1,1 @@
+"""Drivetrains as bodies on springs: machines, gears, planets, flexible shafts, modes, responses."""

@@ -1,0 +1,1 @@
+"""Motion in time: one engine, and all that can act in it."""

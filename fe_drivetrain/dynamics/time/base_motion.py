@@ -1,0 +1,185 @@
+"""Motion of the base on which a drivetrain stands, from samples in an array or a file.
+
+Displacements are then those against the base, so that springs, bearings and brakes to it act as on
+a base that stands. What moves feels the base by its inertia, -M S g'', and a frame or shaft that
+spins by its gyroscopic terms, -C S g', with the rigid motions S by those of the base. Samples of g
+are joined by a cubic spline, whose acceleration is straight between them, as loads are.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.interpolate import CubicSpline
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import MOTIONS
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.reading import read_text
+from fe_drivetrain.common.short_repr import short_repr
+from fe_drivetrain.common.spatial import point_motions
+from fe_drivetrain.dynamics.bodies.bodies import Body
+from fe_drivetrain.dynamics.bodies.equations import Equations, Loads, summed, varying
+from fe_drivetrain.dynamics.bodies.system import System
+
+UNITS = ("m", "m", "m", "rad", "rad", "rad")
+"""Units of the base's motions in a file."""
+
+MINIMUM = 4
+"""Least number of samples, as many as a cubic spline takes."""
+
+FINER = 16
+"""Parts of an interval of samples for gyroscopic terms, which are quadratic in time."""
+
+
+@dataclass(frozen=True)
+class BaseMotion:
+    """Motion of the base, given by samples.
+
+    Attributes
+    ----------
+    motions : Floats
+        Displacements (n, b) of all degrees of freedom as the base moves by one, rigidly.
+    times : Floats
+        Times (s,) of the samples, ascending [s].
+    displacements : Floats
+        Motion (s, b) of the base [m, rad].
+    """
+
+    __repr__ = short_repr
+
+    motions: Floats
+    times: Floats
+    displacements: Floats
+
+    def loads_on(self, equations: Equations) -> Loads:
+        """Loads of inertia and gyroscopic terms on what stands on the base."""
+        path = CubicSpline(self.times, self.displacements)
+        inertia = varying(-equations.mass @ self.motions, self.times, path(self.times, 2))
+        turned = equations.damping @ self.motions
+        if not turned.any():
+            return inertia
+        parts = np.arange(FINER) / FINER
+        finer = (self.times[:-1, None] + np.diff(self.times)[:, None] * parts).ravel()
+        finer = np.append(finer, self.times[-1])
+        return summed(inertia, varying(-turned, finer, path(finer, 1)))
+
+    def check(self, begin: float, end: float) -> None:
+        """Refuse a run that is not within the samples [s]."""
+        first, last = float(self.times[0]), float(self.times[-1])
+        if begin < first - 1e-9 or end > last + 1e-9:
+            raise InputError(
+                f"the base's motion is known from {first:g} to {last:g} s but the run goes from "
+                f"{begin:g} to {end:g} s: give more samples, or a shorter run"
+            )
+
+
+def base_motion(motions: ArrayLike, times: ArrayLike, displacements: ArrayLike) -> BaseMotion:
+    """Motion of the base from arrays.
+
+    Parameters
+    ----------
+    motions : array_like
+        Displacements (n, b) of all degrees of freedom as the base moves by one, rigidly: such as
+        `on_base`.
+    times : array_like
+        Times (s,) of at least 4 samples, ascending [s].
+    displacements : array_like
+        Motion (s, b) of the base [m, rad], or (s,) of one.
+
+    Raises
+    ------
+    InputError
+        There are too few samples, times do not ascend, or numbers do not fit each other.
+    """
+    S, t = np.asarray(motions, dtype=np.float64), np.asarray(times, dtype=np.float64)
+    S = S[:, None] if S.ndim == 1 else S
+    g = np.asarray(displacements, dtype=np.float64).reshape(len(t), -1)
+    if len(t) < MINIMUM or not (np.isfinite(t).all() and (np.diff(t) > 0.0).all()):
+        raise InputError(
+            f"a base's motion has {len(t)} samples but must have at least {MINIMUM}, whose times "
+            "ascend: correct them"
+        )
+    if g.shape[1] != S.shape[1] or not np.isfinite(g).all():
+        raise InputError(
+            f"a base's motion has {g.shape[1]} columns of numbers and moves the system in "
+            f"{S.shape[1]} ways, but must have as many, all finite: correct them"
+        )
+    return BaseMotion(S, t, g)
+
+
+def read_base_motion(path: str | Path, system: System, bodies: Iterable[Body]) -> BaseMotion:
+    """Motion of the base from a table "time [s],ux [m],...,rz [rad]"; what it has not is zero.
+
+    Parameters
+    ----------
+    path : str or Path
+        CSV file; the motion is about the origin of the frame.
+    system, bodies : System, iterable of Body
+        What stands on the base, see `on_base`.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or a title or a cell is not as it must be.
+    """
+    rows = list(csv.reader(read_text(path, "motion of the base").splitlines()))
+    known = {
+        f"{name} [{unit}]": k for k, (name, unit) in enumerate(zip(MOTIONS, UNITS, strict=True))
+    }
+    header = [title.strip() for title in rows[0]] if rows else []
+    wrong = [title for title in header[1:] if title not in known]
+    if header[:1] != ["time [s]"] or wrong or len(header) < 2:
+        raise InputError(
+            f"motion of the base '{path}': its header is '{','.join(header)}' but must be "
+            f"'time [s]' and some of {', '.join(known)}: correct it"
+        )
+    try:
+        table = np.array(rows[1:], dtype=np.float64).reshape(-1, len(header))
+    except ValueError as error:
+        raise InputError(
+            f"motion of the base '{path}': a cell is not a number, or a line has not as many as "
+            f"the header: correct it ({error})"
+        ) from error
+    columns = [known[title] for title in header[1:]]
+    return base_motion(on_base(system, bodies)[:, columns], table[:, 0], table[:, 1:])
+
+
+def on_base(system: System, bodies: Iterable[Body]) -> Floats:
+    """(n, 6) displacements of a system that moves rigidly with its base, about the origin.
+
+    Parameters
+    ----------
+    system : System
+        System with n degrees of freedom.
+    bodies : iterable of Body
+        Bodies at their places; what is not named does not move rigidly, as amplitudes of elastic
+        rings do not.
+
+    Raises
+    ------
+    InputError
+        The degrees of freedom do not allow that motion, as those of a torsional system.
+    """
+    identity = np.eye(len(system.names))
+    rows, rigid = [np.zeros((0, len(identity)))], [np.zeros((0, 6))]
+    for body in bodies:
+        moves = system.motion_of(body.name, identity)
+        if moves.any():  # what is held is part of the base
+            rows.append(moves)
+            rigid.append(point_motions(np.array([body.position])))
+    by, whole = np.vstack(rows), np.vstack(rigid)
+    found = np.linalg.lstsq(by, whole, rcond=1e-12)[0]
+    missed = np.abs(by @ found - whole).max(axis=0, initial=0.0)
+    for name, size in zip(MOTIONS, missed, strict=True):
+        if size > 1e-9:
+            raise InputError(
+                f"the system cannot move with its base along {name}: a body has no degree of "
+                "freedom for it; use a level with all motions of its bodies"
+            )
+    return np.asarray(found)
