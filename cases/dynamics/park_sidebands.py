@@ -112,18 +112,14 @@ def after_step(
     spectrum = spectrum_of(force, dt)
     ringing = spectrum_of(shaft, dt).peak(0.75, 4.0)
     below, above = sidebands(spectrum, 0.75, 4.0)
-    for side, distance in (("below", LINE - below), ("above", above - LINE)):
-        page.equals(
-            f"{name}, torque step: sideband {side} the mesh line, distance from it [Hz]",
-            distance,
-            ringing,
-            within=spectrum.resolution,
-            relative=False,
-            why="one over the time of the signal",
-            source="force k(t) times an elongation that rings as the low-speed shaft does",
-            measure="frequency",
-            basis="self-consistency",
-        )
+    check_distances(
+        page,
+        f"{name}, torque step",
+        (below, above),
+        ringing,
+        spectrum.resolution,
+        source="force k(t) times an elongation that rings as the low-speed shaft does",
+    )
     series = converge_in_time(partial(ringing_of, system, 3.0), dt / 4.0, 4)
     # a line of the padded spectrum of three seconds is more than a hundredth of it
     within = dict.fromkeys(series.finest.values, 0.03)
@@ -217,6 +213,29 @@ def sidebands(spectrum: Spectrum, begin: float, end: float) -> tuple[float, floa
     return below, spectrum.peak(LINE + begin, LINE + end)
 
 
+def check_distances(
+    page: Page,
+    run: str,
+    peaks: tuple[float, float],
+    expected: float,
+    resolution: float,
+    source: str,
+) -> None:
+    """Check how far the sidebands below and above are from the mesh line [Hz]."""
+    for side, at in zip(("below", "above"), peaks, strict=True):
+        page.equals(
+            f"{run}: sideband {side} the mesh line, distance from it [Hz]",
+            abs(at - LINE),
+            expected,
+            within=resolution,
+            relative=False,
+            why="one over the time of the signal",
+            source=source,
+            measure="frequency",
+            basis="self-consistency",
+        )
+
+
 def eccentric(page: Page, system: System, dt: float, duration: float) -> None:
     """Lines that an eccentric gear 3 adds to a steady state."""
     load = torque(system, 1.0 / park.ratio())
@@ -232,18 +251,14 @@ def eccentric(page: Page, system: System, dt: float, duration: float) -> None:
     off = offset_mass(system, eccentric_bodies()["gear 3"], times)
     added = force(summed(steady(load), off)) - force(steady(load))
     spectrum = spectrum_of(added, dt)
-    for side, at in zip(("below", "above"), sidebands(spectrum, 2.5, 5.0), strict=True):
-        page.equals(
-            f"eccentric gear 3: sideband {side} the mesh line, distance from it [Hz]",
-            abs(at - LINE),
-            TURNING,
-            within=spectrum.resolution,
-            relative=False,
-            why="one over the time of the signal",
-            source="speed of gear 3 at 6 rpm of the rotor, of the radii of Table 2",
-            measure="frequency",
-            basis="self-consistency",
-        )
+    check_distances(
+        page,
+        "eccentric gear 3",
+        sidebands(spectrum, 2.5, 5.0),
+        TURNING,
+        spectrum.resolution,
+        source="speed of gear 3 at 6 rpm of the rotor, of the radii of Table 2",
+    )
     near = np.abs(spectrum.frequencies - LINE) < 6.0
     page.section("With an eccentric gear 3")
     page.chart(
