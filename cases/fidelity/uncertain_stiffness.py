@@ -312,7 +312,7 @@ def _check_samples(page: Page, found: Study, count: int) -> None:
         samples = found.samples[number.name]
         page.equals(
             f"{number.name}: standard deviation of {count} samples [%]",
-            100 * float(samples.values.std(ddof=1)) / abs(samples.nominal),
+            100 * samples.deviation / abs(samples.nominal),
             100 * first_order(found, number),
             within=float(2.0 / np.sqrt(2.0 * (count - 1))),
             why="two standard errors of a deviation from so many independent samples",

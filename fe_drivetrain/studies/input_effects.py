@@ -13,7 +13,12 @@ from fe_drivetrain.drivetrain_file.scene import Spread
 from fe_drivetrain.shafts.fidelity.adviser import Advice
 from fe_drivetrain.shafts.fidelity.quantities import Number
 from fe_drivetrain.shafts.uncertainty.input_study import ModelError, Study
-from fe_drivetrain.shafts.uncertainty.numbers import first_order, half_band, relative_spread
+from fe_drivetrain.shafts.uncertainty.numbers import (
+    changes_by_spread,
+    first_order,
+    half_band,
+    relative_spread,
+)
 from fe_drivetrain.shafts.uncertainty.response_surface import UnitSurface
 from fe_drivetrain.shafts.uncertainty.sampling import (
     SHARE,
@@ -185,11 +190,7 @@ def _value(key: str, nominal: float, spread: Spread) -> ValueSpread:
 def _effects(study: Study, number: Number) -> QuantityEffects:
     name, samples = number.name, study.samples[number.name]
     band, soft = samples.band(), study.soft_samples.get(name)
-    slopes = study.slopes[name]
-    changes = {
-        key: slopes[key] * relative_spread(spread)
-        for key, spread in study.scene.uncertainty.items()
-    }
+    changes = changes_by_spread(study, number)
     return QuantityEffects(
         name=name,
         unit=number.unit,
@@ -199,7 +200,7 @@ def _effects(study: Study, number: Number) -> QuantityEffects:
         half_error=math.hypot(band.low_error, band.high_error) / 2 / abs(samples.nominal),
         soft_half=None if soft is None else half_band(soft),
         error=study.errors[name],
-        sensitivities=slopes,
+        sensitivities=study.slopes[name],
         changes=dict(sorted(changes.items(), key=lambda item: abs(item[1]))),
         scatter=_scatter(samples, first_order(study, number)) if samples.varies else None,
         shares=study.shares.get(name),
@@ -209,7 +210,7 @@ def _effects(study: Study, number: Number) -> QuantityEffects:
 def _scatter(samples: Samples, of_slopes: float) -> Scatter:
     counts, edges = np.histogram(samples.values, bins=_BINS)
     return Scatter(
-        float(samples.values.std(ddof=1)) / abs(samples.nominal),
+        samples.deviation / abs(samples.nominal),
         of_slopes,
         samples.linear_share,
         samples.contributions(),

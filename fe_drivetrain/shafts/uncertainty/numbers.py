@@ -18,11 +18,15 @@ def half_band(samples: Samples) -> float:
 
 def first_order(found: Study, number: Number) -> float:
     """Relative standard deviation predicted by the sensitivities, for independent inputs."""
-    parts = [
-        found.slopes[number.name][key] * relative_spread(spread)
+    return float(np.linalg.norm(list(changes_by_spread(found, number).values())))
+
+
+def changes_by_spread(found: Study, number: Number) -> dict[str, float]:
+    """Relative change of a quantity for one standard deviation of each uncertain value."""
+    return {
+        key: found.slopes[number.name][key] * relative_spread(spread)
         for key, spread in found.scene.uncertainty.items()
-    ]
-    return float(np.linalg.norm(parts))
+    }
 
 
 def relative_spread(spread: Spread) -> float:
@@ -45,7 +49,7 @@ def figures(found: Study) -> dict[str, Any]:
             "model_error": error.share,
             "model_error_source": error.source,
             "sensitivities": dict(found.slopes[number.name]),
-            "standard_deviation": float(samples.values.std(ddof=1)),
+            "standard_deviation": samples.deviation,
         }
         if number.name in found.soft_samples:
             entry["face_on_average"] = {

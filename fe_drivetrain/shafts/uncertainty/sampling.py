@@ -79,6 +79,11 @@ class Samples:
         """Whether any input matters to the quantity."""
         return bool(np.ptp(self.values) > _CONSTANT * abs(self.nominal))
 
+    @property
+    def deviation(self) -> float:
+        """Standard deviation of the samples, in the quantity's unit."""
+        return float(self.values.std(ddof=1))
+
     def band(self, share: float = SHARE, seed: int = 0) -> Band:
         """The band, with its errors from resampling the samples (Efron 1979) as if independent.
 
