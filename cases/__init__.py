@@ -69,7 +69,7 @@ def cases(
         Name of a YAML file beside the script: by name of the case its title, its source, and what
         else the function takes of it.
     settings, changes : mapping or tuple of str, str
-        As of `case`, for each of them.
+        As in `case`, for each of them.
 
     Notes
     -----

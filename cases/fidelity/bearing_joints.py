@@ -227,7 +227,7 @@ def _check(page: Page, limits: Limits, sweep: Sweep, rollers: Rollers) -> None:
         float(np.abs(sweep.condensed - sweep.solid_moments).max()),
         0.02,
         why="the joint moves its faces by their means in both; what differs is how ring and "
-        "shaft give to each other: a cylinder of the same volume stands for the ring",
+        "shaft deform each other: a cylinder of the same volume stands for the ring",
         source="level 2, solved apart",
         measure="reaction",
     )

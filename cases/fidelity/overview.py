@@ -45,7 +45,7 @@ def check(page: Page, one: Compared) -> None:
         one.stiffer_on_softer,
         1e-6,
         why="housings are solved to 1e-9, and their inverses cost three digits",
-        source="a support that gives more lets the hub give more (Rayleigh)",
+        source="a softer support makes the hub softer (Rayleigh)",
         measure="identity",
     )
     page.at_most(

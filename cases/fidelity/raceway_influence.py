@@ -133,14 +133,14 @@ def run(run: Run, page: Page) -> None:
 
 
 def _answer(page: Page, free: FreeRing, pressed: dict[str, Pressed], count: int) -> None:
-    """What a ring that gives way does to the rollers, and how good its influence functions are."""
+    """Loads of rollers on a ring that deforms, and errors of its influence functions."""
     flat = free.flat
     feet = [one for name, one in pressed.items() if "feet" in name]
     page.answer(
         f"On a ring that stands on two feet at {np.degrees(FEET):.0f} degrees the most loaded "
         f"roller carries {feet[0].factor:.2f} times the mean of the load over all "
         f"{ROLLERS} (rigid: {pressed['rigid ring'].factor:.2f}; with {HOUSINGS[-1] - OUTSIDE:.2f} "
-        f"m of housing around it {feet[-1].factor:.2f}): the ring gives way between "
+        f"m of housing around it {feet[-1].factor:.2f}): the ring deforms between "
         "its feet, and the rollers above these take over.",
         f"The influence functions agree with a solid within its band "
         f"({100 * abs(flat[0] / free.solids[-1][0] - 1):.2g} % under two opposite pushes, "

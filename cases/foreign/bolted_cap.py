@@ -89,7 +89,7 @@ def run(run: Run, page: Page) -> None:
 def check(
     page: Page, found: dict[str, Floats], coarser: Floats, sizes: tuple[float, float]
 ) -> None:
-    """A glued joint is one solid, and gives the more the less of it is pressed."""
+    """A glued joint is one solid; the less of a joint is pressed, the softer it is."""
     solid, order = found["one solid"], [c for name, c in found.items() if name != "one solid"]
     for k in (2, 4):
         check_compliance(

@@ -1,4 +1,4 @@
-"""What a seat gives: compliances side by side, checks of them, and a housing as it bends."""
+"""Compliances of seats side by side, checks of them, and a housing as it deforms."""
 
 from collections.abc import Mapping
 

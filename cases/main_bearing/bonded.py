@@ -132,7 +132,7 @@ class Worked:
 
     @property
     def forces(self) -> list[Record]:
-        """Of `shares`, the force on the bearing in each plane."""
+        """Force on the bearing in each plane, two rows of `shares`."""
         return [self.shares[0], self.shares[4]]
 
     @cached_property

@@ -56,7 +56,7 @@ class DiscSweep:
     by_size : list of float
         Relative error of the averaged stiffness in each of them, at the last nu.
     change : float
-        Of the worst averaged error, from a finer mesh.
+        Change of the worst averaged error from a finer mesh.
     uncertain : float
         Relative uncertainty of the reference.
     """

@@ -83,9 +83,9 @@ class Penalised:
     counts : list of int
         Its iterations.
     uncertain, by_iteration : float
-        Of the elimination: what another scale changes, and multigrid.
+        Change of the elimination by another scale, and by multigrid.
     iterations : int
-        Of multigrid with the elimination.
+        Iterations of multigrid with the elimination.
     """
 
     penalties: Floats

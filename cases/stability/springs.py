@@ -66,7 +66,7 @@ class Errors:
     of : Swept
         The motions.
     hub, reaction, beam : (n,) array
-        Of the hub's motion, of the gearbox's reaction, and of the beam; NaN where refused.
+        Errors of the hub's motion, the gearbox's reaction and the beam; NaN where refused.
     """
 
     of: Swept
@@ -93,7 +93,7 @@ class OneSpring:
     own : float
         Motion of the spring's end by its force [m/N].
     error, reaction_error : (n,) array
-        Of the hub's motion and of the reaction, relative.
+        Relative errors of the hub's motion and of the reaction.
     """
 
     of: Swept

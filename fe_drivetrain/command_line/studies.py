@@ -150,7 +150,7 @@ def run_on_scene(
     scenes : sequence of str
         Names or files of the scenes, for the folder and the source.
     title : str
-        Of the page.
+        Title of the page.
     out : Path or None
         The folder, where the user named one.
     study : callable

@@ -185,7 +185,7 @@ def _of_step(path: Path) -> Survey:
 def _size(found: Mapping[str, Any], after: Mapping[str, Any]) -> tuple[float, float, float | None]:
     """Volume [mm^3] and area [mm^2], and how far OpenCASCADE's volume is from it with splines.
 
-    Of splines OpenCASCADE's integrals are inexact, so that curved facets enclose the volume.
+    OpenCASCADE's integrals over splines are inexact, so that curved facets enclose the volume.
     """
     if "curved_triangles" not in found:
         return after["volume"], after["area"], None

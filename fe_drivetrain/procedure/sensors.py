@@ -33,7 +33,7 @@ class Sensor:
     resolution : float
         Step of the digits, in that unit; 0 of none.
     every : int
-        Takes every so manieth sample of the signal, without a filter before it.
+        Takes every n-th sample of the signal, without a filter before it.
     """
 
     gain: float = 1.0

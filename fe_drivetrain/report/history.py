@@ -102,7 +102,7 @@ class PastRun(NamedTuple):
     computed, band : float or None
         Its value, and half width of the numerical uncertainty.
     allowed : float
-        As of `Point`.
+        As in `Point`.
     """
 
     date: str
@@ -153,7 +153,7 @@ def carry_history(before: Path, after: Path) -> None:
     Raises
     ------
     InputError
-        As of `check_history`.
+        As in `check_history`.
     """
     file = before / FILE
     while (number := _number(file)) is not None:
@@ -189,7 +189,7 @@ def record_run(folder: Path, results: Results) -> None:
     Raises
     ------
     InputError
-        As of `check_history`.
+        As in `check_history`.
     """
     environment, answer = results.environment, headline(results)
     found: list[Figure | Verdict] = [*results.answers, *results.verdicts]

@@ -182,7 +182,7 @@ def problems_before(folder: Path) -> dict[str, Problem]:
     Parameters
     ----------
     folder : Path
-        As of `write_index`.
+        As in `write_index`.
 
     Returns
     -------

@@ -53,7 +53,7 @@ def power_of_ten(value: float, unit: str | None = None) -> int:
     value : float
         The number, other than 0.
     unit : str or None
-        As of `formatted`.
+        As in `formatted`.
 
     Returns
     -------

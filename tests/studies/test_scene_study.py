@@ -208,7 +208,7 @@ def test_two_bearings_and_a_brake_are_studied(tmp_path: Path) -> None:
         name: models[f"beam, {name} housings"].compliance.diagonal()[:6]
         for name in ("rigid", "stiff", "soft")
     }
-    # a housing that gives makes the hub softer
+    # a housing that deforms makes the hub softer
     assert (hub["rigid"][[1, 2, 4, 5]] < hub["stiff"][[1, 2, 4, 5]]).all()
     assert (hub["stiff"][[1, 2, 4, 5]] < hub["soft"][[1, 2, 4, 5]]).all()
 

@@ -82,8 +82,8 @@ def with_motions(problem: Problem, number: int) -> Problem:
     problem : Problem
         With a moved face across x, and a motion along an axis or about x.
     number : int
-        Of motions, up to `MAX_MOTIONS`: translations, rotation about x, stretches and shear in
-        the face, and tilts.
+        Number of motions, up to `MAX_MOTIONS`: translations, rotation about x, stretches and shear
+        in the face, and tilts.
     """
     own = problem.motions[0]
     others = [m for m in _MOTIONS if not np.array_equal(m, own)]

@@ -53,7 +53,7 @@ class Housing:
 
 @dataclass(frozen=True)
 class ElasticHousing:
-    """A housing that gives between its ring and its bearings, on its supports.
+    """A housing that deforms between its ring and its bearings, on its supports.
 
     Attributes
     ----------

@@ -134,7 +134,7 @@ class Course:
         self.state = motion.end
 
     def history(self, every: int) -> Motion:
-        """All records, or each so-manieth and those of events and of the end."""
+        """All records, or every n-th beside those of events and of the end."""
         motion = joined(self.parts)
         if self.brakes:
             braking = Braking(

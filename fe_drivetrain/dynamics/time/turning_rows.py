@@ -120,7 +120,7 @@ def _place(of: Ints, rows: Floats, R: Floats) -> None:  # pragma: no cover - com
 
 @njit(cache=True, error_model="numpy")
 def constrain(matrices: Matrices) -> None:  # pragma: no cover - compiled
-    """Of the inverse, what leaves held motions as they are; and what the rows have of it."""
+    """Project the inverse so that it leaves held motions as they are, and update the rows."""
     A, rows = matrices.squares[INVERSE], matrices.rows
     n = len(A)
     by, of = np.empty(n), np.empty(n)

@@ -259,7 +259,7 @@ class Checks:
         source : str
             Where the statement comes from.
         basis : str
-            As of `equals`.
+            As in `equals`.
         """
         self._judge(
             statement,

@@ -31,7 +31,7 @@ def own_files(folder: Path) -> Manifest | None:
     Raises
     ------
     InputError
-        As of `fe_drivetrain.common.manifest.read_manifest`.
+        As in `fe_drivetrain.common.manifest.read_manifest`.
     """
     manifest = read_manifest(folder)
     if manifest is not None:

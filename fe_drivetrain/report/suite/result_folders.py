@@ -85,11 +85,11 @@ def run_case(
     out : Path
         The result folder. It must not exist, be empty, or be of an earlier run.
     settings : mapping, optional
-        As of `Run`.
+        As in `Run`.
     quick : bool
-        As of `Run`.
+        As in `Run`.
     report : callable
-        As of `Run`.
+        As in `Run`.
 
     Raises
     ------
@@ -161,13 +161,13 @@ def run_into(
     folder : Path
         Where it writes.
     settings : mapping
-        As of `Run`.
+        As in `Run`.
     quick : bool
-        As of `Run`.
+        As in `Run`.
     report : callable
-        As of `Run`.
+        As in `Run`.
     shared : Path, optional
-        As of `fe_drivetrain.report.write_page`.
+        As in `fe_drivetrain.report.write_page`.
 
     Returns
     -------

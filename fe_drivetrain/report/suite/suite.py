@@ -59,11 +59,11 @@ def run_cases(
     out : Path
         The folder above theirs.
     settings : mapping, optional
-        As of `Run`; each case is given those that it takes.
+        As in `Run`; each case is given those that it takes.
     quick : bool
-        As of `Run`.
+        As in `Run`.
     report : callable
-        As of `Run`; the name of a step follows that of its case.
+        As in `Run`; the name of a step follows that of its case.
     kept : collection of str
         Names of cases whose results are there and stay, see `finished_cases`.
 

@@ -163,7 +163,7 @@ def tilt_by_plane(model: Model, response: Response, bearing: str) -> dict[str, d
     Parameters
     ----------
     model, response : Model, Response
-        Of a scene without gearbox springs.
+        Model and response of a scene without gearbox springs.
     bearing : str
         Name of the bearing.
 
