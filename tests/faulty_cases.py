@@ -16,7 +16,7 @@ def fill(run: Run, page: Page, mark: str = NEW) -> None:
     (run.folder / "one.txt").write_text(mark)
     (run.folder / "two").mkdir()
     (run.folder / "two" / "three.txt").write_text(mark * 1000)
-    page.answer(mark)
+    page.say(mark)
     check_one(page)
 
 
@@ -40,7 +40,7 @@ def gmsh_fails(run: Run, page: Page) -> None:
         mesh_scene(coarse_scene("bonded", **{"mesh.shaft": 0.28}))
     finally:
         gmsh.model.mesh.generate = generate
-    page.answer(NEW)
+    page.say(NEW)
 
 
 def _no_mesh(dimension: int) -> None:

@@ -47,7 +47,7 @@ def write_case(reports: Path, name: str, passed: bool = True, **more: Any) -> No
         case=name,
         title="t",
         source="s",
-        summary=[],
+        details=[],
         sections=[],
         environment=made if code is None else made.model_copy(update={"code": code}),
         **(given | more),

@@ -63,13 +63,13 @@ def need_a_tool(run: Run, page: Page) -> None:
 
 
 def read_the_index(run: Run, page: Page) -> None:
-    page.answer((run.folder.parents[1] / "index.html").read_text())
+    page.say((run.folder.parents[1] / "index.html").read_text())
     count(run, page)  # which is a step
     end = time.monotonic() + 10.0
     while "1 running" not in (said := (run.folder.parents[1] / "index.html").read_text()):
         assert time.monotonic() < end
         time.sleep(0.02)
-    page.answer(said)
+    page.say(said)
 
 
 def a_case(name: str, work: Callable[[Run, Page], None], alone: bool = False) -> Case:

@@ -19,7 +19,7 @@ def work(run, page):
         (run.folder / "half.txt").write_text("half")
         if run.settings.get("work") == "forever":
             time.sleep(600)
-    page.answer("\u2208 one")
+    page.say("\u2208 one")
     page.equals("one", 1.0, 1.0, within=0.1, why="r", source="s")
 
 if __name__ == "__main__":
@@ -36,6 +36,6 @@ def count(run: Run, page: Page, computed: float = 1.01) -> None:
     """Two checks, the first of which a computed value beyond 1.05 fails."""
     with run.step("count to one"):
         pass
-    page.answer("The answer is one.", "Second.", "Third.", "Fourth.")
+    page.say("The answer is one.", "Second.", "Third.", "Fourth.")
     check_one(page, computed, unit="N m/rad")
     page.equals("ratio", 2.0, 2.0, within=0.0, why="r", source="s", relative=False)

@@ -150,7 +150,7 @@ def run(run: Run, page: Page) -> None:
     )
     worst = max(abs(r["difference [%]"]) for r in rows if "tilt" not in r["quantity"])
     tilts = [100.0 * (r["MASTA"] / r["ours"] - 1.0) for r in rows if "tilt" in r["quantity"]]
-    page.answer(
+    page.say(
         f"Displacements of a deep-groove bearing and ratings of a tapered one are MASTA's to "
         f"{worst:.3f} %. MASTA's tilt is "
         f"{min(tilts):.2f} to {max(tilts):.2f} % larger, as it is "

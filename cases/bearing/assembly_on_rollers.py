@@ -55,7 +55,7 @@ def run(run: Run, page: Page) -> None:
     ]
     changes = [row[CHANGE] for row in rows]
     page.found("largest change of the peak roller [%]", max(changes, key=abs))
-    page.answer(
+    page.say(
         f"With shaft, inner ring and housing as solids the peak roller differs by "
         f"{min(changes):+.1f} to {max(changes):+.1f} % from a beam on rigid rings whose housing is "
         f"a spring in series. {few.assembly.shapes()[1].size} shapes of the solids are taken.",

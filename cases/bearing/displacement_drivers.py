@@ -42,7 +42,7 @@ def run(run: Run, page: Page) -> None:
                 charts(page, axial, loads)
     first = rows[0]
     page.found("ring moves upwind against the thrust, share of steps [%]", first["upwind [%]"])
-    page.answer(
+    page.say(
         f"Face to face the inner ring moves upwind against the thrust in {first['upwind [%]']:.0f} "
         f"% of the steps; of these the moment of the rotor's weight prevails in "
         f"{first['of these with overhanging moment [%]']:.0f} % (the thesis: 100 %).",

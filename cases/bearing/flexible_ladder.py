@@ -96,7 +96,7 @@ def run(run: Run, page: Page) -> None:
     at = {(r["load"], r["model"]): r["error [%]"] for r in rows}
     check(page, at)
     combined = "combined, in one plane"
-    page.answer(
+    page.say(
         f"Rigid rings miss the peak roller by up to {max(at[k, RIGID] for k in LOADS):.0f} % with "
         f"straight rollers, by up to {max(at[k, PROFILED] for k in LOADS):.0f} % with their "
         f"profile. Under the load in one plane 40 shapes of the race miss it with straight "

@@ -107,7 +107,7 @@ def run(run: Run, page: Page) -> None:
     at = {row["load"]: row for row in rows}
     changes = [row[CHANGE] for row in rows]
     page.found("largest change of the peak roller [%]", max(changes, key=abs))
-    page.answer(
+    page.say(
         f"On the flexible housing the peak roller of bearing S changes by {min(changes):+.1f} to "
         f"{max(changes):+.1f} % against rigid rings: "
         + ", ".join(f"{name} {at[name][CHANGE]:+.1f} %" for name in SHOWN)

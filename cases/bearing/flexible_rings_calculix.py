@@ -53,7 +53,7 @@ def run(run: Run, page: Page) -> None:
             deck = run.folder / f"{name.replace(', ', '_')}.inp"
             theirs = calculix_rollers(deck, solid, bearing, material, found.displacements[k])
         _check(page, name, found, k, theirs, theirs @ approach)
-    page.answer(
+    page.say(
         "CalculiX, with each roller as a nonlinear spring that does not pull between the housing "
         "and the inner ring, has the same roller loads."
     )

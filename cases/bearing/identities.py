@@ -59,7 +59,7 @@ def run(run: Run, page: Page) -> None:
     why, eq = f"{RESIDUAL}: 1e-8 of the load", "Stirling 2023, section 4.2.1"
     page.meets(rows[0][SIDE], Target(title, 0.0, 1e-3, why, eq, measure="identity"))
     worst = max(rows, key=lambda row: abs(row[PEAK]))
-    page.answer(
+    page.say(
         "Balance, symmetry and homogeneity hold to the solver's residual.",
         "The reduction to three degrees is exact where force and moment act in one plane; a moment "
         f"turned by {worst[ANGLE]:.0f} deg out of it leaves {worst[SIDE]:.0f} kN of side force "

@@ -259,7 +259,7 @@ def differences(page: Page, files: dict[str, list[Answer]], answers: dict[str, A
         for pair in ((CONSTANT, LOOP), (LOOP, NEWTON), (NEWTON, HOUSED))
     )
     page.found("mean moment, constant K_R against the loop [%]", to_loop)
-    page.answer(
+    page.say(
         f"The moment on the bearing differs by {to_loop:.1f} % between a constant K_R "
         f"and the thesis's loop (the thesis: about 3 %), by {to_newton:.1f} % between the "
         "loop and Newton on beam and bearing together.",
@@ -295,7 +295,7 @@ def for_design(page: Page, files: dict[str, list[Answer]], step: float) -> None:
     enough = good_enough_for(worst, WITHIN)
     called = {None: "none", SECANT: "the loop with secants"}
     words = "; ".join(f"for {use} {called.get(name, name)}" for use, name in enough.items())
-    page.answer(
+    page.say(
         f"Within {100 * WITHIN:g} % of Newton, in force and in moment, the cheapest model without "
         f"the housing is {words}."
     )
@@ -337,7 +337,7 @@ def roller_table(page: Page, files: dict[str, list[Answer]]) -> None:
         "found, or another constant: against 145 MN m/rad, its first guess, peaks of the loop are "
         "at least as much larger as it says."
     )
-    page.answer(
+    page.say(
         f"Between loop and constant K_R the largest roller changes by {max_change(ratios):.0f} "
         f"% at most, roller 1 by {max_change(ones):.0f} %; the thesis's factor of more than 2 "
         f"is not an effect of the loop, but of 145 MN m/rad: {min(soft):.1f} to {max(soft):.1f}."

@@ -54,7 +54,7 @@ def run(run: Run, page: Page) -> None:
     out = at["combined, 45 deg out of plane", THREE]["error [%]"]
     rough = at["combined, in one plane", RUNGS[0][0]]["error [%]"]
     page.found("closed forms added up: error of the peak roller [%]", rough)
-    page.answer(
+    page.say(
         f"Closed forms added up miss the peak roller of a combined load by {rough:.0f} %; three "
         f"degrees miss it by {out:.0f} % with the moment 45 deg out of plane; five degrees with "
         "straight rollers are left with what the profile changes.",

@@ -54,7 +54,7 @@ def run(run: Run, page: Page) -> None:
         why="that is what a profile is for",
         source="ISO/TS 16281",
     )
-    page.answer(
+    page.say(
         f"With 30 laminae the moment of bearing S has an error of {error:.1e}; they "
         "converge with the second power of their number to the closed form.",
         f"The profile of ISO/TS 16281 changes the most loaded end from "

@@ -60,7 +60,7 @@ def run(run: Run, page: Page) -> None:
         for key, _ in NAMES
     ]
     misfit = next(row for row in rows if row["bearing"] == "bearing_s")
-    page.answer(
+    page.say(
         "The assumed rollers of bearing S fit its printed C, C0 and C_u to "
         f"{100.0 * max(misfits):.1f} % at {fitted['contact angle [deg]']:.0f} deg.",
         "At 38 deg, the angle that gives the thesis's tilting stiffness face to face, C would be "

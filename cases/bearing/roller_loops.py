@@ -142,7 +142,7 @@ def directions(page: Page, loads: dict[str, Floats]) -> None:
     last = {row["bearing"]: row for row in rows if row["wind [m/s]"] == WIND_SPEEDS[-1]}
     key = "force, least to largest [kN]"
     page.found("range of the radial force at 24 m/s, rollers alone [kN]", last[ALONE][key])
-    page.answer(
+    page.say(
         f"At 24 m/s the radial force ranges over {last[ALONE][key]:.0f} kN on rollers in a rigid "
         f"housing and {last[CONSTANT][key]:.0f} kN with K_R of 145 MN m/rad (the thesis: under "
         f"200, against 800 at 20 m/s); with rollers and housing in series it is "
@@ -248,7 +248,7 @@ def zones_and_edges(page: Page, bearing: Bearing, loads: Floats, every: int) -> 
         why="moments drive the rollers more than forces do",
         source="Stirling 2023, section 4.6: three of four examples",
     )
-    page.answer(
+    page.say(
         f"Load zones of the two rows are on opposite sides in {least:.0f} % of the steps or more "
         "(the thesis: in three of four examples); the largest roller follows the moment with a "
         f"correlation of {min(r['peak roller with |M|, correlation'] for r in rows):.2f} or more."

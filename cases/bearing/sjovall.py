@@ -134,7 +134,7 @@ def run(run: Run, page: Page) -> None:
         check_moment(page, bearing)
     with run.step("clearance"):
         swept = [clearance(float(um)) for um in range(0, 201, 50 if run.quick else 10)]
-    page.answer(
+    page.say(
         f"Discrete rollers carry Sjovall's peak, {rows[0]['peak factor']:.4f} F / (Z cos(alpha)) "
         f"of a row with exponent 1.1, to {apart:.0e}.",
         f"A diametral clearance of 0.2 mm raises the peak of the planet bearing from "

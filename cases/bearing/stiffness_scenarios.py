@@ -51,7 +51,7 @@ def run(run: Run, page: Page) -> None:
     check_closed_form(page, bearing_s())
     first = fits[0]
     page.found("slope of the best straight line [MN m/rad]", first["best fit [MN m/rad]"])
-    page.answer(
+    page.say(
         f"A straight line through all scenarios has a slope of {first['best fit [MN m/rad]']:.0f} "
         f"MN m/rad for {first['bearing']}; the thesis prints {BEST_FIT / 1e6:.0f}. For the contact "
         f"angle of the load ratings, 20 deg, it is {fits[1]['best fit [MN m/rad]']:.0f} face to "

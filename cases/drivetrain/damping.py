@@ -78,7 +78,7 @@ def run(run: Run, page: Page) -> None:
     meant = [damped_modes(models["free"][f"{n} masses, as meant"]).ratios[0] for n in ("5", "11")]
     behind = shafts_behind()
     lss = behind[0]
-    page.answer(
+    page.say(
         f"The shaft dampers of Table 4.2 damp the drivetrain's swing by {tabled:.1g} of critical "
         f"damping, not by the {DAMPING_RATIO:g} that the text asks for: Eq 4.5 was evaluated with "
         "J as the shaft's second moment of area [m^4] where it needs an inertia [kg m^2].",

@@ -104,7 +104,7 @@ def run(run: Run, page: Page) -> None:
             page.data(f"{letter}_restored_value", other.value)
         else:
             worst = float(np.abs(one.f[1:] / one.targets[1:] - 1).max())
-            page.answer(
+            page.say(
                 f"Drivetrain {letter}: all {len(one.f) - 1} frequencies above zero of Table 6.4 "
                 f"follow from Tables 4.3 and 4.7 within {100 * worst:.2g} %."
             )
@@ -243,7 +243,7 @@ def show_restored(page: Page, one: ByTables, other: Restored) -> None:
     key, what, number = RESTORED[letter]
     tabled = dict(published.printed_inputs(one.name))
     off = [i for i in range(1, len(f)) if abs(f[i] / targets[i] - 1) > 0.1]
-    page.answer(
+    page.say(
         f"Drivetrain {letter}: {hertz(targets[off])} of Table 6.4 "
         f"{'is' if len(off) == 1 else 'are'} not of Table 4.3, which gives "
         f"{hertz(f[off])}; with a {what} of {other.value:.4g} kg m^2 instead of {tabled[key]} "

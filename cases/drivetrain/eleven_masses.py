@@ -110,7 +110,7 @@ def run(run: Run, page: Page) -> None:
         swept = np.array([with_meshes(float(x)) for x in factors])
     relative = float(np.abs(other.frequencies / TARGETS - 1).max())
     fixed = f["fixed"]
-    page.answer(
+    page.say(
         f"From Table 4.2, eleven masses give {fixed[0]:.3f} and {fixed[1]:.3f} Hz with the "
         f"generator fixed, {f['free'][1]:.3f} Hz free (Table 6.1: 0.841, 5.859, 2.44), "
         f"and {fixed[8]:.0f} and {fixed[10]:.0f} Hz (1020, 4398). Two more, both at "

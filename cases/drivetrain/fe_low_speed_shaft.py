@@ -286,7 +286,7 @@ def answer(page: Page, K: Stiffness, rows: list[Record], needed: list[Record]) -
     found = {(row["model"], row["generator"], row["mode"]): row for row in rows}
     fixed, free = found["11 masses", "fixed", 1], found["11 masses", "free", 2]
     fixed_needs, free_needs = (row["11 masses"] for row in needed)
-    page.answer(
+    page.say(
         "A low-speed shaft with flange, step and fillets whose sections add up to Table 4.2's "
         f"{TABLED / 1e7:.2f}e7 N m/rad has ({K.value / 1e7:.3f} ± {K.band / 1e7:.3f})e7 by finite "
         f"elements, {100 * (1 - K.value / TABLED):.2f} % less: sections near a step do not turn as "

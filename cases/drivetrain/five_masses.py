@@ -87,7 +87,7 @@ def run(run: Run, page: Page) -> None:
     f = {state: modes.frequencies for state, modes in found.items()}
     targets = np.array([float(v) for v in published.OTHER_FIVE])
     close = float(np.abs(other.fixed / targets - 1).max())
-    page.answer(
+    page.say(
         f"From Table 4.2, five masses give {listed(f['fixed'])} Hz with the generator fixed. "
         "Table 6.1 has 0.864, 5.889, 312, 402 and 1974: its third and fourth do not follow from "
         f"its own inputs, but do, both, with J_2 = {restored:.1f} kg m^2 in place of {J_2:.1f}.",

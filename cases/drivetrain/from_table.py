@@ -69,7 +69,7 @@ def run(run: Run, page: Page) -> None:
             rows += frequency_rows(name, system, modes, state)
     whole, rigid = check_gears_and_stages(page, table)
     first = [found[name, "free"].frequencies[1] for name in MAKERS]
-    page.answer(
+    page.say(
         f"{table.title}: with the generator free, its first frequency above zero is "
         f"{first[0]:.4g} Hz as two masses, {first[1]:.4g} with a mass for each stage and "
         f"{first[2]:.4g} with one for each gear.",

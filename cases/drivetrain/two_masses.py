@@ -72,7 +72,7 @@ def run(run: Run, page: Page) -> None:
     measured = [against_measured(state, f[state]) for state in published.STATES]
     shafts = [row["shafts that it needs, over those of Table 4.2"] for row in measured]
     lss = TABLE.shafts[0].stiffness
-    page.answer(
+    page.say(
         f"Two masses swing at {f['fixed'][0]:.4f} and {f['fixed'][1]:.4f} Hz with the "
         f"generator's spring and at {f['free'][1]:.4f} Hz without: Table 6.1 has 0.864, 5.888 "
         "and 2.524.",

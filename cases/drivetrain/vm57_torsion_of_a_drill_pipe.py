@@ -64,7 +64,7 @@ def run(run: Run, page: Page) -> None:
         order = order_of(f"order of convergence: {key}", 2.0, 0.05, steady, "lumped inertias")
         page.meets(series.order(key), order)
     one, two = (series.last[key] for key in PRINTED)
-    page.answer(
+    page.say(
         f"The pipe swings at {one:.4f} and {two:.4f} Hz with 80 inertias; the manual has "
         f"{' and '.join(PRINTED.values())}."
     )

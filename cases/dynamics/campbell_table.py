@@ -107,7 +107,7 @@ def run(run: Run, page: Page) -> None:
     ]
     counts = show_crossings(page, found)
     show_assembly(page, found)
-    page.answer(
+    page.say(
         f"Table 4.8 is too high for all planetary stages, by {min(over):.0f} to {max(over):.0f} %: "
         "it counts the teeth of ring and sun together where the ring's alone pass the planets.",
         f"With the right orders there are {counts['right']} crossings of the first three harmonics "

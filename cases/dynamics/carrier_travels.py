@@ -77,7 +77,7 @@ def run(run: Run, page: Page) -> None:
         measure="order",
     )
     swing = np.ptp(moving.resultant(PIN)) / mean
-    page.answer(
+    page.say(
         f"In time, with planets that travel, the load of an upwind planet bearing swings by "
         f"{100 * swing:.1f} % of its mean in a turn, as in statics at each azimuth.",
         "A place of the ring does not feel the mesh frequency of planets in phase in its third "

@@ -54,7 +54,7 @@ def run(run: Run, page: Page) -> None:
     means = [float(str(row["mean [kN]"])) for row in rows]
     ratios = [up / down for up, down in zip(means[::2], means[1::2], strict=True)]
     show(page, found, angles, rows)
-    page.answer(
+    page.say(
         "Loads of the planet bearings vary once a turn, shifted by a third from planet to planet: "
         "by gravity, by moments of the hub, and, with torque alone, by "
         f"{100 * not_round(still):.0f} % from least to largest, since the gears of the next stage "

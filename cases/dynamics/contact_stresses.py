@@ -53,7 +53,7 @@ def run(run: Run, page: Page) -> None:
         "5.14 needs the radius 1 / (1/R1 + 1/R2). Taken as a radius it has no unit that fits."
     )
     high = pressures["stage 3"]
-    page.answer(
+    page.say(
         f"At rated torque the high-speed stage of the 2 MW gearbox has {high:.0f} MPa, "
         f"{high / pressures['sun-planet']:.2f} of the sun's mesh and "
         f"{high / pressures['stage 2']:.2f} of the intermediate one, where the thesis prints 1.32 "

@@ -35,7 +35,7 @@ def run(run: Run, page: Page) -> None:
         speeds = np.linspace(0.0, 1.2 * limits[0], 13 if run.quick else 61)
         modes = [turning_modes(system, s * UNIT, damped=False) for s in speeds]
     check_turning(page, limits[0])
-    page.answer(
+    page.say(
         "At rest the printed frequencies come out to their four digits.",
         "In the frame of the carrier Coriolis terms part every pair of translational modes in "
         "proportion to the speed, and leave the planet modes, in which the central bodies stand "

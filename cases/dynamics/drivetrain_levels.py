@@ -77,7 +77,7 @@ def run(run: Run, page: Page) -> None:
             stiffness_of_5mw(page)
         assume(page, name, machine)
     show_needed(page, needed)
-    page.answer(
+    page.say(
         "All levels are one assembly: the torsional tables come back to round-off from it.",
         f"{needed[0]['drivetrain']}, within 5 % of the finest level: "
         + "; ".join(

@@ -77,7 +77,7 @@ def run(run: Run, page: Page) -> None:
     page.sweep(
         "Lowest frequency against that of a rigid ring", rows, THICKNESS, LOWEST, table=False
     )
-    page.answer(
+    page.say(
         f"A rim of {float(str(rows[0][THICKNESS])):.0f} mm takes "
         f"{-float(str(rows[0][LOWEST])):.0f} % off the lowest frequency of the stage with a rigid "
         f"ring, one of {float(str(thick[THICKNESS])):.0f} mm {-float(str(thick[LOWEST])):.1f} %; "

@@ -37,7 +37,7 @@ def run(run: Run, page: Page) -> None:
         why="planets that tilt in step about their radii push neither sun nor ring",
         source="symmetry of a mesh about the middle of its face",
     )
-    page.answer(
+    page.say(
         "Helical planets in three dimensions have twelve rotational-axial modes, twelve pairs of "
         "translational-tilting ones, and six planet modes N - 3 times each, as proved for equal, "
         "equally spaced planets.",

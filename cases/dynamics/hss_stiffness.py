@@ -45,7 +45,7 @@ def run(run: Run, page: Page) -> None:
         page.section("Loss of the generator in time")
         torques = torque_rows(page, run.quick)
     first = rows[0]
-    page.answer(
+    page.say(
         "From a tenth to ten times the stiffness, the frequency of A that rises most is that of "
         f"{first['rises most, as tabled [Hz]']:.0f} Hz, by {first['by [%]']:.0f} %; its highest "
         f"rises by {first['highest rises by [%]']:.2g} %, and its lowest by "

@@ -61,7 +61,7 @@ def run(run: Run, page: Page) -> None:
         lost = check_angle(page)
     with run.step("step control"):
         check_control(run, page)
-    page.answer(
+    page.say(
         "Newmark's method gives the printed tables of Chopra and Bathe to their last digit; all "
         f"methods are of second order ({min(slopes):.3f} to {max(slopes):.3f} found).",
         "Average acceleration conserves the energy of a linear system to round-off; its period is "

@@ -61,7 +61,7 @@ def run(run: Run, page: Page) -> None:
                 }
             )
             start += count
-    page.answer(
+    page.say(
         f"Of {prints} printed frequencies of three, four and five planets {prints - len(far)} come "
         f"out within half of their last digit; {', '.join(one for one, _ in far)} Hz of the print "
         f"are {', '.join(other for _, other in far)} Hz with these inputs.",

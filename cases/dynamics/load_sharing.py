@@ -58,7 +58,7 @@ def run(run: Run, page: Page) -> None:
     page.meets(load_sharing(both), Target(title, 1.0, 1e-8, determinate, "statics"))
     pairs = by_torque(page, 5 if run.quick else 21)
     last = rows[2]
-    page.answer(
+    page.say(
         "The assembled stage shares as the closed form says, to round-off of the solver: three "
         "planets of a floating sun always equally, four by "
         f"{last[SHARING]:.4f} where one pin's error is a quarter of the mean load.",

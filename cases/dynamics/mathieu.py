@@ -100,7 +100,7 @@ def run(run: Run, page: Page) -> None:
         source="averaging, first order in the depth",
     )
     more = 100.0 * np.expm1(2.0 * np.pi * stepped_growth(depth, 2.0, STEPS))
-    page.answer(
+    page.say(
         "A stiffness that varies by 10 % at twice the natural frequency makes motion grow by "
         f"{more:.0f} % in each natural period; damping of e / 4 = {depth / 4:g} stops that.",
         "Growth is that of Mathieu's equation to a thousandth, in and beside the resonance.",

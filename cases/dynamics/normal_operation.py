@@ -79,7 +79,7 @@ def run(run: Run, page: Page) -> None:
         "The thesis puts the measured torque of a 2 MW turbine on the rotor of A and B, too, "
         "scaled by their diameters."
     )
-    page.answer(
+    page.say(
         "In normal operation all shafts of a drivetrain have the same torque over their rated one, "
         f"within {100 * apart:.1g} %, as printed for B. Up to 6P the shafts of B follow the torque "
         f"of the rotor within {100 * max(abs(largest - 1), abs(least - 1)):.0f} %: its printed "

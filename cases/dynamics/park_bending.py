@@ -62,7 +62,7 @@ def run(run: Run, page: Page) -> None:
         spectra(run, page)
     show_modes(page, corrected)
     printed_reading, balance, _ = paradox(page)
-    page.answer(
+    page.say(
         "As printed, the model has six free tilts beside the free turn, and shaft bending cannot "
         "reach a mesh force at all; what the source says of its effect cannot come of its "
         "equations.",

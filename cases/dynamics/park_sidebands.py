@@ -87,7 +87,7 @@ def run(run: Run, page: Page) -> None:
     flat, space = ((row["sideband above [Hz]"] - row["sideband below [Hz]"]) / 2.0 for row in rows)
     lines = [row["mesh line [Hz]"] for row in rows]
     show_words(page, lines, flat, space, 1.0 / duration)
-    page.answer(
+    page.say(
         f"After a torque step the mesh line of {LINE:.2f} Hz has sidebands as far from it as the "
         f"low-speed shaft rings: {flat:.3f} Hz in the torsional model, {space:.3f} Hz in three "
         "dimensions. The source has them farther apart in three dimensions; bearings and bending "

@@ -103,7 +103,7 @@ def run(run: Run, page: Page) -> None:
         changes = eccentric(page, space, dt, seconds, run.quick)
     nacelle = changes[PUSHED]
     largest = max((name for name in changes if name != PUSHED), key=lambda name: changes[name])
-    page.answer(
+    page.say(
         f"The 'constant period of approximately 0.4 s' is the first mode after a torque step: "
         f"{steps[0][PERIOD]:.3f} s with the meshes as printed and {steps[2][PERIOD]:.3f} s with "
         f"all of them wound twice; the force goes from {steps[0][MINIMUM]:.3f} to "

@@ -86,7 +86,7 @@ def run(run: Run, page: Page) -> None:
     worst = found["with -300 kN m of tilt", held.name]
     ratios = [float(str(row["upwind over downwind, of means"])) for row in rows]
     largest = [float(str(row["largest of the turn"])) for row in rows]
-    page.answer(
+    page.say(
         f"Upwind over downwind of means is {ratios[1]:.3f} with a rigid carrier and "
         f"{ratios[4]:.3f} with the flexible one and 0.1 mm of clearance, where the thesis has 1.41 "
         f"to 1.47; at the worst azimuth with tilt and loose carrier bearings it is "

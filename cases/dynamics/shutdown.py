@@ -56,7 +56,7 @@ def run(run: Run, page: Page) -> None:
         page.section("With backlash")
         knocks = check_backlash(page, stopped, run.quick)
     fast = {row["drivetrain"]: row["HSS, peak over rated"] for row in rows}
-    page.answer(
+    page.say(
         f"With a brake that brings the low-speed shaft to the printed {PEAK} of its rated torque, "
         f"the high-speed shaft of C comes to {fast['C']:.3f}, the lowest is that of "
         f"{min(fast, key=lambda name: fast[name])}; printed is 1.32 for C, as the lowest. By the "

@@ -59,7 +59,7 @@ def run(run: Run, page: Page) -> None:
         why="teeth come into contact where those before them have given way",
         source="Harris 1958",
     )
-    page.answer(
+    page.say(
         f"Tip relief of {1e6 * RELIEFS[1]:g} µm lowers the static transmission error from "
         f"{1e6 * bare:.2f} to {1e6 * relieved:.2f} µm, from peak to peak, under {TORQUE:g} N m.",
         "In time, stiffness and error vary with the slices that carry. The linear response to the "

@@ -49,7 +49,7 @@ def run(run: Run, page: Page) -> None:
             ]
     last = rows[-1]["steps a period"]
     finest = [row for row in rows if row["steps a period"] == last]
-    page.answer(
+    page.say(
         f"With {last} steps a period, torques of two masses are right to "
         f"{max(row['error of the torque, loss [%]'] for row in finest):.2g} % of rated over three "
         "periods after a loss of the generator, by either method.",

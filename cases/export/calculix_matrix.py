@@ -65,7 +65,7 @@ def run(run: Run, page: Page) -> None:
         for k in range(COUNT):
             title = f"{label}, held at its first point: natural frequency {k + 1} [Hz]"
             page.meets(computed[k], Target(title, exact[k], 1e-6, UNCERTAIN, EIGENVALUES))
-    page.answer(
+    page.say(
         "CalculiX moves under unit loads as the exported matrices say, to "
         f"{max(column(rows, DIFFERENCE)):.1e} of the largest displacements: the digits that it "
         "prints.",

@@ -73,7 +73,7 @@ def run(run: Run, page: Page) -> None:
             source="eigenvalues of the condensed matrices with the supports",
         )
         page.data(label, row["lowest"])
-    page.answer(
+    page.say(
         f"Exudyn {version} carries loads at the hub to the bearings as this project does, to "
         f"{max(column(rows, 'reactions')):.1e}, whether the shaft is a flexible body, one in a "
         "floating frame, or rigid bodies with 6x6 connectors.",

@@ -53,7 +53,7 @@ def run(run: Run, page: Page) -> None:
         kind, name = row["matrix"], f"{row['superelement']}, {row['format']}"
         title = f"{name}: {kind} read less {kind} written, of a unit diagonal"
         page.vanishes(title, row[DIFFERENCE], within=1e-15, why=why, source=WRITTEN)
-    page.answer(
+    page.say(
         "JSON, CSV, Matrix Market and HDF5 give the matrices back with a largest difference of "
         f"{max(column(rows, DIFFERENCE)):.1e} of a unit diagonal, each by a library that knows "
         "nothing of this project."

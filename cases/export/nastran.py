@@ -72,7 +72,7 @@ def run(run: Run, page: Page) -> None:
             title = f"{name}: natural frequency {k + 1} of the first three [Hz]"
             page.meets(computed[k], Target(title, exact[k], 1e-6, SOFTEST, WRITTEN))
     worst_of = {name: max(column(of, DIFFERENCE)) for name, of in grouped(rows, "format")}
-    page.answer(
+    page.say(
         f"pyNastran reads the exported DMIG with a largest difference of {worst_of['dmig']:.1e} of "
         f"a unit diagonal, and OUTPUT4 with {worst_of['op4']:.1e}.",
         "A symmetric DMIG holds one triangle; the whole matrix comes back from it.",

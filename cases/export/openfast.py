@@ -67,7 +67,7 @@ def run(run: Run, page: Page) -> None:
             "sixteenth",
             source="Jonkman et al. 2009, NREL/TP-500-38060, section 5",
         )
-    page.answer(
+    page.say(
         "SubDyn's spring element and ExtPtfm's superelement come back from openfast_io with every "
         "digit that was written."
     )
@@ -112,7 +112,7 @@ def drivetrain_torsion(
         why="the elements contain the exact solution: round-off of the condensation",
         source="Coulomb's torsion of a round shaft, G J / L",
     )
-    page.answer(
+    page.say(
         f"A drivetrain spring of {spring:.4g} N m/rad from the finite-element shaft and its damper "
         f"of {damper:.4g} N m s/rad are what openfast_io reads from the edited ElastoDyn input; "
         f"{len(before) - len(changed)} other values are as before."

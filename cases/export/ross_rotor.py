@@ -49,7 +49,7 @@ def run(run: Run, page: Page) -> None:
     free_shaft(run, page)
     moved, reacted = np.max(errors, axis=0)
     difference = column(rows, "difference [%]")
-    page.answer(
+    page.say(
         f"ROSS {version} gives the deflections of level 1 to {moved:.1e} and its reactions to "
         f"{reacted:.1e}, with the full 6x6 stiffness of every bearing unit.",
         f"On those supports its lowest {COUNT} natural frequencies are up to "

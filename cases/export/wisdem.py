@@ -209,7 +209,7 @@ def run(run: Run, page: Page) -> None:
         source="WISDEM's drivetrain, G J / L of its uniform shaft",
     )
     check_files(page, used, stated, ours)
-    page.answer(
+    page.say(
         f"WISDEM's drivetrain takes {used.spring:.4g} N m/rad from the turbine file in place of "
         f"its own {own.spring:.4g} N m/rad, and the damper with it.",
         "For a uniform shaft its own stiffness is that of the finite-element shaft.",

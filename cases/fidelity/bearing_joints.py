@@ -140,7 +140,7 @@ def run(run: Run, page: Page) -> None:
     low, high = (sweep.reached(share) for share in (ENOUGH, 1.0 - ENOUGH))
     known = "; ".join(f"{whose}: {sweep.share(k):.0f} %" for k, whose in KNOWN.items())
     stiffer = limits.all.hub_motions[4, 4] / limits.bonded.hub_motions[4, 4] - 1
-    page.answer(
+    page.say(
         f"From no to full tilt stiffness the bearing's share of a hub moment goes from 0 to "
         f"{limits.all.tilt_moment:.3f}. Below {low:.2g} N m/rad a spherical joint is within "
         f"{100 * ENOUGH:g} % of the largest share, above {high:.2g} N m/rad a rigid tie is; only "

@@ -233,9 +233,9 @@ def show_ladder(run: Run, page: Page, ladder: Ladder, quantities: Sequence[Quant
         What they are compared by; the first decides.
     """
     found = Compared.of(ladder, quantities)
-    page.answer(f"{_capital(found.sentence())}.")
+    page.say(f"{_capital(found.sentence())}.")
     if run.quick:
-        page.answer(QUICK_BAND)
+        page.say(QUICK_BAND)
     else:
         model = ladder.models[found.chosen]
         page.at_most(

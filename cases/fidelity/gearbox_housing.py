@@ -110,7 +110,7 @@ def run(run: Run, page: Page) -> None:
     page.found(
         "torsion of the suspension about x [MN m/rad]", whole, whole * band.relative_uncertainty
     )
-    page.answer(
+    page.say(
         f"On the solid the suspension has {torsion(ladder.top):.4g} N m/rad about x "
         f"(± {100 * band.relative_uncertainty:.2g} %), where rigid arms would have "
         f"{torsion(ladder.models[0]):.4g}. As the gearbox springs of {SCENE}, whose "

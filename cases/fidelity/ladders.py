@@ -27,7 +27,7 @@ def run(run: Run, page: Page, row: Record) -> None:
     page.about(scene)
     result = advise(scene, row["quantity"], row["tolerance"], to_the_top=True, report=run.report)
     if run.quick:
-        result = replace(result, checks=(), answer=(*result.answer, QUICK_BAND))
+        result = replace(result, checks=(), details=(*result.details, QUICK_BAND))
     run.take(result)
     page.take(result)
     show_advise(run, page, result)

@@ -190,7 +190,7 @@ def run(run: Run, page: Page) -> None:
     rows = {one.name: judge(page, one, cuts) for one in shafts}
     largest = max(max_error(one, rows[one.name]) for one in shafts)
     milliseconds = [one.milliseconds for one in shafts]
-    page.answer(
+    page.say(
         f"Between rigid ends and a rigid seat the meridian has every stiffness of the solids "
         f"within their bands, at most {100 * largest:.2g} % from their limit (of the root of "
         f"both diagonal terms), in {max(milliseconds):.0f} ms."

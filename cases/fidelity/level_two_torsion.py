@@ -148,7 +148,7 @@ def run(run: Run, page: Page) -> None:
         rows += own
         widths += bounds
     finest = {name: of[-1] for name, of in grouped(rows, "shaft")}
-    page.answer(
+    page.say(
         "The torsional stiffness of a stepped shaft between rigid ends is that of two bounds to "
         f"{max(abs(row[ERROR]) for row in finest.values()):.1g}; the bounds are "
         f"{max(of[-1][WIDTH] for _, of in grouped(widths, 'shaft')):.1g} apart."

@@ -73,7 +73,7 @@ def answer(page: Page, found: list[Compared]) -> None:
     uncertain = [one.scene for one in found if one.changes[FORCE].faces > BEARABLE]
     bare = [one.scene for one in found if one.changes[bending].bare > BEARABLE]
     share = f"{100 * BEARABLE:g} %"
-    page.answer(
+    page.say(
         "A beam in place of the exact shaft changes the hub's bending stiffness by at most "
         f"{share} in {len(enough[bending])} of {len(found)} scenes"
         + (f" (not in {', '.join(poor)})" if poor else "")

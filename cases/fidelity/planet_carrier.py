@@ -103,7 +103,7 @@ def run(run: Run, page: Page) -> None:
     wound = 1e3 * RATED / top.wind_up
     band = wound * bands[0].relative_uncertainty
     page.found("wind-up of the pins at the rated torque [mrad]", wound, band)
-    page.answer(
+    page.say(
         f"The pins wind up by {1e3 * RATED / top.wind_up:.3g} mrad at the rated torque "
         f"(± {100 * bands[0].relative_uncertainty:.2g} %) and tilt by "
         f"{1e6 * RATED * top.tilt:.3g} µrad (± {100 * bands[1].relative_uncertainty:.2g} %): "

@@ -71,7 +71,7 @@ def beside_published(page: Page, scene: Scene, published: Published) -> None:
         measure="identity",
     )
     less = 100 * (1 - found / published.value)
-    page.answer(
+    page.say(
         f"{published.name} is published as {published.value:.4g} N m/rad; the shaft of this scene "
         f"has {found:.4g} ± {band:.1g} by finite elements"
         + (f", {less:.2g} % less" if abs(less) > 0.01 else "")

@@ -136,7 +136,7 @@ def _answer(page: Page, free: FreeRing, pressed: dict[str, Pressed], count: int)
     """Loads of rollers on a ring that deforms, and errors of its influence functions."""
     flat = free.flat
     feet = [one for name, one in pressed.items() if "feet" in name]
-    page.answer(
+    page.say(
         f"On a ring that stands on two feet at {np.degrees(FEET):.0f} degrees the most loaded "
         f"roller carries {feet[0].factor:.2f} times the mean of the load over all "
         f"{ROLLERS} (rigid: {pressed['rigid ring'].factor:.2f}; with {HOUSINGS[-1] - OUTSIDE:.2f} "

@@ -121,7 +121,7 @@ def _answer(page: Page, found: Study, top: Slopes) -> None:
         {q: 100 * _deviation(found, slopes[q], keys) for q in (hub, MOMENT)}
         for slopes in (found.slopes, found.soft_slopes, top)
     )
-    page.answer(
+    page.say(
         *(
             f"{q}: {exact[q]:.2g} % standard deviation for the inputs by the assembly's "
             f"sensitivities, {stiff[q]:.2g} % at the beam level with its housing's face in shape, "
@@ -130,7 +130,7 @@ def _answer(page: Page, found: Study, top: Slopes) -> None:
         )
     )
     off = {q: 100 * (stiff[q] / exact[q] - 1.0) for q in (hub, MOMENT)}
-    page.answer(
+    page.say(
         f"The moment's two bounds are a factor of {soft[MOMENT] / stiff[MOMENT]:.2g} apart, and "
         f"its band by the first alone has an error of {off[MOMENT]:+.2g} %; that of the stiffness "
         f"has {off[hub]:+.2g} %."

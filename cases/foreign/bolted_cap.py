@@ -78,7 +78,7 @@ def run(run: Run, page: Page) -> None:
     page.image("Cap and base with the bearing's ring, as meshed", run.sketch(mesh))
     least, most = more[widths[-1]], more[widths[0]]
     page.found(f"more tilt about y where bolts press {widths[0]} mm than glued [%]", most[4])
-    page.answer(
+    page.say(
         f"A cap whose four bolts keep {widths[-1]} mm each pressed lets ring and housing tilt "
         f"{least[4]:.2g} % more about y than a glued one, with {widths[0]} mm {most[4]:.2g} %; "
         f"along z they give {least[2]:.2g} and {most[2]:.2g} % more."

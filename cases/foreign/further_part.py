@@ -88,7 +88,7 @@ def run(run: Run, page: Page) -> None:
     page.section("Compliance at the seat")
     page.table("Seat held in shape [mm/MN, mrad/MN m]", rows)
     page.text("Tied faces are glued all over: no joint opens or slides.")
-    page.answer(
+    page.say(
         f"On its bedplate the seat tilts {K[4, 4] / fixed[4, 4]:.2g} times as much as on a fixed "
         f"foot. Tied to it, the housing is as stiff as glued to it within "
         f"{100 * beyond(K, whole):.2g} %; a coarser mesh changes {100 * abs(by_mesh).max():.2g} %."

@@ -75,7 +75,7 @@ def run(run: Run, page: Page) -> None:
     show_published(page)
     foot, washers, beams = (tilts[HOUSINGS[names[0]], way] for way in WAYS)
     page.found(f"{HOUSINGS[names[0]]}: tilt under 1 MN m, washers held [arcmin]", washers)
-    page.answer(
+    page.say(
         f"How it is held moves the tilt of the {HOUSINGS[names[0]]} from {foot:.3g} minutes of arc "
         f"(whole foot) to {washers:.3g} (washers, {washers / foot:.1f} times) and {beams:.3g} "
         f"(bolts as beams, {beams / foot:.0f} times).",

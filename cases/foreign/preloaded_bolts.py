@@ -126,7 +126,7 @@ def run(run: Run, page: Page) -> None:
     pulled = where_pulled(foot)
     ratio = opened[-1].motion[4] / linear[-1].motion[4]
     page.found("moment at which a bolt carries 5 % over its preload [kN m]", 1e3 * pulled)
-    page.answer(
+    page.say(
         f"Of four bolts M48 of class 8.8 at 70 % of yield, one carries {100 * MORE:g} % over its "
         f"preload from {1e3 * pulled:.3g} kN m on; at {1e3 * LOADS[-1]:.3g} kN m it carries "
         f"{opened[-1].tension.max() / 1e3:.3g} kN, where the linear answer has "

@@ -136,7 +136,7 @@ def run(run: Run, page: Page) -> None:
     off, by_splines = (
         max(abs(x) for x in row.values() if isinstance(x, float)) for row in (rows[-2], rows[-1])
     )
-    page.answer(
+    page.say(
         "A mesh file of ours read back gives the stiffness of the parametric housing to round-off, "
         f"its STEP file within {100 * off:.2g} %, and one that has all faces as B-splines within "
         f"{100 * by_splines:.2g} %, which is less than the errors of the two meshes, "

@@ -124,7 +124,7 @@ def run(run: Run, page: Page) -> None:
     solids, apart, base = (
         share(answers[n], "My") for n in ("assembly of solids", "each by itself", "on the ground")
     )
-    page.answer(
+    page.say(
         f"Of a pitching moment of 1 N m at the hub the rear bearing carries {abs(solids):.3g} N. "
         f"Coupled supports say so within their band; supports that each know their own share of "
         f"the bedplate alone say {abs(apart):.3g} N, and housings on the ground {abs(base):.3g} N."

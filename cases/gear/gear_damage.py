@@ -128,7 +128,7 @@ def run(run: Run, page: Page) -> None:
         counts(page)
     worst = max(rows, key=lambda r: float(r["flank"]))
     other, root = (max(float(r[key]) for r in rows) for key in ("other flank", "root"))
-    page.answer(
+    page.say(
         f"{worst['tooth'].capitalize()} is used up first: a flank's damage of {worst['flank']:.2g} "
         f"in 20 years at S_H = {SAFETY[0]} and S_F = {SAFETY[1]}; roots have a damage of "
         f"{root:.1g} at most.",

@@ -50,7 +50,7 @@ def run(run: Run, page: Page) -> None:
             for name, printed in ISO_EXAMPLE_1.items()
         ],
     )
-    page.answer(
+    page.say(
         f"The mean mesh stiffness is {found.mesh / 1e9:.5f} N/(mm µm) with tip diameters of 159.66 "
         "and 872.35 mm; the example prints 17.46485."
     )

@@ -35,7 +35,7 @@ def run(run: Run, page: Page) -> None:
                 source=SOURCE,
                 basis="second-hand",
             )
-    page.answer(
+    page.say(
         f"sigma_H0 is {found['sigma_H0 [MPa]'][0]:.2f} MPa (1206.58 printed), sigma_H "
         f"{found['sigma_H [MPa]'][0]:.1f} MPa (1301.35), S_H {found['S_H'][0]:.4f} and "
         f"{found['S_H'][1]:.4f} (1.02853 and 1.08696).",

@@ -75,7 +75,7 @@ def run(run: Run, page: Page) -> None:
         f"{100.0 * low[MEASURED[2]]:.0f} % of the time and {low[MEASURED[1]]:.1f} pairs for the "
         "rest. Both signs agree at C = 1.5 alone, but for half a period."
     )
-    page.answer(
+    page.say(
         "With a plus in place of the printed minus, Eq 4 to 9 of Park et al. have one pair of "
         "teeth always and two for the share C - 1 of a period; as printed, 2 C - 1 and 2 C - 2 "
         "pairs."

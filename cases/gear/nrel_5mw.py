@@ -64,7 +64,7 @@ def run(run: Run, page: Page) -> None:
         "teeth."
     )
     phases(page)
-    page.answer(
+    page.say(
         "Contact ratios and tangential forces of all five meshes are those printed, to the last "
         "digit; stiffness by ISO 6336-1 agrees within the rounding of the printed factor of the "
         "gear blank."

@@ -44,7 +44,7 @@ def run(run: Run, page: Page) -> None:
         for number, one in enumerate(values)
     ]
     ring = rated(meshes[1])
-    page.answer(
+    page.say(
         f"Of {prints} printed numbers {met} are met within rounding; {unmet} of stage 3 contradict "
         f"the equations they are said to follow, by {min(apart):.2f} to {max(apart):.2f} %.",
         f"The ring of stage 1 has S_H = {ring['S_H'][1]:.2f}: at a safety of 1.25 its flanks last "

@@ -79,7 +79,7 @@ def run(run: Run, page: Page) -> None:
         "are those with which all published root circles and centre distances fit."
     )
     ratios = [row["over ISO 6336-1"] for row in table if not row["remark"]]
-    page.answer(
+    page.say(
         f"Mesh stiffness by ISO 6336-1 is {stiffness['sun'] / 1e9:.2f} GN/m between sun and "
         f"planet, {stiffness['ring'] / 1e9:.2f} GN/m between planet and ring; values that others "
         f"took for them range from {min(ratios):.2g} to {max(ratios):.2g} of it."

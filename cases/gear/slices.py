@@ -92,7 +92,7 @@ def run(run: Run, page: Page) -> None:
         source=f"{FINEST} slices; Al-Hamadani 2018, section 5.1, has 35 as a compromise",
         basis="self-consistency",
     )
-    page.answer(
+    page.say(
         f"35 slices have K_Hbeta to {worst['35 slices']:.1f} %, five to {worst['5 slices']:.0f} %; "
         f"ISO's formula misses it by up to {worst['ISO 6336-1, c_gamma_beta']:.0f} % (by "
         f"{worst['ISO 6336-1, c_gamma_alpha']:.0f} % with the whole mesh stiffness), one spring by "

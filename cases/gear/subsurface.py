@@ -134,7 +134,7 @@ def run(run: Run, page: Page) -> None:
         for name, (mesh, load, _, _) in meshes().items()
     }
     rows = contact_rows(page, found)
-    page.answer(
+    page.say(
         "At 325 kN m the flanks see "
         + ", ".join(f"{r['pressure [MPa]']:.0f} MPa ({r['mesh']})" for r in rows)
         + ": one pair of teeth, the whole face, no load factors.",

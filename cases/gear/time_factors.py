@@ -45,7 +45,7 @@ def run(run: Run, page: Page) -> None:
         "each of its own turns. The last column is what damage by Table 7.2 has to be multiplied "
         "by, beside that of the ring."
     )
-    page.answer(
+    page.say(
         "Tables 7.1 and 7.2 come out to the digit: hours of bins that end at the wind named, "
         f"{hours.sum() / 1752.0:.1f} % of 20 years in all, and their factors over teeth and "
         "ratios.",

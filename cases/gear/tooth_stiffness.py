@@ -89,7 +89,7 @@ def run(run: Run, page: Page) -> None:
         "parabola has 14 N/(mm µm), as Al-Hamadani 2018 has it, and a stiffness ratio of 0.8, "
         "which that thesis does not state. ISO 6336-1 takes solid discs here (C_R = 1)."
     )
-    page.answer(*found)
+    page.say(*found)
     page.image("The first of the pairs", run.sketch(*gear_pair(next(iter(PAIRS.values()))[0]())))
 
 

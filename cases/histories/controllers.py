@@ -233,7 +233,7 @@ def compare(page: Page, found: dict[str, list[Record]]) -> None:
         ["thesis", "slow, and what tuning adds", "agrees"],
     )
     speed = changes[0]
-    page.answer(
+    page.say(
         f"Twice as fast a controller lowers the rotor speed's standard deviation from "
         f"{float(speed['slow, mean']):.1f} % to "
         f"{float(speed['slow, mean']) + float(speed['tuned less slow']):.1f} %. On the bearing, "

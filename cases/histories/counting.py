@@ -39,7 +39,7 @@ def run(run: Run, page: Page) -> None:
         sines(run, page)
     with run.step("in pieces"):
         pieces(page, 20_000 if run.quick else 400_000)
-    page.answer(
+    page.say(
         "Counting is the standard's, without classes; published equivalent loads differ by no more "
         "than their classes allow, and a sine has its range."
     )

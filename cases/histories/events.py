@@ -59,7 +59,7 @@ def run(run: Run, page: Page) -> None:
     draw(page)
     check_grid_loss(page)
     check_energy(page)
-    page.answer(
+    page.say(
         f"Of all {len(seeds)} seeds the events have every ratio that the thesis states, to its "
         "last digit: medians of ranges and means, negative means, and damage-equivalent loads.",
         "Order and size of all other cycles are drawn; the thesis has them in figures only. It "

@@ -38,7 +38,7 @@ def run(run: Run, page: Page) -> None:
         spikes(page)
     with run.step("gaps and constants"):
         refused(page)
-    page.answer(
+    page.say(
         "6P needs more than two samples a period; sampled more slowly it appears as a load that is "
         "not there, or falls on 3P and changes that: the page of `loads` states where.",
         f"The rule for the residue changes an equivalent load of m = 10 by {change:.2g} % in ten "

@@ -105,7 +105,7 @@ def show(
             logarithmic=("y",),
         )
     first, last = rows[0], rows[-1]
-    page.answer(
+    page.say(
         f"A balanced rigid rotor has {first['Fy, 1P [kN]']:.2f} kN at 1P in the side force; an "
         f"imbalance of G16 and a blade 0.3 deg off bring it to {last['Fy, 1P [kN]']:.1f} kN. Edge "
         "modes stand one turn below and above their own frequency, as a standing frame sees them.",

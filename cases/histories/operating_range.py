@@ -212,7 +212,7 @@ def statements(page: Page, means: Sequence[Record]) -> None:
         [[words, ours, "yes" if agrees else "no"] for words, ours, agrees in rows],
         ["thesis", "here", "agrees"],
     )
-    page.answer(
+    page.say(
         f"{sum(bool(agrees) for *_, agrees in rows)} of {len(rows)} statements on how bearing "
         "loads vary with wind, turbulence and shear hold here"
         + "".join(f"; not: {words}: {ours}" for words, ours, agrees in rows if not agrees)

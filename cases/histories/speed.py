@@ -84,7 +84,7 @@ def run(run: Run, page: Page) -> None:
     last = {row["step"]: row["samples per second"] for row in rows if row["samples"] == sizes[-1]}
     first = {row["step"]: row["samples per second"] for row in rows if row["samples"] == sizes[0]}
     counted, looped = (1e3 * 12_000 / first[name] for name in ("rainflow", "load loops"))
-    page.answer(
+    page.say(
         f"Cycles are counted at {last['rainflow'] / 1e6:,.3g} million samples of one channel per "
         f"second of processor time; ten minutes at 20 Hz take {counted:.2g} ms, their loops "
         f"{looped:,.0f} ms."
@@ -227,7 +227,7 @@ def stream(run: Run, page: Page, samples: int, repeats: int) -> None:
     }
     page.table(f"One channel, counted in pieces of {PIECE:,}; --set samples=1e9 for more", [row])
     page.data("streamed", row)
-    page.answer(
+    page.say(
         f"{samples:,} samples in pieces take {worked.median:.3g} s of processor time "
         f"and {peak:.3g} MB, made noise included."
     )
@@ -317,7 +317,7 @@ def many_files(run: Run, page: Page) -> None:
         rows,
     )
     page.data("many_files", rows)
-    page.answer(
+    page.say(
         f"'loads' takes {1e-6 * peaks[0]:.3g} MB for {few} files and {1e-6 * peaks[1]:.3g} MB for "
         f"{many}, whose samples take {1e-6 * many * samples:.3g} MB."
     )

@@ -133,7 +133,7 @@ def answer(page: Page, names: Sequence[str], counts: Sequence[Record], seeds: in
             for model in (DEFAULT, ALL)
         )
         most = max(FAMILIES, key=lambda family: int(after[family]))
-        page.answer(
+        page.say(
             f"{name}: {before['all']} of {before['of']} quantities of OpenFAST are beyond what "
             f"{seeds} seeds of the default surrogate scatter, and {after['all']} with "
             "controller, blade and tower modes, torsion and tower shadow, most of them "

@@ -117,7 +117,7 @@ def run(run: Run, page: Page) -> None:
         measure=None,
     )
     files(run, page, box_of(wind, time, 17))
-    page.answer(
+    page.say(
         f"Between {rows[0]['points over the diameter']:.3g} and "
         f"{rows[-1]['points over the diameter']:.3g} points over the diameter the error of the "
         f"moment falls from {coarse:.2g} to {fine:.2g} %; files of TurbSim and HAWC2 add next to "

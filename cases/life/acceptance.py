@@ -94,7 +94,7 @@ def run(run: Run, page: Page) -> None:
     with run.step("edge stress"):
         edge_stress(page)
     not_confirmed(page)
-    page.answer(
+    page.say(
         f"Reference lives of a ball bearing are MASTA's to {100.0 * ball:.2g} %, C and C_u of a "
         f"tapered main bearing to {100.0 * tapered:.2g} %; closed forms are met to their digits.",
         "What no source confirms, and a viscosity of a catalogue that the formula of ISO 281 does "

@@ -80,7 +80,7 @@ def run(run: Run, page: Page) -> None:
     page.data("life at the site [years]", rows)
     state_meaning(page)
     own = {name: at_site(by_wind(one), MEAN_WIND) for name, one in lives.items()}
-    page.answer(
+    page.say(
         f"At a site of {MEAN_WIND:g} m/s the stress riser of ISO/TS 16281 leaves "
         f"{own[RISEN] / own[EVENLY]:.2f} of the life without it (the thesis: "
         f"{THESIS[1] / THESIS[0]:.2f}); over arrangements, contact angles and housings it is "

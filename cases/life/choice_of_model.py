@@ -134,7 +134,7 @@ def run(run: Run, page: Page) -> None:
             other = face_to_face(page, setup, hub[:, ::3], rows)
     answers(page, rows)
     if not run.quick:
-        page.answer(other)
+        page.say(other)
     state_meaning(page)
 
 
@@ -377,7 +377,7 @@ def answers(page: Page, rows: list[Record]) -> None:
             ratio = at[name][OVER]
             return f"{ratio:.2g} times" if ratio < 10.0 else f"{ratio:.0f} times"
 
-        page.answer(
+        page.say(
             f"Housing on a {ground}: of the best model's life a pinned beam has "
             f"{times(models.PINNED)}, a beam on K_R of the housing {times(models.SPRING)}, on K_R "
             f"of housing and rollers {times(models.SERIES)}, five degrees in a rigid housing "
@@ -392,7 +392,7 @@ def answers(page: Page, rows: list[Record]) -> None:
         min((r for r in rows if r["housing on"] == g and r[ALONG] <= NEAR), key=lambda r: r[TIME])
         for g in models.GROUNDS
     ]
-    page.answer(
+    page.say(
         "A pinned beam leaves out the moment, and promises too much; a rigid housing takes too "
         f"much of it: {rigid[LOAD]:+.0f} and {soft[LOAD]:+.0f} % in equivalent load are lives of "
         f"{rigid[OVER]:.2f} and {soft[OVER]:.2f}. The cheapest within {NEAR:g} % of life at all "

@@ -93,7 +93,7 @@ def run(run: Run, page: Page) -> None:
         why="fewer rollers carry the same load",
         source="the largest rollers and pressures above",
     )
-    page.answer(
+    page.say(
         f"With its inner ring standing under the load the bearing has "
         f"{100 * lives[0][0] / lives[1][0]:.0f} % of the life that it had with its inner ring "
         f"turning, and a clearance of 200 um leaves {100 * lives[0][-1] / lives[0][0]:.0f} % of "

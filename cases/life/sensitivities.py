@@ -318,7 +318,7 @@ def statements(page: Page, found: dict[str, Lives], spherical: dict[str, float])
     page.data("life of a bearing that takes forces only, shear 0.4 over 0.1", longer / 100 + 1)
     agree = [sum(not str(c).endswith("(not so)") for c in list(r.values())[1:]) for r in rows]
     one = found["thesis"]
-    page.answer(
+    page.say(
         f"Of {len(rows)} statements of the thesis {sum(a == 2 for a in agree)} hold with its "
         f"choices and with ours, {sum(a == 0 for a in agree)} with neither.",
         f"Shear 0.1 to 0.2 changes life by {span(one, BASE, 'shear 0.1')} (the thesis: about "

@@ -371,7 +371,7 @@ def answer(
     order = sorted(table, key=lambda row: -row["with all others [%]"])
     seed = table[SEED]
     span = max(of_models.values()) / min(of_models.values())
-    page.answer(
+    page.say(
         f"Modified life is {modified[NOMINAL_LIFE]:.0f} years, 95 % between "
         f"{modified[LOW_LIFE]:.0f} and {modified[HIGH_LIFE]:.0f}: a factor of "
         f"{modified['high over low']:.0f}. Most of its "

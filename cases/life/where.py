@@ -110,7 +110,7 @@ def run(run: Run, page: Page) -> None:
     state_meaning(page)
     thesis, own = rows
     more = [100.0 * (row["life by place over life by step"] - 1.0) for row in rows]
-    page.answer(
+    page.say(
         f"The upwind row does {thesis['upwind row [%]']:.0f} % of the damage with the choices of "
         f"the thesis, most of it at {thesis['upwind, centre [deg]']:.0f} deg, the downwind row's "
         f"is at {thesis['downwind, centre [deg]']:.0f} deg (the thesis on mean loads: upwind row "

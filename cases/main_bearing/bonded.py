@@ -204,7 +204,7 @@ def answer(page: Page, work: Worked) -> None:
     )
     page.found("force on the bearing per N at the hub [N/N]", float(reaction[2, 2]))
     page.found("error of the torsional-spring beam [%]", spring_error)
-    page.answer(
+    page.say(
         f"1 N up at the hub puts {reaction[2, 2]:.4g} N and {reaction[4, 2]:.4g} N m on the "
         f"bonded bearing; the pinned beam gives {work.pinned[2, 2]:.4g} N and no moment.",
         f"The torsional-spring beam with K_R from the averaged seat has an error of "
@@ -218,7 +218,7 @@ def answer(page: Page, work: Worked) -> None:
             series.percent(lambda f, p=plane: float(f["K_R"][p, 1])) or 0.0 for plane in range(2)
         )
         of_forces = max(100 * row["± FE"] / abs(row["FE"]) for row in work.forces)
-        page.answer(
+        page.say(
             "Numerical uncertainty of these forces, from two coarser meshes: "
             f"{of_forces:.2g} %; of K_R {k_band:.2g} %."
         )

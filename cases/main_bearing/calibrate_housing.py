@@ -357,7 +357,7 @@ def answer(page: Page, work: Worked) -> None:
     """Which housings give both values, and that they determine none."""
     scene, one, wide_K = work.scene, work.families[0], work.wide_K
     low, high = np.quantile(one.cloud[:, CENTRE], [0, 1])
-    page.answer(
+    page.say(
         "A housing whose whole underside is fixed gives 145 and 392 MN m/rad (four nodes, as in "
         "the thesis) only if it is a plate: over all of the family its width along the shaft is "
         f"{width_range(one)}, while the height of its centre ({low:.2f} to {high:.2f} m) trades "
@@ -369,18 +369,18 @@ def answer(page: Page, work: Worked) -> None:
         f"bounds gives both: the nearest found has {wide_K[0]:.0f} and {wide_K[1]:.0f} MN m/rad.",
     )
     for two in work.families[1:]:
-        page.answer(
+        page.say(
             "Held at four washers instead, which the thesis does not do, a body of "
             f"{width_range(two)} gives both, at a nominal {stress_range(scene, two)}, for example "
             f"{listed(two.middle.x)} m."
         )
     for _, turned in work.readings[1:2]:
-        page.answer(
+        page.say(
             "Read with the vertical pair turned about a midpoint that stays, so that the thesis's "
             "145 would be 290 by the slope of the line, a body of "
             f"{turned.x[WIDTH]:.2f} m on a fixed underside gives both."
         )
-    page.answer(
+    page.say(
         "Two values cannot determine five dimensions: nothing here shows that the thesis's housing "
         "was one of these."
     )

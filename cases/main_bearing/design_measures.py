@@ -41,7 +41,7 @@ def section(run: Run, page: Page, hub: HubLoadSet, found: Comparison) -> None:
     )
     page.data("design_measures", rows)
     words = [f"for {use}: {label or 'none'}" for use, label in measures.enough.items()]
-    page.answer(
+    page.say(
         f"Good enough within {100 * measures.tolerance:g} % on a bonded bearing, the cheapest is "
         f"{'; '.join(words)} (fatigue: damage-equivalent loads of slopes "
         f"{', '.join(f'{m:g}' for m in SLOPES)})."

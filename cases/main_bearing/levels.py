@@ -137,7 +137,7 @@ def show(page: Page, found: Mapping[str, StudyResult]) -> None:
     )
     page.section("Beams against FE")
     for kind, one in found.items():
-        page.text(f"{kind.capitalize()}: {' '.join(one.answer[-2:])}")
+        page.text(f"{kind.capitalize()}: {' '.join(one.details[-2:])}")
         page.table(
             f"Error of each reaction of the {kind} bearing's drivetrain, as a vector [%]",
             one.tables["error_percent"],
@@ -170,11 +170,11 @@ def run(run: Run, page: Page) -> None:
     )
     page.found("pinned beam on the bonded bearing: mean error of the resultant [%]", pinned)
     page.found(f"{ALONE}: mean error of the resultant [%]", sprung)
-    page.answer(
+    page.say(
         f"On the bonded bearing the pinned beam has a mean error of {pinned:.1f} % "
         f"(the thesis, of other loads and another housing: 22.74 %), with K_R of the unit alone "
         f"{sprung:.2g} % (the thesis: 1.61 %).",
-        *found["bonded"].answer[-2:],
+        *found["bonded"].details[-2:],
     )
     show(page, found)
     shown.assume(page, scenes["bonded"])

@@ -181,7 +181,7 @@ def statistics(page: Page, hub: HubLoadSet, loops: dict[str, list[Loops]]) -> No
     page.data("loops", rows)
     whole = {name: averaged(hub, of, range(len(of))) for name, of in loops.items()}
     moment, force = whole["DTRB, moment"], whole["DTRB, force"]
-    page.answer(
+    page.say(
         f"{moment['share of time [%]']:.0f} % of the time the moment is on a loop, and it makes "
         f"{moment['rate over 3P']:.1f} of them from one blade's passing to the next; the force "
         f"{force['share of time [%]']:.0f} % and {force['rate over 3P']:.1f}.",
@@ -269,7 +269,7 @@ def sensitivity(page: Page, hub: HubLoadSet, paths: dict[str, Floats]) -> None:
         for row in rows
         if row["load"] == "DSRB, force" and row["smallest excursion over mean magnitude"] == 0.5
     )
-    page.answer(
+    page.say(
         f"Force loops of the DSRB that lead farther than half of the mean force take {half:.0f} % "
         "of the time at medium turbulence; Hart 2020, by another definition, has about 50 %."
     )

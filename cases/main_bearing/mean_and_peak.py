@@ -146,7 +146,7 @@ def statements(page: Page, found: dict[str, Quantity]) -> None:
     )
     page.data("statements", rows)
     agree = [r["in that order [%]"] for r in rows if isinstance(r["in that order [%]"], int)]
-    page.answer(
+    page.say(
         f"Of {len(agree)} statements on order, {sum(a == 100 for a in agree)} hold in every pair "
         f"of neighbouring groups, {sum(a > 50 for a in agree)} in more than half.",
         f"Tilting stiffness takes {less[LOW]:.0f} % off the peak radial force at low shear and "

@@ -145,7 +145,7 @@ def judge(page: Page, one: Converged) -> None:
         w: max(100 * c.relative_uncertainty for q, c in one.found.items() if w in q) for w in kinds
     }
     page.found(f"error of the reactions with sizes x {one.last:g} [%]", max_error["at the"])
-    page.answer(
+    page.say(
         f"With sizes x {one.last:g} ({one.unknowns[-2]:,} unknowns) the reactions are within "
         f"{max_error['at the']:.2g} % and K_R within {max_error['K_R']:.2g} % of their "
         "values extrapolated to element size zero, at first order.",

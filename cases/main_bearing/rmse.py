@@ -242,7 +242,7 @@ def answer(page: Page, found: Comparison, n_histories: int, n_steps: int) -> Non
     _, second, third = PUBLISHED
     mean_error, correlation = found.mean_error, found.correlation
     page.headline = "torsional-spring beam against bonded FE: mean error of the resultant"
-    page.answer(
+    page.say(
         f"Over {n_histories:,} hub-load histories ({n_steps:,} load steps) the pinned beam's "
         f"resultant force on a bonded bearing has a mean error of {mean_error[second]:.1f} %, with "
         f"a correlation of {correlation[second]:.3f}.",

@@ -273,7 +273,7 @@ def check_remedy(page: Page, work: Worked) -> None:
 def answer(page: Page, work: Worked, centre: Mapping[str, float]) -> None:
     """Whether one spring is the right form, where it is, and what that does to a beam."""
     library, tall = work.improvement["library"], work.improvement["tall"]
-    page.answer(
+    page.say(
         f"{TITLES['library'].capitalize()}: {work.statements['library', 4]}.",
         f"{TITLES['tall'].capitalize()}: {work.statements['tall', 4]}.",
         f"Taken at the elastic centre, {-centre['library']:.3f} and {-centre['tall']:.3f} m below "

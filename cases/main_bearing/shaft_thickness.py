@@ -215,7 +215,7 @@ def answer(page: Page, rows: list[Record]) -> None:
     softer = [
         100 * (of[-1][DEFLECTION] / of[0][DEFLECTION] - 1) for _, of in grouped(rows, "bearing")
     ]
-    page.answer(
+    page.say(
         "A bore does not change the reactions of the spherical bearing at all, and changes "
         f"those of the bonded one by {largest:.2g} % on average with half the wall: the thesis's "
         "finding of almost no effect, with a number.",

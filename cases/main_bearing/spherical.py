@@ -251,7 +251,7 @@ def answer(page: Page, work: Worked) -> None:
     along_z = [u[2, 2] / 1e9 for u in work.unit.values()]
     softer = max(abs(row[BARE_ERROR]) for row in rows)
     page.found("bare beam against FE, worst of deflection and slope [%]", softer)
-    page.answer(
+    page.say(
         "Reactions of the FE model equal statics to solver accuracy, as they must: the "
         "spherical joint makes the shaft determinate.",
         f"A Timoshenko beam of the bare shaft, on the FE stiffness of the bearing unit, is up to "
@@ -268,7 +268,7 @@ def answer(page: Page, work: Worked) -> None:
             series.percent(lambda f, p=p, at=at: float(f[f"motion {p}"][at])) or 0.0
             for p, at in (("hub", (2, 2)), ("hub", (4, 4)), (seat, (4, 2)))
         )
-        page.answer(
+        page.say(
             "Numerical uncertainty of deflection and slope, from two coarser meshes: "
             f"{uncertainty:.2g} %."
         )

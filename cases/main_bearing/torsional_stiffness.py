@@ -85,7 +85,7 @@ def by_load(free: Assembly, series: bands.Series) -> list[Record]:
 def answer(page: Page, tilt: SeatStiffness, series: bands.Series) -> None:
     """K_R in both planes, and how far the estimators spread."""
     both = [k / 1e6 for k in tilt.both("averaged seat")]
-    page.answer(
+    page.say(
         f"K_R of bearing and housing is {both[0]:.0f} MN m/rad in the vertical and "
         f"{both[1]:.0f} MN m/rad in the horizontal plane (averaged seat).",
         f"The three estimators spread by {tilt.spread('vertical'):.0f} % and "
@@ -97,7 +97,7 @@ def answer(page: Page, tilt: SeatStiffness, series: bands.Series) -> None:
     percent: list[float | None] = [None, None]
     if series.complete:
         percent = [series.percent(lambda f, p=p: float(f["K_R"][p, 1])) for p in range(len(PLANES))]
-        page.answer(
+        page.say(
             f"Numerical uncertainty from two coarser meshes: {percent[0]:.2g} % in the vertical "
             f"and {percent[1]:.2g} % in the horizontal plane (averaged seat)."
         )

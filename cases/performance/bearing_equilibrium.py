@@ -91,7 +91,7 @@ def run(run: Run, page: Page) -> None:
     check(page, (whole, cold, exact), lost, None if run.quick else error)
     rows = levels.rows
     flexible_row = rows[-2]
-    page.answer(
+    page.say(
         f"{rows[0]['steps a second']:,.0f} load steps a second with 72 rollers of 30 laminae "
         f"on {cores()} cores, every one converged to 1e-8: 1.728 million "
         f"in {rows[0]['1.728 million steps [s]']:.0f} s. The goal is {GOAL:.0f} s on two.",

@@ -275,14 +275,14 @@ def check(page: Page, rows: list[Record]) -> None:
 
 def answer(page: Page, goals: list[Record], rates: list[float]) -> None:
     """The largest size in a sentence."""
-    page.answer(
+    page.say(
         f"Memory moves {min(rates) / 1e9:.1f} to {max(rates) / 1e9:.1f} GB/s here (median "
         f"{median(rates) / 1e9:.1f}). {sum(row['reached'] == 'yes' for row in goals)} of "
         f"{len(goals)} goals are reached."
     )
     for name, mine in grouped(goals, "problem"):
         over, set_up, assembly = (row["measured"] for row in mine[-len(GOALS) :])
-        page.answer(
+        page.say(
             f"{BENCHMARKS[name]().title}, {mine[-1]['unknowns']:,} unknowns: the iterations take "
             f"{over:.1f} times the floor of their bytes, set-up {set_up:.2f} and assembly "
             f"{assembly:.2f} of their time."

@@ -122,7 +122,7 @@ def run(run: Run, page: Page) -> None:
         source="an explicit method of order 8 with steps of its own, to 1e-8",
     )
     fastest = float(equations.springs.frequency.max())
-    page.answer(
+    page.say(
         f"Ten minutes of {len(equations.mass)} degrees of freedom with {count} varying meshes at "
         f"1 kHz take {seconds:.0f} s on one core, {DURATION / STEP / seconds:,.0f} steps a second, "
         f"{motion.iterations * STEP / duration:.1f} Newton steps in each; the goal is {GOAL:.0f} s "

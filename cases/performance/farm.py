@@ -88,7 +88,7 @@ def run(run: Run, page: Page) -> None:
         (cycles, damage), streamed = timed_runs(lambda: in_one_stream(each), repeats)
     check(page, found, cycles, damage, TURBINES * each)
     rate = TURBINES * each / apart
-    page.answer(
+    page.say(
         f"{TURBINES * each:,} samples in {TURBINES * count:,} pieces take {apart:.3g} s, made "
         f"noise and start of processes included: {rate / 1e6:.3g} million a second"
         + (

@@ -81,7 +81,7 @@ def run(run: Run, page: Page) -> None:
         tried += rows
         best.append(cheapest(run, page, name, rows, band))
     found = [row for row in best if "error" in row]
-    page.answer(
+    page.say(
         f"The 12 x 12 stiffness of a shaft to {ERROR:g} takes "
         + ", ".join(f"{row[OWN]:.0f} ms ({row['shaft']})" for row in found)
         + f", mesh included; the goal is {1e3 * GOAL:g} ms."
@@ -306,7 +306,7 @@ def factors(run: Run, page: Page) -> None:
         why="round-off of a direct solve: 1e-16 times a condition number of 1e6 or so",
         source="the same matrix, factored by another program",
     )
-    page.answer(
+    page.say(
         f"Factored front by front, a harmonic takes {1e3 * times['fronts'].median:.0f} ms where "
         f"SuperLU takes {1e3 * times['SuperLU'].median:.0f}, assembly included."
     )

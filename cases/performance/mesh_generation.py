@@ -179,7 +179,7 @@ def beside_solver(run: Run, page: Page, factors: tuple[float, ...], repeats: int
     page.table("Stages of meshing, and the solve, each on one thread", rows)
     page.data("over_sizes", rows)
     last = rows[-1]
-    page.answer(
+    page.say(
         f"At {last['elements']:,} elements meshing takes {last['median [s]']:.2g} s, ten unit "
         f"loads {last['ten unit loads, median [s]']:.2g} s."
     )
@@ -259,7 +259,7 @@ def parts_apart(page: Page, scene: Scene, whole: Made, repeats: int) -> None:
         "Each process would mesh the surfaces again, or wait for them. The start of processes and "
         "the transport of meshes are not in the bound."
     )
-    page.answer(
+    page.say(
         f"Parts meshed side by side would make meshing {bound['times as fast, at best']:.2f} times "
         "as fast at best."
     )

@@ -92,7 +92,7 @@ def run(run: Run, page: Page) -> None:
         why="the same integrals by the same quadrature: round-off",
         source="scikit-fem, linear_elasticity on the same elements",
     )
-    page.answer(
+    page.say(
         f"The stiffness of {found.unknowns:,} unknowns of curved tetrahedra "
         f"({100 * found.straight:.0f} % of them straight) is assembled in "
         f"{found.own.median:.2f} s, {found.ratio:.0f} times faster than by scikit-fem's generic "

@@ -93,10 +93,10 @@ def run(run: Run, page: Page) -> None:
     ]
     for benchmark, rows in zip(benchmarks, found, strict=True):
         check(page, benchmark, rows)
-        page.answer(in_a_sentence(benchmark, rows))
+        page.say(in_a_sentence(benchmark, rows))
     missing = sorted({v.tool_name for v, (o, _) in first.items() if o.status == "missing"})
     if missing:
-        page.answer(f"Not installed here: {', '.join(missing)}.")
+        page.say(f"Not installed here: {', '.join(missing)}.")
 
     motions = settings["right_hand_sides"]
     compared = [

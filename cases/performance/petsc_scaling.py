@@ -140,7 +140,7 @@ def run(run: Run, page: Page) -> None:
     )
     last = strong[-1]
     gain = float(strong[0][TOTAL]) / float(last[TOTAL])
-    page.answer(
+    page.say(
         f"{last[SIZE]:,} unknowns: {last[PROCESSES]} processes are {gain:.2f} times as fast as "
         f"one, with {last[ITERATIONS]} iterations against {strong[0][ITERATIONS]}, and each takes "
         f"{last[MEMORY]:.0f} MB where one alone takes {strong[0][MEMORY]:.0f}."
@@ -148,7 +148,7 @@ def run(run: Run, page: Page) -> None:
     shown = f"median of {repeats} by time" if repeats > 1 else "one run"
     show(page, strong, weak, halo, shown)
     if run.quick:
-        page.answer("A quick run is too small to extrapolate from.")
+        page.say("A quick run is too small to extrapolate from.")
         return
     model = Model.of([*smaller, last], [*weak[:-1], *strong[:-1]], small)
     extrapolate(page, model, [*smaller, last], f"{most} processes, {shown}")
@@ -171,7 +171,7 @@ def extrapolate(page: Page, model: Model, fitted: list[Record], measured_on: str
     """Show the cost of 1e9 unknowns by the model, and the points that it is fitted to."""
     predicted = [model.row(TARGET, count) for count in MANY]
     best = min(predicted, key=lambda row: float(row["time [s]"]))
-    page.answer(
+    page.say(
         f"By the model below 1e9 unknowns take {best['time [s]']:.0f} s (95 %: "
         f"{best['at least [s]']:.0f} to {best['at most [s]']:.0f} s) on {best[PROCESSES]:,} "
         f"processes such as these, and {best['memory [TB]']:.2g} TB; cutting up the mesh and "

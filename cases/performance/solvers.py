@@ -151,7 +151,7 @@ def run(run: Run, page: Page) -> None:
     worst = compare_choices(page, problems, timings)
     ratio = [t["multigrid"].total(MANY) / t["multigrid"].total(1) for t in timings]
     iterating = [t["multigrid"].many / t["multigrid"].one for t in timings]
-    page.answer(
+    page.say(
         f"Multigrid takes {min(ratio):.1f} to {max(ratio):.1f} times as long for {MANY} right-hand "
         f"sides as for one ({min(iterating):.1f} to {max(iterating):.1f} times in the iterations "
         "alone)."
@@ -232,7 +232,7 @@ def compare_choices(page: Page, problems: list[Problem], timings: list[dict[str,
         for n_rhs in (1, MANY)
     ]
     worst = max(column(choices, "times the best"))
-    page.answer(
+    page.say(
         f"The solver that auto chose was at worst {worst:.2f} times as slow as the best one, over "
         f"{len(problems)} systems with 1 and with {MANY} right-hand sides."
     )

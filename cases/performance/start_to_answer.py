@@ -138,7 +138,7 @@ def run(run: Run, page: Page) -> None:
             why="what is compiled or kept may change the time, not the answer",
             source="the first run",
         )
-    page.answer(
+    page.say(
         *(
             f"{' '.join(wait.command)}, {wait.before}: {row['median [s]']:.3g} s, for a goal of "
             f"{wait.goal:g} s."

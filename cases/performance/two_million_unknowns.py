@@ -208,7 +208,7 @@ def answer(
     """The largest size of each body, and how it grows, in a sentence."""
     for name, rows in done.items():
         if not rows:
-            page.answer(f"{BENCHMARKS[name]().title}: nothing came to an end.")
+            page.say(f"{BENCHMARKS[name]().title}: nothing came to an end.")
             continue
         last = rows[-1]
         grows = ""
@@ -218,7 +218,7 @@ def answer(
                 f"; time grows with the power {time.exponent:.2f} of the number of unknowns, "
                 f"memory with {memory.exponent:.2f}"
             )
-        page.answer(
+        page.say(
             f"{BENCHMARKS[name]().title}: {last.unknowns:,} unknowns take {last.seconds:.2g} s "
             f"and {(last.bytes or 0) / GIB:.2g} GiB by {solver_of(last)}{grows}."
         )

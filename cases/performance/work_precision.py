@@ -37,7 +37,7 @@ def run(run: Run, page: Page) -> None:
     page.seed = None
     parts = parts_of(run)
     if run.quick:
-        page.answer(
+        page.say(
             "A quick run has no meshes that are fine enough: wall times and their growth are not "
             "compared with the goals."
         )
@@ -75,7 +75,7 @@ def run(run: Run, page: Page) -> None:
         page.table("What was measured, and the goal of this project", goals)
         page.data("goals", goals)
         reached = sum(row["reached"] == "yes" for row in goals)
-        page.answer(f"Goals that are reached: {reached} of {len(goals)}.")
+        page.say(f"Goals that are reached: {reached} of {len(goals)}.")
 
 
 def parts_of(run: Run) -> list[str]:
@@ -140,7 +140,7 @@ def assembly_goal(run: Run, page: Page, study: Study, settings: Sequence[Setting
             "All ten unit loads of the main-bearing assembly with K_R (energy) within 1 % of its "
             f"limit, in both planes: {best.name}, {times.median:.2g} s, mesh included."
         )
-    page.answer(sentence)
+    page.say(sentence)
     return timed_goal(
         "main-bearing assembly: ten unit loads with K_R (energy) within 1 %, mesh included "
         f"({name})",
@@ -197,14 +197,14 @@ def summarise(page: Page, study: Study) -> None:
     for bound in BOUNDS[1:]:
         best = study.cheapest(0, bound)
         if best is not None:
-            page.answer(
+            page.say(
                 f"Torsional stiffness of the stepped shaft to {percent(bound)}: {best.element} "
                 f"({best.mesh}), {best.solver}, {best.total:.2g} s with its mesh."
             )
     if study.beam is not None:
         values, seconds = study.beam
         error = 100.0 * np.abs(values / study.reference - 1.0)
-        page.answer(
+        page.say(
             f"Beam theory takes {1000 * seconds:.2g} ms; its error is {error[0]:.1f} % in torsion, "
             f"{error[1]:.1f} % in bending and {error[2]:.1f} % axially: it knows nothing of the "
             "step."

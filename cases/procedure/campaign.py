@@ -65,7 +65,7 @@ def run(run: Run, page: Page) -> None:
     loads(page, computed)
     check_mean(page, recorded, torque)
     check_stiffness(page, recorded, truth, gain)
-    page.answer(
+    page.say(
         f"Scaling by power leaves a gain of {gain:.4f} in the torque: the offset of "
         f"{GAUGE.offset:g} N m has become an error of gain, and the stiffness found has it, too.",
         f"{MEASURED}, wind included, and computed.csv are what a campaign would hand on.",

@@ -402,4 +402,4 @@ def run(run: Run, page: Page) -> None:
     page.section("Values")
     page.table("Exact or printed value, and ours", rows)
     page.data("checks", rows)
-    page.answer(f"{len(CHECKS)} checks with {len(rows)} quantities, each with its exact value.")
+    page.say(f"{len(CHECKS)} checks with {len(rows)} quantities, each with its exact value.")

@@ -483,7 +483,7 @@ def run(run: Run, page: Page) -> None:
         "garbled in it may stand right in print. The GL guideline's numbers were not read."
     )
     numbers = [r for r in rows if r["as printed"] is not None]
-    page.answer(
+    page.say(
         f"{len(rows)} places, {len(numbers)} of which change a number. Most: a stiffness by angles "
         "that are not referred to one side (by the ratio of the gearbox), inertia from the rotor's "
         f"torque ({FRONT / REDUCED:.1f} times), signs of Eq 5.1 (inertia below zero, friction that "

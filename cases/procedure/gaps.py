@@ -135,7 +135,7 @@ def resonance(page: Page) -> None:
     chart_meetings(page, [m for m in found if m.verdict == "resonance"], by_name)
     page.data("resonances", rows)
     page.assume("frequency of the controller's communication", CONTROLLER, "Hz", "none is given")
-    page.answer(
+    page.say(
         f"Excitations of drivetrain C cross a frequency {crossed} times in operation, {met} times "
         "at a part that has 1 % or more of the mode's energy."
     )
@@ -189,7 +189,7 @@ def misalignment(page: Page) -> None:
     )
     page.data("misalignment", rows)
     worst = max(rows, key=lambda row: float(row["worst force [kN]"]))
-    page.answer(
+    page.say(
         f"Offsets of {TOLERANCE * 1e3:g} mm load no support of a drivetrain on three points, and "
         f"those of one with two main bearings by up to {worst['worst force [kN]']:.0f} kN "
         f"({worst['support']})."
@@ -282,7 +282,7 @@ def dips(page: Page) -> None:
     page.table(f"Dips by depth and duration; first frequency {frequency:.2f} Hz", rows)
     page.data("dips", rows)
     worst = max(rows, key=lambda row: float(row["largest torque / before"]))
-    page.answer(
+    page.say(
         "A dip of the generator's whole torque leaves up to "
         f"{worst['largest torque / before']:.2f} times the torque before in the shaft "
         f"({worst['duration [s]']:g} s): how its length falls on the period of "

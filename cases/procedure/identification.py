@@ -98,7 +98,7 @@ def run(run: Run, page: Page) -> None:
         page.assume(name, value, unit, "of the size of a 750 kW drivetrain; the report prints none")
     ranges = [abs(row[OF[2]] - 1.0) for row in rows if row["method"].startswith("Eq 4")]
     worst = [row for row in rows if row["method"][0] in "ABC"]
-    page.answer(
+    page.say(
         "Least squares on the reduced torque have inertia, damping and stiffness without an error; "
         f"Eq 4 has the stiffness to {100.0 * max(ranges):.1f} %.",
         f"Methods A, B and C as printed have damping from {min(r[OF[1]] for r in worst):.2g} to "

@@ -324,7 +324,7 @@ def beside(
             rows.append(row)
     page.section("One load in three models")
     worst = max(rows, key=lambda row: row["dynamics: deviation"] - row["statics: deviation"])
-    page.answer(
+    page.say(
         "Inertia matters most where statics has next to nothing: the standard deviation of "
         f"{str(worst['component']).partition(' ')[0]} at the {worst['interface']} is "
         f"{worst['dynamics: deviation']:.1f} kN m in the dynamics, "

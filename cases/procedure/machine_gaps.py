@@ -133,7 +133,7 @@ def resonance(page: Page, machine: Machine, speeds: tuple[float, float]) -> None
             for m in met[:12]
         ],
     )
-    page.answer(
+    page.say(
         f"From {speeds[0]:g} to {speeds[1]:g} rpm the least margin is {met[0].margin:.3g}: "
         f"{met[0].excitation} at {met[0].frequency:.4g} Hz."
     )
@@ -171,7 +171,7 @@ def misalignment(page: Page, machine: Machine, offset: float) -> None:
     ]
     words = ", ".join(sorted(moved))
     page.table(f"Worst force while {words} is within {1e3 * offset:g} mm of its place", rows)
-    page.answer(
+    page.say(
         f"Offsets of {1e3 * offset:g} mm ({words}) load {found.names[most]} by up to "
         f"{sizes[most] / 1e3:.3g} kN."
     )
@@ -234,7 +234,7 @@ def dips(page: Page, machine: Machine, torque: float) -> None:
     ]
     page.chart("Torque of the main shaft", curves, "time [s]", "torque [kN m]")
     page.table(f"By depth and duration; first frequency {frequency:.3g} Hz", rows)
-    page.answer(
+    page.say(
         f"A dip of the generator's torque leaves {least:.4g} to {most:.4g} kN m in the main shaft, "
         f"of {torque / 1e3:.4g} kN m before."
     )

@@ -70,7 +70,7 @@ def run(run: Run, page: Page) -> None:
         source="PROTEST 2010, Table 6.4",
     )
     missing = [str(row["channel"]) for row in rows if not row["given"]]
-    page.answer(
+    page.say(
         f"{len(given)} of {len(rows)} channels are given by the models of turbine and drives; the "
         f"pitch motor's worst root mean square is {by_name['motor torque']['rms of 600 s']:.1f} "
         f"N m, its peak {motor:.0f} N m."

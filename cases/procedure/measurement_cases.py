@@ -69,7 +69,7 @@ def run(run: Run, page: Page) -> None:
     )
     largest = max(rows, key=lambda row: float(row["largest [N m]"]))
     reversed_by = min(rows, key=lambda row: float(row["shaft torque, least [N m]"]))
-    page.answer(
+    page.say(
         f"Of {len(rows)} cases {largest['case']} has the largest torque in the shaft "
         f"({float(largest['largest [N m]']) / MEAN:.2f} of rated), {reversed_by['case']} reverses "
         f"it most ({float(reversed_by['shaft torque, least [N m]']) / MEAN:.2f}); the stops give "

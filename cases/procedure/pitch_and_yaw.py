@@ -69,7 +69,7 @@ def run(run: Run, page: Page) -> None:
         yawing(page)
         tower(page)
     quarter = int(np.ceil(TEETH / 4))
-    page.answer(
+    page.say(
         f"In turbulent wind above rated {np.count_nonzero(counts):d} of {TEETH} teeth of a blade's "
         f"ring are used, a quarter of them ({quarter}) has "
         f"{counts[:quarter].sum() / counts.sum():.0%} "
@@ -100,7 +100,7 @@ def shutdown(page: Page) -> None:
     )
     show_shutdown(page, stop)
     right, printed = stop.right, stop.printed
-    page.answer(
+    page.say(
         f"A shutdown takes {right.max():.0f} N m of the motor, at its start, and by Eq 5.1 as "
         f"printed {printed[np.abs(printed).argmax()]:.0f} N m: there friction drives the blade, "
         "and inertia is negative."

@@ -69,7 +69,7 @@ def run(run: Run, page: Page) -> None:
         gauges(page, *shapes[-1])
     with run.step("core"):
         core(page, max(float(row["largest roller load [kN]"]) for row in rows) * 1e3)
-    page.answer(
+    page.say(
         f"3 MN m make the ring oval by {rows[0]['oval w2 [µm]']:.0f} µm on a hub that is stiff "
         f"close behind it, and by {rows[-1]['oval w2 [µm]']:.0f} µm on a neck of "
         f"{rows[-1]['neck [m]']:g} m: the hub governs."

@@ -129,7 +129,7 @@ def levels(run: Run, page: Page, machine: Machine) -> None:
     )
     page.data("levels", rows)
     enough = next(row for row in rows if row["error of its peak [%]"] <= 100.0 * TOLERANCE)
-    page.answer(
+    page.say(
         f"The peak of the torque within {100 * TOLERANCE:g} % needs the level {enough['level']!r}."
     )
 
@@ -185,7 +185,7 @@ def thresholds(page: Page, system: System, found: list[Influence], highest: floa
     enough = [t for t, error in zip(THRESHOLDS, errors, strict=True) if error <= TOLERANCE]
     if enough:
         locked = sum(one.error < enough[-1] for one in found)
-        page.answer(
+        page.say(
             f"Groups that raise no frequency up to {highest:.1f} Hz by {100 * enough[-1]:.2g} % or "
             f"more alone, {locked} of {len(found)}, can all be locked within "
             f"{100 * TOLERANCE:g} % of each frequency."
@@ -238,7 +238,7 @@ def after_another(page: Page, found: list[Influence], trials: list[Trial]) -> No
         basis="self-consistency",
     )
     freed = [trial.group for trial in trials if not trial.stays]
-    page.answer(
+    page.say(
         f"One after another, {len(found) - len(freed)} of {len(found)} groups can be locked: "
         f"{last.degrees} of {trials[0].degrees} degrees of freedom have the torque within "
         f"{100 * TOLERANCE:g} %. What must move: {', '.join(freed) or 'nothing'}."

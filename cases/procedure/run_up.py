@@ -84,7 +84,7 @@ def run(run: Run, page: Page) -> None:
         shown(page, modes, signal, step)
     peaks(page, modes, orders)
     met = [m for m in found if m.verdict == "resonance"]
-    page.answer(
+    page.say(
         f"From {SPEEDS[0]:g} to {SPEEDS[1]:g} rpm {len(met)} crossings are at a part with 1 % or "
         f"more of the mode's energy, of {sum(m.margin == 0.0 for m in found)} in all; in a run-up "
         f"of {SECONDS:g} s they stay below the response at rest, and come later than the crossing."

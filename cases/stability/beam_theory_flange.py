@@ -233,7 +233,7 @@ def show(page: Page, found: Map, shown: int, inset: float) -> None:
     thick, error = found.thick, found.error
     low = min_safe(thick, error[shown], 10.0)
     worst = np.abs(found.thin).max()
-    page.answer(
+    page.say(
         f"A shaft of L = {LENGTH:g} d held by the rim of a flange of {SHOWN:g} d: the beam, "
         "for which a flange is a short thick shaft, has the rotation by a moment within 10 % "
         f"only from a flange {low or np.nan:.2g} d thick; of one {thick[0]:g} d thick it "

@@ -148,7 +148,7 @@ def run(run: Run, page: Page) -> None:
     with_radius = np.vstack([sharp, filleted[FILLETED]])
     error = 100 * (beam(AT, FILLETED) / with_radius - 1)
     show_steps(page, found)
-    page.answer(
+    page.say(
         f"A fillet reduces that: at L = {AT:g} d the beam without it has an error in bending "
         f"by {error[0, OF['bending']]:+.1f} % where the step is sharp and by "
         f"{error[-1, OF['bending']]:+.1f} % where the radius is the step's height."
@@ -236,7 +236,7 @@ def show_steps(page: Page, found: Map) -> None:
     extra = {name: values[shown] for name, values in found.extra.items()}
     safe = found.least(found.error["bending"][shown], 5.0)
     kept = found.least(found.corrected["bending"][shown], 5.0)
-    page.answer(
+    page.say(
         f"A sharp step from {step:g} d to d adds what {extra['torsion']:.3f} d of the small "
         f"section would in torsion, {extra['bending']:.3f} d in bending and "
         f"{extra['tension']:.3f} d in tension. Without it the beam is within 5 % in bending from "

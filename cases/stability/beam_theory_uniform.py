@@ -249,7 +249,7 @@ def show(page: Page, found: Map) -> None:
     first = found.least(error[BENT][solid], 1.0)
     safe_corrected = [found.least(row, 1.0) for row in found.corrected[BENT]]
     end = found.ends[solid]
-    page.answer(
+    page.say(
         "A solid cantilever is within 1 % of elasticity by Euler and Bernoulli from "
         f"L = {found.least(shear[solid], 1.0):.2g} D and within 5 % from "
         f"{found.least(shear[solid], 5.0):.2g} D; Timoshenko's beam is exact there. Between rigid "

@@ -52,7 +52,7 @@ def run(run: Run, page: Page) -> None:
         loads(page, run.quick)
     with run.step("standstill"):
         still = standstill(page)
-    page.answer(
+    page.say(
         "Life looks like a number where the method ends: kappa below 0.1 or above 4, P above C/2, "
         "standstill. The program goes on as the standard asks, and counts the time beyond.",
         "Modified life goes with up to twice the power of load that basic life has, and at the "

@@ -40,7 +40,7 @@ def run(run: Run, page: Page) -> None:
     sizes, stiff = (np.log(column(preload, k)) for k in ("preload [µm]", "radial stiffness [N/m]"))
     power = float(np.polyfit(sizes, stiff, 1)[0])
     worst = max(column(rows, "plain Newton fails [%]"))
-    page.answer(
+    page.say(
         "With preload or without clearance plain Newton converges. Where the clearance is much "
         "more than what the load deflects, it fails in up to "
         f"{worst:.0f} % of random load cases; the damped one "

@@ -118,7 +118,7 @@ def run(run: Run, page: Page) -> None:
         "more than a million elements, which is foreseen from area, length and size of each face "
         "before gmsh begins."
     )
-    page.answer(
+    page.say(
         f"Of {number} shapes at and beyond their limits {refused} are refused in one sentence with "
         "the allowed range, and all others are meshed without a fault, with volumes and named "
         "areas exact but for the parabolas that make the circles, and for rims of the shaft's ends "

@@ -61,7 +61,7 @@ def small(run: Run, page: Page) -> None:
     with run.step("write"):
         mark = str(run.settings["mark"])
         write(mesh, run.folder / "shaft.vtu", {mark: found.u.reshape(-1, 3)})
-    page.answer(mark)
+    page.say(mark)
     page.data("stiffness", stiffness)
 
 
@@ -134,7 +134,7 @@ class Found:
 def state(out: Path) -> str:
     """Whose results stand in a folder, every file of it read."""
     try:
-        (mark,) = read_results(out / "results.json").summary
+        (mark,) = read_results(out / "results.json").details
         names = sorted(p.name for p in out.iterdir() if not p.name.startswith(HISTORY))
         whole = names == sorted([*FILES, MANIFEST])
         whole = whole and mark in (out / "report.html").read_text("utf-8")
@@ -421,7 +421,7 @@ def main() -> None:
         case="faults/small",
         title="Small case",
         source="Saint-Venant",
-        summary=[OLD],
+        details=[OLD],
         verdicts=[],
         sections=[],
         environment=environment({}),

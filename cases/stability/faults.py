@@ -139,7 +139,7 @@ def show(page: Page, killed: list[Record], in_place: list[Record], found: Any) -
     half, safe_from = broken(in_place), safe_moment(in_place)
     tries, wrong = found["damaged"]
     hidden = sum(kill["hidden beside them, until the next run"] > 0 for kill in killed)
-    page.answer(
+    page.say(
         f"Of {len(killed)} kills over the run of a small case none left anything but the whole "
         f"of the old or the new results; written straight into the folder, {sum(half)} of "
         f"{len(in_place)} left half of them.",

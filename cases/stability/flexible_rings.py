@@ -96,7 +96,7 @@ def run(run: Run, page: Page) -> None:
         program="leaves out shapes below a twentieth",
         remedy="nothing to do, or `shapes=` for more",
     )
-    page.answer(
+    page.say(
         f"Damped Newton converges in all cases, from {1e3 * walls[0]:.0f} mm of wall to "
         f"{1e3 * walls[-1]:.0f} mm. Plain Newton fails in up to "
         f"{worst['plain Newton fails [%]']:.0f} % of them, at a clearance of "

@@ -147,7 +147,7 @@ def show(page: Page, rows: list[Record], of: Mapping[str, list[Record]]) -> None
     worst_peak = np.nanmax(np.abs(np.array(column(raw, PEAK))[folded]))
     repaired_peak = np.abs(np.array(column(of["refined"], PEAK))[folded]).max()
     worst_torsion = np.abs(column(of["refined"], TORSION)).max()
-    page.answer(
+    page.say(
         f"Curving folds elements on the fillet below {safe:g} elements to a turn."
         if safe is not None
         else "Curving folds elements in every mesh of the sweep.",

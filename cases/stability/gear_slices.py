@@ -53,7 +53,7 @@ def run(run: Run, page: Page) -> None:
         jam = jamming(page, ratios)
     with run.step("supports"):
         softest = soft_supports(page, 1 if run.quick else 2)
-    page.answer(
+    page.say(
         f"{SLICES} slices have the face load factor to 2 % up to {RATIO} of {ends[SLICES]:.0f}, "
         "where a slice and a half carry all; the limit grows with the square of the number.",
         f"With a play of {1e3 * PLAY:.1f} mm both flanks touch from {jam:.0f} on.",

@@ -72,7 +72,7 @@ def laminae(page: Page, quick: bool) -> None:
         basis="self-consistency",
     )
     limit_laminae(page, rows, error["straight, f = 1"])
-    page.answer(
+    page.say(
         "The stress riser of ISO/TS 16281 belongs to 30 laminae: under an even load it leaves "
         f"{thirty:.2f} of life with them, and {riser:.2f} in the limit of very many. With the "
         "profile that it is meant for the outermost laminae carry nothing, and life converges: "
@@ -187,7 +187,7 @@ def seeds(page: Page, quick: bool) -> None:
         log="xy",
         safe=(float(np.ceil(needed)), None),
     )
-    page.answer(
+    page.say(
         f"One history of {winds.duration:g} s of each wind speed leaves {scatter[0]:.0f} % scatter "
         f"in the damage at a site, {count} of them leave {scatter[0] / np.sqrt(count):.1f} %.",
     )

@@ -38,7 +38,7 @@ def run(run: Run, page: Page) -> None:
         enough = steps(page, run.quick)
     with run.step("statics"):
         statics(page)
-    page.answer(
+    page.say(
         "A shaft that falls into its bearings comes to rest where equilibrium has it, whatever "
         f"the step; the height of its bounces needs steps of {enough:.2g} of the period in "
         "contact.",

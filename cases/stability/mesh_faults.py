@@ -44,7 +44,7 @@ def run(run: Run, page: Page) -> None:
         mesh = mesh_scene(scene)
     with run.step("cost of the check"):
         cost = share_of_check(scene, mesh)
-    page.answer(
+    page.say(
         f"All {len(kinds)} kinds of faults are found before the solve, and named with part, "
         f"element and place; the check takes {100 * cost:.1f} % of the processor time in which "
         f"the model of {len(mesh.cells):,} elements is assembled."
@@ -95,7 +95,7 @@ def doubled_nodes(run: Run, page: Page) -> None:
     merged = max(column(rows, "nodes merged"))
     share, loss = (np.array(column(rows, key)) for key in ("share of the height", "torn mesh"))
     safe = max(share[loss < CRITERION], default=0.0)
-    page.answer(
+    page.say(
         f"Unnoticed, doubled nodes over half a section cost {100 * fine:.0f} % of the bending "
         "stiffness and no solver reports it; only when the bar falls in two is it 'singular'. "
         f"Merging the nodes gives the exact stiffness back to {merged:.0e}."
@@ -193,7 +193,7 @@ def wrong_units(run: Run, page: Page) -> None:
     )
     meant = float(scale[np.abs(ratio - 1.0) < CRITERION].max())
     accepted = float(scale[~caught].max())
-    page.answer(
+    page.say(
         f"Lengths that are {accepted:g} times too large pass for a shaft of {DIAMETER:g} m, "
         f"millimetres for metres do not: a part wider than {WIDEST:g} m is refused before it is "
         "meshed."

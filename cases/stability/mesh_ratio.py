@@ -176,7 +176,7 @@ def show(page: Page, rows: list[Record]) -> None:
     node = series(rows, "node by node", "coarser", "patch")
     entries = {side: series(rows, "standard", side, "entries") for side in SIDES}
     dual_high = last_within(ratios, dual, ERROR)
-    page.answer(
+    page.say(
         f"Mortar ties of flat faces pass constant stress at every ratio up to {ratios[-1]:g} to 1, "
         "either side the slave; with standard multipliers linear stress as well.",
         f"With dual multipliers bending is within {100 * ERROR:g} % up to a slave "

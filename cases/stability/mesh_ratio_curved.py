@@ -246,7 +246,7 @@ def show(page: Page, settled: list[Record], as_meshed: list[Record]) -> None:
         for r in as_meshed
         if (r["elements"], r["tie"]) == (NODES[8], "node by node")
     ]
-    page.answer(
+    page.say(
         "Tied as meshed, a curved face loses torque, since two meshes of it lie apart: up to "
         f"{100 * np.nanmax(curved):.2g} % with curved facets and {100 * np.nanmax(octagon):.2g} % "
         "with straight ones. Settled, ties of every ratio lose nothing.",

@@ -203,7 +203,7 @@ def show(page: Page, rows: list[Record], peak: float) -> None:
     thin, slender = of[TUBE_NAME][-1], of[ROD_NAME][-1]
     errors = [abs(row["error in torsion"]) for row in (thin, slender)]
     failed = {r["body"] for r in rows if str(r["iterations of multigrid"]).startswith("gives")}
-    page.answer(
+    page.say(
         f"Patches with a spectral coarse space solve {thin['unknowns']:,.0f} unknowns of a thin "
         f"tube in {thin['iterations of patches']:.0f} iterations, {slender['unknowns']:,.0f} of a "
         f"slender shaft in {slender['iterations of patches']:.0f}, in "

@@ -253,7 +253,7 @@ def run(run: Run, page: Page) -> None:
             *(key for key in rows[0] if key not in ("joint", "least safe", "warned", "remedy")),
         ],
     )
-    page.answer(
+    page.say(
         "A spring that is the only restraint of a motion leaves four digits of it down to "
         f"{in_words(max(column(rows, 'least safe')))} of the stiffness of what it holds (Young's "
         f"modulus times length). The program warns from {WEAK:.0e} down, names the motion and the "

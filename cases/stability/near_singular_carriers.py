@@ -65,7 +65,7 @@ def run(run: Run, page: Page) -> None:
         program="refuses a motion that is free but for round-off, by its name",
         remedy="leave the carrier rigid, or hold what nothing holds",
     )
-    page.answer(
+    page.say(
         f"From {low:.0e} to {high:.0e} times its stiffness a carrier hands on its torque within "
         f"{WITHIN:g}; {len(refused)} of {len(factors)} stiffnesses, all of them smaller, are "
         "refused with the motion that is free. Ever stiffer, it goes to the rigid carrier as one "

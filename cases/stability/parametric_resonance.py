@@ -46,7 +46,7 @@ def run(run: Run, page: Page) -> None:
         "see it",
         remedy="damping, or a contact ratio nearer to a whole number",
     )
-    page.answer(
+    page.say(
         "A stiffness that varies by e of its mean at twice a natural frequency makes motion grow "
         "unless the damping ratio exceeds e / 4: with e = 0.2, 5 % of critical damping.",
     )

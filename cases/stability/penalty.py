@@ -56,7 +56,7 @@ def run(run: Run, page: Page) -> None:
         f"{kind} {in_words(found['safe from'])} to {in_words(found['to'])}"
         for kind, found in zip(KINDS, ranges, strict=True)
     )
-    page.answer(
+    page.say(
         "A penalty in place of a constraint keeps four digits of stiffness with a direct "
         f"solver from and to, in units of the mean diagonal: {'; '.join(words)}.",
         "On either side the error grows tenfold a decade, as theory says: the compliance of "

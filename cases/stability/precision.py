@@ -96,7 +96,7 @@ def run(run: Run, page: Page) -> None:
         precision: -np.log10(np.maximum(column(refined, key("bending", precision)), 1e-17))
         for precision in (SHORT, DOUBLE)
     }
-    page.answer(
+    page.say(
         "Four digits of the bending stiffness of a tube survive up to L/D = "
         f"{in_words(highest['bending'][SHORT])} in 32 bits and "
         f"{in_words(highest['bending'][DOUBLE])} in 64; of its torsional stiffness up to "

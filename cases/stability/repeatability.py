@@ -134,7 +134,7 @@ def run(run: Run, page: Page) -> None:
     changing = dict.fromkeys(
         r["part"] for r in rows if r["runs"] != FIRST and r["differ in any bit"]
     )
-    page.answer(
+    page.say(
         f"Two runs with one thread agree in every bit of {len(runs['one thread'])} arrays, from "
         f"mesh to stiffness: {changed} differ.",
         "Two threads are not tried in a quick run."

@@ -257,7 +257,7 @@ def show_widths(page: Page, found: Found) -> None:
     narrow = last_within(widths, gap, GAP)
     wrong_sign = sum(by_mean(f["sliding"]) < 0 for f in found.swept)
     share = f"{100 * sliding[0]:.2g} to {100 * sliding[-1]:.2g} %"
-    page.answer(
+    page.say(
         "Rigid and averaged coupling bracket the tilt stiffness of a bonded seat: they are "
         f"{100 * gap[0]:.2g} % apart on a band of {1e3 * widths[0]:g} mm and "
         f"{100 * gap[-1]:.2g} % where the whole bore is loaded"
@@ -388,7 +388,7 @@ def show_meshes(page: Page, found: Found, limits: Mapping[str, GridConvergence])
     }
     over = np.array(found.rough)[stiffness(found.plain, "averaged") > exact["rigid"]]
     if len(over):
-        page.answer(
+        page.say(
             f"On elements of second order of {over[-1]:g} m and more even the averaged coupling is "
             "stiffer than the rigid one really is: a bracket holds only on a mesh that has "
             "converged."

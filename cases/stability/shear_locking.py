@@ -113,7 +113,7 @@ def run(run: Run, page: Page) -> None:
     state_limits(page, square, tip, shafts, slenderness, round_lengths, share)
     at_200 = tip[f"8 nodes, {square.most} across"][-1]
     left = shafts["8 nodes, incompatible modes, 8 round a turn"][-1]
-    page.answer(
+    page.say(
         f"Hexahedra of 8 nodes shear where they should bend: {ALONG} along a bar of L/D = "
         f"{slenderness[-1]} make it {1 + at_200:.0f} times too stiff with {square.most} across, "
         "for more across do not help: it is the length of an element that counts, by G A a^2 / 12, "

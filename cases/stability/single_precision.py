@@ -252,7 +252,7 @@ def run(run: Run, page: Page) -> None:
     }
     every = [trial for swept in found.values() for trial in swept]
     check(page, every, found[IN_UNITS])
-    page.answer(
+    page.say(
         f"On {len(every)} solids the hierarchy in single precision takes at most "
         f"{max(t.single - t.double for t in every)} iterations more than one in double precision, "
         "and gives the same answers; where the range of single precision ends, the program keeps "

@@ -113,7 +113,7 @@ def show(page: Page, points: list[sweep.Point], patches: list[int], exponent: fl
         for a in p.answers.values()
         if a.compliance is not None
     )
-    page.answer(
+    page.say(
         f"Multigrid holds up to L/D = {safe_multigrid or 0:g}; patches with a spectral coarse "
         f"space need {min(patches)} to {max(patches)} iterations up to L/D = "
         f"{max(p.value for p in points if p.answers['auto'].method):g}.",

@@ -193,7 +193,7 @@ def state_limits(page: Page, rows: list[Record], beyond: list[Record], exponent:
     most = max(column(rows, "iterations, optimised"))
     remaining = f"{np.abs(array(rows, 'error, optimised')).max():.1e}"
     worst = beyond[int(np.argmax(np.nan_to_num(np.abs(array(beyond, "error of bending")))))]
-    page.answer(
+    page.say(
         "One layer of slivers makes the condition number grow as their flatness to the power "
         f"{exponent:.2f}. Multigrid alone holds down to a flatness of {shown(safe_steps)}; the "
         f"stiffness has six digits down to {shown(safe)}; there is no answer at "

@@ -41,7 +41,7 @@ def run(run: Run, page: Page) -> None:
     loosest = {
         f"{row['problem']}, {row['stiffness']}": row[LOOSEST] or TOLERANCES[-1] for row in rows
     }
-    page.answer(
+    page.say(
         "Four digits of a stiffness need a tolerance of the energy error of "
         + "; ".join(f"{in_words(value)} ({name})" for name, value in loosest.items())
         + ".",

@@ -197,7 +197,7 @@ def spherical(run: Run, page: Page) -> None:
         f"{stiffness[by_beam].min():.1g} N/m on",
     )
     limit_stiff(page, "spherical", high)
-    page.answer(
+    page.say(
         "On a spherical bearing the hub's motion and the gearbox's reaction keep four digits "
         f"from {in_words(low)} to {in_words(high)} N/m of radial gearbox stiffness. No spring at "
         f"all is refused as a mechanism; up to {in_words(first_warned)} N/m the program names the "
@@ -304,7 +304,7 @@ def bonded(run: Run, page: Page) -> None:
     check_first_order(page, found, 0.4 if run.quick else 0.2)
     check_ends(page, found)
     limit_stiff(page, "bonded", high)
-    page.answer(
+    page.say(
         "On a bonded bearing the free and the held shaft are recovered, first order in the "
         "spring and in its compliance; the reaction of the spring keeps four digits up to "
         f"{in_words(high)} N/m, and a scene may have 1e16."

@@ -26,7 +26,7 @@ def run(run: Run, page: Page) -> None:
     for name in MACHINES[:1] if run.quick else MACHINES:
         with run.step(name):
             sweep(page, name, factors)
-    page.answer(
+    page.say(
         "Stiffening everything but torsion, the frequencies of rigid bodies go to those of the "
         "torsional model as one over the stiffness, down to round-off of what is far below the "
         "stiffest springs: that of singular values of the springs' rows, or of the eigenvalues of "

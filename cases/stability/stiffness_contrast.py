@@ -288,7 +288,7 @@ def state_limits(
     low, high = of_ring.safe
     _, chain_high = of_chain.safe
     rigid_low, _ = safe_range(of_chain.contrast, of_chain.rigid, FOUR_DIGITS)
-    page.answer(
+    page.say(
         f"Four digits of stiffness survive a ring down to {in_words(low)} of the shaft's modulus "
         f"with a direct factor and {in_words(of_ring.safe_iterated[0])} with multigrid, stiff "
         f"bodies up to {in_words(chain_high)} and {in_words(of_chain.safe_iterated[1])} times that "

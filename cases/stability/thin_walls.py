@@ -140,7 +140,7 @@ def show(page: Page, points: list[sweep.Point], turn: int, exponent: float) -> N
     torsion = max(error for p in points for error in p.torsion_errors)
     worst = max(points, key=lambda p: p.iterations_error("multigrid"))
     wrong = f"{worst.iterations_error('multigrid'):.1%} at {worst.value:g}"
-    page.answer(
+    page.say(
         f"Multigrid holds up to a radius of {safe_multigrid or 0:g} walls and has an error of "
         f"{wrong}. Patches with a spectral coarse space take {min(patches)} to {max(patches)} "
         f"iterations down to a wall of 1/{points[-1].value:g} of the radius, and are right to "

@@ -237,7 +237,7 @@ def state_limits(
             f"{100 * everywhere.min():.0f} to {100 * everywhere.max():.0f} % in the {p} plane"
         )
     safe_thrust = {kind: thrust_within(values) for kind, values in secant.items()}
-    page.answer(
+    page.say(
         f"The thesis's four nodes give a K_R that is {' and '.join(above)}, nearly the same on "
         "every mesh: they do not see the compliance between the seat and their own place.",
         f"Over all places on bore and outside of the housing the excess is {', '.join(ranges)}; "

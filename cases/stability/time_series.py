@@ -293,7 +293,7 @@ def state_limits(page: Page, found: Crossing, spoilt: Outlier) -> None:
     """Answer and limits."""
     within = f"{100 * (KEPT - 1):.0f} %"
     least, last = found.means[-1], found.percent[-1]
-    page.answer(
+    page.say(
         f"The thesis's mean percentage error is within {within} of mean |difference| over mean "
         f"|reference| only where the reference's mean is {found.safe or float('nan'):.2g} standard "
         f"deviations or more; at {least:g} it is {found.excess[-1]:.1f} times that, from "

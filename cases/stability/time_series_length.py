@@ -178,7 +178,7 @@ def state_limits(
     lost, kept = errors[NAIVE], f"{errors[MERGED].max():.0e}"
     safe, longest, most = first_beyond(RATIOS, lost, SAFE), streamed[-1], ALLOWED / each
     seconds, memory = longest["time [s]"], longest["memory [MiB]"]
-    page.answer(
+    page.say(
         f"A history of {longest['samples']:,} samples is compared in {seconds:.1f} s and "
         f"{memory:.0f} MiB beside the program's own memory; in memory a sample takes {each:.0f} "
         f"bytes, so that 2 GiB end at {most:.1e} samples. Chunked and whole agree to "

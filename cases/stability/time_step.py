@@ -47,7 +47,7 @@ def run(run: Run, page: Page) -> None:
         enough = accuracy(page, QUICK_DURATION if run.quick else DURATION)
     with run.step("stability"):
         stability(page)
-    page.answer(
+    page.say(
         f"Forces of a mesh whose stiffness has a single harmonic need some {enough:.0f} steps in "
         f"its period for {100 * ENOUGH:g} %; each harmonic that counts needs as many in "
         "its own.",

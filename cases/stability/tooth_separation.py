@@ -84,7 +84,7 @@ def run(run: Run, page: Page) -> None:
         program="has a dead zone with both flanks (backlash), met by Newton's method in each step",
         remedy="give the backlash; start from both sides: motion may depend on where it comes from",
     )
-    page.answer(
+    page.say(
         f"With a stiffness that varies by {100 * VARIATION:.0f} % and {100 * RATIO:.0f} % of "
         f"critical damping teeth part from {low:.2f} to {high:.2f} of the natural frequency, and "
         f"stay parted down to {past:.2f} if they come from above; a spring that pulls is wrong.",

@@ -73,7 +73,7 @@ def run(run: Run, page: Page) -> None:
     stress(run, page)
     counts = iterations(run, page, of_disc)
     nus, errors = of_disc.nus, of_disc.errors
-    page.answer(
+    page.say(
         f"At nu = {nus[-1]:g} the program's default element, the curved tetrahedron of ten nodes, "
         f"makes a bonded disc {100 * errors[DEFAULT][-1]:,.0f} % too stiff, and one of four nodes "
         f"{100 * errors['4 nodes'][-1]:,.0f} %. With the dilatation averaged in each element the "

@@ -119,7 +119,7 @@ def run(run: Run, page: Page) -> None:
     rates = convergence_rates(curves)
     check_balance(page, imbalances)
     check(page, finest, rates, exact, doubt=abs(rough / exact - 1))
-    page.answer(
+    page.say(
         f"At {rates.unknowns:,} unknowns the error of the adaptive mesh is {rates.error:.2g} %, "
         f"that of a uniform one of as many {rates.uniform_error:.2g} %.",
         f"Error falls with unknowns to the power {rates.slope['adaptive']:.2f} on adaptive meshes, "

@@ -59,7 +59,7 @@ def run(run: Run, page: Page) -> None:
             page.meets(best[target.key], target, of=name)
         rows += meshes
     solid, bored = (row[ERROR] for row in rows[len(refinements) - 1 :: len(refinements)])
-    page.answer(
+    page.say(
         f"E A / L is met to {solid:.1g} (solid) and {bored:.1g} (bored), and the exact linear "
         f"displacements to {max(column(rows, MOVED)):.0e} of the largest."
     )

@@ -202,7 +202,7 @@ def run(run: Run, page: Page) -> None:
         check_width(page, [row for row in rows if row["level"] == MERIDIAN])
     else:
         check_coverage(page, found)
-    page.answer(
+    page.say(
         *coverage_sentences(rows, found),
         compare_with_ngsolve(run, page),
         *(["A quick run is a sample: too few to judge 95 % by."] if run.quick else []),

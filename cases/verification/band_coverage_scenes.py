@@ -215,14 +215,14 @@ def run(run: Run, page: Page) -> None:
     values = [row for row in rows if row["kind"] != CHANGE]
     median = float(np.median(column(values, RATIO)))
     check(page, whole, median, run.quick)
-    page.answer(
+    page.say(
         f"{whole['bands that hold']} of {whole['figures']} bands hold of {count} scenes "
         f"({whole['coverage [%]']:.3g} %); those of values at a median of "
         f"{median:.2g} times the error.",
         *(["A quick run is a sample: too few to judge 95 % by."] if run.quick else []),
     )
     if changed := [row[BAND] / row[BOTH] for row in rows if row["kind"] == CHANGE]:
-        page.answer(
+        page.say(
             f"Bands of {len(changed)} changes are {min(changed):.2g} to {max(changed):.2g} of the "
             f"sum of the bands of both values, {np.median(changed):.2g} in the median."
         )

@@ -58,7 +58,7 @@ def run(run: Run, page: Page) -> None:
     (energy, peak), before = planes[-1], planes[0]
     moved = [abs(now / old - 1.0) for now, old in zip(planes[-1], before, strict=True)]
     missed = 0.5 * (HEIGHT / levels[-1] ** 1.5 / FILLET) ** 2
-    page.answer(
+    page.say(
         f"The solid bracket is within {100 * abs(last[STIFFNESS] / stiffness(energy) - 1):.3f} % "
         f"of the plane solution's stiffness and within {100 * abs(last[PEAK] / peak - 1):.2f} % of "
         f"its greatest stress in the fillet, {peak:.1f} MPa: {peak / NOMINAL:.2f} times the "

@@ -245,7 +245,7 @@ def run(run: Run, page: Page, row: Mapping[str, Any]) -> None:
         check(page, one)
     worst = ", ".join(f"{one.label} {_worst(one.differences):.1e}" for one in found)
     usual = ", ".join(f"{one.label} {one.usual[QUANTITIES[0]].max():.1e}" for one in found)
-    page.answer(
+    page.say(
         "CalculiX and this project agree on displacements, reactions and strain energy of the "
         f"{row['scene']} main bearing under each unit load: largest differences {worst}, the "
         "digits that CalculiX prints.",

@@ -71,7 +71,7 @@ def run(run: Run, page: Page) -> None:
     page.meets(above, Target(title, 0.0, 0.0, strict, least))
     page.headline = "cantilever, hexahedra of 27 nodes: strain energy per width"
     eight = {row["element"]: row[MISSED] for row in rows if row[THROUGH] == 8}
-    page.answer(
+    page.say(
         f"The cantilever stores {EXACT['cantilever']:.2f} J a metre of width; eight hexahedra of "
         f"27 nodes through its height miss {eight[NAMES[27]]:.1e} of it, as many of 8 nodes "
         f"{100 * eight[NAMES[8]]:.1f} %, of tetrahedra of 4 nodes {100 * eight[NAMES[4]]:.0f} %. "

@@ -57,7 +57,7 @@ def run(run: Run, page: Page) -> None:
         meshes = [run.timed(f"bore {tube.inner:g} m", solve, tube, r) for r in refinements]
         met.append(check(page, tube, MeshSeries(meshes, TURN)))
         rows += meshes
-    page.answer(
+    page.say(
         "Under Saint-Venant's tractions the solid's mean deflection is F L^3 / 3EI + F L / kGA "
         f"with Cowper's k to {max(met):.1g}, solid and bored."
     )

@@ -60,7 +60,7 @@ def run(run: Run, page: Page) -> None:
     turns = "a clamp turns less than Saint-Venant's root by a share of M D / EI: the error is in "
     turns += "proportion to D / L"
     page.meets(float(power), order_of(title, -1.0, 0.15, why, turns))
-    page.answer(
+    page.say(
         f"A clamped end and a rigid tip are stiffer than the beam by {first[STIFFER]:.1f} % at "
         f"L = {first[RATIO]:g} D and {last[STIFFER]:.2f} % at L = {last[RATIO]:g} D."
     )

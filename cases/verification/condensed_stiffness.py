@@ -152,7 +152,7 @@ def run(run: Run, page: Page) -> None:
         shown = np.maximum(np.abs(values) / values[-1], 1e-18)
         traces.append(trace(label, np.arange(1, 13), shown, mode="lines+markers"))
     check_twist(page, coarse, fine, turns, run.quick)
-    page.answer(
+    page.say(
         "The 12 x 12 stiffness of a free body between two rigid ends has exactly six zero modes: "
         f"the widest gap, a factor of {1 / max(column(rows, GAP)):.0e} or more, lies between the "
         "sixth and the seventh eigenvalue. It is symmetric, and with one end held positive "

@@ -75,7 +75,7 @@ def run(run: Run, page: Page) -> None:
     straight = 6.0 * MOMENT / (OUTER - INNER) ** 2
     winkler = float(BAR.winkler(np.array(INNER), MOMENT))
     errors = [100 * (of / 1e6 / EXACT[INSIDE] - 1) for of in (winkler, straight)]
-    page.answer(
+    page.say(
         f"A bar with b/a = {OUTER / INNER:g} carries {series.last[INSIDE]:.3f} MPa inside (exact "
         f"{EXACT[INSIDE]:.3f}); the error of Winkler's hook is {errors[0]:+.1f} %, that of a "
         f"straight beam {errors[1]:+.0f} %."

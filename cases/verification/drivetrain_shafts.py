@@ -51,7 +51,7 @@ def run(run: Run, page: Page) -> None:
     printed = low.stiffness, found.tolerance, found.reason, "Al-Hamadani 2018, Table 4.2"
     page.meets(found.stiffness, Target(title, *printed), found.band)
     of_d, of_a, of_c = (rows[letter]["LSS"] for letter in "DAC")
-    page.answer(
+    page.say(
         f"As solid steel over 1 m, the low-speed shafts are {of_d[DIAMETER]:.2f} m (D), "
         f"{of_a[DIAMETER]:.2f} m (A, B) and {of_c[DIAMETER]:.2f} m (C); the 3 MW one is "
         f"{of_a[STIFFNESS] / of_c[STIFFNESS]:.0f} times as stiff as the 2 MW one.",

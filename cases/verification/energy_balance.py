@@ -69,7 +69,7 @@ def run(run: Run, page: Page) -> None:
         page.add(bars(title, groups, "share of the work [%]", stacked=True))
     page.image(f"The {kind} scene, as meshed here", run.sketch(model.mesh))
     page.table("Work of each load and energy stored", rows)
-    page.answer(
+    page.say(
         "Half the work of the loads is found again in parts and springs to "
         f"{worst['spherical']:.0e} in the spherical and {worst['bonded']:.0e} in the bonded scene, "
         "gravity included."

@@ -64,7 +64,7 @@ def run(run: Run, page: Page) -> None:
     check(page, kills, found)
     names = ", ".join(column(found, "command"))
     total = sum(column(found, "ended"))
-    page.answer(
+    page.say(
         f"Of {kills * len(found)} runs of {len(found)} kinds of command {total} were ended by a "
         f"kill at a random moment; {sum(column(found, 'lost'))} lost or changed a file of others, "
         f"and {sum(column(found, 'broken'))} left half a result.",

@@ -40,7 +40,7 @@ def run(run: Run, page: Page) -> None:
         rows.append(check(page, load, f, solids, meshes))
         add_profile(page, load, f, solids[-1], meshes[-1])
     worst = max(abs(row["from the meridian [%]"]) for row in rows)
-    page.answer(
+    page.say(
         f"With {solids[-1].unknowns:,} unknowns curved tetrahedra find K_t of the meridian within "
         f"{worst:.1f} % in all of tension, bending and torsion."
     )

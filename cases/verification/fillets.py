@@ -82,14 +82,14 @@ def run(run: Run, page: Page, row: Mapping[str, Any]) -> None:
     deviation = deviations(load, factors, peterson)
     worst = int(np.abs(deviation).argmax())
     f = factors[worst]
-    page.answer(
+    page.say(
         f"Over {len(factors)} shoulders Peterson's fit differs from the finite elements by "
         f"{deviation.mean():+.1f} % on average and at worst by {deviation[worst]:+.1f} % "
         f"(D/d = {f.wide:g}, r/d = {f.radius:g}: K_t = {f.peak.factor:.4f}, band {f.band:.1g})."
     )
     if len(PUBLISHED[load]) == 2:
         other = deviations(load, factors, tipton)
-        page.answer(
+        page.say(
             "The formula of Tipton, Sorem and Rolovic, itself from finite elements, differs by "
             f"{other.mean():+.1f} % on average and {np.abs(other).max():.1f} % at worst."
         )

@@ -64,7 +64,7 @@ def run(run: Run, page: Page) -> None:
         rows += check(page, f"main bearing, {kind}", "turned, 10 m away", found)
 
     worst = {body: max(column(of, "difference [-]")) for body, of in grouped(rows, "body")}
-    page.answer(
+    page.say(
         "Turned at random and moved by 10 m, displacements, reactions and stiffness turn along and "
         f"stay the same: {'; '.join(f'{body} {value:.0e}' for body, value in worst.items())}."
     )

@@ -55,7 +55,7 @@ def run(run: Run, page: Page) -> None:
     )
     page.section("Series without an order")
     without_order(page)
-    page.answer(
+    page.say(
         "Order and limit of series f0 + c h^p are found to round-off, for sizes of equal and of "
         "unequal ratio.",
         f"The worked set follows from the formulas: GCI {100 * worked.gci_coarse:.2f} % and "

@@ -71,7 +71,7 @@ def run(run: Run, page: Page) -> None:
         page.meets(last[SHORTER], shorter, of=name)
         rows += held
     off = {row[SHAFT]: row[SHORTER] for row in rows}  # of the longest
-    page.answer(
+    page.say(
         f"Ends that are held flat and round take {off['solid']:.3f} diameters off a solid shaft's "
         f"length, {off['bored']:.3f} off a bored one's."
     )

@@ -74,7 +74,7 @@ def run(run: Run, page: Page) -> None:
     ]
     check_thesis(page)
     largest = max(abs(row["solid"] / row["Macaulay"] - 1) for row in rows)
-    page.answer(
+    page.say(
         "On five sets of supports the frame and Macaulay's beam agree to round-off, and the "
         f"solid's largest reactions differ from them by at most {100 * largest:.2f} %."
     )

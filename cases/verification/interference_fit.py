@@ -53,7 +53,7 @@ def run(run: Run, page: Page) -> None:
     meshes = {n: run.timed(f"{n} {THROUGH}", press, *fit, n) for n in (1, 2, 4)}
     series = MeshSeries([{THROUGH: n} | shown(found) for n, found in meshes.items()], THROUGH)
     exact, finest, last = exact_fit(*fit), meshes[4], series.last
-    page.answer(
+    page.say(
         f"A misfit of {1e6 * MISFIT:g} µm on the radius presses ring and shaft together with "
         f"{last[PRESSURE]:.4f} MPa; Lame's cylinders give {exact.pressure / 1e6:.4f} MPa. The "
         f"ring's bore carries {last[RING_BORE]:.2f} MPa of hoop stress."

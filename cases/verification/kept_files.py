@@ -281,7 +281,7 @@ def run(run: Run, page: Page) -> None:
             why=means,
             source=COUNTED,
         )
-    page.answer(
+    page.say(
         f"Of {count} bits turned in kept files, {noticed} were noticed when the file was read, and "
         f"{sum(column(turned, 'read with another value'))} gave another value.",
         f"{len(exchanged)} files that were cut off, emptied, of another version, or exchanged for "

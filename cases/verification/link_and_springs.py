@@ -196,7 +196,7 @@ def run(run: Run, page: Page) -> None:
     half = check_equation(page, refinements, tips, slack["end force"], arcs)
     check_implied(page)
     force, _, weight = (row["solid"] for row in rows)
-    page.answer(
+    page.say(
         "One joint meets deflection and rotation of a cantilever's tip at d = 1/2 for an end "
         f"moment, {force:.3f} for an end force and {weight:.3f} for the weight (slender: 1/3 and "
         "1/4): no split serves all.",

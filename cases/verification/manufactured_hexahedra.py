@@ -44,7 +44,7 @@ def run(run: Run, page: Page) -> None:
     check_loss(page, serendipity, run.quick)
     lost, kept = (one.order("energy norm")[0] for one in (serendipity, full))
     page.headline = "hexahedra of 27 nodes: order in L2 norm"
-    page.answer(
+    page.say(
         f"On meshes of trapezoids 20 nodes fall to order {lost:.2f} in the energy norm, 27 nodes "
         f"keep {kept:.2f}."
     )

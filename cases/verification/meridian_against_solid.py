@@ -130,7 +130,7 @@ def run(run: Run, page: Page) -> None:
     ]
     largest = max(abs(row["meridian"] / row["its limit"] - 1.0) for row in rows)
     milliseconds = column(cost, MERIDIAN_TIME)
-    page.answer(
+    page.say(
         "The meridian has every stiffness of the solids within their bands, at most "
         f"{100 * largest:.2g} % from their limit, in {min(milliseconds):.0f} to "
         f"{max(milliseconds):.0f} ms a shaft."

@@ -161,7 +161,7 @@ def show(page: Page, name: str, rows: list[Record]) -> None:
     """Answer and tables."""
     taken = [row for row in rows if row["taken"]]
     wrong = [row for row in rows if row["wrong"]]
-    page.answer(
+    page.say(
         f"Of {len(rows)} {name} with one or two slips {len(rows) - len(taken)} are refused with "
         f"one sentence, {len(taken)} are taken and right by physics but for {len(wrong)} of all."
     )

@@ -46,7 +46,7 @@ def run(run: Run, page: Page) -> None:
     worst = worst_errors(taken)
     check(page, found, worst)
     page.seed = seed
-    page.answer(
+    page.say(
         f"Of {count} mutated scenes {count - len(taken)} are refused in one sentence and "
         f"{len(taken)} are taken; what is taken is balanced, reciprocal, elastic and as heavy as "
         "its solids, and no later step refuses it.",

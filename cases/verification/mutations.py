@@ -113,7 +113,7 @@ def _show(page: Page, root: Path, tried: Sequence[Tried], others: dict[str, str]
     low, high = 100.0 * interval.low, 100.0 * interval.high
     rate = 100.0 * caught / count
     page.found("faults that tests catch [%]", rate)
-    page.answer(
+    page.say(
         f"Of {count} single faults the tests catch {caught}: {rate:.1f} %; of all faults of such "
         f"kinds between {low:.1f} and {high:.1f} %, at a confidence of {100 * CONFIDENCE:g} % "
         "(Clopper and Pearson 1934, of an independent sample: rows that are chosen by hand, and "

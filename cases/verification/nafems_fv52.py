@@ -184,7 +184,7 @@ def run(run: Run, page: Page) -> None:
     rows = [run.timed("lines", on_lines, k) for k in range(halvings)]
     falling(page, rows)
     first, last = series.last["bending (1, 1) [Hz]"], rows[-1][FIRST]
-    page.answer(
+    page.say(
         "With the benchmark's own 4 x 4 x 1 elements of 20 nodes the frequencies differ from its "
         f"own by {100.0 * apart:.2f} % at most.",
         f"Of its support, lines under the edges of a solid, bending has no limit: mode 4 is "

@@ -5,6 +5,7 @@ from fe_drivetrain.cases.references import loaded_blocks as blocks
 from fe_drivetrain.cases.verification.elliptic_plate import EllipticPlate
 from fe_drivetrain.drivetrain_file import Material
 from fe_drivetrain.elasticity.operator import pressure
+from fe_drivetrain.report.number_text import certain_value
 from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target, grouped
 
 STEEL = Material(youngs_modulus=210e9, poisson_ratio=0.3, density=0.0)
@@ -43,6 +44,25 @@ def solve(nodes: int, divisions: tuple[int, int, int]) -> Record:
     }
 
 
+def answer(page: Page, kinds: list[str]) -> None:
+    """State the stress at D, and how far each element is from the benchmark's."""
+    figures = [
+        page.judged(f"{kind}: sigma_yy at D", f"sigma_yy at D, {kind}", "NAFEMS", "-5.38")
+        for kind in reversed(kinds)
+    ]
+    best = figures[0]
+    page.answer(
+        "Which stress does the thick elliptic plate carry at D?",
+        f"sigma_yy at D is {certain_value(best)} by hexahedra of 27 nodes, "
+        f"{100 * abs(best.value / TARGET - 1):.2g} % from the -5.38 MPa of NAFEMS.",
+        [*figures, page.judged("load on the plate", by="pressure times area")],
+        hero=STRESS,
+        cautions=[
+            "A line that holds a solid is singular: meshes differ by some tenths of a percent at D."
+        ],
+    )
+
+
 @case(
     "Thick elliptic plate under pressure (NAFEMS LE10)",
     source="NAFEMS, The Standard NAFEMS Benchmarks, TNSB rev. 3, 1990, test LE10",
@@ -66,11 +86,7 @@ def run(run: Run, page: Page) -> None:
     area = "pressure times the area between the ellipses, pi/4 (3.25 2.75 - 2 1)"
     load = Target(PRESSED, PRESSURE * PLATE.quarter_area / 1e6, 1e-4, edges, area)
     page.finest(MeshSeries(rows[-3:], "unknowns", dimension=3), load)
-    page.headline = f"{NAMES[27]}: sigma_yy at D"
-    page.answer(
-        f"sigma_yy at D is {rows[-1][STRESS]:.3f} MPa with {rows[-1]['unknowns']:,} unknowns of "
-        "hexahedra of 27 nodes; the benchmark says -5.38 MPa."
-    )
+    answer(page, [NAMES[n] for n in kinds])
     page.section("Stress at D")
     shown, nafems = ("element", "unknowns", STRESS), {"NAFEMS": TARGET}
     page.sweep(

@@ -56,7 +56,7 @@ def run(run: Run, page: Page) -> None:
             rows.append([grid, axis, own, value, apart])
     heads = ["grid", "along", "found", "Nastran", "difference, over the grid's largest"]
     page.table("Displacements, in the units of the file", rows, heads)
-    page.answer(f"All six displacements are Nastran's to {worst:.1g} of the largest of their grid.")
+    page.say(f"All six displacements are Nastran's to {worst:.1g} of the largest of their grid.")
     page.text(
         "The unit tetrahedron has E = 3e7 and nu = 0.3, and a pressure of 1 on its base, z = 0. "
         "What was read does not say which grid is where. This is the reading that gives the "

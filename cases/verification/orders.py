@@ -82,7 +82,7 @@ def add_manufactured(run: Run, page: Page, series: Sequence[Series], *notes: str
         f"{one.label} {' and '.join(f'{one.order(name)[0]:.2f}' for name in one.errors)}"
         for one in series
     )
-    page.answer(f"Observed orders in L2 and energy norm: {orders}.")
+    page.say(f"Observed orders in L2 and energy norm: {orders}.")
     check_orders(run, page, series, THEORY)
     check_fields(page)
     page.section("Problem")

@@ -74,7 +74,7 @@ def run(run: Run, page: Page) -> None:
             page.meets(value, Target(f"{title}, {who} [N]", statics, within, why, STATICS))
         traces += inputs.beside_beam(name, SHAFT, load, fine, solids[-1])
     met = ", ".join(f"{r['quantity']} {100 * (r['solid'] / r['frame'] - 1):+.3f} %" for r in rows)
-    page.answer(f"The frame meets the closed forms with shear, and the solid the frame: {met}.")
+    page.say(f"The frame meets the closed forms with shear, and the solid the frame: {met}.")
     inputs.begin(run, page, "Overhung shaft", straight((0.0, LENGTH), OUTER))
     inputs.show_inputs(
         page,

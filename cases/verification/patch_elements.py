@@ -50,7 +50,7 @@ def run(run: Run, page: Page) -> None:
             marks = {"size": [14 if d == element_kind(nodes).degree else 6 for d in DEGREES]}
             traces.append(trace(patch.label, DEGREES, forces, mode="lines+markers", marker=marks))
     worst = max(row[what] for row in rows for what in CHECKS if what.startswith("displacements"))
-    page.answer(
+    page.say(
         f"All {len(rows)} blocks reproduce the six constant strains, displacement and stress, to "
         f"{worst:.0e} with displacements given all round, and with tractions on six held degrees "
         "of freedom to round-off; curved serendipity elements among them."

@@ -32,7 +32,7 @@ def run(run: Run, page: Page) -> None:
         page.meets(error, Target(name, 0.0, 1e-12, ROUND_OFF, PATCH))
     order = check_order(page, *column(spheres, ERROR)[-2:])
     exact = {**ties, **points}
-    page.answer(
+    page.say(
         f"Constant stress passes every interface on plane faces to {max(exact.values()):.1e} of "
         f"itself, {len(ties)} bonds and ties among them, of any mesh ratio, either side the slave. "
         "Tied node by node, meshes that do not match have stress errors of up to "

@@ -40,7 +40,7 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     formula = "sqrt(k / J_rotor) / 2 pi"
     check_frequency(page, "free-fixed", held, fixed, "one eigenvalue", formula)
     check_shaft(page, given, sources, shaft)
-    page.answer(
+    page.say(
         f"Two masses give {free:.4f} Hz free-free and {fixed:.4f} Hz free-fixed, as published. "
         f"The stiffness is K G / L of a solid shaft of {shaft.outer:g} m over {shaft.length:g} m "
         "to its last digit; that shaft's own inertia would lower the first frequency by "

@@ -36,7 +36,7 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     dtu = "what the placeholder is: K G / L of the DTU 10 MW turbine's shaft [N m/rad]"
     by_dtu = G * given["dtu_polar"] / length
     check_digits(page, dtu, by_dtu, placeholder, 500.0, sources["placeholder"])
-    page.answer(
+    page.say(
         f"DTTorSpr for the main shaft alone: {found.stiffness:.4g} N m/rad (numerical band "
         f"± {found.band:.1g}; {low:.4g} to {high:.4g} for any usual G). The published "
         f"{placeholder:.4g} is the DTU 10 MW turbine's, carried over, and "

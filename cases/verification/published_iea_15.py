@@ -26,7 +26,7 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     ratio = as_filed / published
     check_tube(page, given, sources, shaft, J)
     check_hawc2(page, given, sources, shaft, ratio)
-    page.answer(
+    page.say(
         f"The published {published:,.0f} N m/rad is G J / L of a tube of 3.0 m, wall 0.1 m, "
         f"over 2.2 m; finite elements give {found.stiffness:,.0f} (± {found.band:.1g}).",
         f"The HAWC2 shaft is {100 * (1 - ratio):.1f} % softer for two reasons of length: its "

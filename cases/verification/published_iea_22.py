@@ -40,7 +40,7 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     check_torsion(page, "finite elements", found, earlier, sources["earlier"])
     page.meets(by_meridian, Target(meridian, closed, 1e-8, linear, CLOSED_FORM))
     page.meets(thin, Target(title, closed, thick, square, CLOSED_FORM))
-    page.answer(
+    page.say(
         f"DTTorSpr for the main shaft alone: {found.stiffness:.5g} N m/rad (numerical band "
         f"± {found.band:.1g}; {low:.4g} to {high:.4g} for any usual G). The released model holds "
         f"{placeholder:.0e} with the degree of freedom off, {placeholder / found.stiffness:.0f} "

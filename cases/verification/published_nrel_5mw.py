@@ -35,7 +35,7 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     check_damping(page, given, rotor * generator / (rotor + generator))
     check_free_free(page, float(chain_frequencies([rotor, generator], [stiffness])[1]), free)
     check_torsion(page, "finite elements, low-speed shaft alone", found, shaft.closed, CLOSED_FORM)
-    page.answer(
+    page.say(
         f"The main shaft in WISDEM's model, {shaft.outer:g} m over {length:.2f} m, has "
         f"{found.stiffness:.4g} N m/rad alone (± {found.band:.1g}): "
         f"{stiffness / shaft.closed:.2f} times softer than the {stiffness:,.0f} that the "

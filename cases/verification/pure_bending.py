@@ -72,7 +72,7 @@ def run(run: Run, page: Page) -> None:
         profiles.append(trace(f"{name}, exact", angle, exact))
     solid, bored = (abs(row[STIFFNESS] / row[EXACT] - 1) for row in finest)
     worst = max(column(finest, ERROR))
-    page.answer(
+    page.say(
         f"E I is met to {solid:.1g} (solid) and {bored:.1g} (bored), and every node lies within "
         f"{worst:.1g} of the exact field, over the largest displacement."
     )

@@ -71,7 +71,7 @@ def run(run: Run, page: Page) -> None:
     page.image(f"The {kind} scene, as meshed here", run.sketch(model.mesh))
     page.table("Both scenes", rows)
     worst = {row["scene"]: row[WORK] for row in rows}
-    page.answer(
+    page.say(
         "The matrix of the works of ten unit loads on each other's displacements is symmetric "
         f"to {worst['spherical']:.0e} in the spherical and {worst['bonded']:.0e} in the bonded "
         "scene."

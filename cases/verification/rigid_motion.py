@@ -62,7 +62,7 @@ def run(run: Run, page: Page) -> None:
         shown = np.maximum(found.stress, 1e-17)
         curve = trace(body.label, range(6), shown, mode="lines+markers")
         curves.append(curve | {"x": list(MOTIONS)})
-    page.answer(
+    page.say(
         f"Six rigid motions of {len(rows)} bodies cause no more than "
         f"{max(row[STRESS] for row in rows):.0e} of stress and "
         f"{max(row[REACTION] for row in rows):.0e} of reaction: round-off."

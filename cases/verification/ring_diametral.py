@@ -68,7 +68,7 @@ def run(run: Run, page: Page) -> None:
     page.finest(found[thinnest.ratio], curved, straight, of=f"R/h = {ratios[-1]:g}")
     points = [ring(ratio).share(of.last[CLOSING] / 1e6) for ratio, of in found.items()]
     by_series = [ring(ratio).share(of[CLOSING] / 1e6) for ratio, of in exact.items()]
-    page.answer(
+    page.say(
         f"A ring with R/h = {ratios[-1]:g} closes by {points[-1]:.5f} W R^3/(E' I) along the load "
         f"(exact series {by_series[-1]:.5f}, thin ring {np.pi / 4.0 - 2.0 / np.pi:.5f}); "
         f"one with R/h = {ratios[0]:g} by "

@@ -72,7 +72,7 @@ def run(run: Run, page: Page) -> None:
     thin = inextensible_ring(np.array(list(thick)), INNER, OUTER, PRESSURE, PLANE)
     ratio = np.array([of[RADIAL] for of in thick.values()]) / (1e6 * thin)
     oval, michell = found[2][-1], thick[2]
-    page.answer(
+    page.say(
         f"Under p cos 2t the bore ovalises by {oval[RADIAL]:.3f} µm a MPa (exact "
         f"{michell[RADIAL]:.3f}), with {oval[HOOP]:.2f} MPa of hoop stress (exact "
         f"{michell[HOOP]:.2f}). That is {100 * (ratio[0] - 1):.1f} % more than a thin ring's at "

@@ -68,7 +68,7 @@ def run(run: Run, page: Page) -> None:
     turning = check_motion(page, "rotation of the tip", "rad", rotation, frame[1], turned, exact)
     page.finest(series, Target(MASS, weight, *within_arcs(turn, "the area", 2), density, order=4.0))
     over_cowper, over_even = down[-1] / closed - 1, down[-1] / even - 1
-    page.answer(
+    page.say(
         f"An overhang of {RATIO:g} diameters sags {-1e3 * down[-1]:.4f} mm; by Timoshenko's "
         f"beam {-1e3 * closed:.4f} mm with Cowper's shear coefficient ({100 * over_cowper:+.3f} "
         f"%), {-1e3 * even:.4f} mm with that of an evenly held root ({100 * over_even:+.3f} %)."

@@ -135,7 +135,7 @@ def run(run: Run, page: Page) -> None:
     solids = [1e9 * run.timed("solid", hub_compliance, scene_of(1.0, size), 3) for size in sizes]
     check(page, rows, solids[-1])
     less = [100 * (1 - row["beam [nm/N]"] / row["meridian [nm/N]"]) for row in (short, slender)]
-    page.answer(
+    page.say(
         "Tubes as short and wide as those of direct drives are no beams: a beam deflects "
         f"{less[0]:.0f} % less than their meridian; at {slender['lengths times']:g} times the "
         f"lengths the two agree within {abs(less[1]):.1g} %."

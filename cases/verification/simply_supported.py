@@ -66,7 +66,7 @@ def run(run: Run, page: Page) -> None:
         page.meets(reactions[-1], target, band, name)
         traces += inputs.beside_beam(name, SHAFT, load, fine, solids[-1], over_max=True)
     differences = {row["load"]: row["solid"] / row["frame"] - 1 for row in rows}
-    page.answer(
+    page.say(
         "The frame meets the closed forms with shear to round-off. The solid, held and loaded "
         "through the mean motions of its sections, differs from it by "
         + ", ".join(f"{100 * d:+.3f} % ({name})" for name, d in differences.items())

@@ -82,7 +82,7 @@ def run(run: Run, page: Page) -> None:
         joint: [abs(m.stiffness / exact[joint] - 1.0) for m in moved[joint]] for joint in JOINTS
     }
     giga = {joint: f"{k / 1e9:.4g}" for joint, k in exact.items()}
-    page.answer(
+    page.say(
         "All four joints have the stiffness of the exact solution within "
         f"{max(e[-1] for e in errors.values()):.1e}: sliding {giga['sliding']}, averaged "
         f"{giga['averaged']}, rigid faces {giga['rigid']}, bonded {giga['bonded']} GN/m.",

@@ -68,7 +68,7 @@ def run(run: Run, page: Page) -> None:
             page.meets(value, Target(what, 0.0, 1e-9, *reason), of=form)
         shares = {name: float(found.joint[where]) for name, where in SHARES.items()}
         rows.append({"form": form, **shares, MOMENT: worst, DISTANCE: found.distance})
-    page.answer(
+    page.say(
         "All three forms of the spherical joint carry forces through the centre and nothing else: "
         f"at most {max(column(rows, MOMENT)):.1e} N m over the unit hub loads, where a bonded "
         f"bearing takes {abs(found.joint[4, MY]):.2f} N m of 1 N m at the hub.",

@@ -132,7 +132,7 @@ def run(run: Run, page: Page) -> None:
         )
     check_balance(page, imbalances)
     found = np.array(column(rows, EFFECTIVITY))
-    page.answer(
+    page.say(
         f"The estimated error of a stiffness is {found.min():.2f} to {found.max():.2f} times the "
         f"true one over {len(rows)} meshes: bars in five elements with smooth solutions, and "
         "shafts between rigid ends, whose stress is singular at the ends and at the step.",

@@ -57,7 +57,7 @@ def run(run: Run, page: Page) -> None:
     band = SHAFT.rigidity * abs(arcs - coarser) * ratio**4 / (1.0 - ratio**4)
     page.meets(SHAFT.rigidity * (1.0 + arcs), Target(title, *exact, measure="stiffness"), band)
     page.headline = "shaft, curved P2: order in torsional stiffness"
-    page.answer(
+    page.say(
         f"With {sides} elements round the shaft the torsional rigidity of straight-sided P2 has an "
         f"error of {chords:.1e} and converges with order {shafts[0].order(STIFFNESS)[0]:.2f}, "
         f"that of curved P2 on the same corners {arcs:.1e} and order "

@@ -70,7 +70,7 @@ def run(run: Run, page: Page) -> None:
     page.finest(MeshSeries(free, THROUGH), target, of="free ends")
     best = rows[-1]
     page.headline = "hexahedra of 27 nodes: mean radial displacement of the bore, plane strain"
-    page.answer(
+    page.say(
         f"The bore opens by {EXACT[MOVED]:.2f} µm; {best[THROUGH]} hexahedra of 27 nodes through "
         f"the wall are within {best[ERRORS[MOVED]]:.1e} of it, and its hoop stress within "
         f"{best[ERRORS[HOOP]]:.1e}.",

@@ -110,7 +110,7 @@ def run(run: Run, page: Page) -> None:
         float(found.errors(kind, q).max()) for kind in MORTAR for q in ("twist", "across")
     )
     coarse = found.coarse
-    page.answer(
+    page.say(
         "A bar cut in two and tied with meshes of ratios up to "
         f"{max(max(r) / min(r) for r in found.ratios):g} to 1 is within {100 * largest:.2g} % of "
         "the whole bar, whichever side is the slave; the coarser half alone accounts for "

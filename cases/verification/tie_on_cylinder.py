@@ -173,7 +173,7 @@ def run(run: Run, page: Page) -> None:
     )
     order = check_order(page, patches["standard, settled"])
     worst = max(float(of.errors(rows, quantity).max()) for quantity, of in references.items())
-    page.answer(
+    page.say(
         f"Rings tied on a cylinder are within {100 * worst:.2g} % of the closed form in torsion "
         "and of rings that share their nodes in radial stiffness, and turn freely as one body. "
         f"Uniform stress passes the curved tie with order {order:.1f}."

@@ -57,7 +57,7 @@ def run(run: Run, page: Page) -> None:
     meridian = "between two bounds from the meridian"
     page.meets(simple, Target(title, bounds.middle, within, first, meridian))
     excess = 100 * (simple / bounds.middle - 1)
-    page.answer(
+    page.say(
         f"Between rigid flat ends the integral of dx / GJ is {excess:.2f} % too stiff at a half "
         f"angle of {HALF_ANGLE:g} degrees."
     )

@@ -48,7 +48,7 @@ def run(run: Run, page: Page) -> None:
     same, field = "as for the torque", "Michell 1899, u_t = -r / R^3"
     page.finest(series, torque)
     page.settled(series, Target(ERROR, 0.0, within, same, field, measure="deflection"))
-    page.answer(
+    page.say(
         f"The solid cone meets Michell's torque to {best[MISSED]:.1g} and his displacements to "
         f"{best[ERROR]:.1g}."
     )

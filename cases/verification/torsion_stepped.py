@@ -70,7 +70,7 @@ def run(run: Run, page: Page) -> None:
     ratios, divisions = (QUICK_RATIOS, 3) if run.quick else (RATIOS, 4)
     sweep = [run.timed("other diameters", over_ratio, ratio, divisions) for ratio in ratios]
     middle = (solid["lower bound"] + solid["upper bound"]) / 2
-    page.answer(
+    page.say(
         f"From {LARGE:g} to {SMALL:g} m the series sum of L / GJ is {solid[TOO_STIFF]:.2f} % too "
         f"stiff (bored: {bored[TOO_STIFF]:.2f} %): the step twists as {solid[ADDED]:.3f} diameters "
         "more of the thin part would. The solid in three dimensions lies within "

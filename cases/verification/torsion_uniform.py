@@ -78,7 +78,7 @@ def run(run: Run, page: Page) -> None:
         page.settled(series, Target(STRESS, SKIN, *skin, "G theta R / L"), of=name)
         rows += meshes
     finest = max(row[ERROR] for row in rows if row[TURN] == rows[-1][TURN])
-    page.answer(
+    page.say(
         f"G J / L is met to {finest:.1g} (relative) with {rows[-1][TURN]} elements of 27 nodes "
         "round a turn, solid and bored; what is left is what parabolas miss of the circle."
     )

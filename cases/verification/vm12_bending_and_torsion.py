@@ -68,7 +68,7 @@ def run(run: Run, page: Page) -> None:
         Target(TWIST, 1e3 * (TORQUE * LENGTH / (2.0 * G * INERTIA)), 1e-3, exact, THEORY),
     ]
     last = rows[-1]
-    page.answer(
+    page.say(
         f"The bar's root carries a largest principal stress of {last[PRINCIPAL] * 1e6 / PSI:.0f} "
         f"psi (target 7527) and a largest shear of {last[SHEAR] * 1e6 / PSI:.0f} psi (3777)."
     )

@@ -73,7 +73,7 @@ def run(run: Run, page: Page) -> None:
         shear = PLATE.shear_deflection(load)
         title = f"Plate with a {support} edge"
         page.targets(title, MeshSeries(rows, COUNT), targets(support, thin, shear))
-        page.answer(
+        page.say(
             f"The {support} plate sinks by {1e-3 * rows[-1][DEFLECTION] / INCH:.5f} in (thin plate "
             f"{1e-3 * TARGETS[support][0] / INCH:.5f}); shear accounts for "
             f"{100 * shear / thin:.2f} %."

@@ -74,7 +74,7 @@ def run(run: Run, page: Page) -> None:
         Target(TORSION, 1e-6 * (3183.0 * PSI), close, curvature, MANUAL),
     ]
     last = rows[-1]
-    page.answer(
+    page.say(
         f"The end sinks by {1e-3 * last[DEFLECTION] / INCH:.4f} in (target 2.648, closed form "
         f"{CLOSED / INCH:.4f}); the root carries {1e6 * last[BENDING] / PSI:.0f} psi in bending "
         f"(6366) and {1e6 * last[TORSION] / PSI:.0f} psi in torsion (3183)."

@@ -86,7 +86,7 @@ def run(run: Run, page: Page) -> None:
         **round_off(1e4, uniform),
         source="F / A in every section",
     )
-    page.answer(
+    page.say(
         f"The cut closes by {found[1]:.4g} in under 125 lbf, and the bar carries {found[0]:.6g} "
         "psi."
     )

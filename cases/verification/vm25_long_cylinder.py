@@ -72,7 +72,7 @@ def run(run: Run, page: Page) -> None:
         page.targets(title, series, targets_of(references, allowed, source), of=name)
         last.append(series.rows[-1])
     pressed, thin, long = last
-    page.answer(
+    page.say(
         "Under pressure, every target of the manual is met: the bore opens by "
         f"{1e-6 * pressed[OPENED] / INCH:.7f} in (0.0078666).",
         "In rotation the manual's targets are those of a thin disc, and a disc meets them; a long "

@@ -34,7 +34,7 @@ def run(run: Run, page: Page) -> None:
     printed, band = as_printed("221.638"), series.band(PRESSURE)
     page.equals(PRESSURE, found, band=band, **printed, source=MANUAL, basis="second-hand")
     page.equals(f"Lame's {PRESSURE}", exact, **printed, source=MANUAL, basis="second-hand")
-    page.answer(
+    page.say(
         f"The cylinders press each other with {found:.3f} MPa; the manual has "
         f"{printed['reference']:.3f}."
     )

@@ -49,7 +49,7 @@ def run(run: Run, page: Page) -> None:
     steep = "trapezoids of a root that begins steeply miss some (2 / 400)^1.5"
     title = "cylinders: integral of the pressure [N/mm]"
     page.equals(title, carried, PER_LENGTH, within=(2 / 400) ** 1.5, why=steep, source="balance")
-    page.answer(
+    page.say(
         f"The sphere touches over a radius of {axes[0]:.4f} mm, the cylinders over a half width of "
         f"{line.half_width:.4f} mm with {line.pressure:.2f} MPa: what the manual has to its digits."
     )

@@ -253,7 +253,7 @@ def _written(found: Scene | Component, wanted: Export) -> str:
             report(f"warning: {warning}")
         report("write")
         _write(result, wanted)
-    return result.answer[0]
+    return result.details[0]
 
 
 def _check_format(wanted: Export, kind: Kind) -> None:

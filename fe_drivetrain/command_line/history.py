@@ -71,7 +71,7 @@ def history_text(runs: Sequence[PastRun]) -> str:
 
 
 def _cells(run: PastRun, before: PastRun | None) -> list[str]:
-    from fe_drivetrain.report.answer import value_with_band
+    from fe_drivetrain.report.number_text import value_with_band
     from fe_drivetrain.report.results import Figure
     from fe_drivetrain.report.trend import relative_change
 

@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
+    from fe_drivetrain.report.answer import Answer
     from fe_drivetrain.report.results import Section
     from fe_drivetrain.studies.result import Result
 
@@ -90,11 +91,24 @@ def result_with_options(result: _R) -> _R:
     ]
     return replace(
         result,
-        answer=tuple(map(with_options, result.answer)),
+        answer=_answer_with_options(result.answer),
+        details=tuple(map(with_options, result.details)),
         notes=tuple(map(with_options, result.notes)),
         unsettled=tuple(map(with_options, result.unsettled)),
         skipped=tuple(map(with_options, result.skipped)),
         assumptions=tuple(rows),
+    )
+
+
+def _answer_with_options(answer: Answer | None) -> Answer | None:
+    """An answer with options in its verdict and cautions."""
+    if answer is None:
+        return None
+    return answer.model_copy(
+        update={
+            "verdict": with_options(answer.verdict),
+            "cautions": [with_options(one) for one in answer.cautions],
+        }
     )
 
 

@@ -349,10 +349,13 @@ def results_text(results: Results, page: Path) -> str:
     -------
     str
     """
+    from fe_drivetrain.report.results import verdict_sentence
+
     before = [*results.notes, *results.unsettled]
     lines = [*before, *([""] if before else [])]
     lines += [verdict_line(verdict) for verdict in results.verdicts]
-    lines += ["", *results.summary[:_SUMMARY_SENTENCES], ""]
+    answered = [verdict_sentence(results)] if results.answer else results.details
+    lines += ["", *answered[:_SUMMARY_SENTENCES], ""]
     lines += [f"{_count(results)}: {page}"]
     return "".join(f"{line}\n" for line in lines)
 
@@ -386,9 +389,9 @@ def tables_text(results: Results, page: Path) -> str:
     str
     """
     from fe_drivetrain.report.number_text import formatted
-    from fe_drivetrain.report.results import Table
+    from fe_drivetrain.report.results import Table, verdict_sentence
 
-    lines = [*results.summary]
+    lines = [*([verdict_sentence(results)] if results.answer else []), *results.details]
     for section in results.sections:
         for table in (item for item in section.items if isinstance(item, Table)):
             rows = [table.columns, *([formatted(cell) for cell in row] for row in table.rows)]

@@ -121,7 +121,11 @@ def _validated(path: Path, out: Path | None) -> int:
     )
     with show_steps() as report:
         results = run_case(case, folder, report=report)
-    lines = [*results.notes, *([""] if results.notes else []), results.summary[0]]
+    lines = [
+        *results.notes,
+        *([""] if results.notes else []),
+        results.answer.verdict if results.answer else results.details[0],
+    ]
     for state in result.states:
         if not state.complete:
             lines += ["", f"Step {state.number}, {STEPS[state.number - 1]}:"]

@@ -1,117 +1,139 @@
-"""The answer of a case in a sentence: value with its band, and what it was compared with."""
+"""The answer to what was asked: one record that page, terminal, JSON and index show alike."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from typing import Literal
 
-from fe_drivetrain.common.typeset import superscript
-from fe_drivetrain.report.number_text import (
-    error_text,
-    expected_text,
-    formatted,
-    power_of_ten,
-    tolerance_text,
-    with_unit,
-)
-from fe_drivetrain.report.results import Figure, Results, Verdict
+from pydantic import BaseModel, ConfigDict, Field
 
-_DIGITS = 3  # of a value without a band
-_MAX_DIGITS = 7  # of a value with one
+Status = Literal["good", "watch", "bad", "none"]
+"""How a value stands to its limit: within it; within it, but not with its band; beyond it; or there
+is no limit."""
+
+Bound = Literal["", "equals", "at most", "at least", "between", "holds", "beside"]
+"""What a limit asks of a value; "beside" asks nothing: another's value, to compare with."""
+
+Claim = Literal["", "holds", "holds in part", "does not hold"]
+"""How what a source states stands after the work; empty where no statement was tested."""
+
+MAX_WORDS = 25
+"""Words of a verdict at most."""
+MAX_CAUTIONS = 3
+"""Cautions that are in view; the rest is folded."""
+
+_WORST_FIRST: tuple[Status, ...] = ("bad", "watch", "good", "none")
 
 
-def headline(results: Results) -> Figure | Verdict | None:
-    """The value that answers what was asked.
+class KeyFigure(BaseModel):
+    """A value that answers, with its limit."""
 
-    It is the first of the case's answers; or else the check that the case names, the first value
-    with a band against an independent reference, the first without a band, the first number, or
-    the first check of all.
+    model_config = ConfigDict(frozen=True, extra="forbid", ser_json_inf_nan="strings")
 
-    Parameters
-    ----------
-    results : Results
-        Of the case.
-
-    Returns
-    -------
-    found : Figure, Verdict or None
-        None of a case without either.
-    """
-    if results.answers:
-        return results.answers[0]
-
-    def is_value(verdict: Verdict) -> bool:
-        is_equal = verdict.check == "equals" and verdict.reference != 0.0
-        return is_equal and verdict.basis == "independent" and verdict.measure != "identity"
-
-    ways: tuple[Callable[[Verdict], bool], ...] = (
-        lambda verdict: verdict.quantity == results.headline,
-        lambda verdict: is_value(verdict) and verdict.band is not None,
-        is_value,
-        lambda verdict: verdict.check != "holds",
-        lambda verdict: True,
+    name: str = Field(description="what it is, in the words of the reader")
+    value: float
+    unit: str
+    band: float | None = Field(
+        default=None, ge=0, description="half width of its numerical uncertainty, in its unit"
     )
-    return next((v for is_answer in ways for v in results.verdicts if is_answer(v)), None)
+    bound: Bound = Field(default="", description="what the limit asks of the value")
+    limit: float | None = Field(
+        default=None, description="limit, reference, or lower end of 'between', in the unit"
+    )
+    upper: float | None = Field(default=None, description="upper end of 'between' alone")
+    allowed: float = Field(
+        default=0.0, description="difference from the limit that 'equals' allows, in the unit"
+    )
+    printed: str = Field(default="", description="the limit as its source prints it")
+    by: str = Field(default="", description="whose limit it is, in a word or two")
+    status: Status
+    quantity: str = Field(
+        default="", description="quantity of the check or figure that has this value, if one has"
+    )
 
 
-def value_with_band(found: Figure | Verdict) -> str:
-    """The computed value with its unit: three digits, or with a band those that it leaves certain.
+class Answer(BaseModel):
+    """What was asked, and what came of it.
+
+    The rules of length are those of whoever writes an answer: a record of the program's own is
+    held to them by a test, and a long name of a user's bearing breaks nothing.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    question: str = Field(description="what was asked, in the words of the user")
+    verdict: str = Field(
+        description="one sentence: subject, number with unit, and what follows from it"
+    )
+    figures: list[KeyFigure] = Field(description="three to six values, that which answers first")
+    hero: str = Field(
+        default="", description="caption of the chart or picture that shows the verdict"
+    )
+    cautions: list[str] = Field(
+        default=[], description="what limits the verdict, most severe first, in sentences"
+    )
+    claim: Claim = Field(default="", description="how a statement of the source stands")
+    status: Status = Field(description="of the answer as a whole")
+
+
+def status_of(
+    value: float,
+    bound: Bound,
+    limit: float | None,
+    upper: float | None = None,
+    band: float | None = None,
+    allowed: float = 0.0,
+) -> Status:
+    """How a value stands to its limit.
 
     Parameters
     ----------
-    found : Figure or Verdict
-        The value; its band is shown with two digits, in percent where it lies beyond the digits
-        that are shown.
+    value : float
+        The value; what is not a number is "bad" wherever something is asked of it.
+    bound : Bound
+        What the limit asks.
+    limit, upper : float or None
+        The limit, and the upper end of "between", in the unit of the value.
+    band : float or None
+        Half width of the numerical uncertainty of the value.
+    allowed : float
+        Difference that "equals" allows.
 
     Returns
     -------
-    str
+    Status
     """
-    if isinstance(found, Verdict) and found.check == "holds":
-        return "yes" if found.computed == 1.0 else "no"
-    unit, value, band = found.unit, found.computed, found.band
-    if not band or not math.isfinite(value) or not math.isfinite(band):
-        return with_unit(formatted(value, _DIGITS, unit), unit)
-    power = power_of_ten(value or band, unit)
-    value, band = value / 10.0**power, band / 10.0**power
-    # the last digit of the value is the last of the band's two
-    place = math.floor(math.log10(band)) - 1
-    if place > 0:
-        value, band = round(value, -place), round(band, -place)
-    certain = math.floor(math.log10(abs(value) or band)) - place + 1
-    if value and certain > _MAX_DIGITS:
-        percent = formatted(100.0 * band / abs(value), 2, "%")
-        whole = with_unit(formatted(found.computed, _MAX_DIGITS, unit), unit)
-        return f"{whole} ± {percent}\u00a0%"
-    digits = max(certain, _DIGITS)
-    text = f"{formatted(value, digits, unit)} ± {formatted(band, 2, unit)}"
-    if power:
-        text = f"({text})\u00a0×\u00a010{superscript(power)}"
-    return with_unit(text, unit)
+    if bound in ("", "beside") or limit is None:
+        return "none"
+    if bound in ("equals", "holds"):
+        return "good" if abs(value - limit) <= allowed else "bad"
+    low = -math.inf if bound == "at most" else limit
+    high = limit if bound == "at most" else math.inf if upper is None else upper
+    if not low <= value <= high:
+        return "bad"
+    return "good" if low <= value - (band or 0.0) and value + (band or 0.0) <= high else "watch"
 
 
-def answer_sentence(verdict: Figure | Verdict) -> str:
-    """What was found and what was expected, as a sentence without the verdict.
+def worst(figures: list[KeyFigure], claim: Claim) -> Status:
+    """The status of an answer: that of its worst figure; a refuted claim is at least "watch".
 
     Parameters
     ----------
-    verdict : Figure or Verdict
-        What answers.
+    figures : list of KeyFigure
+        Of the answer.
+    claim : Claim
+        How a statement of the source stands.
 
     Returns
     -------
-    str
+    Status
     """
-    quantity, first = verdict.quantity, verdict.quantity.partition(" ")[0].rstrip(":,")
-    if "_" not in first and "." not in first:  # of an identifier every letter counts
-        quantity = quantity[:1].upper() + quantity[1:]
-    found = f"{quantity}: {value_with_band(verdict)}"
-    if isinstance(verdict, Figure) or verdict.check == "holds":
-        return f"{found}."
-    if verdict.check == "vanishes":
-        return f"{found}; expected 0 within {tolerance_text(verdict)}."
-    expected = with_unit(expected_text(verdict), verdict.unit)
-    if verdict.check != "equals":
-        return f"{found}; expected {expected}."
-    allowed = f"error {error_text(verdict)}, tolerance {tolerance_text(verdict)}"
-    return f"{found}; expected {expected} ({allowed})."
+    found = {figure.status for figure in figures}
+    if claim in ("does not hold", "holds in part"):
+        found.add("watch")
+    return next((status for status in _WORST_FIRST if status in found), "none")
+
+
+def words(sentence: str) -> int:
+    """Number of words of a sentence; a number and its unit, joined by a fixed space, are one."""
+    return len(sentence.split(" "))

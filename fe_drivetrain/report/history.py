@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import file_to_write
-from fe_drivetrain.report.answer import headline
+from fe_drivetrain.report.headline import headline
 from fe_drivetrain.report.results import Environment, Figure, Results, Verdict
 
 FILE = "history.sqlite"

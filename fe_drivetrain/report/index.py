@@ -15,8 +15,9 @@ from markupsafe import Markup
 
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.common.regular_files import text_of
-from fe_drivetrain.report.answer import answer_sentence, headline, value_with_band
+from fe_drivetrain.report.headline import answer_sentence, headline
 from fe_drivetrain.report.history import Point, points_over_runs
+from fe_drivetrain.report.number_text import value_with_band
 from fe_drivetrain.report.rendering import policy_hash, read_template, templates
 from fe_drivetrain.report.results import (
     Figure,
@@ -28,6 +29,7 @@ from fe_drivetrain.report.results import (
     read_results,
     results_below,
     share_of_tolerance,
+    verdict_sentence,
 )
 from fe_drivetrain.report.sealed import clear_of_others, remove_sealed, write_sealed
 from fe_drivetrain.report.trend import change_text, sparkline
@@ -259,6 +261,7 @@ def _listings() -> jinja2.Environment:
         "share_text": lambda share: f"{100 * share:.3g}\u00a0%" if share < _MAXIMUM else "∞",
         "answer": answer_sentence,
         "with_band": value_with_band,
+        "verdict_of": verdict_sentence,
         "sparkline": sparkline,
         "change": change_text,
     }

@@ -5,10 +5,14 @@ from __future__ import annotations
 import math
 
 from fe_drivetrain.common.typeset import MINUS, THIN_SPACE, superscript
-from fe_drivetrain.report.results import Limit, Verdict
+from fe_drivetrain.report.answer import KeyFigure
+from fe_drivetrain.report.results import Figure, Limit, Verdict
 
 DIGITS = 5
 """Significant digits of a number on the page; results.json keeps all of them."""
+
+_DIGITS_WITHOUT_BAND = 4
+_MAX_DIGITS = 7  # of a value with a band
 
 
 def formatted(
@@ -67,10 +71,131 @@ def _shown_power(exponent: int, unit: str | None) -> int:
     return 0 if -3 <= exponent < 6 else step * (exponent // step)
 
 
+def value_text(
+    value: float, unit: str = "", band: float | None = None, with_band: bool = True
+) -> str:
+    """A value with its unit, in the digits that its band leaves certain; for sentences, too.
+
+    Parameters
+    ----------
+    value : float
+        The value.
+    unit : str
+        Its unit, after a space that does not break; empty of a pure number.
+    band : float or None
+        Half width of its numerical uncertainty, in the unit: the value is rounded to the place of
+        the second digit of the band, and to "~0" where it is smaller than the band. Four digits
+        without a band.
+    with_band : bool
+        Whether the band is shown, too.
+
+    Returns
+    -------
+    str
+        "145.2 ± 1.3 MN m/rad", or without the band "145.2 MN m/rad".
+    """
+    text = with_unit(_digits_of(value, unit, band, with_band), unit)
+    if band and with_band and abs(value) > band * 10.0**_MAX_DIGITS:
+        percent = formatted(100.0 * band / abs(value), 2, "%")
+        return f"{text} ± {percent}\u00a0%"
+    return text
+
+
+def _digits_of(value: float, unit: str, band: float | None, with_band: bool) -> str:
+    """The number of `value_text`, without its unit."""
+    if not band or not math.isfinite(value) or not math.isfinite(band):
+        return formatted(value, _DIGITS_WITHOUT_BAND, unit)
+    if abs(value) < band:
+        around = f" ± {formatted(band, 2, unit)}" if with_band else ""
+        return f"~0{around}"
+    power = power_of_ten(value, unit)
+    scaled, width = value / 10.0**power, band / 10.0**power
+    # the last digit of the value is the last of the band's two
+    place = int(f"{width:.1e}".partition("e")[2]) - 1
+    if abs(value) > band * 10.0**_MAX_DIGITS:
+        return formatted(value, _MAX_DIGITS, unit)  # the band is told in percent
+    if place > 0:
+        scaled, width = round(scaled, -place), round(width, -place)
+    text = _to_place(scaled, place)
+    if with_band:
+        text = f"{text} ± {_to_place(width, place)}"
+    if power:
+        text = f"({text})" if with_band else text
+        text = f"{text}\u00a0×\u00a010{superscript(power)}"
+    return text
+
+
+def _to_place(value: float, place: int) -> str:
+    """A number to a power of ten, zeros kept: 1.30 of 1.3 and -2."""
+    return f"{value:,.{max(-place, 0)}f}".replace(",", THIN_SPACE).replace("-", MINUS)
+
+
+def value_with_band(found: Figure | Verdict | KeyFigure) -> str:
+    """The computed value of a figure or check with its unit and band; of a statement yes or no.
+
+    Parameters
+    ----------
+    found : Figure, Verdict or KeyFigure
+        The value.
+
+    Returns
+    -------
+    str
+    """
+    if isinstance(found, KeyFigure):
+        if found.bound == "holds":
+            return "yes" if found.value == 1.0 else "no"
+        return value_text(found.value, found.unit, found.band)
+    if isinstance(found, Verdict) and found.check == "holds":
+        return "yes" if found.computed == 1.0 else "no"
+    return value_text(found.computed, found.unit, found.band)
+
+
+def certain_value(figure: KeyFigure) -> str:
+    """The value of a key figure with its unit, in the digits that its band leaves, without it.
+
+    Parameters
+    ----------
+    figure : KeyFigure
+        The value.
+
+    Returns
+    -------
+    str
+        For sentences: "145.2 MN m/rad".
+    """
+    return value_text(figure.value, figure.unit, figure.band, with_band=False)
+
+
+def limit_text(figure: KeyFigure) -> str:
+    """The limit of a key figure, with whose it is: "at most 4 000 MPa", "727.0 Hz (NAFEMS)".
+
+    Parameters
+    ----------
+    figure : KeyFigure
+        One whose `bound` may be empty.
+
+    Returns
+    -------
+    str
+        Empty where there is no limit.
+    """
+    if not figure.bound or figure.bound == "holds":
+        return f"({figure.by})" if figure.by else ""
+    low = figure.printed or formatted(figure.limit, _DIGITS_WITHOUT_BAND, figure.unit)
+    if figure.bound == "between":
+        low = f"{low} to {formatted(figure.upper, _DIGITS_WITHOUT_BAND, figure.unit)}"
+    words = {"at most": "at most ", "at least": "at least ", "equals": "expected "}
+    by = f" ({figure.by})" if figure.by else ""
+    return f"{words.get(figure.bound, '')}{with_unit(low, figure.unit)}{by}"
+
+
 def computed_text(verdict: Verdict) -> str:
     """The computed value; of a statement, whether it holds."""
     if verdict.check == "holds":
         return "yes" if verdict.computed == 1.0 else "no"
+    if verdict.band:
+        return _digits_of(verdict.computed, verdict.unit, verdict.band, with_band=False)
     return formatted(verdict.computed, unit=verdict.unit)
 
 

@@ -20,11 +20,12 @@ from markupsafe import Markup, escape
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.manifest import MANIFEST
 from fe_drivetrain.plots.style import is_number
-from fe_drivetrain.report.answer import answer_sentence, headline, value_with_band
+from fe_drivetrain.report.answer import MAX_CAUTIONS
 from fe_drivetrain.report.bundle import place_plotly, plotly_file
 from fe_drivetrain.report.chart_style import chart_height, figure_as_json, script_json
+from fe_drivetrain.report.headline import answer_sentence, headline
 from fe_drivetrain.report.history import FILE, Point, points_over_runs, tolerated
-from fe_drivetrain.report.number_text import formatted
+from fe_drivetrain.report.number_text import formatted, limit_text, value_with_band
 from fe_drivetrain.report.rendering import policy_hash, read_template, templates
 from fe_drivetrain.report.results import (
     Cell,
@@ -34,8 +35,10 @@ from fe_drivetrain.report.results import (
     Results,
     Solid,
     Table,
+    Text,
     Verdict,
     read_results,
+    verdict_sentence,
 )
 from fe_drivetrain.report.trend import change_text, sparkline
 
@@ -43,6 +46,8 @@ _PNG = b"\x89PNG\r\n\x1a\n"
 _CONTENTS_FROM = 5  # sections from which on a page has a table of contents
 _QUANTITIES = 6  # of a case that are shown over its runs
 _FILES = 60  # to which a page links at most
+STANDING = {"good": "within", "watch": "within, but not with its band", "bad": "beyond"}
+"""How a value stands to its limit, in words."""
 _KINDS = {
     ".3d.json": "what the page shows in three dimensions",
     ".csv": "table, for any spreadsheet",
@@ -96,6 +101,8 @@ def render(results: Results, folder: Path, shared: Path) -> str:
     scripts = [read_template(name) for name in names]
     above = Markup(quote(os.path.relpath(shared, folder)))
     answer = headline(results)
+    asked = results.answer.hero if results.answer else ""
+    hero = next((i for i in items if not isinstance(i, Table | Text) and i.caption == asked), None)
     pictures = [item for item in items if isinstance(item, Image)]
     template = _pages().get_template("report.html")
     return template.render(
@@ -104,7 +111,11 @@ def render(results: Results, folder: Path, shared: Path) -> str:
         solid_json=lambda solid: _as_script_data(solid, folder),
         passed=sum(verdict.passed for verdict in results.verdicts),
         answer=answer,
-        picture=pictures[0] if pictures else None,
+        verdict=verdict_sentence(results),
+        cautions=_cautions(results),
+        most_cautions=MAX_CAUTIONS,
+        standing=STANDING,
+        hero=hero or (pictures[0] if pictures and not results.answer else None),
         runs=runs_of_page(results, shared),
         files=_files(folder),
         index=above + "/index.html" if (shared / "index.html").is_file() else "",
@@ -115,6 +126,13 @@ def render(results: Results, folder: Path, shared: Path) -> str:
         scripts=scripts,
         script_hashes=[policy_hash(script) for script in scripts],
     )
+
+
+def _cautions(results: Results) -> list[str]:
+    """What limits the answer, most severe first; notes of an older file stand above all."""
+    if results.answer is None:
+        return results.unsettled
+    return [*results.unsettled, *results.answer.cautions, *results.notes]
 
 
 @lru_cache(maxsize=1)
@@ -131,6 +149,7 @@ def _pages() -> jinja2.Environment:
         "as_given": lambda settings: [(k, escape(_as_given(v))) for k, v in settings.items()],
         "answer": answer_sentence,
         "with_band": value_with_band,
+        "limit_of": limit_text,
         "sparkline": sparkline,
         "change": change_text,
         "unquoted": lambda address: escape(unquote(address)),

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, TypedDict, Unpack
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from fe_drivetrain.common.regular_files import content_of
+from fe_drivetrain.report.answer import Answer
 
 Cell = float | int | str | bool | None
 
@@ -368,7 +369,7 @@ class Problem(NamedTuple):
 class Results(_Result):
     """All that a case found."""
 
-    schema_version: Literal[1, 2] = 2
+    schema_version: Literal[3] = 3
     case: str
     title: str
     source: str
@@ -378,8 +379,9 @@ class Results(_Result):
     unsettled: list[str] = Field(
         default=[], description="answers that have not converged, in sentences"
     )
-    summary: list[str] = Field(description="the answer first, in a few sentences")
-    answers: list[Figure] = Field(default=[], description="values that answer what was asked")
+    answer: Answer | None = Field(default=None, description="the answer to what was asked")
+    details: list[str] = Field(description="what explains the answer, in sentences")
+    answers: list[Figure] = Field(default=[], description="values that were found, not judged")
     headline: str = Field(
         default="",
         description="quantity of the check that answers what was asked; empty: the first",
@@ -400,6 +402,18 @@ class Results(_Result):
     environment: Environment
     digest: str = Field(default="", description="SHA-256 of all other values")
 
+    @model_validator(mode="before")
+    @classmethod
+    def _of_older_programs(cls, given: Any) -> Any:
+        """Results of schema 1 and 2, whose answer was sentences alone."""
+        if not isinstance(given, dict) or given.get("schema_version") not in (1, 2):
+            return given
+        return {
+            **{key: value for key, value in given.items() if key != "summary"},
+            "schema_version": 3,
+            "details": given.get("summary", []),
+        }
+
     @property
     def passed(self) -> bool:
         """Whether every verdict passed."""
@@ -409,6 +423,27 @@ class Results(_Result):
     def settled(self) -> bool:
         """Whether every verdict passed, and every answer has converged."""
         return self.passed and not self.unsettled
+
+
+def verdict_sentence(results: Results) -> str:
+    """The verdict of results, with what takes its ground away before it.
+
+    Parameters
+    ----------
+    results : Results
+        Of a case or command.
+
+    Returns
+    -------
+    str
+        Empty where there is no answer.
+    """
+    if results.answer is None:
+        return ""
+    failed = sum(not verdict.passed for verdict in results.verdicts)
+    number = len(results.verdicts)
+    before = f"Not to be relied on, {failed} of {number} checks fail: " if failed else ""
+    return f"{before}{results.answer.verdict}"
 
 
 def results_below(folder: Path) -> dict[str, Path]:

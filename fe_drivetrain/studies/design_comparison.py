@@ -198,11 +198,11 @@ def _answer(found: Findings, differences: Sequence[Difference], names: Sequence[
     """The largest changes, and those that are smaller than their bands."""
     known = [one for one in differences if one.is_known]
     for one in known[:_NAMED]:
-        found.answer(_sentence(one, names))
+        found.say(_sentence(one, names))
     if not known:
-        found.answer(f"No change from {names[0]} is larger than its band.")
+        found.say(f"No change from {names[0]} is larger than its band.")
     elif unknown := [one.quantity.name for one in differences if not one.is_known]:
-        found.answer(_within_bands(unknown))
+        found.say(_within_bands(unknown))
     _found(found, known, names)
 
 

@@ -133,7 +133,7 @@ def prepare_export(
         content = _model_or_mesh(found, steps, drivetrain, kind)
     else:
         content = _condensed(steps, drivetrain, kind, what, at, level, modes)
-    found.answer(_description(content))
+    found.say(_description(content))
     _data(found, content)
     return ExportResult(
         drivetrain=drivetrain,

@@ -171,7 +171,7 @@ def uncertainty(
 def _digested(found: Findings, known: Study, tolerance: float) -> InputEffects:
     """State answer, checks and numbers of the samples; what is kept of them."""
     effects = input_effects(known)
-    found.answer(*_sentences(effects))
+    found.say(*_sentences(effects))
     _judge(found, known, tolerance)
     for name, value in figures(known).items():
         found.data(name, value)

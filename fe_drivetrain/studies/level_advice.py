@@ -143,9 +143,9 @@ def advise(
     if advice.springs:
         with steps.step("details"):
             ranked = effects(scene, asked, level, advice.springs, report)
-    found.answer(advice.sentence())
+    found.say(advice.sentence())
     if chosen is not None and chosen.model.neglects:
-        found.answer(f"It neglects {', '.join(chosen.model.neglects)}.")
+        found.say(f"It neglects {', '.join(chosen.model.neglects)}.")
     _judge(found, advice, advice.top if chosen is None else chosen)
     _data(found, advice)
     return AdviseResult(

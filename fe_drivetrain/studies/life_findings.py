@@ -13,7 +13,7 @@ from fe_drivetrain.bearing_life.life.roller_damage import LifeRules
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.procedure.failure_modes import TORQUE_AND_BENDING
-from fe_drivetrain.report.answer import value_with_band
+from fe_drivetrain.report.number_text import value_with_band
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.life_assumptions import in_words, in_years
@@ -63,7 +63,7 @@ def answers(
             words = f"Bearing {life.name} lives {shown} {_under(life, site)} (L10mr, ± two "
             words += "standard errors of files of the same wind"
         words += f"; L10r {in_years(years['L10r'])}, L10 {in_years(years['L10'])})"
-        found.answer(f"{words}{_takes_longest(life, rules)}{_overloaded(life)}.")
+        found.say(f"{words}{_takes_longest(life, rules)}{_overloaded(life)}.")
 
 
 def _under(life: BearingLife, site: Site | None) -> str:

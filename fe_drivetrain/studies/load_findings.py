@@ -8,7 +8,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.procedure.failure_modes import ROTOR_TORQUE
-from fe_drivetrain.report.answer import value_with_band
+from fe_drivetrain.report.number_text import value_with_band
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.load_cautions import cautions
 from fe_drivetrain.studies.load_digest import LoadOptions
@@ -50,7 +50,7 @@ def hub_findings(
     """
     _answer(found, hub, options)
     if capture is not None:
-        found.answer(capture.sentence)
+        found.say(capture.sentence)
     for sentence in cautions(hub, options):
         found.note(sentence)
     for sentence in winds_not_used(target, capture):
@@ -99,7 +99,7 @@ def _answer(found: Findings, hub: LoadTotals, options: LoadOptions) -> None:
     )
     files = hub.files
     count = len(files.names)
-    found.answer(
+    found.say(
         f"{said if words else ''}{count} file{'s' * (count > 1)}, {files.samples:,} samples over "
         f"{files.seconds:,.6g} s; {options.counted}."
     )

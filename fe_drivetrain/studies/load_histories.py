@@ -315,7 +315,7 @@ def _compared(
         ):
             its.add(one)
         comparison = compare_sets(mine, its)
-    found.answer(*comparison.sentences)
+    found.say(*comparison.sentences)
     return comparison
 
 

@@ -131,7 +131,7 @@ def _find_survey(found: Findings, file: Path, survey: Survey) -> None:
     if survey.volume is not None:
         found.found(f"volume [{unit}^3]", survey.volume, survey.volume_band)
     holes = sum(one.hole for one in survey.bores)
-    found.answer(f"{file.name}: {holes} bore{'s' * (holes != 1)} that may be seats.")
+    found.say(f"{file.name}: {holes} bore{'s' * (holes != 1)} that may be seats.")
     found.data("bores", [one._asdict() for one in survey.bores])
     found.data("planes", [one._asdict() for one in survey.planes])
 
@@ -142,7 +142,7 @@ def _find_stiffness(
     """Points of a superelement, and its stiffness at the bore."""
     state = "on its supports" if element.supported else "free"
     points = ", ".join(element.points)
-    found.answer(f"{file.name}: superelement {element.name} at {points}, {state}.")
+    found.say(f"{file.name}: superelement {element.name} at {points}, {state}.")
     for k, motion in enumerate(MOTIONS):
         unit = "N/m" if k < 3 else "N m/rad"
         value = float(housing.stiffness[k][k])

@@ -265,16 +265,16 @@ def _answer(found: Findings, project: Project, states: Sequence[StepState]) -> N
     if not open_steps:
         taken = [f.state for state in states for f in state.evidence if f.state != "passed"]
         accepted = f"; the project accepts {len(taken)} of it as it is" if taken else ""
-        found.answer(
+        found.say(
             f"Complete: all six steps were taken, and all of their evidence counts{accepted}."
         )
     else:
         numbers = ", ".join(str(state.number) for state in open_steps)
         word = "step" if len(open_steps) == 1 else "steps"
-        found.answer(f"Not complete: {word} {numbers} of 6.")
+        found.say(f"Not complete: {word} {numbers} of 6.")
         for state in open_steps:
             why = "; ".join(reasons(state))
-            found.answer(f"Step {state.number}, {STEPS[state.number - 1]}: {why}.")
+            found.say(f"Step {state.number}, {STEPS[state.number - 1]}: {why}.")
     found.found("complete steps of six", float(len(states) - len(open_steps)))
     hows: dict[str, list[str]] = {}
     for one in (one for state in states for one in state.evidence):

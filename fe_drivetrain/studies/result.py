@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from pydantic import BaseModel
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.report.answer import value_with_band
+from fe_drivetrain.report.number_text import value_with_band
 from fe_drivetrain.report.results import Chart, Figure
 from fe_drivetrain.report.suite.findings import Found
 from fe_drivetrain.report.suite.records import as_json
@@ -58,7 +58,8 @@ class Result(Found):
             "version": version("fe-drivetrain"),
             "drivetrains": _models(self.drivetrains),
             "options": _plain(self.options),
-            "answer": list(self.answer),
+            "answer": None if self.answer is None else _plain(self.answer.model_dump()),
+            "details": list(self.details),
             "figures": _models(self.figures),
             "checks": _models(self.checks),
             "notes": list(self.notes),

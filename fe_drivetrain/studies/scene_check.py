@@ -92,7 +92,7 @@ def check(
     found.seed = None
     parts = {name: float(mass.sum()) for name, mass in model.part_mass.items()}
     mass = float(model.mass.sum())
-    found.answer(_held(scene, mass, model.n_dofs), *model.warnings, *filter(None, misfits))
+    found.say(_held(scene, mass, model.n_dofs), *model.warnings, *filter(None, misfits))
     with steps.step("levels"):
         costs = forecast(model)
     found.data("levels", [_cost(one) for one in costs])

@@ -333,12 +333,12 @@ def _state(found: Findings, at: _Solved, facts: LoadFacts, stated: Stated) -> No
 def _answer(found: Findings, at: _Solved, quick: bool) -> None:
     """What the loads are, and what the model warns of."""
     if quick:
-        found.answer(
+        found.say(
             "Quick: on a coarser mesh than the scene's, for a first look; figures will change."
         )
     given, together = at.entered.given, at.entered.together
     opening = foot_warnings(at.scene, at.response, together, given.weights, given.gravity)
-    found.answer(given.statement, *at.model.warnings, *opening)
+    found.say(given.statement, *at.model.warnings, *opening)
 
 
 def _stated(model: Model, gravity: float) -> Stated:
@@ -407,12 +407,12 @@ def _errors(
     judgement = judge_levels(errors.judged, ENOUGH, scene.shaft.length)
     found.data("error_percent", [one.row() for one in errors.vectors])
     found.data("rmse_kN", [one.row() for one in errors.components])
-    found.answer(enough(judgement, levels.bounds))
+    found.say(enough(judgement, levels.bounds))
     found.data("advice", needed_levels(errors.judged, levels.coarser is not None))
     judged = [q.name for q in errors.judged if q not in judgement.slight]
     measures = design_measures(scene, levels, loads, slopes, ENOUGH, judged)
     found.data("design_measures", measures.rows(slopes))
-    found.answer(measures.sentence())
+    found.say(measures.sentence())
     return errors, judgement, measures
 
 

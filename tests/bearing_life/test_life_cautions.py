@@ -174,7 +174,7 @@ def test_a_bearing_beyond_the_pressure_of_its_rating_is_not_usable(run) -> None:
     assert f"not usable: static safety S0 is {of['min S0']:.2g}, {words}" in printed
     assert any("static safety is below 1" in note for note in over.notes)
     assert not any("static safety is below 1" in note for note in usual.notes)
-    assert "not usable" not in " ".join(usual.summary)
+    assert "not usable" not in " ".join(usual.details)
 
 
 def test_speeds_of_no_bearing_are_refused_and_nothing_is_written(

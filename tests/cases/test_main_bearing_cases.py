@@ -111,7 +111,7 @@ def test_statics_is_right_in_every_measure_of_design(reports):
         if name.endswith("[%]"):
             assert abs(value) < 1e-5, name
     assert rows[0]["damage over it, m = 10"] == pytest.approx(1.0)
-    assert any(s.startswith("Good enough within 5 %") for s in results.summary)
+    assert any(s.startswith("Good enough within 5 %") for s in results.details)
 
 
 def test_meshes_are_written(reports):

@@ -129,7 +129,7 @@ def test_study_and_command_give_the_same_numbers_with_the_same_defaults(
     shown = read_results(out / "results.json")
     found = result_with_options(life(library_scene(SCENE), loads, site_of_class("II")))
     plain = found.to_dict()
-    assert shown.summary == plain["answer"]
+    assert shown.details == plain["details"]
     assert shown.notes == plain["notes"]
     assert [one.model_dump(mode="json") for one in shown.answers] == plain["figures"]
     assert [one.model_dump(mode="json") for one in shown.verdicts] == plain["checks"]

@@ -108,7 +108,7 @@ def test_the_page_of_own_files(invoke: Callable[..., Result], histories: Path) -
     # were all cycles half ones, whole ones would do twice the damage
     assert first.band is not None
     assert 0.0 < first.band / first.computed < 2 ** (1 / 3) - 1
-    assert "in My and" in results.summary[0]
+    assert "in My and" in results.details[0]
     assert results.figures["capture"]["windows"]
     # 9P is 2.25 Hz, and half the sampling rate of b is 2 Hz
     assert any("9P appears at 1.75 Hz" in note for note in results.notes)
@@ -233,7 +233,7 @@ def test_the_study_finds_what_the_command_writes(
     options = LoadOptions(channels=channels)
     found = loads(files, options, site=site_of_class("IIB"))
     results = read_results(out / "results.json")
-    assert results.summary == list(found.answer)
+    assert results.details == list(found.details)
     assert results.answers == list(found.figures)
     assert results.figures == found.to_dict()["tables"]
     for name, rows in found.file_tables().items():

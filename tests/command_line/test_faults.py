@@ -69,7 +69,7 @@ def state(out: Path, *others: str) -> str:
     """Whose results stand there; an assertion fails where they are not all of one run."""
     if not out.exists():
         return MISSING
-    (mark,) = read_results(out / "results.json").summary
+    (mark,) = read_results(out / "results.json").details
     assert mark in (out / "report.html").read_text()
     assert (out / "one.txt").read_text() == mark
     assert (out / "two" / "three.txt").read_text() == mark * 1000
@@ -454,7 +454,7 @@ def work(run, page):
         unit_load_response(build_model(coarse_scene("bonded"), mesh))
     with run.step("write"):
         write(mesh, run.folder / "mesh.vtu")
-    page.answer("new")
+    page.say("new")
 
 if __name__ == "__main__":
     main_of_case(Case("a/b", "t", "s", work))

@@ -139,11 +139,13 @@ def test_notes_of_a_result_have_options_where_a_page_shows_them() -> None:
     note, *_ = winds_not_used(CaptureTarget(6, 4.0, 24.0), None)
     source = argument("LifeOptions.supply")
     row = AssumptionRow(name="lubrication", value="grease", unit="", source=source)
-    shown = result_with_options(replace(found, answer=(misfit,), notes=(note,), assumptions=(row,)))
+    shown = result_with_options(
+        replace(found, details=(misfit,), notes=(note,), assumptions=(row,))
+    )
     assert shown.notes[0].startswith("--winds 4:24 m/s is not used")
     assert shown.assumptions[0].source == "--supply"
     assert misfit == "name another entry with `bearings={'main_bearing': 'ENTRY'}`"
-    assert shown.answer == ("name another entry with --bearing main_bearing=ENTRY",)
+    assert shown.details == ("name another entry with --bearing main_bearing=ENTRY",)
 
 
 def test_paragraphs_and_captions_of_a_page_have_options() -> None:

@@ -18,8 +18,8 @@ from fe_drivetrain.common import folders
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.manifest import MANIFEST
 from fe_drivetrain.pages.advise import tornado
-from fe_drivetrain.report.answer import headline
 from fe_drivetrain.report.charts import trace
+from fe_drivetrain.report.headline import headline
 from fe_drivetrain.report.history import FILE
 from fe_drivetrain.report.results import Chart, Image, Table, Text, read_results
 from fe_drivetrain.report.suite import case as case_module
@@ -41,7 +41,7 @@ def tiny(run: Run, page: Page) -> None:
 
 def fill(run: Run, page: Page) -> None:
     """A page with a check and an assumed value, and no file."""
-    page.answer("The answer is one.")
+    page.say("The answer is one.")
     check_one(page, unit="m")
     page.assume("two", 2, "-", "assumed")
 

@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 from test_report import HOSTILE, Page, results, verdict
 
-from fe_drivetrain.report.answer import answer_sentence, headline, value_with_band
+from fe_drivetrain.report.headline import answer_sentence, headline
 from fe_drivetrain.report.index import WORDS, write_index
+from fe_drivetrain.report.number_text import value_with_band
 from fe_drivetrain.report.results import Problem, Verdict, judge, share_of_tolerance
 
 
@@ -129,13 +130,13 @@ def test_the_share_of_a_tolerance_passes_one_where_the_check_fails(
     ("computed", "band", "text"),
     [
         (5.41327, 0.0413, "5.413 ± 0.041\u00a0N"),
-        (5.41327, None, "5.41\u00a0N"),
+        (5.41327, None, "5.413\u00a0N"),
         (392280.4, 1234.5, "392\u202f300 ± 1\u202f200\u00a0N"),
         (579.2, 140.9, "580 ± 140\u00a0N"),
         (1.00827e-8, 7.31e-10, "(10.08 ± 0.73)\u00a0×\u00a010⁻⁹\u00a0N"),
         (-6.97362e10, 1.9e6, "(\u221269.7362 ± 0.0019)\u00a0×\u00a010⁹\u00a0N"),
-        (1.0, 0.5, "1 ± 0.5\u00a0N"),
-        (0.0, 0.5, "0 ± 0.5\u00a0N"),
+        (1.0, 0.5, "1.00 ± 0.50\u00a0N"),
+        (0.0, 0.5, "~0 ± 0.5\u00a0N"),
         (math.nan, 0.5, "not a number\u00a0N"),
         (5.06219, 1e-7, "5.06219\u00a0N ± 2\u00a0×\u00a010⁻⁶\u00a0%"),
     ],
@@ -154,7 +155,7 @@ def test_the_answer_is_the_named_check_or_the_first_that_is_a_number() -> None:
     assert headline(results(verdicts=[statement])) == statement
     assert headline(results(verdicts=[])) is None
     plain = answer_sentence(verdict(1.004, band=0.001)).replace("\u00a0", " ")
-    assert plain == "Force: 1.004 ± 0.001 N; expected 1 N (error +0.4 %, tolerance ±1 %)."
+    assert plain == "Force: 1.0040 ± 0.0010 N; expected 1 N (error +0.4 %, tolerance ±1 %)."
     named = check("holds", 1.0, 1.0).model_copy(update={"quantity": "main_bearing.My: one sign"})
     assert answer_sentence(named) == "main_bearing.My: one sign: yes."
 

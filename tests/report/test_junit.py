@@ -12,7 +12,7 @@ def results_of(name: str, *computed: float) -> Results:
         case=name,
         title="t",
         source="s",
-        summary=[],
+        details=[],
         verdicts=[
             judge(f"q <{k}>", x, 1.0, tolerance=0.1, reason="why", source="s", unit="N")
             for k, x in enumerate(computed)

@@ -103,7 +103,7 @@ def results(string: str = "plain", **changes: object) -> Results:
         "case": string,
         "title": string,
         "source": string,
-        "summary": [string],
+        "details": [string],
         "verdicts": [
             judge(string, 1.0, 1.0, tolerance=0.1, reason=string, source=string, unit=string),
             judge("worse", 2.0, 1.0, tolerance=0.1, reason=string, source=string),

@@ -285,7 +285,7 @@ def test_what_a_kill_would_leave_looks_incomplete(tmp_path: Path) -> None:
     run_cases([a_case("a/one", count), a_case("a/two", count)], tmp_path)
     cases = [a_case("a/one", count, alone=True), a_case("a/two", read_the_index, alone=True)]
     run_cases(cases, tmp_path)
-    before, meanwhile = read_results(tmp_path / "a/two/results.json").summary
+    before, meanwhile = read_results(tmp_path / "a/two/results.json").details
     assert '<p class="outcome fail">1 of 2 cases pass, 1 planned</p>' in before
     assert '<p class="outcome fail">1 of 2 cases pass, 1 running</p>' in meanwhile
     after = (tmp_path / "index.html").read_text()

@@ -300,7 +300,7 @@ def test_what_may_be_no_change_is_named() -> None:
             "fe_drivetrain.studies.design_comparison.compare_designs", lambda *_: [known, open_]
         )
         result = compare(dict.fromkeys(("a", "b"), coarse_scene("bonded")))
-    said = " ".join(result.answer)
+    said = " ".join(result.details)
     assert "hub.stiffness.rx of b against a: -10 % ± 0.19 %" in said
     assert "The change of hub.stiffness.ry is smaller than its band: it may be zero." in said
 

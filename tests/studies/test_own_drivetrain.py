@@ -607,7 +607,7 @@ def test_a_study_without_loads_says_that_they_are_a_surrogate(
     assert not list((tmp_path / "s").glob("reactions_*.csv"))
     # one spherical bearing in front of a gearbox that holds no bending: statics decides
     assert "beam, rigid housings is enough: every reaction that counts is within 5 %" in " ".join(
-        results.summary
+        results.details
     )
 
 

@@ -158,7 +158,7 @@ def test_the_json_of_a_result_is_strict_and_names_its_schema(result: Result) -> 
     found = json.loads(result.to_json(), parse_constant=refuse)
     assert found["schema"] == f"fe-drivetrain/{result.STUDY}/{result.SCHEMA_VERSION}"
     assert [one["hash"] for one in found["drivetrains"]] == [d.hash for d in result.drivetrains]
-    assert found["answer"] == list(result.answer)
+    assert found["details"] == list(result.details)
     assert len(found["checks"]) == len(result.checks)
     assert found["tables"].keys() == result.all_tables().keys() >= result.tables.keys()
     # keys and units can be typed: no space that does not break
@@ -369,7 +369,7 @@ def test_a_mesh_is_counted_by_part(kind: Literal["mesh", "model"]) -> None:
     assert isinstance(mesh, Mesh)
     counts = {row["part"]: row["elements"] for row in result.tables["elements"]}
     assert sum(counts.values()) == len(mesh.cells)
-    assert result.answer[0].startswith(f"{len(mesh.cells):,} elements")
+    assert result.details[0].startswith(f"{len(mesh.cells):,} elements")
     assert result.chart().figure["data"][0]["x"] == list(counts.values())
 
 

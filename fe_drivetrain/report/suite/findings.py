@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
+from fe_drivetrain.report.answer import Answer, Claim, KeyFigure, worst
 from fe_drivetrain.report.results import (
     AssumptionRow,
     Cell,
@@ -17,6 +18,7 @@ from fe_drivetrain.report.results import (
     Verdict,
 )
 from fe_drivetrain.report.suite.checks import Checks
+from fe_drivetrain.report.suite.key_figures import KeyLimit, key_figure, limited
 from fe_drivetrain.report.suite.records import as_json
 from fe_drivetrain.report.suite.targets import split_unit
 
@@ -34,10 +36,12 @@ class Found:
 
     Attributes
     ----------
-    answer : tuple of str
-        The answer, in sentences.
+    answer : Answer or None
+        The answer to what was asked.
+    details : tuple of str
+        What explains the answer, in sentences.
     figures : tuple of Figure
-        Values that answer what was asked, with unit and band.
+        Values that were found, with unit and band.
     checks : tuple of Verdict
         Checks that were made.
     notes, unsettled, skipped : tuple of str
@@ -61,7 +65,8 @@ class Found:
         Wall time of each step [s].
     """
 
-    answer: tuple[str, ...]
+    answer: Answer | None
+    details: tuple[str, ...]
     figures: tuple[Figure, ...]
     checks: tuple[Verdict, ...]
     notes: tuple[str, ...]
@@ -118,6 +123,7 @@ class Findings(Checks):
         self.scene = ""
         self.notes: list[str] = []
         self.unsettled: list[str] = []
+        self.answered: Answer | None = None
         self.sentences: list[str] = []
         self.figures: list[Figure] = []
         self.limits: list[Limit] = []
@@ -138,7 +144,8 @@ class Findings(Checks):
             What was asked for.
         """
         return {
-            "answer": tuple(self.sentences),
+            "answer": self.answered,
+            "details": tuple(self.sentences),
             "figures": tuple(self.figures),
             "checks": tuple(self.checks),
             "notes": tuple(self.notes),
@@ -206,9 +213,102 @@ class Findings(Checks):
             self.drivetrains.append(record)
         return record.hash
 
-    def answer(self, *sentences: str) -> None:
-        """The answer first: sentences on top of the page."""
+    def answer(
+        self,
+        question: str,
+        verdict: str,
+        figures: Sequence[KeyFigure],
+        hero: str = "",
+        cautions: Sequence[str] = (),
+        claim: Claim = "",
+    ) -> None:
+        """The answer to what was asked: what page, terminal, JSON and index show first.
+
+        Parameters
+        ----------
+        question : str
+            In the words of the user, with a question mark.
+        verdict : str
+            One sentence of at most 25 words: subject, number with unit, what follows from it. What
+            is wrong or cannot be used says so here.
+        figures : sequence of KeyFigure
+            Three to six of `judged` and `value`, that which answers first. A check of the program
+            on itself is none.
+        hero : str
+            Caption of the chart or picture of the page that shows the verdict.
+        cautions : sequence of str
+            What limits the verdict, most severe first, in sentences.
+        claim : str
+            How a statement of the source stands: "holds", "holds in part", "does not hold"; the
+            verdict says it, too. Empty where no statement was tested.
+        """
+        figures = list(figures)
+        self.answered = Answer(
+            question=question,
+            verdict=verdict,
+            figures=figures,
+            hero=hero,
+            cautions=list(cautions),
+            claim=claim,
+            status=worst(figures, claim),
+        )
+
+    def say(self, *sentences: str) -> None:
+        """Explain the answer: sentences that stand below it."""
         self.sentences.extend(sentences)
+
+    def judged(self, quantity: str, name: str = "", by: str = "", printed: str = "") -> KeyFigure:
+        """A key figure that is a check or a value of these findings, so that it stands once.
+
+        Parameters
+        ----------
+        quantity : str
+            Of the check, or of the value by `found`; without its unit.
+        name : str
+            In the words of the reader; the quantity where left out.
+        by : str
+            Whose reference it is, in a word or two, as in "NAFEMS", "closed form", "thesis".
+        printed : str
+            The reference as its source prints it, as in "727.0".
+
+        Returns
+        -------
+        KeyFigure
+
+        Raises
+        ------
+        KeyError
+            There is no such check or value, or there are several.
+        """
+        every: list[Figure | Verdict] = [*self.figures, *self.checks]
+        found = [one for one in every if one.quantity == quantity]
+        if len(found) != 1:
+            known = ", ".join(repr(one.quantity) for one in every)
+            raise KeyError(f"{quantity!r} stands {len(found)} times among: {known}")
+        return key_figure(found[0], name, by, printed)
+
+    def value(
+        self, name: str, value: float, band: float | None = None, **limit: Unpack[KeyLimit]
+    ) -> KeyFigure:
+        """A key figure that no check or value of these findings is.
+
+        Parameters
+        ----------
+        name : str
+            What it is, with its unit: "peak roller load [kN]"; a pure number has none.
+        value, band : float
+            In that unit; `band` as for `equals`.
+        **limit : object
+            At most one of ``at_most``, ``at_least``, ``between`` (a pair), which judge the value,
+            and ``beside``, another's value to compare with; ``by``: whose it is, in a word or
+            two; ``printed``: the limit as its source prints it.
+
+        Returns
+        -------
+        KeyFigure
+        """
+        quantity, unit = split_unit(name)
+        return limited(quantity, unit, value, band, **limit)
 
     def found(
         self,

@@ -8,7 +8,9 @@ from typing import Any, TypedDict, Unpack
 import numpy as np
 
 from fe_drivetrain.common.arrays import rounded
+from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.charts import chart, instead_of_chart, trace
+from fe_drivetrain.report.error_chart import error_chart
 from fe_drivetrain.report.results import (
     Cell,
     Chart,
@@ -83,7 +85,8 @@ class Page(Findings):
         found : Found
             Its answer, numbers, checks, cautions, and what it is of.
         """
-        self.sentences += found.answer
+        self.answered = found.answer or self.answered
+        self.sentences += found.details
         self.figures += found.figures
         self.checks += found.checks
         self.unsettled += found.unsettled
@@ -195,6 +198,10 @@ class Page(Findings):
         self.table(caption, cells, columns)
         keys = [by, *dict.fromkeys(target.key for target in targets)]
         self.data(caption, [{key: mesh[key] for key in keys} for mesh in meshes])
+
+    def errors(self, caption: str, figures: Sequence[KeyFigure]) -> None:
+        """Add a chart of values against their references; see `report.error_chart`."""
+        self.add(error_chart(caption, figures))
 
     def sweep(
         self,

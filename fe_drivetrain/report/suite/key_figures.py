@@ -1,0 +1,132 @@
+"""Key figures of an answer, made of checks and values of a case, or of limits that are given."""
+
+from __future__ import annotations
+
+from typing import TypedDict, Unpack
+
+from fe_drivetrain.report.answer import Bound, KeyFigure, status_of
+from fe_drivetrain.report.results import Figure, Verdict
+
+
+class KeyLimit(TypedDict, total=False):
+    """What is asked of a key figure.
+
+    Attributes
+    ----------
+    at_most, at_least : float
+        A bound, in the unit of the value.
+    between : tuple of float
+        Both ends of a range.
+    beside : float
+        Another's value, to compare with.
+    by : str
+        Whose limit it is.
+    printed : str
+        The limit as its source prints it.
+    """
+
+    at_most: float
+    at_least: float
+    between: tuple[float, float]
+    beside: float
+    by: str
+    printed: str
+
+
+def key_figure(
+    found: Figure | Verdict, name: str = "", by: str = "", printed: str = ""
+) -> KeyFigure:
+    """The key figure that a check or a value is.
+
+    Parameters
+    ----------
+    found : Figure or Verdict
+        The value.
+    name : str
+        In the words of the reader; its quantity where left out.
+    by, printed : str
+        See `KeyFigure`.
+
+    Returns
+    -------
+    KeyFigure
+        Good or bad as the check is; "watch" where a bound lies within its band.
+    """
+    common = {
+        "name": name or found.quantity,
+        "value": found.computed,
+        "unit": found.unit,
+        "band": found.band,
+        "quantity": found.quantity,
+    }
+    if isinstance(found, Figure):
+        return KeyFigure(**common, status="none")
+    bound: Bound = "equals" if found.check == "vanishes" else found.check
+    size = abs(found.reference) if found.relative else 1.0
+    status = status_of(
+        found.computed,
+        bound,
+        found.reference,
+        found.upper,
+        found.band,
+        found.tolerance * size,
+    )
+    return KeyFigure(
+        **common,
+        bound=bound,
+        limit=found.reference,
+        upper=found.upper,
+        allowed=found.tolerance * size,
+        printed=printed,
+        by=by,
+        status=status,
+    )
+
+
+def limited(
+    name: str, unit: str, value: float, band: float | None = None, **limit: Unpack[KeyLimit]
+) -> KeyFigure:
+    """A key figure with the limit that is given.
+
+    Parameters
+    ----------
+    name, unit : str
+        What it is.
+    value, band : float
+        In that unit.
+    **limit : object
+        See `KeyLimit`.
+
+    Returns
+    -------
+    KeyFigure
+
+    Raises
+    ------
+    ValueError
+        Two limits are given.
+    """
+    bounds: dict[str, Bound] = {
+        "at_most": "at most",
+        "at_least": "at least",
+        "between": "between",
+        "beside": "beside",
+    }
+    given = [key for key in bounds if key in limit]
+    if len(given) > 1:
+        raise ValueError(f"{name}: give one of {', '.join(given)}")
+    bound: Bound = bounds[given[0]] if given else ""
+    ends: float | tuple[float, float] | None = limit.get(given[0]) if given else None  # type: ignore[assignment]
+    low, high = ends if isinstance(ends, tuple) else (ends, None)
+    return KeyFigure(
+        name=name,
+        value=float(value),
+        unit=unit,
+        band=None if band is None else float(band),
+        bound=bound,
+        limit=None if low is None else float(low),
+        upper=None if high is None else float(high),
+        by=limit.get("by", ""),
+        printed=limit.get("printed", ""),
+        status=status_of(float(value), bound, low, high, band),
+    )
