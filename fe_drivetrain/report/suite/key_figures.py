@@ -52,34 +52,30 @@ def key_figure(
     KeyFigure
         Good or bad as the check is; "watch" where a bound lies within its band.
     """
-    common = {
-        "name": name or found.quantity,
-        "value": found.computed,
-        "unit": found.unit,
-        "band": found.band,
-        "quantity": found.quantity,
-    }
-    if isinstance(found, Figure):
-        return KeyFigure(**common, status="none")
-    bound: Bound = "equals" if found.check == "vanishes" else found.check
-    size = abs(found.reference) if found.relative else 1.0
-    status = status_of(
-        found.computed,
-        bound,
-        found.reference,
-        found.upper,
-        found.band,
-        found.tolerance * size,
+    plain = KeyFigure(
+        name=name or found.quantity,
+        value=found.computed,
+        unit=found.unit,
+        band=found.band,
+        status="none",
+        quantity=found.quantity,
     )
-    return KeyFigure(
-        **common,
-        bound=bound,
-        limit=found.reference,
-        upper=found.upper,
-        allowed=found.tolerance * size,
-        printed=printed,
-        by=by,
-        status=status,
+    if isinstance(found, Figure):
+        return plain
+    bound: Bound = "equals" if found.check == "vanishes" else found.check
+    allowed = found.tolerance * (abs(found.reference) if found.relative else 1.0)
+    return plain.model_copy(
+        update={
+            "bound": bound,
+            "limit": found.reference,
+            "upper": found.upper,
+            "allowed": allowed,
+            "printed": printed,
+            "by": by,
+            "status": status_of(
+                found.computed, bound, found.reference, found.upper, found.band, allowed
+            ),
+        }
     )
 
 
