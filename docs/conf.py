@@ -15,28 +15,35 @@ from sphinx.domains.python import PythonDomain
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE))
 
-import written_pages  # noqa: E402 - beside this file
+import formulas  # noqa: E402 - beside this file
+import notebook_runs  # noqa: E402
+import result_pages  # noqa: E402
+import written_pages  # noqa: E402
 
 written_pages.write_all(HERE / "generated")
 
 project = "fe-drivetrain"
 release = version = installed("fe-drivetrain")
-extensions = ["myst_nb", "numpydoc", "sphinx.ext.autodoc", "sphinx_design"]
+extensions = ["formulas", "myst_nb", "numpydoc", "sphinx.ext.autodoc", "sphinx_design"]
 root_doc = "index"
 exclude_patterns = ["generated/ipython", "generated/static"]
 
 # Headings are link targets as on a repository page.
 myst_heading_anchors = 3
-myst_enable_extensions = ["colon_fence", "deflist"]
+myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
+# Formulas in dollars, and in blocks of "math", as repository hosts show them.
+myst_fence_as_directive = ["math"]
+html_math_renderer = "mathml"
 
-# Notebooks stand without results: these are what the program finds now.
-nb_execution_mode = "force"
+# Notebooks stand without results: these are what the program finds now, kept until it changes.
+nb_execution_mode = "cache"
+nb_execution_cache_path = notebook_runs.kept_runs(HERE.parent / "build" / "notebooks")
 nb_execution_in_temp = True
 nb_execution_raise_on_error = True
 nb_execution_timeout = 300
 logging.getLogger("traitlets").setLevel(logging.WARNING)
 # Figures come without Plotly itself, which the site has once.
-os.environ |= {"IPYTHONDIR": written_pages.ipython_folder(HERE / "generated" / "ipython")}
+os.environ |= {"IPYTHONDIR": notebook_runs.ipython_folder(HERE / "generated" / "ipython")}
 
 # Types stand in the signature; the docstrings say units, shapes and sources.
 autodoc_typehints_format = "short"
@@ -62,7 +69,8 @@ html_title = "fe-drivetrain"
 html_show_copyright = False
 html_copy_source = False
 html_show_sourcelink = False
-html_static_path = [written_pages.static_folder(HERE / "generated" / "static")]
+html_static_path = [notebook_runs.static_folder(HERE / "generated" / "static"), formulas.STYLE]
+html_css_files = [formulas.STYLE]
 
 
 def as_plain_text(
@@ -126,6 +134,12 @@ def compile_once() -> None:
     SphinxDocString.load_config = load_config
 
 
+def copy_results(app: Sphinx, error: Exception | None) -> None:
+    """Put the pages of the last run beside those of the site."""
+    if error is None and app.builder.format == "html":
+        result_pages.copy_pages(result_pages.results_folder(), Path(app.outdir))
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     """Connect what Sphinx calls, before numpydoc reads a docstring."""
     find_quickly()
@@ -133,4 +147,5 @@ def setup(app: Sphinx) -> dict[str, bool]:
     app.connect("autodoc-process-docstring", as_plain_text, priority=100)
     app.connect("autodoc-process-signature", by_their_names)
     app.connect("source-read", to_docstrings)
+    app.connect("build-finished", copy_results)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

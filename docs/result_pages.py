@@ -1,26 +1,46 @@
-"""What results of a run add to the site: where methods fail, and pictures of cases.
+"""What results of a run add to the site: pages and answers of cases, limits of methods, pictures.
 
 The folder of results is that of ``FE_DRIVETRAIN_QUICK_RUNS``, or ``reports`` of the clone.
 """
 
 from __future__ import annotations
 
+import html
 import os
 import re
 import shutil
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
+from fe_drivetrain.common.provenance import program_hash
 from fe_drivetrain.report import Image, Limit, Results, Solid, read_results, results_below
+from fe_drivetrain.report.results import verdict_sentence
 
 ROOT = Path(__file__).parents[1]
+
+SITE = "results"
+"""Folder of the site that has the pages of the run."""
+
+LISTS = {
+    "index.html": "All cases, worst first",
+    "checks.html": "every check",
+    "atlas.html": "limits of methods",
+}
+"""Pages of a run beside those of its cases, and what they are called."""
+
+LEFT_OUT = shutil.ignore_patterns(".*", "*.sqlite", "fe-drivetrain-files.json")
+"""What belongs to a folder of reports and not to its pages."""
+
+
+def results_folder() -> Path:
+    """The folder of results, which may be empty."""
+    return Path(os.environ.get("FE_DRIVETRAIN_QUICK_RUNS") or ROOT / "reports")
 
 
 def results() -> dict[str, tuple[Results, Path]]:
     """Results by the name of their case, and the folder of each; none that cannot be read."""
-    folder = Path(os.environ.get("FE_DRIVETRAIN_QUICK_RUNS") or ROOT / "reports")
     found = {}
-    for name, file in results_below(folder).items():
+    for name, file in results_below(results_folder()).items():
         try:
             found[name] = read_results(file), file.parent
         except ValueError:  # of another version
@@ -33,6 +53,82 @@ def plain(text: str) -> str:
     pieces = re.split(r"(`+[^`]*`+)", " ".join(text.split()))
     pieces[::2] = [re.sub(r"([\\*_\[\]<>|#$~])", r"\\\1", piece) for piece in pieces[::2]]
     return "".join(pieces)
+
+
+# --- Pages of a run ---
+
+
+def copy_pages(folder: Path, site: Path) -> None:
+    """Copy a run's pages, with all that they show, into the site.
+
+    Parameters
+    ----------
+    folder : Path
+        Of results; where it has none, those of an earlier build are taken out of the site.
+    site : Path
+        Folder of the site.
+    """
+    to = site / SITE
+    shutil.rmtree(to, ignore_errors=True)
+    cases = [file.parent for file in results_below(folder).values()]
+    if not cases:
+        return
+    to.mkdir(parents=True)
+    for file in (*folder.glob("*.html"), *folder.glob("*.js")):
+        linked(file, to / file.name)
+    for case in cases:
+        at = to / case.relative_to(folder)
+        shutil.copytree(case, at, ignore=LEFT_OUT, copy_function=linked)
+
+
+def linked(file: str | Path, to: str | Path) -> None:
+    """Let a file stand in a second place, without a second copy where the disk allows it.
+
+    Reports are replaced, not changed, so that the site keeps what it was built with.
+    """
+    try:
+        os.link(file, to)
+    except OSError:  # another disk
+        shutil.copyfile(file, to)
+
+
+def of_the_run(found: Mapping[str, tuple[Results, Path]]) -> str:
+    """Of which run the site has results, with links to its lists; or that it has none."""
+    if not found:
+        return (
+            "This site was built without results of a run: `fe-drivetrain run --all`, and build it "
+            "again. Then each case has its answer here, and a link to its page."
+        )
+    environments = [each.environment for each, _ in found.values()]
+    days = sorted({environment.date[:10] for environment in environments})
+    quick = sum(environment.quick for environment in environments)
+    when = days[0] if len(days) == 1 else f"{days[0]} to {days[-1]}"
+    coarse = f" {quick} of them are quick: coarser and smaller than the case." if quick else ""
+    now = program_hash()
+    if older := sum(environment.code != now for environment in environments):
+        coarse += f" {older} of them were found by another state of the program."
+    links = [
+        f'<a href="../{SITE}/{name}">{what}</a>'
+        for name, what in LISTS.items()
+        if (results_folder() / name).is_file()
+    ]
+    return f"Answers are those of the last run: {len(found)} results of {when}.{coarse} " + (
+        f"{', '.join(links)}." if links else ""
+    )
+
+
+def answer_of(name: str, found: Mapping[str, tuple[Results, Path]]) -> str:
+    """The answer of a case as a link to its page; empty where the run has none."""
+    if name not in found:
+        return ""
+    each, folder = found[name]
+    sentence = html.escape(verdict_sentence(each) or "Page of this case", quote=False)
+    if not (folder / "report.html").is_file():
+        return sentence
+    return f'<a href="../{SITE}/{name}/report.html">{sentence}</a>'
+
+
+# --- Limits ---
 
 
 def limits_page(found: Mapping[str, tuple[Results, Path]]) -> str:
@@ -80,6 +176,9 @@ def _limit(limit: Limit) -> Iterator[str]:
     yield f"  *What holds there:* {plain(limit.remedy)}."
 
 
+# --- Pictures ---
+
+
 def cards_of_cases(found: Mapping[str, tuple[Results, Path]], pictures: Path) -> list[str]:
     """A card for each case that has drawn its model, deformed where it can be; copies pictures."""
     shutil.rmtree(pictures, ignore_errors=True)
@@ -95,6 +194,10 @@ def cards_of_cases(found: Mapping[str, tuple[Results, Path]], pictures: Path) ->
         lines += [
             f":::{{grid-item-card}} {plain(each.title)}",
             f":img-top: {pictures.name}/{file}",
+            f":img-alt: model of {name}",
+            f":link: ../{SITE}/{name}/report.html",
+            "",
+            verdict_sentence(each) and plain(verdict_sentence(each)),
             "",
             f"`fe-drivetrain run {name}`",
             ":::",

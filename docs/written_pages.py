@@ -18,14 +18,14 @@ from types import ModuleType
 
 import house
 from face_examples import examples
-from plotly.offline import get_plotlyjs
-from result_pages import cards_of_cases, limits_page, plain, results
+from result_pages import answer_of, cards_of_cases, limits_page, of_the_run, plain, results
 from sphinx.errors import PycodeError
 from sphinx.pycode import ModuleAnalyzer
 from stills import library
 
 import fe_drivetrain
 from fe_drivetrain.drivetrain_file import Component, Scene
+from fe_drivetrain.report import Results
 from fe_drivetrain.report.suite import Case, all_cases, settings_in_words
 
 #: Folders of modules without a list of names of their own, whose modules users import.
@@ -37,12 +37,12 @@ INSIDE = {"dynamics": ("bodies", "time")}
 
 def write_all(folder: Path) -> None:
     """Write all pages below a folder; those that have not changed stay, and are not built again."""
-    pages = {"validation.md": validation_index(all_cases().values())}
+    found = results()
+    pages = {"validation.md": validation_index(all_cases().values(), found)}
     rooms = list(public_rooms())
     pages["api.rst"] = api_index(rooms)
     for room in rooms:
         pages[f"api/{room}.rst"] = api_of(room)
-    found = results()
     pages["limits.md"] = limits_page(found)
     pages["gallery.md"] = gallery(library(), cards_of_cases(found, folder / "pictures"))
     for old in (*folder.glob("*.*"), *folder.glob("api/*.*")):
@@ -58,15 +58,17 @@ def write_all(folder: Path) -> None:
 # --- Validation ---
 
 
-def validation_index(cases: Iterable[Case]) -> str:
-    """All cases by group: title, where the reference comes from, settings."""
+def validation_index(cases: Iterable[Case], found: Mapping[str, tuple[Results, Path]]) -> str:
+    """All cases by group: title, answer of the last run, source of the reference, settings."""
     cases = list(cases)
     lines = [
         "# Validation index",
         "",
         f"The {len(cases)} cases of `fe-drivetrain list`, written from what they declare. "
         "`fe-drivetrain run NAME` runs one, `fe-drivetrain run GROUP` a group; each page states "
-        "its checks, references, bands and assumptions. A setting is changed by `--set KEY=VALUE`.",
+        "its checks, references, bands and assumptions. `--set KEY=VALUE` changes a setting.",
+        "",
+        of_the_run(found),
         "",
     ]
     for group, members in groupby(cases, key=lambda c: c.name.partition("/")[0]):
@@ -75,7 +77,9 @@ def validation_index(cases: Iterable[Case]) -> str:
         for case in members:
             lines += [
                 f"`{case.name}`",
-                f": {plain(case.title)}. *Source:* {plain(case.source).rstrip('.')}.",
+                f": {plain(case.title)}.",
+                *([f"  **{answer}**"] if (answer := answer_of(case.name, found)) else []),
+                f"  *Source:* {plain(case.source).rstrip('.')}.",
                 *([f"  *Settings:* {plain(words)}."] if (words := settings_in_words(case)) else []),
                 "",
             ]
@@ -91,11 +95,13 @@ def gallery(scenes: Mapping[str, Scene | Component], cards: Sequence[str]) -> st
     lines = [
         "# Gallery",
         "",
-        "The scenes that come with the package, as each page shows its own: cut open, with loads "
-        "and supports; components as a torque deforms them. Where each comes from is in "
-        "[the library](../library.md); each drivetrain has a case of its name, which runs all "
-        "levels. `fe-drivetrain advise`, `export` and `check` take a scene by its name, Python by "
-        "`read_drivetrain`.",
+        "## Drivetrains of the library",
+        "",
+        "The scenes that come with the package, cut open, with loads and supports; components are "
+        "deformed by a torque. [The library](../library.md) says where each comes from. "
+        "`fe-drivetrain advise`, `export` and `check` take a scene by its name, as does "
+        "`read_drivetrain` in Python. Each drivetrain has a case of its name, which runs all "
+        "levels.",
         "",
         "::::{grid} 1 2 2 3",
         ":gutter: 3",
@@ -106,62 +112,43 @@ def gallery(scenes: Mapping[str, Scene | Component], cards: Sequence[str]) -> st
         lines += [
             f":::{{grid-item-card}} {plain(scene.title)}",
             f":img-top: ../gallery/{name}.webp",
+            f":img-alt: {name}",
             "",
             f"`{name}`",
             *(["", f"`fe-drivetrain run {case.name}`"] if case else []),
             ":::",
             "",
         ]
-    lines += ["::::", ""]
-    if cards:
-        lines += [
-            "## As cases show it",
-            "",
-            "::::{grid} 1 2 2 3",
-            ":gutter: 3",
-            "",
-            *cards,
-            "::::",
-            "",
-        ]
+    lines += ["::::", "", *section_of_cards("Examples", cards_of_notebooks())]
+    lines += section_of_cards("Cases of the last run", cards) if cards else []
     return "\n".join(lines)
 
 
-# --- Notebooks ---
-
-PLOTLY = "plotly.min.js"
-"""The program that draws figures, beside the pages."""
-
-STARTUP = f"""
-import plotly.io
-from plotly.io.base_renderers import MimetypeRenderer
-
-class OnTheSite(MimetypeRenderer):
-    def to_mimebundle(self, figure):
-        program = "../_static/{PLOTLY}"
-        return {{"text/html": plotly.io.to_html(figure, include_plotlyjs=program, full_html=False)}}
-
-plotly.io.renderers["site"] = OnTheSite()
-plotly.io.renderers.default = "site"
-"""
+def section_of_cards(title: str, cards: Sequence[str]) -> list[str]:
+    """A heading and a grid of cards."""
+    return [f"## {title}", "", "::::{grid} 1 2 2 3", ":gutter: 3", "", *cards, "::::", ""]
 
 
-def ipython_folder(folder: Path) -> str:
-    """A profile in which figures come without the 5 MB that draw them."""
-    startup = folder / "profile_default" / "startup"
-    startup.mkdir(parents=True, exist_ok=True)
-    (startup / "figures.py").write_text(STARTUP, encoding="utf-8")
-    # it warns that a process of the same machine might listen
-    quiet = "get_config().IPKernelApp.log_level = 40\n"
-    (startup.parent / "ipython_kernel_config.py").write_text(quiet, encoding="utf-8")
-    return str(folder)
-
-
-def static_folder(folder: Path) -> str:
-    """What the site has beside its pages."""
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / PLOTLY).write_text(get_plotlyjs(), encoding="utf-8")
-    return str(folder)
+def cards_of_notebooks() -> list[str]:
+    """A card for each row of the index's table of examples: picture, title, question."""
+    index = (Path(__file__).parent / "index.md").read_text(encoding="utf-8")
+    rows = re.findall(
+        r"^\| !\[(.*?)\]\((.*?)\) \| \[(.*?)\]\((.*?)\.ipynb\) \| (.*?) \|$", index, re.MULTILINE
+    )
+    lines = []
+    for what, picture, title, notebook, answer in rows:
+        lines += [
+            f":::{{grid-item-card}} {title}",
+            f":img-top: ../{picture}",
+            f":img-alt: {what}",
+            f":link: ../{notebook}",
+            ":link-type: doc",
+            "",
+            answer[:1].upper() + answer[1:],
+            ":::",
+            "",
+        ]
+    return lines
 
 
 # --- API ---
