@@ -15,7 +15,7 @@ from fe_drivetrain.report.suite import Case
 
 sys.path.insert(0, str(DOCS))
 
-import result_pages  # noqa: E402
+import result_pages
 
 VERDICT = "The force is 1 N < 2 N, and that is enough."
 
