@@ -154,7 +154,7 @@ def answer(page: Page, finest: rigid_ended_shafts.Solved, rates: Rates, exact: f
             ),
         ],
         hero=ERRORS,
-        cautions=["The sharp step holds uniform meshes back; a shaft with fillets gains less."],
+        cautions=["The sharp step is what holds uniform meshes back."],
     )
 
 

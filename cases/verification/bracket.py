@@ -65,7 +65,7 @@ def answer(page: Page) -> None:
         f"nominal stress and {error:.2g} % from an independent plane solution.",
         figures,
         hero="Solid bracket against the plane solution and beam theory",
-        cautions=["The bracket is in plane strain: at its free faces the stress would be lower."],
+        cautions=["The bracket is in plane strain, as a wide one is in its middle."],
     )
     page.errors("Solid bracket against the plane solution and beam theory", figures)
 

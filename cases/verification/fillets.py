@@ -23,6 +23,7 @@ from fe_drivetrain.plots import PALETTE
 from fe_drivetrain.report import trace
 from fe_drivetrain.report.suite import Page, Record, Run
 
+CURVES = "Stress concentration in {}: computed, and as published"
 #: r/d of the sweep.
 RADII = (0.03, 0.05, 0.12, 0.2, 0.3)
 
@@ -79,20 +80,7 @@ def run(run: Run, page: Page, row: Mapping[str, Any]) -> None:
             if radius <= (wide - 1.0) / 2.0 and not math.isnan(peterson(load, wide, radius))
         ]
     check(page, load, factors, judged)
-    deviation = deviations(load, factors, peterson)
-    worst = int(np.abs(deviation).argmax())
-    f = factors[worst]
-    page.say(
-        f"Over {len(factors)} shoulders Peterson's fit differs from the finite elements by "
-        f"{deviation.mean():+.1f} % on average and at worst by {deviation[worst]:+.1f} % "
-        f"(D/d = {f.wide:g}, r/d = {f.radius:g}: K_t = {f.peak.factor:.4f}, band {f.band:.1g})."
-    )
-    if len(PUBLISHED[load]) == 2:
-        other = deviations(load, factors, tipton)
-        page.say(
-            "The formula of Tipton, Sorem and Rolovic, itself from finite elements, differs by "
-            f"{other.mean():+.1f} % on average and {np.abs(other).max():.1f} % at worst."
-        )
+    answer(page, row["question"], load, factors)
     page.section("Result")
     add_curves(page, load, factors)
     add_profile(page, factors)
@@ -106,8 +94,51 @@ def run(run: Run, page: Page, row: Mapping[str, Any]) -> None:
     )
     rows = [shoulder(load, f) for f in factors]
     page.table("Every shoulder", rows)
+    f = _sharpest(factors)
     page.image("The sharpest of the shoulders", run.sketch(shouldered(f.wide, f.radius)))
     page.data(f"shoulders in {load}", rows)
+
+
+def answer(page: Page, question: str, load: str, factors: Sequence[Factor]) -> None:
+    """State how far the published fits are from the finite elements, and the worst shoulder."""
+    fits = {"Peterson": deviations(load, factors, peterson)}
+    if len(PUBLISHED[load]) == 2:
+        fits["Tipton"] = deviations(load, factors, tipton)
+    off = fits["Peterson"]
+    worst = int(np.abs(off).argmax())
+    f, mean = factors[worst], float(off.mean())
+    peak = {name: float(np.abs(of).max()) for name, of in fits.items()}
+    other = f", Tipton's formula by {peak['Tipton']:.2g} %" if "Tipton" in fits else ""
+    side = "too low" if off.max() < 0 else "too high" if off.min() > 0 else "off either way"
+    page.answer(
+        question,
+        f"Peterson's chart is {abs(mean):.2g} % {side} on average and {peak['Peterson']:.2g} % off "
+        f"at worst{other}, over {len(factors)} shoulders in {load}.",
+        [
+            page.value("Peterson's fit, mean difference [%]", mean),
+            page.value("Peterson's fit, worst difference [%]", float(off[worst])),
+            *(
+                page.value(f"{name}'s fit, worst difference [%]", peak[name])
+                for name in [*fits][1:]
+            ),
+            page.value(
+                f"K_t at D/d = {f.wide:g}, r/d = {f.radius:g}",
+                f.peak.factor,
+                f.band,
+                beside=peterson(load, f.wide, f.radius),
+                by="Peterson",
+            ),
+            page.value("shoulders compared", len(factors)),
+        ],
+        hero=CURVES.format(load),
+        cautions=[
+            "Peterson's curves are fits to charts from photoelastic tests and early computations."
+        ],
+    )
+
+
+def _sharpest(factors: Sequence[Factor]) -> Factor:
+    return min(factors, key=lambda f: (f.radius, -f.wide))
 
 
 def check(page: Page, load: str, factors: Sequence[Factor], judged: Sequence[Any]) -> None:
@@ -179,13 +210,12 @@ def add_curves(page: Page, load: str, factors: Sequence[Factor]) -> None:
                 lines.append(
                     trace(f"D/d = {wide:g}, {name}", radii[inside], values[inside], line=style)
                 )
-    caption = f"Stress concentration in {load}: computed, and as published"
-    page.chart(caption, lines, "r/d [-]", "K_t [-]", "x")
+    page.chart(CURVES.format(load), lines, "r/d [-]", "K_t [-]", "x")
 
 
 def add_profile(page: Page, factors: Sequence[Factor]) -> None:
     """Stress along the sharpest fillet."""
-    sharpest = min(factors, key=lambda f: (f.radius, -f.wide))
+    sharpest = _sharpest(factors)
     step = max(1, len(sharpest.peak.profile) // 120)
     page.chart(
         f"Along the fillet of D/d = {sharpest.wide:g}, r/d = {sharpest.radius:g}",
