@@ -91,8 +91,8 @@ def answer(page: Page, ends: list[Record]) -> None:
     ]
     page.answer(
         "How much stiffer is a cantilever with clamped ends than Timoshenko's beam?",
-        f"By {first[STIFFER]:.2g} % at L = {first[RATIO]:g} D and by {last[STIFFER]:.2g} % at "
-        f"L = {last[RATIO]:g} D: the error falls with the length over the diameter.",
+        f"By {first[STIFFER]:.2g} % at L = {first[RATIO]:g} D and {last[STIFFER]:.2g} % at "
+        f"L = {last[RATIO]:g} D: the error falls as D / L.",
         [
             *(
                 page.value(f"stiffer, length {of[RATIO]:g} D [%]", of[STIFFER])

@@ -42,9 +42,8 @@ def answer(page: Page, rows: dict[str, dict[str, Record]], meshed: str) -> None:
     of_d, of_a, of_c = (rows[letter]["LSS"] for letter in "DAC")
     page.answer(
         "Which shafts do the stiffnesses of the published gear tables imply?",
-        f"Solid low-speed shafts of 1 m would be {of_d[DIAMETER]:.2f} m (D), "
-        f"{of_c[DIAMETER]:.2f} m (C) and {of_a[DIAMETER]:.2f} m thick (A, B): the last is rather "
-        "a flange than a shaft.",
+        f"Solid and 1 m long, low-speed shafts would be {of_d[DIAMETER]:.2f} m (D), "
+        f"{of_c[DIAMETER]:.2f} m (C) and {of_a[DIAMETER]:.2f} m thick (A, B): rather a flange.",
         [
             *(
                 page.value(f"{name}: diameter at 1 m [m]", of[DIAMETER])

@@ -62,10 +62,11 @@ def answer(page: Page, rows: list[Record], unknowns: int) -> None:
     figures = [
         page.judged(f"K_t in {row['load']}", f"K_t in {row['load']}", "meridian") for row in rows
     ]
+    inside = all(figure.status == "good" for figure in figures)
     page.answer(
         "Can curved tetrahedra resolve the peak stress of a shaft's fillet?",
         f"With {formatted(unknowns)} unknowns they find K_t in tension, bending and torsion within "
-        f"{worst:.2g} % of the meridian, well inside their bands.",
+        f"{worst:.2g} % of the meridian, {'inside' if inside else 'outside'} their bands.",
         [*figures, page.value("largest difference from the meridian [%]", worst)],
         hero="Stress along the fillet in tension",
         cautions=[

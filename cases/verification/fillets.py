@@ -23,6 +23,7 @@ from fe_drivetrain.plots import PALETTE
 from fe_drivetrain.report import trace
 from fe_drivetrain.report.suite import Page, Record, Run
 
+CHARTS = {"torsion": "The chart is from a mathematical analysis; its fit is within 5 % of it."}
 CURVES = "Stress concentration in {}: computed, and as published"
 #: r/d of the sweep.
 RADII = (0.03, 0.05, 0.12, 0.2, 0.3)
@@ -131,9 +132,7 @@ def answer(page: Page, question: str, load: str, factors: Sequence[Factor]) -> N
             page.value("shoulders compared", len(factors)),
         ],
         hero=CURVES.format(load),
-        cautions=[
-            "Peterson's curves are fits to charts from photoelastic tests and early computations."
-        ],
+        cautions=[CHARTS.get(load, "The charts are drawn from photoelastic tests.")],
     )
 
 
