@@ -105,7 +105,8 @@ def answer(page: Page, on_rear: dict[str, float]) -> None:
     page.answer(
         "How do two bearings on one bedplate share the loads of the hub?",
         f"Of a pitching moment of 1\u00a0MN\u00a0m the rear bearing carries {solids:.3g}\u00a0kN; "
-        f"supports that are not coupled say {apart:.3g}\u00a0kN, rigid ground {ground:.3g}\u00a0kN.",
+        f"supports that are not coupled say {apart:.3g}\u00a0kN, a rigid ground "
+        f"{ground:.3g}\u00a0kN.",
         [
             page.value("rear bearing, assembly of solids [kN]", solids),
             *(

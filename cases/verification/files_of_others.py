@@ -107,8 +107,8 @@ def answer(page: Page, kills: int, found: list[dict[str, Any]]) -> None:
     polite = sum(one["refused"] and one["untouched"] for one in found)
     page.answer(
         "Can a command that is killed damage files of others?",
-        f"{'No' if lost + broken == 0 else 'Yes'}: {ended} of {total} runs of {len(found)} commands were "
-        f"killed on the way, {lost} lost a file of others, {broken} left half a result.",
+        f"{'No' if lost + broken == 0 else 'Yes'}: {ended} of {total} runs of {len(found)} commands "
+        f"were ended by a kill, {lost} lost a file of others, {broken} left half a result.",
         [
             page.value("files of others lost or changed", lost, at_most=0),
             page.value("results that are neither old nor new", broken, at_most=0),

@@ -116,7 +116,7 @@ def _show(page: Page, root: Path, tried: Sequence[Tried], others: dict[str, str]
     page.found("faults that tests catch [%]", rate)
     page.answer(
         "How many faults that somebody could make do the tests catch?",
-        f"They catch {caught} of {count} single faults, {rate:.1f} %, which "
+        f"The tests catch {caught} of {count} single faults, {rate:.1f} %, which "
         f"{'reaches' if rate >= GOAL else 'does not reach'} the goal of {GOAL:g} %.",
         [
             page.value("faults that tests catch [%]", rate, at_least=GOAL, by="goal"),
