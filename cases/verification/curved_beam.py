@@ -77,8 +77,9 @@ def answer(page: Page) -> None:
     by_hook, by_beam = (100 * (of / EXACT[INSIDE] - 1) for of in (winkler, straight))
     page.answer(
         "Which stress does the inside of a thick curved bar, as of a hook, carry?",
-        f"{certain_value(inside)} inside and {certain_value(outside)} outside: a straight beam's "
-        f"formula is {by_beam:+.0f} % off inside, Winkler's for hooks {by_hook:+.1f} %.",
+        f"It carries {certain_value(inside)}, and {certain_value(outside)} at its outside: a "
+        f"straight beam's formula is {by_beam:+.0f} % off inside, Winkler's for hooks "
+        f"{by_hook:+.1f} %.",
         [
             inside,
             outside,

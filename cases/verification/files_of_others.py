@@ -107,7 +107,7 @@ def answer(page: Page, kills: int, found: list[dict[str, Any]]) -> None:
     polite = sum(one["refused"] and one["untouched"] for one in found)
     page.answer(
         "Can a command that is killed damage files of others?",
-        f"{'No' if lost + broken == 0 else 'Yes'}: {ended} of {total} runs of {len(found)} commands "
+        f"{'Yes' if lost + broken else 'No'}: {ended} of {total} runs of {len(found)} commands "
         f"were ended by a kill, {lost} lost a file of others, {broken} left half a result.",
         [
             page.value("files of others lost or changed", lost, at_most=0),
