@@ -15,6 +15,8 @@ from fe_drivetrain.cases.verification.bands_over_errors import (
     WIDE,
     coverage,
     histogram,
+    share_that_holds,
+    words_of_share,
 )
 from fe_drivetrain.cases.verification.filleted_shafts import filleted_scenes
 from fe_drivetrain.cases.verification.independent_shafts import FOUND, independent_shaft
@@ -31,7 +33,6 @@ from fe_drivetrain.comparison import SAFETY
 from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.elasticity.solve import Condensed
 from fe_drivetrain.report import shaft_with_rings
-from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run, column, grouped
 from fe_drivetrain.shafts.fidelity import (
     banded_meridian,
@@ -244,16 +245,9 @@ def coverage_sentences(rows: list[Record], found: list[Record]) -> list[str]:
 
 def answer(page: Page, rows: list[Record], quick: bool) -> None:
     """State the share of bands that hold at any level, and how wide they are."""
-    hold, share = sum(column(rows, HOLDS)), 100 * float(np.mean(column(rows, HOLDS)))
     median = float(np.median(column(rows, RATIO)))
-    judged = "95 % are asked for"
-    if quick:
-        judged = "too few to judge 95 % by"
-    elif share < 100 * COVERED:
-        judged = "not the 95 % that are asked for"
-    limit = {} if quick else {"at_least": 100 * COVERED, "by": "asked for"}
     figures = [
-        page.value("bands that hold [%]", share, **limit),
+        share_that_holds(page, rows, quick),
         page.value("bands compared with much finer models", len(rows)),
         page.value("median band over error", median, at_most=WIDE),
         page.judged("level 2, one fillet: least band over error", "least, shafts with one fillet"),
@@ -263,8 +257,7 @@ def answer(page: Page, rows: list[Record], quick: bool) -> None:
         figures.append(page.judged(alone, "shafts whose bands hold", "NGSolve", unit="%"))
     page.answer(
         "How often do the bands of a shaft's stiffness hold?",
-        f"{hold} of {len(rows)} bands hold ({formatted(share, 3)}\u00a0%: {judged}), at a median "
-        f"of {median:.2g} times the error.",
+        f"{words_of_share(rows, quick)}, at a median of {median:.2g} times the error.",
         figures,
         hero=HISTOGRAM,
         cautions=["The reference errs, too: what may be missing from it counts against the band."],

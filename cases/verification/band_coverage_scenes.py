@@ -16,6 +16,8 @@ from fe_drivetrain.cases.verification.bands_over_errors import (
     WIDE,
     coverage,
     histogram,
+    share_that_holds,
+    words_of_share,
 )
 from fe_drivetrain.cases.verification.random_scenes import random_scene
 from fe_drivetrain.common import MOTIONS, Cache, Floats, InputError
@@ -234,19 +236,11 @@ def run(run: Run, page: Page) -> None:
 
 def answer(page: Page, rows: list[Record], count: int, quick: bool) -> None:
     """State the share of bands that hold, and how wide they are."""
-    hold, share = sum(column(rows, HOLDS)), 100 * float(np.mean(column(rows, HOLDS)))
-    judged = "95 % are asked for"
-    if quick:
-        judged = "too few to judge 95 % by"
-    elif share < 100 * COVERED:
-        judged = "not the 95 % that are asked for"
-    limit = {} if quick else {"at_least": 100 * COVERED, "by": "asked for"}
     page.answer(
         "How often do the bands of an assembly's stiffness and reactions hold?",
-        f"{hold} of {len(rows)} bands of {count} random {'scene' if count == 1 else 'scenes'} hold "
-        f"({formatted(share, 3)}\u00a0%: {judged}).",
+        f"{words_of_share(rows, quick)}, of {count} random scene{'' if count == 1 else 's'}.",
         [
-            page.value("bands that hold [%]", share, **limit),
+            share_that_holds(page, rows, quick),
             page.judged("median band over error, values", "median band over error"),
             page.value("least band over error", min(column(rows, RATIO))),
             *(
