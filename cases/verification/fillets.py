@@ -107,17 +107,15 @@ def answer(page: Page, question: str, load: str, factors: Sequence[Factor]) -> N
         fits["Tipton"] = deviations(load, factors, tipton)
     off = fits["Peterson"]
     worst = int(np.abs(off).argmax())
-    f, mean = factors[worst], float(off.mean())
+    f, mean, most = factors[worst], float(off.mean()), float(off[worst])
     peak = {name: float(np.abs(of).max()) for name, of in fits.items()}
-    other = f", Tipton's formula by {peak['Tipton']:.2g} %" if "Tipton" in fits else ""
-    side = "too low" if off.max() < 0 else "too high" if off.min() > 0 else "off either way"
+    other = f"; Tipton's formula is within {peak['Tipton']:.2g} %" if "Tipton" in fits else ""
     page.answer(
         question,
-        f"Peterson's chart is {abs(mean):.2g} % {side} on average and {peak['Peterson']:.2g} % off "
-        f"at worst{other}, over {len(factors)} shoulders in {load}.",
+        f"In {load} Peterson's chart is {_too(mean)} on average and {_too(most)} at worst{other}.",
         [
             page.value("Peterson's fit, mean difference [%]", mean),
-            page.value("Peterson's fit, worst difference [%]", float(off[worst])),
+            page.value("Peterson's fit, worst difference [%]", most),
             *(
                 page.value(f"{name}'s fit, worst difference [%]", peak[name])
                 for name in [*fits][1:]
@@ -134,6 +132,11 @@ def answer(page: Page, question: str, load: str, factors: Sequence[Factor]) -> N
         hero=CURVES.format(load),
         cautions=[CHARTS.get(load, "The charts are drawn from photoelastic tests.")],
     )
+
+
+def _too(difference: float) -> str:
+    """A difference [%] in words."""
+    return f"{abs(difference):.2g} % too {'low' if difference < 0 else 'high'}"
 
 
 def _sharpest(factors: Sequence[Factor]) -> Factor:

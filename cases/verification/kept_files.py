@@ -24,6 +24,7 @@ from fe_drivetrain.drivetrain_file import library_scene
 from fe_drivetrain.elasticity.mesh import cached_mesh
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.report import bars
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run, column
 from fe_drivetrain.shafts.uncertainty.kept_rows import evaluated_rows
 from fe_drivetrain.studies.life_digest import Reading
@@ -263,8 +264,8 @@ def answer(page: Page, turned: list[Record], exchanged: list[Record]) -> None:
     other = sum(not row["the same value"] for row in exchanged)
     page.answer(
         "Can a damaged file of the cache give another result?",
-        f"{'No' if wrong + other == 0 else 'Yes'}: of {count} bits turned and {len(exchanged)} "
-        f"files cut off or exchanged, {wrong + other} gave another value; files are made again.",
+        f"{'Yes' if wrong + other else 'No'}: of {formatted(count)} bits turned and "
+        f"{len(exchanged)} files cut off or exchanged, {wrong + other} gave another value; files are made again.",
         [
             page.value("turned bits that gave another value", wrong, at_most=0),
             page.value("damaged files that gave another value", other, at_most=0),
