@@ -265,7 +265,8 @@ def answer(page: Page, turned: list[Record], exchanged: list[Record]) -> None:
     page.answer(
         "Can a damaged file of the cache give another result?",
         f"{'Yes' if wrong + other else 'No'}: of {formatted(count)} bits turned and "
-        f"{len(exchanged)} files cut off or exchanged, {wrong + other} gave another value; files are made again.",
+        f"{len(exchanged)} files cut off or exchanged, {wrong + other} gave another value; files "
+        "are made again.",
         [
             page.value("turned bits that gave another value", wrong, at_most=0),
             page.value("damaged files that gave another value", other, at_most=0),
