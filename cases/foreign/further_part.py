@@ -118,8 +118,14 @@ def answer(page: Page, times: float, apart: float, by_mesh: float) -> None:
         [
             page.value("tilt about y, over that on a fixed foot", times),
             *(
-                page.judged(f"on the bedplate, tied: compliance {motion}", motion, "glued")
-                for motion in ("along z", "about y", "about z")
+                page.judged(
+                    f"on the bedplate, tied: compliance {motion}", f"{what} {motion}", "glued"
+                )
+                for what, motion in (
+                    ("gives", "along z"),
+                    ("tilts", "about y"),
+                    ("tilts", "about z"),
+                )
             ),
             page.value("largest difference of tied and glued [%]", apart),
         ],

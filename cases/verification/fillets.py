@@ -203,7 +203,8 @@ def add_curves(page: Page, load: str, factors: Sequence[Factor]) -> None:
                 marker={"color": colour},
             )
         )
-        radii = np.geomspace(min(f.radius for f in mine), max(f.radius for f in mine), 25)
+        # as far as the shoulder leaves room, also beside a single point
+        radii = np.geomspace(min(RADII), min(max(RADII), (wide - 1.0) / 2.0), 25)
         for name, formula, dash in (("Peterson", peterson, "solid"), ("Tipton", tipton, "dot")):
             values = np.array([formula(load, wide, radius) for radius in radii])
             inside = ~np.isnan(values)  # of the fit's range

@@ -112,8 +112,8 @@ def answer(page: Page, largest: float) -> None:
     rigid, soft = on_main("three rigid supports"), on_main("two bearings, soft gearbox")
     page.answer(
         "How is a hub force shared where statics leaves the supports open?",
-        f"Of 1 MN the main bearing takes {certain_value(rigid)} on three rigid supports; beams and "
-        f"solids agree within {largest:.2g} % on five sets of supports.",
+        f"Under 1\u00a0MN at the hub the main bearing carries {certain_value(rigid)} on three "
+        f"rigid supports; solids and beams agree within {largest:.2g} % on five sets.",
         [
             rigid,
             soft,

@@ -38,7 +38,10 @@ def answer(page: Page, worst: float) -> None:
     """State how far displacements are from Nastran's, over the largest of their grid."""
     figures = [
         page.judged(
-            f"grid {grid}: displacement along {axis}", f"grid {grid}, along {axis}", "Nastran"
+            f"grid {grid}: displacement along {axis}",
+            f"grid {grid}, along {axis}",
+            "Nastran",
+            unit="µm",
         )
         for grid in PRINTED
         for axis in "xz"
