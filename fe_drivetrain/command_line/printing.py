@@ -102,15 +102,15 @@ def write_pictures(program: str, results: Results, folder: Path) -> list[Path]:
         for number, chart in enumerate(charts, 1):
             sheet = Path(made) / "sheet.html"
             sheet.write_text(_sheet(chart, source, plotly_file()), encoding="utf-8")
-            target = folder / f"{number}-{_file_name(chart.caption)}.png"
-            with atomic_path(target) as unfinished:
-                # the browser writes PNG whatever the name is
-                _run(
-                    program,
-                    sheet,
-                    f"--screenshot={unfinished}",
-                    f"--window-size={_SIZE[0]},{_SIZE[1]}",
+            target, shot = folder / f"{number}-{_file_name(chart.caption)}.png", Path(made, "a.png")
+            _run(program, sheet, f"--screenshot={shot}", f"--window-size={_SIZE[0]},{_SIZE[1]}")
+            if not shot.is_file():
+                raise InputError(
+                    f"{program} has drawn no picture of {chart.caption!r}: leave --png out"
                 )
+            with atomic_path(target) as unfinished:
+                unfinished.write_bytes(shot.read_bytes())
+            shot.unlink()
             written.append(target)
     return written
 

@@ -158,11 +158,11 @@ def _dossier(
 ) -> Results:
     """Make every part that is not kept, and the first page of all; its results."""
     from fe_drivetrain.pages.dossier import show_dossier
-    from fe_drivetrain.studies.dossier import dossier
+    from fe_drivetrain.studies.dossier_overview import dossier
 
     works = _works(asked, scene, own)
     names = [OVERVIEW, *works]
-    content = _content(asked, scene)
+    content = content_of(asked, scene)
     parts = {
         name: _made(folder, name, names, scene, work, content, asked.quick, report)
         for name, work in works.items()
@@ -172,8 +172,21 @@ def _dossier(
     return _made(folder, OVERVIEW, names, scene, overview, of_parts, asked.quick, report)
 
 
-def _content(asked: ReportRequest, scene: Scene) -> dict[str, Any]:
-    """All that the pages depend on beside the program."""
+def content_of(asked: ReportRequest, scene: Scene) -> dict[str, Any]:
+    """All that the pages of a dossier depend on beside the program.
+
+    Parameters
+    ----------
+    asked : ReportRequest
+        Names the files.
+    scene : Scene
+        The drivetrain.
+
+    Returns
+    -------
+    dict
+        Its hash, SHA-256 of each file by path, and the options.
+    """
     from fe_drivetrain.common.provenance import file_digest
     from fe_drivetrain.report.seal import drivetrain_hash
     from fe_drivetrain.turbine_loads.hub_loads.recorded import recorded_files
@@ -200,7 +213,7 @@ def _works(asked: ReportRequest, scene: Scene, own: StudyLoads) -> dict[str, Wor
     from fe_drivetrain.pages.loads import show_loads
     from fe_drivetrain.pages.study import show_study
     from fe_drivetrain.studies.bearing_lives import life
-    from fe_drivetrain.studies.dossier import extremes_of
+    from fe_drivetrain.studies.dossier_overview import extremes_of
     from fe_drivetrain.studies.level_advice import advise
     from fe_drivetrain.studies.life_options import LifeOptions
     from fe_drivetrain.studies.load_digest import LoadOptions

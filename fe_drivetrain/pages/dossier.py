@@ -11,7 +11,7 @@ from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.results import Results, Table
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.run import Run
-from fe_drivetrain.studies.dossier import (
+from fe_drivetrain.studies.dossier_overview import (
     AROUND_PEAK,
     DESIGN_LIFE,
     EXTREMES,
@@ -99,6 +99,6 @@ def _answers(page: Page, parts: Mapping[str, Results]) -> None:
         )
     )
     page.text(
-        "For other programs: `summary.json`, `stiffness.json`, the mesh and the reactions over time "
-        "stand beside the page of reactions; `fe-drivetrain export` writes more formats."
+        "For other programs: `summary.json`, `stiffness.json`, the mesh and the reactions over "
+        "time stand beside the page of reactions; `fe-drivetrain export` writes more formats."
     )

@@ -1,4 +1,4 @@
-"""A drivetrain from the side: shaft, bearings by how they stand to their limits, and their names."""
+"""A drivetrain from the side: its shaft, and its bearings with how they stand to limits."""
 
 from __future__ import annotations
 

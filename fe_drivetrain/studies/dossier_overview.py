@@ -186,7 +186,7 @@ SKETCH = "The drivetrain from the side, with what its bearings carry at most"
 def _peak_figure(found: Findings, part: Results, name: str, row: Mapping[str, Any]) -> KeyFigure:
     """The largest radial force, with the band that the study states for it, if it does."""
     value = float(row["largest radial force [kN]"])
-    stated = _figure_of(part, f"of {name}", "N")
+    stated = _figure_of(part, f"on {name}", "kN")
     band = None
     if stated is not None and stated.band and stated.computed:
         band = abs(value * stated.band / stated.computed)
@@ -208,8 +208,8 @@ def _life_figure(part: Results, row: Mapping[str, Any]) -> KeyFigure:
 
 
 def _figure_of(part: Results, words: str, unit: str) -> Figure | None:
-    """The first figure whose quantity has these words, and whose unit contains another."""
-    return next((f for f in part.answers if words in f.quantity and unit in f.unit), None)
+    """The first figure of a unit whose quantity ends with these words."""
+    return next((f for f in part.answers if f.quantity.endswith(words) and f.unit == unit), None)
 
 
 def _others(found: Findings, parts: Mapping[str, Results], taken: set[str]) -> list[KeyFigure]:
