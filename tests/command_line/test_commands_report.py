@@ -27,14 +27,8 @@ def loads(tmp_path: Path) -> Path:
     """A minute of loads that swing, and the rotor's speed."""
     time = np.arange(0.0, 60.0, 0.5)
     swing = np.sin(2 * np.pi * time / 10.0)
-    each = [
-        2e5 + 5e4 * swing,
-        1e3 * swing,
-        -3e5 + 1e4 * swing,
-        9e5 + 0 * time,
-        6e5 * swing,
-        1e5 * swing,
-    ]
+    mean = np.array([2e5, 0.0, -3e5, 9e5, 0.0, 0.0])
+    each = mean + np.outer(swing, [5e4, 1e3, 1e4, 0.0, 6e5, 1e5])
     names = [f"{name} [{'N' if k < 3 else 'N m'}]" for k, name in enumerate(FORCES)]
     header = ",".join(["time [s]", *names, "RotSpeed [rpm]"])
     table = np.column_stack([time, each, np.full(len(time), 15.0)])
