@@ -7,6 +7,7 @@ import numpy as np
 
 from fe_drivetrain.cases.references.shaft_theory import polar_moment
 from fe_drivetrain.cases.references.twisted_tubes import TwistedTube, twisted_tube
+from fe_drivetrain.report import bars
 from fe_drivetrain.report.suite import Page, Run, Target
 
 DIGITS = "half of the last published digit"
@@ -14,6 +15,8 @@ CLOSED_FORM = "closed form G J / L"
 #: Least and largest shear modulus of steels [Pa].
 USUAL_G = np.array([79.3e9, 80.8e9])
 
+#: Largest over smallest stiffness of bars on a linear axis.
+SPREAD = 30.0
 STIFFNESS = "stiffness [N m/rad]"
 
 
@@ -79,8 +82,12 @@ def check_frequency(
 def compare_stiffness(
     page: Page, caption: str, heading: str, by: Mapping[str, float], over: str, reference: float
 ) -> None:
-    """A table of stiffness by description, and each over a reference of that name."""
+    """Bars and a table of stiffness by description, and each over a reference of that name."""
+    giga = {name: k / 1e9 for name, k in by.items()}
+    spread = max(giga.values()) / min(giga.values())
+    least = 0.5 * min(giga.values()) if spread > SPREAD else None
+    page.add(bars(caption, {"stiffness": giga}, "stiffness [GN m/rad]", least=least))
     page.table(
-        caption,
+        "The same in numbers",
         [{heading: name, STIFFNESS: k, f"over {over}": k / reference} for name, k in by.items()],
     )
