@@ -100,6 +100,14 @@ def add_convergence(page: Page, caption: str, series: Sequence[Series], size: st
         page.data(one.label, {"sizes": one.sizes, "unknowns": one.unknowns, "errors": one.errors})
 
 
+def convergence_caption(caption: str) -> str:
+    """What the chart of `add_convergence` is called."""
+    return (
+        f"{caption}. In the legend the observed order of the two finest meshes; thin dotted lines "
+        "have the order of theory"
+    )
+
+
 def convergence_chart(caption: str, series: Sequence[Series], size: str) -> Chart:
     """Errors over element size, both logarithmic, with the slopes of theory through the finest."""
     lines = []
@@ -114,8 +122,7 @@ def convergence_chart(caption: str, series: Sequence[Series], size: str) -> Char
             label = f"order {one.orders[name]:g}"
             lines.append(trace(label, h, theory, line=dots, showlegend=False))
     return chart(
-        f"{caption}. In the legend the observed order of the two finest meshes; thin dotted lines "
-        "have the order of theory",
+        convergence_caption(caption),
         lines,
         size,
         "relative error",
