@@ -8,6 +8,7 @@ from fe_drivetrain.report import bars
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Run, Target, column
 
+WITHIN = 1e-12  # of an error that is round-off
 DIVISIONS = "elements along a side of the sector"
 ERROR = "error of the stress"
 ROUND_OFF = "the discrete equations hold exactly for a constant stress, so only round-off is left: "
@@ -34,7 +35,7 @@ def run(run: Run, page: Page) -> None:
         divisions = (2, 4) if run.quick else (2, 4, 8)
         spheres = [{DIVISIONS: n, ERROR: patched.sphere_error(n)} for n in divisions]
     for name, error in {**ties, **points, **kinematics}.items():
-        page.meets(error, Target(name, 0.0, 1e-12, ROUND_OFF, PATCH))
+        page.meets(error, Target(name, 0.0, WITHIN, ROUND_OFF, PATCH))
     order = check_order(page, *column(spheres, ERROR)[-2:])
     exact = {**ties, **points}
     answer(page, ties, exact, by_nodes)
@@ -72,13 +73,13 @@ def answer(
             page.value(
                 f"largest error through {len(ties)} bonds and mortar ties, of unit stress",
                 max(ties.values()),
-                at_most=1e-12,
+                at_most=WITHIN,
                 by="round-off",
             ),
             page.value(
                 "largest error through springs, averaged points and rigid faces",
                 max(error for name, error in exact.items() if name not in ties),
-                at_most=1e-12,
+                at_most=WITHIN,
                 by="round-off",
             ),
             page.value("largest error tied node by node, of unit stress", loose),

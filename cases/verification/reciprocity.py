@@ -12,6 +12,7 @@ from fe_drivetrain.shafts.response import LOADS
 
 AXES = "displacements under", "work of", "power of ten"
 ASYMMETRY = "{}: |W_ij - W_ji| / sqrt(W_ii W_jj), power of ten"
+WITHIN = 1e-9
 STOPS = "the energy error at which the solver stops"
 BETTI = "Maxwell 1864, Betti 1872: W_ij = W_ji"
 OF_WORK = "work of unit loads on each other's displacements, largest asymmetry"
@@ -55,12 +56,12 @@ def run(run: Run, page: Page) -> None:
             (row[WORK], OF_WORK, BETTI),
             (row[HUB], "compliance of the hub, six by six, largest asymmetry", BETTI),
         ):
-            target = Target(title, 0.0, 1e-9, STOPS, source)
+            target = Target(title, 0.0, WITHIN, STOPS, source)
             page.meets(value, target, response.diagnostics.energy_error, kind)
         page.at_least(
             f"{kind}: {MIN_SHARE_OF_WORK}",
             row[MINIMUM],
-            -1e-9,
+            -WITHIN,
             why=STOPS,
             source="strain energy is never negative",
             measure="identity",
@@ -88,7 +89,7 @@ def answer(page: Page, rows: list[Record]) -> None:
                 page.value(
                     f"largest asymmetry of the works, {row['scene']} bearing",
                     row[WORK],
-                    at_most=1e-9,
+                    at_most=WITHIN,
                     by="solver",
                 )
                 for row in rows
@@ -97,7 +98,7 @@ def answer(page: Page, rows: list[Record]) -> None:
                 page.value(
                     f"largest asymmetry of the hub's compliance, {row['scene']} bearing",
                     row[HUB],
-                    at_most=1e-9,
+                    at_most=WITHIN,
                     by="solver",
                 )
                 for row in rows

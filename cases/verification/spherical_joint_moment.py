@@ -35,6 +35,7 @@ CHECKS = {
     ),
 }
 CARRIED = "Moment that the interface carries about the joint's centre"
+WITHIN = 1e-9  # of an error that is round-off
 NM = "N\u00a0m"
 MOMENT, DISTANCE, MY = "largest moment [N m]", "largest distance [m]", LOADS.index("hub.My")
 #: Axis of the force through the joint, and load, of the table.
@@ -69,14 +70,14 @@ def answer(page: Page, rows: list[Record], from_statics: float, bonded: float) -
             page.value(
                 "largest moment of a spherical joint, unit hub loads [N m]",
                 moment,
-                at_most=1e-9,
+                at_most=WITHIN,
                 by="no friction",
             ),
             page.value("moment of a bonded bearing, 1 N m at the hub [N m]", bonded),
             page.value(
                 "largest difference of reactions from statics",
                 from_statics,
-                at_most=1e-9,
+                at_most=WITHIN,
                 by="Eq 3.1",
             ),
             page.value(
@@ -112,7 +113,7 @@ def run(run: Run, page: Page) -> None:
         apart.append(found.from_statics)
         values = worst, found.distance / found.radius, found.from_statics, found.apart
         for value, (what, reason) in zip(values, CHECKS.items(), strict=True):
-            page.meets(value, Target(what, 0.0, 1e-9, *reason), of=form)
+            page.meets(value, Target(what, 0.0, WITHIN, *reason), of=form)
         shares = {name: float(found.joint[where]) for name, where in SHARES.items()}
         rows.append({"form": form, **shares, MOMENT: worst, DISTANCE: found.distance})
     answer(page, rows, max(apart), abs(float(found.joint[4, MY])))

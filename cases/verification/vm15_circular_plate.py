@@ -67,7 +67,7 @@ def answer(page: Page) -> None:
         for support in PRESSURES
     )
     manual = [
-        page.judged(sunk.format(support, "thin plate"), f"deflection, {support}", "VM15")
+        page.judged(sunk.format(support, "thin plate"), f"deflection, {support}, thin", "VM15")
         for support in PRESSURES
     ]
     stresses = [

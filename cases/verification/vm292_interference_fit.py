@@ -27,11 +27,12 @@ LAME = "two Lame cylinders (Lame 1852; Timoshenko, Strength of Materials II, 195
 def answer(page: Page, found: float, band: float, exact: float) -> None:
     """State the pressure [MPa], and the misfit that the printed one belongs to."""
     pressed = page.value(PRESSURE, found, band, beside=float(PRINTED), by="VM292", printed=PRINTED)
+    same = "as" if all(check.passed for check in page.checks) else "not as"
     half = value_text(0.5 * exact, "MPa")
     page.answer(
         "How hard do two cylinders press each other that are fitted with interference?",
-        f"With 0.02\u00a0m on the radius {certain_value(pressed)}, as VM292 prints; with that on "
-        f"the diameter, as it is quoted, not: {half}.",
+        f"By {certain_value(pressed)}, {same} VM292 prints, with 0.02\u00a0m on the radius; on the "
+        f"diameter, as the problem is quoted, it is not that but {half}.",
         [
             pressed,
             page.judged("Lame's contact pressure", by="VM292", printed=PRINTED),

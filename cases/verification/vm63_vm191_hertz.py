@@ -39,7 +39,8 @@ def answer(page: Page, half_width: float) -> None:
     page.answer(
         "How large do Hertz contacts of a sphere and of two cylinders get?",
         f"The sphere touches over a radius of {certain_value(sphere)}, the cylinders over a half "
-        f"width of {certain_value(width)} with {certain_value(pressure)}, {same} the manual prints.",
+        f"width of {certain_value(width)} with {certain_value(pressure)}, {same} the manual "
+        "prints.",
         [sphere, closed, width, pressure],
         hero=BETWEEN,
     )
