@@ -38,7 +38,7 @@ def answer(page: Page, rows: list[Record]) -> None:
         f"Displacements and stresses of all {len(rows)} blocks, distorted and curved ones among "
         f"them, are off by at most {formatted(largest, 2, '')} of the largest: {kind}.",
         [
-            page.value(f"{what}: largest error", worst[what], at_most=within, by="round-off")
+            page.value(f"largest error, {what}", worst[what], at_most=within, by="round-off")
             for what, (within, _) in CHECKS.items()
         ],
         hero=LARGEST,
@@ -72,7 +72,13 @@ def run(run: Run, page: Page) -> None:
             traces.append(trace(patch.label, DEGREES, forces, mode="lines+markers", marker=marks))
     answer(page, rows)
     page.section("Patch tests")
-    errors = {what: {row["element"]: row[what] for row in rows} for what in CHECKS}
+    errors = {
+        given: {
+            row["element"]: max(row[what] for what in CHECKS if what.startswith(given))
+            for row in rows
+        }
+        for given in ("displacements given", "tractions given")
+    }
     page.add(bars(LARGEST, errors, "largest error [-]", least=1e-17))
     title = f"Largest errors over six strain states ({', '.join(STRESSES)}), relative to the "
     title += "largest value of each. Nodes are moved at random, inside and on the surface"

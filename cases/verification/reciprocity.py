@@ -11,7 +11,7 @@ from fe_drivetrain.report.suite import Page, Record, Run, Target
 from fe_drivetrain.shafts.response import LOADS
 
 AXES = "displacements under", "work of", "power of ten"
-ASYMMETRY = "{}: |W_ij - W_ji| / sqrt(W_ii W_jj), power of ten"
+ASYMMETRY = "Asymmetry of mutual works, {} bearing, power of ten: |W_ij - W_ji| / sqrt(W_ii W_jj)"
 WITHIN = 1e-9
 STOPS = "the energy error at which the solver stops"
 BETTI = "Maxwell 1864, Betti 1872: W_ij = W_ji"
