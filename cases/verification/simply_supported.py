@@ -34,8 +34,8 @@ LOADS = {
     "moment at the end": (Load(END, moment=M), M / L * BENT / 16, M / L),
     "own weight": (Load(MIDDLE, gravity=DOWN), W * (5 * BENT / 384 + SHEARED / 8), abs(W) / 2),
 }
-BENT = "Deflection over its largest: Macaulay's beam with shear, and the means of the solid's "
-BENT += "sections"
+DEFLECTED = "Deflection over its largest: Macaulay's beam with shear, and the means of the solid's "
+DEFLECTED += "sections"
 FRAME, REACTION = "Timoshenko frame of the library", "reaction of the downwind support, solid [N]"
 
 
@@ -63,7 +63,7 @@ def answer(page: Page, largest: float) -> None:
             by_weight,
             page.judged(reaction, "reaction to the own weight", "statics", unit="kN"),
         ],
-        hero=BENT,
+        hero=DEFLECTED,
     )
 
 
@@ -114,7 +114,7 @@ def run(run: Run, page: Page) -> None:
         steel=STEEL,
         gravity=DOWN,
     )
-    page.chart(BENT, traces, "x [m]", "deflection over the largest")
+    page.chart(DEFLECTED, traces, "x [m]", "deflection over the largest")
     page.table("Deflection at mid span [m]", rows)
     page.text(
         "The solid's sections are free to warp: supports and loads act on their mean displacement, "
