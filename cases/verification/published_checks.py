@@ -15,8 +15,6 @@ CLOSED_FORM = "closed form G J / L"
 #: Least and largest shear modulus of steels [Pa].
 USUAL_G = np.array([79.3e9, 80.8e9])
 
-#: Largest over smallest stiffness of bars on a linear axis.
-SPREAD = 30.0
 STIFFNESS = "stiffness [N m/rad]"
 
 
@@ -80,13 +78,20 @@ def check_frequency(
 
 
 def compare_stiffness(
-    page: Page, caption: str, heading: str, by: Mapping[str, float], over: str, reference: float
+    page: Page,
+    caption: str,
+    heading: str,
+    by: Mapping[str, float],
+    over: str,
+    reference: float,
+    without: str = "",
 ) -> None:
-    """Bars and a table of stiffness by description, and each over a reference of that name."""
-    giga = {name: k / 1e9 for name, k in by.items()}
-    spread = max(giga.values()) / min(giga.values())
-    least = 0.5 * min(giga.values()) if spread > SPREAD else None
-    page.add(bars(caption, {"stiffness": giga}, "stiffness [GN m/rad]", least=least))
+    """Bars and a table of stiffness by description, and each over a reference of that name.
+
+    The one description `without` has no bar.
+    """
+    giga = {name: k / 1e9 for name, k in by.items() if name != without}
+    page.add(bars(caption, {"stiffness": giga}, "stiffness [GN m/rad]"))
     page.table(
         "The same in numbers",
         [{heading: name, STIFFNESS: k, f"over {over}": k / reference} for name, k in by.items()],

@@ -23,7 +23,8 @@ from fe_drivetrain.report import trace
 from fe_drivetrain.report.number_text import certain_value, value_text
 from fe_drivetrain.report.suite import Page, Record
 
-BY_PART = "Torsional stiffness of the shafts and of the whole drivetrain, on the rotor's side"
+HIGH_SPEED = "high-speed shaft, G J n^2 / L"
+BY_PART = "Torsional stiffness of the main shaft and of the whole drivetrain, on the rotor's side"
 
 
 def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaft) -> None:
@@ -50,10 +51,10 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
         "published, whole drivetrain": stiffness,
         "low-speed shaft, G J / L": shaft.closed,
         "low-speed shaft, finite elements": found.stiffness,
-        "high-speed shaft, G J n^2 / L": high,
+        HIGH_SPEED: high,
         "both in series, as WISDEM does": series,
     }
-    compare_stiffness(page, BY_PART, "part", by, "the published", stiffness)
+    compare_stiffness(page, BY_PART, "part", by, "the published", stiffness, HIGH_SPEED)
     frequencies = [
         ("published", free),
         ("WISDEM's shafts in series", soft),
@@ -62,7 +63,7 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     page.table("Frequencies of rotor and generator", frequencies, ["stiffness", "frequency [Hz]"])
     show_by_diameter(page, stiffness, shaft)
     page.text(
-        "A shaft can only be softer than all of itself: compliances add. With the published "
+        "Compliances add: a drivetrain is softer than each of its shafts. With the published "
         "figure and a shaft that takes half of the compliance, it would be "
         f"{solid_diameter(2 * stiffness * length / G):.2f} m thick over {length:.2f} m. Gearbox "
         "and generator have the other half then; no published split is known."
@@ -155,6 +156,6 @@ def answer(
             ),
         ],
         hero=BY_PART,
-        cautions=["A shaft can only be softer than all of its drivetrain's parts in series."],
+        cautions=["Compliances add in series: a whole drivetrain is softer than its shaft alone."],
         claim="holds" if fits else "does not hold",
     )
