@@ -155,9 +155,7 @@ def press(radii: Sequence[float], misfit: float, materials: Sequence[Material], 
     )
 
 
-def stress_by_radius(
-    exact: ExactFit, found: Pressed, names: tuple[str, str] = ("shaft", "ring")
-) -> list[Any]:
+def stress_by_radius(exact: ExactFit, found: Pressed, names: tuple[str, str]) -> list[Any]:
     """Curves of hoop and radial stress [MPa] over the radius [m], by Lame and of a mesh's nodes.
 
     Parameters

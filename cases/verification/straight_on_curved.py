@@ -7,8 +7,8 @@ from fe_drivetrain.cases.references.manufactured import NORMS, Series
 from fe_drivetrain.cases.verification import round_shafts as bodies
 from fe_drivetrain.cases.verification.orders import (
     add_convergence,
+    captioned,
     check_orders,
-    convergence_caption,
 )
 from fe_drivetrain.elasticity.mesh import straightened
 from fe_drivetrain.report.number_text import formatted, percent_text
@@ -58,7 +58,7 @@ def answer(page: Page, sides: int, chords: float, arcs: float) -> None:
                 "shaft, curved P2: order in torsional stiffness", "order, curved sides", "theory"
             ),
         ],
-        hero=convergence_caption(TWISTED),
+        hero=captioned(TWISTED),
     )
 
 
