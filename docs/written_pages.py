@@ -90,7 +90,7 @@ def validation_index(cases: Iterable[Case], found: Mapping[str, tuple[Results, P
 
 
 def gallery(scenes: Mapping[str, Scene | Component], cards: Sequence[str]) -> str:
-    """A card for each scene and component of the library, and those of cases, if there are any."""
+    """A card for each scene of the library, then for components, notebooks, and cases if any."""
     cases = all_cases()
     lines = [
         "# Gallery",
@@ -107,7 +107,7 @@ def gallery(scenes: Mapping[str, Scene | Component], cards: Sequence[str]) -> st
         ":gutter: 3",
         "",
     ]
-    for name, scene in scenes.items():
+    for name, scene in sorted(scenes.items(), key=lambda item: isinstance(item[1], Component)):
         case = cases.get(f"fidelity/{name}")
         lines += [
             f":::{{grid-item-card}} {plain(scene.title)}",
