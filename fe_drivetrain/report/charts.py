@@ -1,13 +1,14 @@
 """Charts of lines, bars and colours, as Plotly's JSON."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats, rounded
 from fe_drivetrain.common.components import MOTIONS
+from fe_drivetrain.report.chart_parts import Parts, add_parts
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.results import Chart
 
@@ -43,6 +44,7 @@ def chart(
     y: str,
     logarithmic: Iterable[str] = (),
     safe: tuple[float | None, float | None] | None = None,
+    **parts: Unpack[Parts],
 ) -> Chart:
     """A chart of traces.
 
@@ -58,6 +60,8 @@ def chart(
         "x", "y" or both.
     safe : tuple[float or None, float or None] or None
         Range of x that is shaded as safe; None for an end without a bound.
+    **parts : object
+        Events, differences below, and ranges of the axes; see `Parts`.
     """
     axes: dict[str, Any] = {
         "xaxis": {"title": {"text": x}},
@@ -69,7 +73,9 @@ def chart(
         axes[f"{axis}axis"]["exponentformat"] = "power"
     if safe is not None:
         axes["shapes"] = [_shaded(traces, safe)]
-    return Chart(caption=caption, figure={"data": list(traces), "layout": axes})
+    figure = {"data": list(traces), "layout": axes}
+    add_parts(figure, parts)
+    return Chart(caption=caption, figure=figure)
 
 
 def instead_of_chart(caption: str, traces: Sequence[Any], x: str, y: str) -> str:

@@ -151,7 +151,9 @@ def _key_figures(results: Results) -> list[KeyFigure]:
     if results.answer is not None:
         return results.answer.figures
     named = headline(results)
-    found = results.answers or ([named] if isinstance(named, Verdict) else [])
+    found: list[Figure | Verdict] = list(results.answers)
+    if not found and named is not None:
+        found.append(named)
     return [
         KeyFigure(
             name=one.quantity,

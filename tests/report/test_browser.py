@@ -127,7 +127,14 @@ def browser() -> Iterator[Any]:
 class Opened:
     """A page, and all that it said and asked for."""
 
-    def __init__(self, browser: Any, file: Path, width: int = WIDE, scheme: str = "light") -> None:
+    def __init__(
+        self,
+        browser: Any,
+        file: Path,
+        width: int = WIDE,
+        scheme: str = "light",
+        unfolded: bool = True,
+    ) -> None:
         self.context = browser.new_context(
             viewport={"width": width, "height": 900}, color_scheme=scheme, accept_downloads=True
         )
@@ -138,7 +145,8 @@ class Opened:
         self.page.on("pageerror", lambda error: self.said.append(str(error)))
         self.page.on("request", lambda request: self.asked.append(request.url))
         self.page.goto(file.as_uri())
-        if "report" in file.name:
+        if "report" in file.name and unfolded:
+            self.page.evaluate("for (const of of document.querySelectorAll('details')) of.open = true")
             self.page.wait_for_selector(".main-svg")
 
     def __enter__(self) -> "Opened":

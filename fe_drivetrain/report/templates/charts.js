@@ -255,6 +255,7 @@
     const { data, layout } = dark.matches && !paper ? onDark(plain) : plain;
     const width = paper ? 680 : place.clientWidth;
     const ends = namesOfEnds(data, layout, width);
+    if (inLegend(data, layout).length === 1) layout.showlegend = false; // the axis says what it is
     if (ends) {
       Object.assign(layout, { showlegend: false, modebar: { orientation: "h" } });
       layout.margin = { ...layout.template.layout.margin, ...layout.margin, r: ends.room };
