@@ -125,6 +125,7 @@ def render(results: Results, folder: Path, shared: Path) -> str:
         cautions=_cautions(results),
         most_cautions=MAX_CAUTIONS,
         most_rows=_MOST_ROWS,
+        most_pixels=_MAY_SHRINK,
         hero=_hero(results, items),
         explained=bool(results.answer and results.details),
         runs=runs_of_page(results, shared),
@@ -202,7 +203,7 @@ def _contents(section: Section) -> str:
 
 
 def _hero_height(item: Chart | Image | Solid) -> int:
-    """Pixels of the chart of the first screen; a long list of bars keeps its own."""
+    """Pixels of the chart of the first screen; a long list of bars is scrolled inside."""
     height = chart_height(item)
     return min(height, _HERO_HEIGHT) if height <= _MAY_SHRINK else height
 
