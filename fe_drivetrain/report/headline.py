@@ -39,11 +39,11 @@ def values_found(results: Results) -> list[Figure | Verdict]:
 
 
 def _record_of(figure: KeyFigure, every: list[Figure | Verdict]) -> Figure | Verdict:
-    """The check or value that a key figure is, or a value of its own."""
-    if figure.quantity:
-        for one in every:
-            if one.quantity == figure.quantity and one.unit == figure.unit:
-                return one
+    """The check or value that a key figure is, in its own unit, or a value of its own."""
+    same = [one for one in every if figure.quantity and one.quantity == figure.quantity]
+    same = [one for one in same if one.unit == figure.unit] or same
+    if same:
+        return same[0]
     return Figure(quantity=figure.name, unit=figure.unit, computed=figure.value, band=figure.band)
 
 

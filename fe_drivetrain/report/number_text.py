@@ -13,6 +13,7 @@ DIGITS = 4
 
 _MAX_DIGITS = 7  # of a value with a band
 _PRINTED_DIGITS = 7  # of a number that somebody has given; what was computed has more
+_ROUND_OFF = 1e-13  # of one that was converted to another unit
 _COMPARED_DIGITS = 6  # at most, of a value without a band beside a reference that has as many
 
 
@@ -259,7 +260,9 @@ def given_text(value: float | int | str | bool | None, unit: str | None = None) 
     str
         In four digits where it has more than a source prints.
     """
-    few = isinstance(value, float) and float(f"{value:.{_PRINTED_DIGITS - 1}e}") == value
+    few = isinstance(value, float) and math.isclose(
+        float(f"{value:.{_PRINTED_DIGITS - 1}e}"), value, rel_tol=_ROUND_OFF
+    )
     return formatted(value, _PRINTED_DIGITS if few else DIGITS, unit)
 
 

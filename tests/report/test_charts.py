@@ -123,6 +123,7 @@ def test_a_band_belongs_to_the_column_that_it_is_of(
 
 def test_what_was_given_keeps_its_digits_and_what_was_computed_does_not() -> None:
     assert given_text(13.4262) == "13.4262"
+    assert given_text(2.31712e9 * 1e-9) == "2.31712"  # in another unit
     assert given_text(1.0 / 3.0) == "0.3333"
     given: Any = {"tolerance": 0.01, "reason": "", "source": "", "unit": "Hz"}
     check = judge("f", 727.0345678, 727.02, **given)
