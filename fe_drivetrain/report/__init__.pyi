@@ -41,6 +41,7 @@ from .results import Verdict as Verdict
 from .results import judge as judge
 from .results import read_results as read_results
 from .results import results_below as results_below
+from .results import verdict_sentence as verdict_sentence
 from .solid_view import Parts as Parts
 from .solid_view import deformed_shape as deformed_shape
 from .solid_view import model_pictures as model_pictures

@@ -17,7 +17,7 @@ _STRIP_HEIGHT = 130  # pixels that the chart grows for it
 _PLAIN_HEIGHT = 460
 
 
-class Parts(TypedDict, total=False):
+class ChartParts(TypedDict, total=False):
     """What a chart shows beside its curves.
 
     Attributes
@@ -37,14 +37,14 @@ class Parts(TypedDict, total=False):
     y_range: tuple[float, float]
 
 
-def add_parts(figure: dict[str, Any], parts: Parts) -> None:
+def add_parts(figure: dict[str, Any], parts: ChartParts) -> None:
     """Add parts to a figure of curves.
 
     Parameters
     ----------
     figure : dict
         Entries "data" and "layout" of Plotly, changed in place.
-    parts : Parts
+    parts : ChartParts
         What is added.
 
     Raises

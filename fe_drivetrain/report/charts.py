@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats, rounded
 from fe_drivetrain.common.components import MOTIONS
-from fe_drivetrain.report.chart_parts import Parts, add_parts
+from fe_drivetrain.report.chart_parts import ChartParts, add_parts
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.results import Chart
 
@@ -44,7 +44,7 @@ def chart(
     y: str,
     logarithmic: Iterable[str] = (),
     safe: tuple[float | None, float | None] | None = None,
-    **parts: Unpack[Parts],
+    **parts: Unpack[ChartParts],
 ) -> Chart:
     """A chart of traces.
 
@@ -61,7 +61,7 @@ def chart(
     safe : tuple[float or None, float or None] or None
         Range of x that is shaded as safe; None for an end without a bound.
     **parts : object
-        Events, differences below, and ranges of the axes; see `Parts`.
+        Events, differences below, and ranges of the axes; see `ChartParts`.
     """
     axes: dict[str, Any] = {
         "xaxis": {"title": {"text": x}},

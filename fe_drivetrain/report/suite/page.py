@@ -9,7 +9,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.report.answer import KeyFigure
-from fe_drivetrain.report.chart_parts import Parts
+from fe_drivetrain.report.chart_parts import ChartParts
 from fe_drivetrain.report.charts import chart, instead_of_chart, trace
 from fe_drivetrain.report.error_chart import error_chart
 from fe_drivetrain.report.results import (
@@ -34,8 +34,8 @@ from fe_drivetrain.report.suite.records import (
 from fe_drivetrain.report.suite.targets import Target
 
 
-class Look(Parts, total=False):
-    """How the chart of a sweep looks; beside what every chart may show, see `Parts`.
+class Look(ChartParts, total=False):
+    """How the chart of a sweep looks; beside what every chart may show, see `ChartParts`.
 
     Attributes
     ----------
@@ -166,7 +166,7 @@ class Page(Findings):
         y: str,
         logarithmic: Iterable[str] = (),
         safe: tuple[float | None, float | None] | None = None,
-        **parts: Unpack[Parts],
+        **parts: Unpack[ChartParts],
     ) -> None:
         """Add a chart of traces, or a sentence if they have but one point; see `report.chart`."""
         if words := instead_of_chart(caption, traces, x, y):
@@ -256,7 +256,9 @@ class Page(Findings):
             for name, value in (look.get("reference") or {}).items()
         ]
         axis = look.get("axis") or next(iter(keys))
-        parts = cast("Parts", {k: v for k, v in look.items() if k in Parts.__annotations__})
+        parts = cast(
+            "ChartParts", {k: v for k, v in look.items() if k in ChartParts.__annotations__}
+        )
         log, safe = tuple(look.get("log", "")), look.get("safe")
         self.chart(caption, traces, x, axis, log, safe, **parts)
         plain = [key for key, value in rows[0].items() if np.ndim(value) == 0]
