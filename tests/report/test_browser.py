@@ -267,6 +267,8 @@ def test_paper_has_what_is_folded(browser: Any, answering: Path) -> None:
         assert page.locator("#checks table").bounding_box()["height"] > 20
         page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
         assert page.evaluate(count) == 0
+        boxes = [page.locator(part).bounding_box() for part in (".keys", "#figure-hero")]
+        assert boxes[0]["y"] + boxes[0]["height"] <= boxes[1]["y"]
         assert page.locator("#section-1 .main-svg").count() > 0
         page.evaluate("window.dispatchEvent(new Event('afterprint'))")
         assert page.evaluate(count) == folded
