@@ -478,6 +478,19 @@ def test_contents_lead_to_every_section(tmp_path: Path) -> None:
     assert len(links) > 4
 
 
+def test_a_page_of_a_dossier_leads_to_the_others(tmp_path: Path) -> None:
+    links = [
+        {"title": "Overview", "address": ""},
+        {"title": "Loads", "address": "loads/report.html"},
+        {"title": "Own", "address": "javascript:alert(1)"},
+    ]
+    page = Page(page_of(tmp_path, results(links=links)))
+    first, second, third = [a for a in page.all("a") if a.get("href")][:3]
+    assert first == {"href": "#summary", "aria-current": "page"}
+    assert second == {"href": "loads/report.html"}
+    assert third == {"href": "javascript%3Aalert%281%29"}
+
+
 def test_tables_have_headers_and_the_page_a_language(tmp_path: Path) -> None:
     page = Page(page_of(tmp_path, results()))
     assert page.all("html") == [{"lang": "en"}]
