@@ -47,6 +47,8 @@ class Look(TypedDict, total=False):
         Points without lines.
     axis : str
         Title of the vertical axis, with its unit; the key of the first curve where left out.
+    chosen : str
+        Name of the curve that was chosen: its points are drawn as large stars.
     """
 
     log: str
@@ -54,6 +56,7 @@ class Look(TypedDict, total=False):
     safe: tuple[float | None, float | None] | None
     points: bool
     axis: str
+    chosen: str
 
 
 class Page(Findings):
@@ -237,6 +240,9 @@ class Page(Findings):
         mode = "markers" if look.get("points") else "lines+markers"
         keys = {y: ""} if isinstance(y, str) else y
         traces = curves(rows, x, keys, by, mode)
+        for one in traces:
+            if one["name"] == look.get("chosen"):
+                one["marker"] = {"size": 16, "symbol": "star"}
         ends = rounded([min(column(rows, x)), max(column(rows, x))])
         traces += [
             trace(name, ends, [value, value], line={"dash": "dot"})
