@@ -12,6 +12,14 @@ from fe_drivetrain.report.charts import chart, trace
 from fe_drivetrain.report.results import Chart
 
 _RADIUS = 150.0  # pixels of the outermost ring on the page, about
+# named scales differ between programs
+_COLOURS = [
+    [0.0, "#ffffcc"],
+    [0.25, "#fecc5c"],
+    [0.5, "#fd8d3c"],
+    [0.75, "#e31a1c"],
+    [1.0, "#800026"],
+]
 _STEP = 0.26  # of the radius, between rings
 
 
@@ -64,7 +72,7 @@ def _ring(name: str, row: Row, Q: Floats, radius: float, peak: float) -> list[An
         "line": {"width": 1, "color": "#777777"},
     }
     colours = {
-        "colorscale": "YlOrRd",
+        "colorscale": _COLOURS,
         "cmin": 0.0,
         "cmax": float(f"{peak:.4g}"),
         "colorbar": {"title": {"text": "load [kN]", "side": "right"}, "thickness": 12},
