@@ -130,7 +130,7 @@ def answer(
         f"are {min(over):.0f} to {max(over):.0f}\u00a0% too high; right ones give {right} "
         f"crossings, printed ones {printed}.",
         [
-            page.value("largest excess of a printed order [%]", max(over), beside=0.0, by="right"),
+            page.value("largest excess of a printed order [%]", max(over)),
             *(
                 page.value(
                     f"mesh order of drivetrain {row['drivetrain']}, {row['stage']}",

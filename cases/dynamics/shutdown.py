@@ -434,8 +434,8 @@ def show(page: Page, one: Stopped) -> None:
     t = one.done.motion.times
     every = slice(None, None, max(1, len(t) // 4000))
     events = {"generator off": SEQUENCE.off, "brake on": SEQUENCE.braked}
-    for when, what in one.done.motion.braking.events[:4]:
-        events.setdefault(f"disc {what}", when)
+    first, what = one.done.motion.braking.events[0]
+    events[f"disc {what}"] = first
     drawn = chart(
         SHUTDOWN.format(one.of.letter),
         [trace(name, t[every], one.done.ratio(name)[every]) for name in ("LSS", "HSS")],

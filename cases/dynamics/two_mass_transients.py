@@ -200,9 +200,7 @@ def show(page: Page) -> None:
     )
     motion = braked(2e-3)
     check_brake(page, motion, J, k, one)
-    events: dict[str, float] = {}
-    for when, what in motion.braking.events:
-        events.setdefault(f"disc {what}", when)
+    first, what = motion.braking.events[0]
     drawn = chart(
         BRAKED,
         [
@@ -215,7 +213,7 @@ def show(page: Page) -> None:
         "time [s]",
         "torque over rated; speed",
     )
-    page.add(mark_events(drawn, events))
+    page.add(mark_events(drawn, {f"disc {what}": first}))
 
 
 def check_brake(page: Page, motion: Motion, J: Floats, k: float, one: Rated) -> None:
