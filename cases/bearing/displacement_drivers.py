@@ -69,11 +69,12 @@ def answer(page: Page, first: Record) -> None:
     ends = (
         "as the thesis states"
         if holds
-        else f"but with thrust it is {thrust:.2f}, not none as the thesis states"
+        else f"with thrust {thrust:.2f}, not none as the thesis states"
     )
     page.answer(
         "What moves the inner ring of a main bearing along the axis?",
-        f"The moment's direction: its correlation with the axial displacement is {moment:.2f}, "
+        "The moment's direction moves the ring: its correlation with the axial displacement is "
+        f"{moment:.2f}, "
         f"{ends}.",
         [
             page.value("correlation with the moment about y", moment),

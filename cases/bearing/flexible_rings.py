@@ -146,8 +146,9 @@ def answer(page: Page, rows: list[Record], hero: str) -> None:
     ]
     page.answer(
         "What does a flexible housing do to the peak roller and the load zone?",
-        f"It changes the peak roller by {min(changes):+.0f} to {max(changes):+.0f}\u00a0% against "
-        f"rigid rings; a combined load is carried by {loaded[0]} rollers, not {loaded[1]}.",
+        f"The flexible housing changes the peak roller by {min(changes):+.0f} to "
+        f"{max(changes):+.0f}\u00a0% against rigid rings; a combined load is carried by "
+        f"{loaded[0]} rollers, not {loaded[1]}.",
         [page.judged("largest change of the peak roller"), *peaks],
         hero,
         ["Dimensions of the housing are assumed: that of the library, on a fixed foot."],

@@ -74,9 +74,9 @@ def answer(page: Page, fits: list[Record]) -> None:
     names = ("38 deg, face to face", "20 deg, face to face", "20 deg, back to back")
     page.answer(
         "Which constant tilting stiffness fits a double-row tapered bearing best?",
-        f"{slopes[0]:.0f} MN\u00a0m/rad at 38\u00a0deg face to face, {slopes[1]:.0f} to "
-        f"{max(slopes[1:]):.0f} at 20\u00a0deg; the thesis's {printed:.0f} needs a contact angle "
-        "that it does not print.",
+        f"The best fit is {slopes[0]:.0f}\u00a0MN\u00a0m/rad at 38\u00a0deg face to face, "
+        f"{slopes[1]:.0f} to {max(slopes[1:]):.0f} at 20\u00a0deg; the thesis's {printed:.0f} "
+        "needs an angle it does not print.",
         [
             *(
                 page.value(f"best fit, {name} [MN m/rad]", slope, beside=printed, by="thesis")

@@ -121,19 +121,32 @@ def answer(page: Page, found: Floats, other: Restored) -> None:
     astray = int(np.sum(np.abs(found - TARGETS) > band + [digit(one) for one in PRINTED]))
     restored_to = float(np.abs(other.frequencies / TARGETS - 1).max())
     first, _, free = figures = [
-        page.judged("11 masses, generator fixed: frequency 1", "first, fixed", T61, "0.841"),
-        page.judged("11 masses, generator fixed: frequency 2", "second, fixed", T61, "5.859"),
-        page.judged("11 masses, generator free: frequency 2", "first, free", T61, "2.44"),
+        page.judged(
+            "11 masses, generator fixed: frequency 1",
+            "first frequency, generator fixed",
+            T61,
+            "0.841",
+        ),
+        page.judged(
+            "11 masses, generator fixed: frequency 2",
+            "second frequency, generator fixed",
+            T61,
+            "5.859",
+        ),
+        page.judged(
+            "11 masses, generator free: frequency 2", "first frequency, generator free", T61, "2.44"
+        ),
     ]
     page.answer(
         "Do the eleven masses of the NREL 750 kW drivetrain swing as the thesis's table has it?",
-        f"They swing at {certain_value(first)} (generator fixed) and {certain_value(free)} (free), "
-        f"as printed; {astray} of {len(found)} frequencies do not follow from the inputs.",
+        f"Eleven masses swing at {certain_value(first)} (generator fixed) and "
+        f"{certain_value(free)} (free), as printed; {astray} of {len(found)} frequencies do "
+        "not follow from the inputs.",
         [
             *figures,
             *(
                 page.value(
-                    f"number {i + 1}, fixed [Hz]",
+                    f"number {i + 1} of the table, fixed [Hz]",
                     float(found[i]),
                     float(band[i]),
                     beside=float(TARGETS[i]),

@@ -116,14 +116,27 @@ def answer(page: Page, f: Mapping[GeneratorState, Floats], band: Floats, restore
         m for m in range(5) if abs(f["fixed"][m] - float(printed[m])) > band[m] + digit(printed[m])
     ]
     first, _, free = figures = [
-        page.judged("5 masses, generator fixed: frequency 1", "first, fixed", T61, "0.864"),
-        page.judged("5 masses, generator fixed: frequency 2", "second, fixed", T61, "5.889"),
-        page.judged("5 masses, generator free: frequency 2", "first, free", T61, "2.524"),
+        page.judged(
+            "5 masses, generator fixed: frequency 1",
+            "first frequency, generator fixed",
+            T61,
+            "0.864",
+        ),
+        page.judged(
+            "5 masses, generator fixed: frequency 2",
+            "second frequency, generator fixed",
+            T61,
+            "5.889",
+        ),
+        page.judged(
+            "5 masses, generator free: frequency 2", "first frequency, generator free", T61, "2.524"
+        ),
     ]
     others = " and ".join(printed[m] for m in astray)
     page.answer(
         "Do the five masses of the NREL 750 kW drivetrain swing as the thesis's table has it?",
-        f"They swing at {certain_value(first)} (generator fixed) and {certain_value(free)} (free), "
+        f"Five masses swing at {certain_value(first)} (generator fixed) and "
+        f"{certain_value(free)} (free), "
         + (
             f"as printed; the {others}\u00a0Hz of Table 6.1 do not follow from its inputs."
             if astray
@@ -133,7 +146,7 @@ def answer(page: Page, f: Mapping[GeneratorState, Floats], band: Floats, restore
             *figures,
             *(
                 page.value(
-                    f"number {m + 1}, fixed [Hz]",
+                    f"number {m + 1} of the table, fixed [Hz]",
                     float(f["fixed"][m]),
                     float(band[m]),
                     beside=float(printed[m]),

@@ -106,8 +106,8 @@ def answer(page: Page, first: list[float], whole: float, meshes: float, hero: st
     """State what the drivetrain swings at first [Hz], its stiffness, and the meshes' share."""
     page.answer(
         "At which torsional frequency does the drivetrain of the table swing first?",
-        f"With the generator free at {value_text(first[2], 'Hz')} with every gear a mass, at "
-        f"{value_text(first[0], 'Hz')} as two masses; meshes make {percent_text(meshes)} of the "
+        f"With every gear a mass the drivetrain first swings at {value_text(first[2], 'Hz')}, as "
+        f"two masses at {value_text(first[0], 'Hz')}; meshes make {percent_text(meshes)} of its "
         "compliance.",
         [
             page.value("first frequency, every gear a mass [Hz]", first[2]),

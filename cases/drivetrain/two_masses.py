@@ -112,18 +112,30 @@ def answer(page: Page, other: Restored, measured: list[Record]) -> None:
     """State what two masses swing at, beside both tables and what was measured."""
     fixed, free = measured
     first, _, second = figures = [
-        page.judged("2 masses, generator fixed: frequency 1", "first, fixed", T61, "0.864"),
-        page.judged("2 masses, generator fixed: frequency 2", "second, fixed", T61, "5.888"),
-        page.judged("2 masses, generator free: frequency 2", "first, free", T61, "2.524"),
+        page.judged(
+            "2 masses, generator fixed: frequency 1",
+            "first frequency, generator fixed",
+            T61,
+            "0.864",
+        ),
+        page.judged(
+            "2 masses, generator fixed: frequency 2",
+            "second frequency, generator fixed",
+            T61,
+            "5.888",
+        ),
+        page.judged(
+            "2 masses, generator free: frequency 2", "first frequency, generator free", T61, "2.524"
+        ),
     ]
     needs = "shafts that it needs, over those of Table 4.2"
     same = abs(other.rotor / J[0] - 1) < SAME
     page.answer(
         "At which frequencies does the NREL 750 kW drivetrain swing as two masses?",
-        f"At {certain_value(first)} (generator fixed) and {certain_value(second)} (free), as in "
-        f"Table 6.1 but above the measured {fixed['measured [Hz]']:g} and "
+        f"Two masses swing at {certain_value(first)} (generator fixed) and "
+        f"{certain_value(second)} (free), as in Table 6.1 but above the measured {fixed['measured [Hz]']:g} and "
         f"{free['measured [Hz]']:g}\u00a0Hz; Table 6.2 "
-        + ("follows, too." if same else "does not follow."),
+        + ("agrees, too." if same else "does not."),
         [
             *figures,
             page.value("shafts for the measured frequency, fixed, over tabled", fixed[needs]),

@@ -58,8 +58,8 @@ def answer(page: Page) -> None:
     hero = "Frequencies of 80 inertias: differences from exact roots and from the manual"
     page.answer(
         "At which frequencies does the drill pipe swing with its collar?",
-        f"At {one.value:.4f} and {two.value:.4f}\u00a0Hz, {same} in the manual, which has "
-        f"{' and '.join(PRINTED.values())}\u00a0Hz.",
+        f"The pipe swings at {one.value:.4f} and {two.value:.4f}\u00a0Hz, {same} in the manual, "
+        f"which has {' and '.join(PRINTED.values())}\u00a0Hz.",
         figures,
         hero,
     )

@@ -81,8 +81,8 @@ def run(run: Run, page: Page) -> None:
             stiffness_of_5mw(page)
         assume(page, name, machine)
     show_needed(page, needed)
-    first = [row for row in needed if row["drivetrain"] == needed[0]["drivetrain"]]
-    state_needed(page, first, *ladders[0])
+    of_first = [row for row in needed if row["drivetrain"] == needed[0]["drivetrain"]]
+    state_needed(page, of_first, *ladders[0])
     page.say("All levels are one assembly: the torsional tables come back to round-off from it.")
 
 

@@ -72,7 +72,7 @@ def answer(page: Page, slopes: list[float], lost: float) -> None:
     met = "are met" if all(check.passed for check in printed) else "are not met"
     page.answer(
         "Are the methods of time integration accurate, and what does a varying stiffness need?",
-        f"All are of order {min(slopes):.2f} to {max(slopes):.2f}, and printed tables {met}; "
+        f"All methods are of order {min(slopes):.2f} to {max(slopes):.2f}, printed tables {met}; "
         f"Park's stiffness without force on its angle makes {100 * lost:.0f}\u00a0% of energy from "
         "nothing.",
         [

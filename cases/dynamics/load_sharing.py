@@ -74,7 +74,7 @@ def answer(page: Page, rows: list[Record]) -> None:
     same = "as" if all(check.passed for check in page.checks) else "not as"
     page.answer(
         "How unevenly do planets share the load when one pin is out of place?",
-        f"By {at[3, 'floating'][SHARING]:.4f} with three planets and a floating sun, "
+        f"K_gamma is {at[3, 'floating'][SHARING]:.4f} with three planets and a floating sun, "
         f"{at[4, 'floating'][SHARING]:.4f} with four, {at[3, 'fixed'][SHARING]:.4f} with a fixed "
         f"sun, {same} the closed form has it.",
         [

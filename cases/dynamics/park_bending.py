@@ -74,10 +74,11 @@ def answer(page: Page, loose: int, forces: float, stops: float, share: float) ->
     tilts = loose - 1
     page.answer(
         "Does shaft bending reach the gear meshes by the equations of Park et al. 2021?",
-        f"It does not: as printed {tilts} tilts are free and no moment reaches a mesh; hinges let "
+        f"Shaft bending does not reach a mesh as printed: {tilts} tilts are free; hinges let "
         f"100\u00a0kN\u00a0m change mesh forces by {forces:.2f}\u00a0kN."
         if tilts
-        else f"It does: 100\u00a0kN\u00a0m change mesh forces by {forces:.2f}\u00a0kN.",
+        else "Shaft bending reaches the meshes: 100\u00a0kN\u00a0m change mesh forces by "
+        f"{forces:.2f}\u00a0kN.",
         [
             page.value("largest mesh force of 100 kN m, with hinges [kN]", forces),
             page.value(

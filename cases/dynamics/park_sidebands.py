@@ -103,8 +103,8 @@ def answer(page: Page, lines: list[float], flat: float, space: float, resolved: 
     near = 0.5 * resolved
     page.answer(
         "How far do sidebands stand from a mesh line, and what moves them?",
-        f"By the ringing of the low-speed shaft, {flat:.2f}\u00a0Hz torsional and "
-        f"{space:.2f}\u00a0Hz in three dimensions; that they stand farther there "
+        f"Sidebands stand off by the low-speed shaft's ringing: {flat:.2f}\u00a0Hz torsional, "
+        f"{space:.2f}\u00a0Hz in three dimensions; that it is farther there "
         + ("holds." if farther else "does not hold."),
         [
             page.value("sidebands from the mesh line, torsional [Hz]", flat, near),

@@ -30,7 +30,7 @@ def answer(
     flat, space = least["torsional"], least["three dimensions"]
     page.answer(
         "What do the figures of Park et al. 2021 in time show?",
-        "Their 0.4\u00a0s period is the first mode, "
+        "Park's 0.4\u00a0s period is the first mode, "
         f"{value_text(steps[0][PERIOD], 's')} as printed; that the nacelle's force "
         f"({percent_text(nacelle / 100)}) outweighs eccentricity "
         f"({percent_text(by[largest] / 100)}) {'holds' if holds else 'does not hold'}.",
