@@ -133,8 +133,8 @@ def answer(page: Page, other: Restored, measured: list[Record]) -> None:
     page.answer(
         "At which frequencies does the NREL 750 kW drivetrain swing as two masses?",
         f"Two masses swing at {certain_value(first)} (generator fixed) and "
-        f"{certain_value(second)} (free), as in Table 6.1 but above the measured {fixed['measured [Hz]']:g} and "
-        f"{free['measured [Hz]']:g}\u00a0Hz; Table 6.2 "
+        f"{certain_value(second)} (free), as in Table 6.1 but above the measured "
+        f"{fixed['measured [Hz]']:g} and {free['measured [Hz]']:g}\u00a0Hz; Table 6.2 "
         + ("agrees, too." if same else "does not."),
         [
             *figures,
