@@ -133,9 +133,9 @@ def answer(page: Page, other: Restored, measured: list[Record]) -> None:
     page.answer(
         "At which frequencies does the NREL 750 kW drivetrain swing as two masses?",
         f"Two masses swing at {certain_value(first)} (generator fixed) and "
-        f"{certain_value(second)} (free), as in Table 6.1 but above the measured "
-        f"{fixed['measured [Hz]']:g} and {free['measured [Hz]']:g}\u00a0Hz; Table 6.2 "
-        + ("agrees, too." if same else "does not."),
+        f"{certain_value(second)} (free): Table 6.1 agrees, Table 6.2 "
+        f"{'does, too' if same else 'does not'}; measured were {fixed['measured [Hz]']:g} and "
+        f"{free['measured [Hz]']:g}\u00a0Hz.",
         [
             *figures,
             page.value("shafts for the measured frequency, fixed, over tabled", fixed[needs]),
