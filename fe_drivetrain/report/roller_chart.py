@@ -56,7 +56,7 @@ def roller_chart(caption: str, bearing: Bearing, loads: Floats) -> Chart:
     for one in coloured[:1]:
         one["marker"]["showscale"] = True
     words = ", rows from upwind, outermost, to downwind" if len(rows) > 1 else ""
-    drawn = chart(caption, traces, f"looking downwind{words}", "")
+    drawn = chart(caption, traces, f"looking downwind{words}", "up")
     hidden = ("showticklabels", "showgrid", "zeroline", "showline")
     bare = dict.fromkeys(hidden, False) | {"ticks": ""}
     drawn.figure["layout"]["xaxis"] |= {**bare, "constrain": "domain"}
