@@ -95,11 +95,10 @@ def state_needed(
     others = [row for row in needed if str(row["level"]) != level]
     enough = next(one for one in answers if one.name == level)
     finest = answers[-1]
-    ends = (
-        f"{str(others[0]['question']).partition(' [')[0]} needs {others[0]['level']}"
-        if others
-        else "no question needs another"
-    )
+    subject = "torsional masses" if level == "torsional" else level
+    ends = f"{len(others)} need other levels"
+    if len(others) == 1:
+        ends = f"{str(others[0]['question']).partition(' [')[0]} needs {others[0]['level']}"
     machine_name = machine.title.partition(" (")[0]
     figures = [
         page.value(
@@ -113,7 +112,7 @@ def state_needed(
     ]
     page.answer(
         f"Which level of detail do questions on the {machine_name} need?",
-        f"The level of {level} settles {count} of {len(needed)} questions within "
+        f"{subject.capitalize()} settle {count} of {len(needed)} questions within "
         f"{100 * TOLERANCE:g}\u00a0% of the finest level; {ends}.",
         [
             *figures[:5],
