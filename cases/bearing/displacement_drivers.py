@@ -67,7 +67,7 @@ def answer(page: Page, first: Record) -> None:
     overhanging = first["of these with overhanging moment [%]"]
     holds = overhanging == 100.0 and force < -CLEAR and abs(thrust) < NONE
     ends = (
-        "as the thesis states"
+        f"with thrust {thrust:.2f}, as good as none, as the thesis states"
         if holds
         else f"with thrust {thrust:.2f}, not none as the thesis states"
     )
