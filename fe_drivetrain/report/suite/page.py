@@ -53,6 +53,8 @@ class Look(ChartParts, total=False):
         Key of a curve, and that of its band, which is drawn as error bars.
     chosen : int
         Number of the record that is good enough: its points are marked.
+    chosen_curve : str
+        Name of the curve that was chosen: its points are drawn as large stars.
     """
 
     log: str
@@ -62,6 +64,7 @@ class Look(ChartParts, total=False):
     axis: str
     bands: Mapping[str, str]
     chosen: int
+    chosen_curve: str
 
 
 class Page(Findings):
@@ -250,6 +253,9 @@ class Page(Findings):
         traces = curves(rows, x, keys, by, mode, look.get("bands"))
         if "chosen" in look:
             traces.append(ring(rows[look["chosen"]], x, keys))
+        for one in traces:
+            if one["name"] == look.get("chosen_curve"):
+                one["marker"] = {"size": 16, "symbol": "star"}
         ends = rounded([min(column(rows, x)), max(column(rows, x))])
         traces += [
             trace(name, ends, [value, value], line={"dash": "dot"})
