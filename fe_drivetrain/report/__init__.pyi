@@ -3,6 +3,7 @@ from .charts import chart as chart
 from .charts import crosses as crosses
 from .charts import density_chart as density_chart
 from .charts import heat_map as heat_map
+from .charts import mark_events as mark_events
 from .charts import marked as marked
 from .charts import trace as trace
 from .environment import environment as environment

@@ -83,6 +83,49 @@ def instead_of_chart(caption: str, traces: Sequence[Any], x: str, y: str) -> str
     return f"{caption}: {y} {value} at {x} {at}, the only point of this run."
 
 
+def mark_events(item: Chart, events: Mapping[str, float]) -> Chart:
+    """A chart with a named vertical line at each event.
+
+    Parameters
+    ----------
+    item : Chart
+        Whose horizontal axis is not logarithmic.
+    events : dict of str to float
+        What happens, and where on the horizontal axis.
+    """
+    lines = [
+        {
+            "type": "line",
+            "x0": at,
+            "x1": at,
+            "yref": "paper",
+            "y0": 0,
+            "y1": 1,
+            "line": {"color": "#7a7a7a", "width": 1.5, "dash": "dash"},
+        }
+        for at in events.values()
+    ]
+    names = [
+        {
+            "text": name,
+            "x": at,
+            "yref": "paper",
+            # one below the other, so that neighbours can be read
+            "y": 1.0 - 0.07 * (place % 3),
+            "xanchor": "left",
+            "yanchor": "top",
+            "showarrow": False,
+        }
+        for place, (name, at) in enumerate(events.items())
+    ]
+    layout = item.figure["layout"]
+    more = {
+        "shapes": [*layout.get("shapes", []), *lines],
+        "annotations": [*layout.get("annotations", []), *names],
+    }
+    return item.model_copy(update={"figure": {**item.figure, "layout": {**layout, **more}}})
+
+
 def density_chart(
     caption: str, right: ArrayLike, up: ArrayLike, unit: str, bins: int = 60
 ) -> Chart:
