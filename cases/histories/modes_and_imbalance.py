@@ -7,6 +7,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
+from fe_drivetrain.common.typeset import MINUS
 from fe_drivetrain.report import chart, mark_events, trace
 from fe_drivetrain.report.number_text import certain_value
 from fe_drivetrain.report.suite import Page, Record, Run
@@ -139,7 +140,7 @@ def show(
     page.data("amplitudes", rows)
     turn = speed / (2.0 * np.pi)
     lines = {"1P": turn, "3P": 3.0 * turn, "flap": modes["flap"]}
-    lines |= {"edge - 1P": modes["edge"] - turn, "edge + 1P": modes["edge"] + turn}
+    lines |= {f"edge {MINUS} 1P": modes["edge"] - turn, "edge + 1P": modes["edge"] + turn}
     for k, unit in ((1, "kN^2/Hz"), (4, "(kN m)^2/Hz"), (0, "kN^2/Hz")):
         drawn = chart(
             spectrum_of(k),

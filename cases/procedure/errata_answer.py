@@ -13,7 +13,7 @@ APART = "How many times as large as right what PROTEST prints is"
 #: Places whose numbers are asked for most, and what each is of in a word or two.
 MOST = {
     "section 4.6.2.3, stiffness = torque / angle_rel": "stiffness of drivetrain C [MN m/rad]",
-    "Eq 1": "inertia by Eq 1 over J*",
+    "Eq 1": "inertia by Eq 1, over the right one",
     "Fig. 4-14": "mean turbulence of Fig. 4-14 [%]",
     "Eq 5.1, inertia": "inertia of the pitch drive by Eq 5.1 [kg m^2]",
     "Eq 5.1, a shutdown": "largest torque of the pitch motor [N m]",
@@ -29,7 +29,7 @@ def sizes(rows: Sequence[Record]) -> Chart:
         for row in rows
         if (ratio := row["printed / right"]) is not None and abs(float(ratio)) < LARGEST_RATIO
     ]
-    points = trace("printed over right", [r for _, r in shown], [0.0] * len(shown), True)
+    points = trace("printed over right", [r for _, r in shown], [0.0] * len(shown), True, marker={"size": 11})
     points |= {"y": [name for name, _ in shown], "x": rounded([r for _, r in shown])}
     found = chart(APART, [points], "printed over right, in size [-]", "", "x")
     found.figure["layout"] |= {
