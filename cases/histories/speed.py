@@ -109,14 +109,19 @@ def answer(page: Page, first: Mapping[str, float], counted: float) -> None:
     beside = "no other package is installed to compare with"
     if peers:
         name, ratio = min(peers.items(), key=lambda peer: peer[1])
-        faster = f"{ratio:.2g} times as fast as" if ratio >= 1.0 else f"{1 / ratio:.2g} times behind"
+        faster = (
+            f"{ratio:.2g} times as fast as" if ratio >= 1.0 else f"{1 / ratio:.2g} times behind"
+        )
         beside = f"{faster} the fastest other package ({name.partition(',')[0]})"
     page.answer(
         "How fast are load cycles counted, and how much memory do long histories take?",
         f"Cycles are counted at {counted / 1e6:.2g}\u00a0million samples a second, {beside}.",
         [
             page.value(
-                "rainflow counting [million samples/s]", counted / 1e6, at_least=GOAL / 1e6, by="goal"
+                "rainflow counting [million samples/s]",
+                counted / 1e6,
+                at_least=GOAL / 1e6,
+                by="goal",
             ),
             *(page.value(f"speed over {name}", ratio) for name, ratio in peers.items()),
             page.value("loops of ten minutes at 20 Hz [ms]", 1e3 * SIZES[0] / first["load loops"]),

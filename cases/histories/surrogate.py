@@ -159,7 +159,9 @@ def answer(
         f"Of OpenFAST's quantities {before:.0f}\u00a0% are beyond the default surrogate's seeds, "
         f"{after:.0f}\u00a0% with all modes and tower shadow, most in {most}.",
         [
-            page.value("quantities beyond all modes' seeds [%]", after, beside=before, by="default"),
+            page.value(
+                "quantities beyond all modes' seeds [%]", after, beside=before, by="default"
+            ),
             *(
                 over_openfast(page, rows, name, starts)
                 for starts in ("My, DEL of m = 4", "My, standard", "Mx, DEL of m = 4", "Fx, mean")

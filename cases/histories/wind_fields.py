@@ -86,8 +86,7 @@ def run(run: Run, page: Page) -> None:
             {
                 "points over the diameter": (count - 1) * ROTOR.radius / REACH,
                 "My, error of rms [%]": 100.0 * float(error.std() / finest.loads[:, 4].std()),
-                DAMAGE: 100.0
-                * abs(equivalent(loads[count]) / equivalent(finest) - 1.0),
+                DAMAGE: 100.0 * abs(equivalent(loads[count]) / equivalent(finest) - 1.0),
             }
         )
     page.section("Points of the grid")

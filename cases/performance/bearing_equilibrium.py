@@ -109,11 +109,11 @@ def answer(page: Page, rows: list[Record], made: float, error: float) -> None:
         f"{on_rings:.0f}\u00a0s.",
         [
             page.value("1.728 million steps, 30 laminae [s]", seconds, beside=GOAL, by="goal"),
-            page.value(
-                "the same on flexible rings [s]", on_rings, beside=FLEXIBLE_GOAL, by="goal"
-            ),
+            page.value("the same on flexible rings [s]", on_rings, beside=FLEXIBLE_GOAL, by="goal"),
             page.value("steps a second, 30 laminae", float(rows[0]["steps a second"])),
-            page.value("steps a second by a table of reduced loads", float(table["steps a second"])),
+            page.value(
+                "steps a second by a table of reduced loads", float(table["steps a second"])
+            ),
             page.value("error of that table, median of the peak roller [%]", error),
             page.value("time to make the table [s]", made),
         ],
@@ -201,7 +201,11 @@ def show(
         for row in rows
     }
     times = bars(
-        BY_LEVEL, {"median": seconds}, "time [s]", 0.1 * min(seconds.values()), ends={"median": ends}
+        BY_LEVEL,
+        {"median": seconds},
+        "time [s]",
+        0.1 * min(seconds.values()),
+        ends={"median": ends},
     )
     page.add(mark_events(times, {"goal": GOAL, "goal on flexible rings": FLEXIBLE_GOAL}))
     page.table(

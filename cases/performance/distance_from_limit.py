@@ -286,12 +286,16 @@ def answer(page: Page, goals: list[Record], rates: list[float]) -> None:
     over = float(mine[0]["measured"])
     page.answer(
         "How far is a solve from the time in which memory moves its bytes?",
-        f"At {mine[0]['unknowns']:,} unknowns the iterations take {over:.2g} times the time in "
-        f"which memory moves their bytes; {reached} of {len(goals)} goals are reached.",
+        f"{BENCHMARKS[str(first)]().title}, {mine[0]['unknowns']:,} unknowns: iterations take "
+        f"{over:.2g} times what memory needs for their bytes; {reached} of {len(goals)} goals are "
+        "reached.",
         [
             *(
                 page.value(
-                    str(row["goal"]), float(row["measured"]), beside=float(row["at most"]), by="goal"
+                    str(row["goal"]),
+                    float(row["measured"]),
+                    beside=float(row["at most"]),
+                    by="goal",
                 )
                 for row in mine
             ),
@@ -304,13 +308,6 @@ def answer(page: Page, goals: list[Record], rates: list[float]) -> None:
         hero=OVER_FLOOR,
         cautions=["Small problems fit into caches, and may be faster than their floor."],
     )
-    for name, mine in grouped(goals, "problem"):
-        over, set_up, assembly = (row["measured"] for row in mine[-len(GOALS) :])
-        page.say(
-            f"{BENCHMARKS[name]().title}, {mine[-1]['unknowns']:,} unknowns: the iterations take "
-            f"{over:.1f} times the floor of their bytes, set-up {set_up:.2f} and assembly "
-            f"{assembly:.2f} of their time."
-        )
 
 
 def method(solved: Solved) -> list[str]:

@@ -29,7 +29,9 @@ def sizes(rows: Sequence[Record]) -> Chart:
         for row in rows
         if (ratio := row["printed / right"]) is not None and abs(float(ratio)) < LARGEST_RATIO
     ]
-    points = trace("printed over right", [r for _, r in shown], [0.0] * len(shown), True, marker={"size": 11})
+    points = trace(
+        "printed over right", [r for _, r in shown], [0.0] * len(shown), True, marker={"size": 11}
+    )
     points |= {"y": [name for name, _ in shown], "x": rounded([r for _, r in shown])}
     found = chart(APART, [points], "printed over right, in size [-]", "", "x")
     found.figure["layout"] |= {

@@ -136,8 +136,12 @@ def answer(page: Page, rows: list[Record], noisy: list[Record]) -> None:
         f"{formatted(high, 2)} times the truth.",
         [
             page.judged("resonance, Eq 4: stiffness", "stiffness by Eq 4", "closed form"),
-            page.value("lowest damping by methods A to C, over the truth", low, beside=1.0, by="truth"),
-            page.value("highest damping by methods A to C, over the truth", high, beside=1.0, by="truth"),
+            page.value(
+                "lowest damping by methods A to C, over the truth", low, beside=1.0, by="truth"
+            ),
+            page.value(
+                "highest damping by methods A to C, over the truth", high, beside=1.0, by="truth"
+            ),
             page.value(
                 "damping by fits of spectra, sensors with noise, over the truth",
                 noisy[0][OF[1]],

@@ -109,9 +109,7 @@ def run(run: Run, page: Page) -> None:
             "Loads of the pitch bearing are held at constant values: only motion and inertia vary."
         ],
     )
-    page.text(
-        "Not given by these models: " + ", ".join(dict.fromkeys(missing)) + "."
-    )
+    page.text("Not given by these models: " + ", ".join(dict.fromkeys(missing)) + ".")
     page.assume("nacelle: weight, place behind the tower's axis", "80, 0.8", "t, m", "assumed")
     page.assume("hub: before the tower's axis, above its top", "3.5, 2", "m", "assumed")
 

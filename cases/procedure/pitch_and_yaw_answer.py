@@ -10,10 +10,7 @@ SHUTDOWN = "Torque of the pitch motor over a shutdown from 0 to 70 degrees"
 
 def answer(page: Page, counts: Floats) -> None:
     """State the torque of a shutdown, by Eq 5.1 as printed and with its signs put right."""
-    right, printed = (
-        float(row["largest torque [N m]"])
-        for row in page.tables["shutdown"]
-    )
+    right, printed = (float(row["largest torque [N m]"]) for row in page.tables["shutdown"])
     hottest = max(float(row["thermal torque of 600 s [N m]"]) for row in page.tables["pitching"])
     (yawing,) = page.tables["yawing"]
     page.answer(

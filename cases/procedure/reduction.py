@@ -165,9 +165,7 @@ def levels(run: Run, page: Page, machine: Machine) -> Record:
         ]
         if caption == BY_LEVEL:
             bound = [100.0 * TOLERANCE] * 2
-            points.append(
-                trace("allowed", [min(ends), max(ends)], bound, line={"dash": "dot"})
-            )
+            points.append(trace("allowed", [min(ends), max(ends)], bound, line={"dash": "dot"}))
         page.chart(caption, points, "time [s]", error, ("x", "y"))
     times = np.arange(0.0, SECONDS[run.quick], STEP)
     shown = slice(0, round(2.0 / STEP))

@@ -5,7 +5,13 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.procedure.swept_modes import Sweep, run_up_peak, swept_response
 from fe_drivetrain.common import Floats
-from fe_drivetrain.comparison import ConvergenceInTime, InTime, converge_in_time, peak_between, round_off
+from fe_drivetrain.comparison import (
+    ConvergenceInTime,
+    InTime,
+    converge_in_time,
+    peak_between,
+    round_off,
+)
 from fe_drivetrain.dynamics import (
     Loads,
     System,

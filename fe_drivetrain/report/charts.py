@@ -302,9 +302,7 @@ def bars(
     return figure
 
 
-def _spread(
-    values: Mapping[str, float], ends: Mapping[str, tuple[float, float]]
-) -> dict[str, Any]:
+def _spread(values: Mapping[str, float], ends: Mapping[str, tuple[float, float]]) -> dict[str, Any]:
     """Error bars of horizontal bars; none where nothing is said to spread."""
     if not ends:
         return {}
