@@ -7,8 +7,8 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
-from fe_drivetrain.comparison import ConvergenceInTime, InTime, converge_in_time
 from fe_drivetrain.common.typeset import MINUS
+from fe_drivetrain.comparison import ConvergenceInTime, InTime, converge_in_time
 from fe_drivetrain.report import density_chart
 from fe_drivetrain.report.answer import Claim, KeyFigure
 from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
@@ -281,8 +281,7 @@ def answer(page: Page, changes: dict[str, Record], agreed: Sequence[str], histor
 def beside_slow(page: Page, row: Record) -> KeyFigure:
     """A quantity of the tuned controller beside that of the slow one."""
     slow, change, error = (
-        float(row[key])  # type: ignore[arg-type]
-        for key in ("slow, mean", "tuned less slow", "its standard error")
+        float(row[key]) for key in ("slow, mean", "tuned less slow", "its standard error")
     )
     band = 2.0 * error if math.isfinite(error) else None
     name = str(row["quantity"])

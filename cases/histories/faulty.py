@@ -50,17 +50,12 @@ def run(run: Run, page: Page) -> None:
 
 def answer(page: Page, sampled: list[Record], spoilt: list[Record], change: float) -> None:
     """State what the slowest sampling, the largest spike and the residue do to loads."""
-    slowest = min(sampled, key=lambda row: float(row["samples per 6P"]))  # type: ignore[arg-type]
+    slowest = min(sampled, key=lambda row: float(row["samples per 6P"]))
     samples, seen = (
-        float(slowest[key])  # type: ignore[arg-type]
-        for key in ("samples per 6P", "line of 6P appears at [Hz]")
+        float(slowest[key]) for key in ("samples per 6P", "line of 6P appears at [Hz]")
     )
-    largest = max(float(row[SIZE]) for row in spoilt)  # type: ignore[arg-type]
-    shallow, steep = (
-        float(row[SPOILT])  # type: ignore[arg-type]
-        for row in spoilt
-        if row[SIZE] == largest
-    )
+    largest = max(float(row[SIZE]) for row in spoilt)
+    shallow, steep = (float(row[SPOILT]) for row in spoilt if row[SIZE] == largest)
     page.answer(
         "What do slow sampling, a spike or an open end do to counted loads?",
         f"With {samples:.3g} samples a period 6P appears at {seen:.2g}\u00a0Hz, not "

@@ -76,7 +76,7 @@ def run(run: Run, page: Page) -> None:
 
 def answer(page: Page, rigid: Record, spoilt: Record, seeds: int) -> None:
     """State what imbalance adds to 1P of the side force, and where the edge mode is seen."""
-    before, after = (float(row["Fy, 1P [kN]"]) for row in (rigid, spoilt))  # type: ignore[arg-type]
+    before, after = (float(row["Fy, 1P [kN]"]) for row in (rigid, spoilt))
     below, above = (
         page.judged(
             f"peak of the side force one turn {side} the edge mode",

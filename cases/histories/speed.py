@@ -109,9 +109,8 @@ def answer(page: Page, first: Mapping[str, float], counted: float) -> None:
     beside = "no other package is installed to compare with"
     if peers:
         name, ratio = min(peers.items(), key=lambda peer: peer[1])
-        faster = (
-            f"{ratio:.2g} times as fast as" if ratio >= 1.0 else f"{1 / ratio:.2g} times behind"
-        )
+        slower = f"{1 / ratio:.2g} times slower than"
+        faster = f"{ratio:.2g} times as fast as" if ratio >= 1.0 else slower
         beside = f"{faster} the fastest other package ({name.partition(',')[0]})"
     page.answer(
         "How fast are load cycles counted, and how much memory do long histories take?",

@@ -145,14 +145,14 @@ def answer(
     page: Page, name: str, counts: Sequence[Record], rows: Sequence[Record], seeds: int
 ) -> None:
     """State what OpenFAST has beyond the default surrogate, and beyond the fullest one."""
-    of = sum(int(c["of"]) for c in counts if c["model"] == ALL)  # type: ignore[arg-type]
+    of = sum(int(c["of"]) for c in counts if c["model"] == ALL)
     before, after = (
-        100.0 / of * sum(int(c["all"]) for c in counts if c["model"] == model)  # type: ignore[arg-type]
+        100.0 / of * sum(int(c["all"]) for c in counts if c["model"] == model)
         for model in (DEFAULT, ALL)
     )
     most = max(
         FAMILIES,
-        key=lambda family: sum(int(c[family]) for c in counts if c["model"] == ALL),  # type: ignore[arg-type]
+        key=lambda family: sum(int(c[family]) for c in counts if c["model"] == ALL),
     )
     page.answer(
         "How near are the surrogate's hub loads to those of OpenFAST?",
@@ -192,9 +192,9 @@ def over_openfast(page: Page, rows: Sequence[Record], name: str, starts: str) ->
     )
     return page.value(
         str(row["quantity"]),
-        float(row["surrogate"]),  # type: ignore[arg-type]
-        float(row["scatter of seeds"]),  # type: ignore[arg-type]
-        beside=float(row["OpenFAST"]),  # type: ignore[arg-type]
+        float(row["surrogate"]),
+        float(row["scatter of seeds"]),
+        beside=float(row["OpenFAST"]),
         by="OpenFAST",
     )
 

@@ -128,14 +128,14 @@ def answer(page: Page, rows: list[Record], enough: list[Record], finest: int) ->
     points, spread, damage = "points over the diameter", "My, error of rms [%]", DAMAGE
     first, last = rows[0], rows[-1]
     found = (
-        f"{float(enough[0][points]):.2g} points over the rotor's diameter keep"  # type: ignore[arg-type]
+        f"{float(enough[0][points]):.2g} points over the rotor's diameter keep"
         if enough
-        else f"Not even {float(last[points]):.2g} points over the rotor's diameter keep"  # type: ignore[arg-type]
+        else f"Not even {float(last[points]):.2g} points over the rotor's diameter keep"
     )
     page.answer(
         "How fine a grid of wind do hub loads need?",
         f"{found} the equivalent load of My within {100 * ENOUGH:g}\u00a0%; with "
-        f"{float(first[points]):.2g} it is {float(first[damage]):.2g}\u00a0% off.",  # type: ignore[arg-type]
+        f"{float(first[points]):.2g} it is {float(first[damage]):.2g}\u00a0% off.",
         [
             page.value(
                 f"equivalent load of My, error with {last[points]:.2g} points [%]",

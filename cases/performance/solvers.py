@@ -9,6 +9,7 @@ from scipy import sparse
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.performance import cost_fit
+from fe_drivetrain.cases.performance.solver_answer import ALLOWED, MANY, SHARED, TIMES, answer
 from fe_drivetrain.common import Floats, Times, timed_runs
 from fe_drivetrain.drivetrain_file import MATERIALS, library_scene
 from fe_drivetrain.elasticity.interfaces import eliminate, fixed, rigid_face, rigid_point
@@ -29,17 +30,10 @@ from fe_drivetrain.report import Chart, chart, error_bars, marked, trace
 from fe_drivetrain.report.suite import Page, Record, Run, column, goal, grouped
 from fe_drivetrain.shafts.response import build_model, mesh_scene
 
-MANY = 12  # right-hand sides
 ENDS = f"set-up and {MANY}, least [s]", "in all [s]", "most [s]"
-TIMES = f"Set-up and {MANY} right-hand sides; a symbol for each solid; bars: all runs"
 
 #: A solver predicted to need more than this is left out of the grid [s].
 TIME_LIMIT = 6.0
-
-#: Goals: choices within this of the best are as good, since from run to run times differ by that
-#: much; and how much longer many right-hand sides take than one.
-ALLOWED = 1.5
-SHARED = 4.0
 
 #: Systems of the grid on which constants of the cost model are fitted; the others only test them.
 FITTED = 8
@@ -188,42 +182,6 @@ def run(run: Run, page: Page) -> None:
     with run.step("stopping"):
         check_stopping(page, run.quick)
     answer(page, choices, max(ratio))
-
-
-def answer(page: Page, choices: list[Record], shared: float) -> None:
-    """State how far the choice of `auto` is from the fastest solver, at the worst."""
-    worst = max(choices, key=lambda row: float(row["times the best"]))
-    ratio = float(worst["times the best"])
-    good = sum(float(row["times the best"]) <= ALLOWED for row in choices)
-    rule = (
-        "always within run-to-run scatter"
-        if good == len(choices)
-        else f"{worst['best']} wins by {ratio:.2g} times on {worst['unknowns']} unknowns"
-    )
-    estimates = [check for check in page.checks if check.check == "at least"]
-    page.answer(
-        "Does auto choose the fastest solver, and does it stop when it should?",
-        f"The solver that auto chooses is within {ALLOWED:g} times the fastest in {good} of "
-        f"{len(choices)} cases; {rule}.",
-        [
-            page.value(
-                "time of auto's choice over the best, worst", ratio, beside=ALLOWED, by="goal"
-            ),
-            page.value(
-                f"choices within {ALLOWED:g} times the best", good, beside=len(choices), by="all"
-            ),
-            page.value(
-                f"multigrid, {MANY} right-hand sides over one", shared, beside=SHARED, by="goal"
-            ),
-            page.judged(
-                min(estimates, key=lambda check: check.computed).quantity,
-                "estimated over true energy error, least",
-                "direct solution",
-            ),
-        ],
-        hero=TIMES,
-        cautions=[f"Times of one solver differ by up to {ALLOWED:g} times from run to run."],
-    )
 
 
 def measured(run: Run, repeats: int) -> tuple[list[Problem], list[dict[str, Timing]]]:

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fe_drivetrain.cases.performance.study_page import BOUNDS, errors_caption, percent
 from fe_drivetrain.cases.performance.studies import Study
+from fe_drivetrain.cases.performance.study_page import BOUNDS, errors_caption, percent
 from fe_drivetrain.cases.references.stiffness_choices import CURVED, P1, STRAIGHT
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.suite import Page, Record
@@ -67,8 +67,8 @@ def verdict(study: Study) -> str:
             )
     least = float(study.error(0).min())
     return (
-        f"{name}: not one choice is within {percent(BOUNDS[0])}; the best of these meshes has an error "
-        f"of {100 * least:.2g} %.".replace(" %", "\u00a0%")
+        f"{name}: not one choice is within {percent(BOUNDS[0])}; the best mesh has an error of "
+        f"{100 * least:.2g}\u00a0%."
     )
 
 

@@ -419,8 +419,7 @@ def used(rows: Sequence[Record]) -> dict[str, float]:
     shares: dict[str, float] = {}
     for row in rows:
         exact, ours, allowed = (
-            float(row[key])  # type: ignore[arg-type]
-            for key in ("exact or printed", "ours", "allowed difference")
+            float(row[key]) for key in ("exact or printed", "ours", "allowed difference")
         )
         name = f"{row['check']}, {row['of']}"
         share = 100.0 * abs(ours - exact) / allowed if allowed else 0.0

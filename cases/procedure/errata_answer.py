@@ -2,8 +2,7 @@
 
 from collections.abc import Sequence
 
-from fe_drivetrain.common.arrays import rounded
-from fe_drivetrain.report import chart, mark_events, trace
+from fe_drivetrain.report import chart, trace
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite import Page, Record
@@ -29,10 +28,9 @@ def sizes(rows: Sequence[Record]) -> Chart:
         for row in rows
         if (ratio := row["printed / right"]) is not None and abs(float(ratio)) < LARGEST_RATIO
     ]
-    points = trace(
-        "printed over right", [r for _, r in shown], [0.0] * len(shown), True, marker={"size": 11}
-    )
-    points |= {"y": [name for name, _ in shown], "x": rounded([r for _, r in shown])}
+    ratios = [ratio for _, ratio in shown]
+    points = trace("printed over right", ratios, [0.0] * len(shown), True, marker={"size": 11})
+    points |= {"y": [name for name, _ in shown]}
     found = chart(APART, [points], "printed over right, in size [-]", "", "x")
     found.figure["layout"] |= {
         "height": 150 + 26 * len(shown),
@@ -48,16 +46,11 @@ def answer(page: Page, rows: Sequence[Record]) -> None:
     wrong = [row for row in rows if row["what it is"] != AGREES]
     numbers = [row for row in wrong if row["as printed"] is not None]
     by_place = {str(row["where"]): row for row in numbers if row["where"] in MOST}
-    stiffness, inertia = (
-        float(by_place[where]["printed / right"])  # type: ignore[arg-type]
-        for where in list(MOST)[:2]
-    )
+    stiffness, inertia = (float(by_place[where]["printed / right"]) for where in list(MOST)[:2])
     page.answer(
         "Which statements of PROTEST do not hold, and what do they change?",
-        f"{len(wrong)} places of PROTEST do not hold, {len(numbers)} change a number: its stiffness "
-        f"is {1.0 / stiffness:.3g} times too small, its inertia {inertia:.2g} times too large."
-        if stiffness < 1.0 < inertia
-        else f"{len(wrong)} places of PROTEST do not hold, and {len(numbers)} change a number.",
+        f"{len(wrong)} places of PROTEST do not hold, {len(numbers)} change a number: its "
+        f"stiffness is {times_off(stiffness)}, its inertia {times_off(inertia)}.",
         [
             page.value("places that change a number", len(numbers), beside=len(wrong), by="all"),
             *(beside_printed(page, name, by_place[where]) for where, name in MOST.items()),
@@ -72,7 +65,14 @@ def answer(page: Page, rows: Sequence[Record]) -> None:
     )
 
 
+def times_off(ratio: float) -> str:
+    """How far a printed value is from the right one, of which it is `ratio` times, in words."""
+    if ratio < 1.0:
+        return f"{1.0 / ratio:.2g} times too small"
+    return f"{ratio:.2g} times too large"
+
+
 def beside_printed(page: Page, name: str, row: Record) -> KeyFigure:
     """A right value beside what is printed."""
-    right, printed = (float(row[key]) for key in ("put right", "as printed"))  # type: ignore[arg-type]
+    right, printed = (float(row[key]) for key in ("put right", "as printed"))
     return page.value(name, right, beside=printed, by="PROTEST")

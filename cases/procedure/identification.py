@@ -128,7 +128,7 @@ def answer(page: Page, rows: list[Record], noisy: list[Record]) -> None:
     )
     printed = [float(row[OF[1]]) for row in shown if row["method"][0] in "ABC"]
     low, high = min(printed), max(printed)
-    right = 0.8 < low and high < 1.2
+    right = low > 0.8 and high < 1.2
     page.answer(
         "Do PROTEST's equations identify a drivetrain's stiffness, damping and inertia?",
         f"Eq 4 finds the stiffness within {stiffness:.1g}\u00a0%; methods A to C "

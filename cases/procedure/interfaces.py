@@ -83,7 +83,7 @@ def answer(page: Page, worst: Record, peaks: ConvergenceInTime) -> None:
     component, _, unit = str(worst["component"]).partition(" ")
     unit = unit.strip("[]")
     place = f"{component} at the {worst['interface']}"
-    moves, rests = (float(worst[f"{model}: deviation"]) for model in ("dynamics", "statics"))  # type: ignore[arg-type]
+    moves, rests = (float(worst[f"{model}: deviation"]) for model in ("dynamics", "statics"))
     small = rests < 0.1 * moves
     page.answer(
         "Do statics suffice for the loads at a drivetrain's interfaces?",
@@ -96,7 +96,7 @@ def answer(page: Page, worst: Record, peaks: ConvergenceInTime) -> None:
             ),
             page.value(
                 "the same by finite elements [" + unit + "]",
-                float(worst["finite elements: deviation"]),  # type: ignore[arg-type]
+                float(worst["finite elements: deviation"]),
                 beside=rests,
                 by="statics",
             ),

@@ -77,9 +77,9 @@ def run(run: Run, page: Page) -> None:
 
 def answer(page: Page, rows: list[Record], damping: list[Record]) -> None:
     """State which case loads and reverses the shaft most, and the damping that stops give."""
-    largest = max(rows, key=lambda row: float(row["largest [N m]"]))  # type: ignore[arg-type]
-    reversed_by = min(rows, key=lambda row: float(row["shaft torque, least [N m]"]))  # type: ignore[arg-type]
-    most, least = float(largest["largest [N m]"]), float(reversed_by["shaft torque, least [N m]"])  # type: ignore[arg-type]
+    largest = max(rows, key=lambda row: float(row["largest [N m]"]))
+    reversed_by = min(rows, key=lambda row: float(row["shaft torque, least [N m]"]))
+    most, least = float(largest["largest [N m]"]), float(reversed_by["shaft torque, least [N m]"])
     turned = "reversed" if largest is reversed_by else f"{reversed_by['case']} reverses it"
     page.answer(
         "Which measurement case loads the shaft most, and what do stops tell of damping?",
@@ -91,8 +91,8 @@ def answer(page: Page, rows: list[Record], damping: list[Record]) -> None:
             *(
                 page.value(
                     f"damping ratio after {row['case']}, {name} [%]",
-                    100.0 * float(row[key]),  # type: ignore[arg-type]
-                    beside=100.0 * float(row["true"]),  # type: ignore[arg-type]
+                    100.0 * float(row[key]),
+                    beside=100.0 * float(row["true"]),
                     by="truth",
                 )
                 for row in damping

@@ -85,8 +85,8 @@ def answer(
 ) -> None:
     """State how oval the ring becomes, by how the hub holds it."""
     short, long = rows[0], rows[-1]
-    near, far = (float(row["oval w2 [µm]"]) for row in (short, long))  # type: ignore[arg-type]
-    holds = [float(row["case [mm]"]) for row in cases if row["the core fails first"] == "no"]  # type: ignore[arg-type]
+    near, far = (float(row["oval w2 [µm]"]) for row in (short, long))
+    holds = [float(row["case [mm]"]) for row in cases if row["the core fails first"] == "no"]
     page.answer(
         "How oval does a pitch bearing become under its root moment, and who decides it?",
         f"A moment of 3\u00a0MN\u00a0m makes the ring oval by {near:.0f}\u00a0µm on a stiff hub, "
@@ -101,9 +101,9 @@ def answer(
             ),
             page.value(
                 "largest roller load over that of rigid rings",
-                float(long["over that of rigid rings"]),  # type: ignore[arg-type]
+                float(long["over that of rigid rings"]),
             ),
-            page.value("largest roller load [kN]", float(long["largest roller load [kN]"])),  # type: ignore[arg-type]
+            page.value("largest roller load [kN]", float(long["largest roller load [kN]"])),
             page.value(
                 "largest strain at eight gauges [µm/m]",
                 1e6 * strains[0],

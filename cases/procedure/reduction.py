@@ -89,7 +89,7 @@ def answer(page: Page, level: Record, found: list[Influence], trials: list[Trial
         [
             page.value(
                 f"error of the peak torque, {level['level']} [%]",
-                float(level["error of its peak [%]"]),  # type: ignore[arg-type]
+                float(level["error of its peak [%]"]),
                 at_most=100.0 * TOLERANCE,
             ),
             page.value(
@@ -109,7 +109,7 @@ def answer(page: Page, level: Record, found: list[Influence], trials: list[Trial
         hero=BY_LEVEL,
         cautions=[
             f"Over the whole dip {level['level']} are "
-            f"{float(level['error of the torque [%]']):.2g} % off in root mean square.",  # type: ignore[arg-type]
+            f"{float(level['error of the torque [%]']):.2g} % off in root mean square.",
             "Errors are those against the finest level of the ladder, not against a measurement.",
             "Damping is assumed: the table of the machine has none.",
         ],

@@ -106,7 +106,7 @@ def answer(
 ) -> None:
     """State how many resonances operation meets, and what a run-up makes of them."""
     met = sum(m.verdict == "resonance" for m in found)
-    highest = max(float(row[SHARE]) for row in swept)  # type: ignore[arg-type]
+    highest = max(float(row[SHARE]) for row in swept)
     page.answer(
         "Which resonances does the drivetrain pass in operation, and how far are they excited?",
         f"From {SPEEDS[0]:g} to {SPEEDS[1]:g}\u00a0rpm {met} excitations meet a mode; a run-up in "
@@ -122,13 +122,13 @@ def answer(
             *(
                 page.value(
                     f"peak in the run-up over that at rest, mode of {row['mode [Hz]']:.3g} Hz",
-                    float(row[SHARE]),  # type: ignore[arg-type]
+                    float(row[SHARE]),
                 )
                 for row in swept
             ),
             page.value(
                 "peak comes later than the crossing by [Hz]",
-                max(float(row[LATE]) for row in swept),  # type: ignore[arg-type]
+                max(float(row[LATE]) for row in swept),
             ),
             page.value(PEAK, series.value(PEAK), series.step_band(PEAK)),
         ],
