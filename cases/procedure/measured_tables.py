@@ -72,17 +72,36 @@ def run(run: Run, page: Page) -> None:
         why="tower top loads follow from those of the hub",
         source="PROTEST 2010, Table 6.4",
     )
+    draw_torque(page, made.history.time, channels["motor torque"])
+    missing = [str(row["channel"]) for row in rows if not row["given"]]
+    answer(page, (given, rows), mandatory, float(by_name["motor torque"]["rms of 600 s"]), motor)
+    page.text("Not given by these models: " + ", ".join(dict.fromkeys(missing)) + ".")
+    page.assume("nacelle: weight, place behind the tower's axis", "80, 0.8", "t, m", "assumed")
+    page.assume("hub: before the tower's axis, above its top", "3.5, 2", "m", "assumed")
+
+
+def draw_torque(page: Page, time: Floats, motor: Floats) -> None:
+    """Torque of the pitch motor, its largest value marked."""
     page.section("Torque of the pitch motor")
-    largest = float(made.history.time[int(np.abs(channels["motor torque"]).argmax())])
+    largest = float(time[int(np.abs(motor).argmax())])
     torque = chart(
         TORQUE,
-        [trace("pitch motor", made.history.time, channels["motor torque"])],
+        [trace("pitch motor", time, motor)],
         "time [s]",
         "torque [N m]",
     )
     page.add(mark_events(torque, {"largest": largest}))
-    missing = [str(row["channel"]) for row in rows if not row["given"]]
-    thermal = float(by_name["motor torque"]["rms of 600 s"])
+
+
+def answer(
+    page: Page,
+    channels: tuple[list[Record], list[Record]],
+    mandatory: list[Record],
+    thermal: float,
+    motor: float,
+) -> None:
+    """State how many channels are given, and the torque of the pitch motor."""
+    given, rows = channels
     page.answer(
         "Which quantities of PROTEST's pitch and yaw tables do simulations give?",
         f"Simulations give {len(given)} of {len(rows)} channels; the pitch motor has "
@@ -109,9 +128,6 @@ def run(run: Run, page: Page) -> None:
             "Loads of the pitch bearing are held at constant values: only motion and inertia vary."
         ],
     )
-    page.text("Not given by these models: " + ", ".join(dict.fromkeys(missing)) + ".")
-    page.assume("nacelle: weight, place behind the tower's axis", "80, 0.8", "t, m", "assumed")
-    page.assume("hub: before the tower's axis, above its top", "3.5, 2", "m", "assumed")
 
 
 def show_tables(page: Page, tables: dict[str, list[Record]]) -> None:

@@ -197,6 +197,12 @@ def on_necks(
             source="statics of the inner ring",
         )
         shapes.append((mesh, held, found.rollers[0]))
+    show_necks(page, rows)
+    return rows, shapes
+
+
+def show_necks(page: Page, rows: list[Record]) -> None:
+    """Waves of the ring over the length of the neck, and that a longer one holds it less."""
     page.section("Ring on its hub")
     page.table("A root moment of 3 MN m on a ring whose hub is held at the end of a neck", rows)
     page.sweep(
@@ -214,7 +220,6 @@ def on_necks(
         why="what holds the ring round is farther away",
         source="the hub holds the ring",
     )
-    return rows, shapes
 
 
 def on_the_outside(

@@ -11,6 +11,7 @@ from test_report import results, verdict
 from tiny_case import Result, check_one
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.report.answer import Answer, KeyFigure
 from fe_drivetrain.report.history import (
     FILE,
     Point,
@@ -46,6 +47,14 @@ def test_a_recorded_run_is_read_as_it_was(tmp_path: Path) -> None:
     assert second.quick
     assert second.computed is None
     assert past_runs(tmp_path, "g/other") == []
+
+
+def test_a_key_figure_that_is_no_check_is_what_a_run_is_told_by(tmp_path: Path) -> None:
+    figure = KeyFigure(name="peers that are beaten", value=7.0, unit="", status="none")
+    answer = Answer(question="q?", verdict="v.", figures=[figure], status="none")
+    record_run(tmp_path, found(1.02).model_copy(update={"answer": answer}))
+    (one,) = past_runs(tmp_path)
+    assert (one.quantity, one.computed, one.checks) == ("peers that are beaten", 7.0, 2)
 
 
 def test_only_runs_of_the_same_mode_and_settings_are_compared(tmp_path: Path) -> None:
