@@ -138,6 +138,20 @@ def counted(name: str, model: str, found: Sequence[Difference]) -> Record:
     }
 
 
+ASKED_FOR = {
+    "My, DEL of m = 4": "equivalent tilt moment, m = 4",
+    "My, standard": "standard deviation of the tilt moment",
+    "Mx, DEL of m = 4": "equivalent torque, m = 4",
+    "Fx, mean": "mean thrust",
+}
+"""Quantities of the answer, by how their names begin, and what they are called there."""
+IN_WORDS = {
+    "Fx": "axial force",
+    "Fy, Fz, radial": "radial force",
+    "Mx": "torque",
+    "My, Mz, bending": "bending moment",
+    "loops": "load loops",
+}
 BEYOND = "Quantities of OpenFAST that a surrogate's seeds do not reach, by load"
 
 
@@ -157,18 +171,15 @@ def answer(
     page.answer(
         "How near are the surrogate's hub loads to those of OpenFAST?",
         f"Of OpenFAST's quantities {before:.0f}\u00a0% are beyond the default surrogate's seeds, "
-        f"{after:.0f}\u00a0% with all modes and tower shadow, most in {most}.",
+        f"{after:.0f}\u00a0% with all modes and tower shadow, most in {IN_WORDS[most]}.",
         [
             page.value(
                 "quantities beyond all modes' seeds [%]", after, beside=before, by="default"
             ),
-            *(
-                over_openfast(page, rows, name, starts)
-                for starts in ("My, DEL of m = 4", "My, standard", "Mx, DEL of m = 4", "Fx, mean")
-            ),
+            *(over_openfast(page, rows, name, *named) for named in ASKED_FOR.items()),
             page.judged(
                 f"{name}, {ALL}: mean of Fz, the rotor's weight across the shaft",
-                "mean of Fz",
+                "mean vertical force",
                 "OpenFAST",
             ),
         ],
@@ -181,7 +192,9 @@ def answer(
     )
 
 
-def over_openfast(page: Page, rows: Sequence[Record], name: str, starts: str) -> KeyFigure:
+def over_openfast(
+    page: Page, rows: Sequence[Record], name: str, starts: str, words: str
+) -> KeyFigure:
     """A quantity of the fullest surrogate beside that of OpenFAST."""
     row = next(
         row
@@ -190,8 +203,9 @@ def over_openfast(page: Page, rows: Sequence[Record], name: str, starts: str) ->
         and row["model"] == ALL
         and str(row["quantity"]).startswith(starts)
     )
+    unit = str(row["quantity"]).rpartition(" [")[2]
     return page.value(
-        str(row["quantity"]),
+        f"{words} [{unit}",
         float(row["surrogate"]),
         float(row["scatter of seeds"]),
         beside=float(row["OpenFAST"]),
