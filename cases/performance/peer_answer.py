@@ -36,7 +36,8 @@ def answer(
         "How fast is this project beside other finite-element tools, at equal error?",
         verdict(known) or alone(benchmarks[0], found[0]),
         figures[:6],
-        hero=time_caption(benchmarks[0]),
+        # a chart of one point becomes a sentence
+        hero=time_caption(benchmarks[0]) if sum(bool(row.found) for row in found[0]) > 1 else "",
         cautions=[
             "Each tool is used as its documentation has it, with the same threads; others can be "
             "tuned further.",
