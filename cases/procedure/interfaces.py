@@ -34,6 +34,14 @@ MASSES = {"shaft": 8e3, "gearbox": 15e3, "generator": 7e3}  # kg
 RATIO, SECONDS = 100.0, 2e-3  # -, damping over stiffness [s]
 SPEED = 1.9  # rad/s, rated
 HIDDEN = ("levels", "seconds", "table", "rms of 600 s", "rank")
+IN_WORDS = {
+    "Fx": "axial force",
+    "Fy": "side force",
+    "Fz": "vertical force",
+    "Mx": "torque",
+    "My": "tilt moment",
+    "Mz": "yaw moment",
+}
 IN_TIME = "The load in which inertia matters most, by model"
 SHOWN = ("main bearing", "gearbox entrance")
 SECONDS_BETWEEN = 30.0  # of the history in which the motion is resolved between samples
@@ -82,12 +90,12 @@ def answer(page: Page, worst: Record, peaks: ConvergenceInTime) -> None:
     """State where inertia matters most, and peaks at the interfaces."""
     component, _, unit = str(worst["component"]).partition(" ")
     unit = unit.strip("[]")
-    place = f"{component} at the {worst['interface']}"
+    place = f"{IN_WORDS[component]} at the {worst['interface']}"
     moves, rests = (float(worst[f"{model}: deviation"]) for model in ("dynamics", "statics"))
     small = rests < 0.1 * moves
     page.answer(
         "Do statics suffice for the loads at a drivetrain's interfaces?",
-        f"{place} scatters by {value_text(moves, unit)} in the dynamics and by "
+        f"{place.capitalize()} scatters by {value_text(moves, unit)} in the dynamics and by "
         f"{value_text(rests, unit)} in statics, which "
         f"{'does not suffice' if small else 'suffices'} there.",
         [
