@@ -279,12 +279,12 @@ def show(
         ],
     )
     both = {"this project": "ours", "scikit-fem": "scikit-fem"}
-    groups, ends = {}, {}
+    groups: dict[str, dict[str, float]] = {}
+    ends: dict[str, dict[str, tuple[float, float]]] = {}
     for name, of in both.items():
-        keys = [f"{of}, {what} [ms]" for what in ("least", "median", "most")]
-        times = {IN_WORDS[row["element"]]: [row[key] for key in keys] for row in rows}
-        groups[name] = {element: median for element, (_, median, _) in times.items()}
-        ends[name] = {element: (least, most) for element, (least, _, most) in times.items()}
+        low, middle, high = (f"{of}, {what} [ms]" for what in ("least", "median", "most"))
+        groups[name] = {IN_WORDS[row["element"]]: row[middle] for row in rows}
+        ends[name] = {IN_WORDS[row["element"]]: (row[low], row[high]) for row in rows}
     shortest = min(min(values.values()) for values in groups.values())
     page.add(bars(BY_ELEMENT, groups, "time [ms]", 0.3 * shortest, ends=ends))
     page.table(

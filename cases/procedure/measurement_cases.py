@@ -83,8 +83,8 @@ def answer(page: Page, rows: list[Record], damping: list[Record]) -> None:
     turned = "reversed" if largest is reversed_by else f"{reversed_by['case']} reverses it"
     page.answer(
         "Which measurement case loads the shaft most, and what do stops tell of damping?",
-        f"{largest['what']} loads the shaft most: {most / MEAN:.2f} times rated torque, {turned} "
-        f"to {formatted(least / MEAN, 2)} times.",
+        f"{str(largest['what']).capitalize()} loads the shaft most: {most / MEAN:.2f} times rated "
+        f"torque, {turned} to {formatted(least / MEAN, 2)} times.",
         [
             page.value("largest torque of the shaft [N m]", most, beside=MEAN, by="rated"),
             page.value("least torque of the shaft [N m]", least, beside=MEAN, by="rated"),
