@@ -2,6 +2,7 @@ from .charts import bars as bars
 from .charts import chart as chart
 from .charts import crosses as crosses
 from .charts import density_chart as density_chart
+from .charts import error_bars as error_bars
 from .charts import heat_map as heat_map
 from .charts import mark_events as mark_events
 from .charts import marked as marked

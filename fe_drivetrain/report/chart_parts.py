@@ -57,7 +57,7 @@ def add_parts(figure: dict[str, Any], parts: ChartParts) -> None:
         if ends is not None:
             layout[axis]["range"] = [_on(layout[axis], end) for end in ends]
     if parts.get("events"):
-        _mark_events(layout, parts["events"])
+        draw_events(layout, parts["events"])
     if parts.get("beside"):
         _add_strip(figure, parts["beside"])
 
@@ -67,8 +67,16 @@ def _on(axis: Mapping[str, Any], value: float) -> float:
     return math.log10(value) if axis.get("type") == "log" else float(value)
 
 
-def _mark_events(layout: dict[str, Any], events: Mapping[str, float]) -> None:
-    """A dashed line for each event, its name along it."""
+def draw_events(layout: dict[str, Any], events: Mapping[str, float]) -> None:
+    """Draw a dashed line for each event, its name along it.
+
+    Parameters
+    ----------
+    layout : dict
+        Of Plotly, which takes the lines; the lists that it had are not changed.
+    events : dict of str to float
+        What happens, and where on the horizontal axis.
+    """
     line = {"color": _GREY, "width": 1.5, "dash": "dash"}
     layout["shapes"] = [
         *layout.get("shapes", ()),
@@ -82,7 +90,7 @@ def _mark_events(layout: dict[str, Any], events: Mapping[str, float]) -> None:
         *(
             {
                 "text": name,
-                "x": _on(layout["xaxis"], float(x)),
+                "x": _on(layout.get("xaxis", {}), float(x)),
                 "xanchor": "right",
                 "yref": "paper",
                 "y": 1,

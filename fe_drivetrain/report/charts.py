@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats, rounded
 from fe_drivetrain.common.components import MOTIONS
-from fe_drivetrain.report.chart_parts import ChartParts, add_parts
+from fe_drivetrain.report.chart_parts import ChartParts, add_parts, draw_events
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.results import Chart
 
@@ -28,6 +28,28 @@ def trace(name: str, x: ArrayLike, y: ArrayLike, points: bool = False, **more: A
 def marked(name: str, x: ArrayLike, y: ArrayLike) -> Any:
     """A line with its points marked."""
     return trace(name, x, y, mode="lines+markers")
+
+
+def error_bars(axis: str, least: ArrayLike, at: ArrayLike, most: ArrayLike) -> dict[str, Any]:
+    """What `trace` takes to show how far each point may lie to either side.
+
+    Parameters
+    ----------
+    axis : str
+        Along which the points spread: "x" or "y".
+    least, at, most : array_like
+        (n,) ends of the spread, and where the points are.
+    """
+    low, middle, high = (np.ravel(np.asarray(v, dtype=float)) for v in (least, at, most))
+    spread = {
+        "type": "data",
+        "symmetric": False,
+        "array": rounded(np.maximum(high - middle, 0.0)),
+        "arrayminus": rounded(np.maximum(middle - low, 0.0)),
+        "thickness": 1.5,
+        "width": 4,
+    }
+    return {f"error_{axis}": spread}
 
 
 def crosses(name: str, x: ArrayLike, y: ArrayLike | None = None) -> Any:
@@ -95,41 +117,13 @@ def mark_events(item: Chart, events: Mapping[str, float]) -> Chart:
     Parameters
     ----------
     item : Chart
-        Whose horizontal axis is not logarithmic.
+        To which they are added.
     events : dict of str to float
         What happens, and where on the horizontal axis.
     """
-    lines = [
-        {
-            "type": "line",
-            "x0": at,
-            "x1": at,
-            "yref": "paper",
-            "y0": 0,
-            "y1": 1,
-            "line": {"color": "#7a7a7a", "width": 1.5, "dash": "dash"},
-        }
-        for at in events.values()
-    ]
-    names = [
-        {
-            "text": name,
-            "x": at,
-            "yref": "paper",
-            # one below the other, so that neighbours can be read
-            "y": 1.0 - 0.07 * (place % 3),
-            "xanchor": "left",
-            "yanchor": "top",
-            "showarrow": False,
-        }
-        for place, (name, at) in enumerate(events.items())
-    ]
-    layout = item.figure["layout"]
-    more = {
-        "shapes": [*layout.get("shapes", []), *lines],
-        "annotations": [*layout.get("annotations", []), *names],
-    }
-    return item.model_copy(update={"figure": {**item.figure, "layout": {**layout, **more}}})
+    layout = dict(item.figure["layout"])
+    draw_events(layout, events)
+    return item.model_copy(update={"figure": {**item.figure, "layout": layout}})
 
 
 def density_chart(
@@ -242,6 +236,7 @@ def bars(
     x: str,
     least: float | None = None,
     stacked: bool = False,
+    ends: Mapping[str, Mapping[str, tuple[float, float]]] | None = None,
 ) -> Chart:
     """Horizontal bars, labels down the side in their order.
 
@@ -257,6 +252,8 @@ def bars(
         The axis is logarithmic, and this stands for all that is smaller.
     stacked : bool
         Bars of one label stand on one another, not side by side.
+    ends : dict or None
+        Least and most of values, by colour and label: how far they spread.
     """
     data = [
         {
@@ -265,6 +262,7 @@ def bars(
             "name": name,
             "y": list(values),
             "x": rounded([v if least is None else max(v, least) for v in values.values()]),
+            **_spread(values, (ends or {}).get(name, {})),
         }
         for name, values in groups.items()
     ]
@@ -277,6 +275,15 @@ def bars(
         "yaxis": {"autorange": "reversed", "automargin": True},
     }
     return figure
+
+
+def _spread(values: Mapping[str, float], ends: Mapping[str, tuple[float, float]]) -> dict[str, Any]:
+    """Error bars of horizontal bars; none where nothing is said to spread."""
+    if not ends:
+        return {}
+    pairs = [ends.get(label, (value, value)) for label, value in values.items()]
+    low, high = zip(*pairs, strict=True)
+    return error_bars("x", low, list(values.values()), high)
 
 
 def _places(values: ArrayLike | Sequence[str]) -> list[Any]:

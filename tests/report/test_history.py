@@ -11,6 +11,7 @@ from test_report import results, verdict
 from tiny_case import Result, check_one
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.report.answer import Answer, KeyFigure
 from fe_drivetrain.report.headline import values_found
 from fe_drivetrain.report.history import (
     FILE,
@@ -79,6 +80,14 @@ def test_a_history_of_an_older_program_takes_the_next_run(tmp_path: Path) -> Non
         database.execute("ALTER TABLE runs DROP COLUMN status")
     record_run(tmp_path, found(1.0))
     assert [(run.verdict, run.computed) for run in past_runs(tmp_path)] == [("", 1.0)] * 2
+
+
+def test_a_key_figure_that_is_no_check_is_what_a_run_is_told_by(tmp_path: Path) -> None:
+    figure = KeyFigure(name="peers that are beaten", value=7.0, unit="", status="none")
+    answer = Answer(question="q?", verdict="v.", figures=[figure], status="none")
+    record_run(tmp_path, found(1.02).model_copy(update={"answer": answer}))
+    (one,) = past_runs(tmp_path)
+    assert (one.quantity, one.computed, one.checks) == ("peers that are beaten", 7.0, 2)
 
 
 def test_only_runs_of_the_same_mode_and_settings_are_compared(tmp_path: Path) -> None:

@@ -44,7 +44,7 @@ def test_there_are_as_many_loads_as_rollers() -> None:
 def test_the_chosen_curve_of_a_sweep_is_a_star() -> None:
     page = Page()
     rows = [{"model": name, "t": t, "e": 1.0} for name in ("fast", "exact") for t in (1.0, 2.0)]
-    page.sweep("errors", rows, "t", "e", by="model", points=True, chosen="exact", table=False)
+    page.sweep("errors", rows, "t", "e", by="model", points=True, chosen_curve="exact", table=False)
     (chart,) = (item for item in page.sections[0].items if isinstance(item, Chart))
     symbols = {t["name"]: t.get("marker", {}).get("symbol") for t in chart.figure["data"]}
     assert symbols == {"fast": None, "exact": "star"}
