@@ -12,6 +12,7 @@ from fe_drivetrain.bearing import (
     equilibrium,
     equilibrium_on_races,
 )
+from fe_drivetrain.bearing.races import SOFTEST_LEFT_OUT
 from fe_drivetrain.bearing_life.rings import races_of_revolution
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability.random_loads import random_loads
@@ -36,12 +37,11 @@ HARMONICS = (2, 4, 6, 9, 12, 18, 27, 36)
 ALL = 144
 SHARE = "softness left out over that of a contact"
 ERROR = "error, 95th percentile [%]"
+FAILS = "plain Newton fails [%]"
 LEFT_OUT = f"Error of the peak roller over the {SHARE}; shaded: within 1 %"
 
 #: What a choice of shapes or harmonics may change of peak rollers.
 ENOUGH = 0.01
-#: Softness of shapes that the program leaves out, over that of a contact.
-CHOSEN = 0.05
 
 
 @lru_cache(maxsize=64)
@@ -107,7 +107,7 @@ def run(run: Run, page: Page) -> None:
 def answer(page: Page, rows: list[Record], share: float, waves: float) -> None:
     """State the shapes and harmonics that peak rollers need, and whether all cases converge."""
     lost = sum(row["not converged"] for row in rows)
-    worst = max(rows, key=lambda row: row["plain Newton fails [%]"])
+    worst = max(rows, key=lambda row: row[FAILS])
     page.answer(
         "How finely does a flexible ring have to be described for its rollers?",
         f"Peak rollers keep {100 * ENOUGH:.0f}\u00a0% without ring shapes below {share:g} of a "
@@ -117,19 +117,17 @@ def answer(page: Page, rows: list[Record], share: float, waves: float) -> None:
             page.value(
                 "softness of shapes left out, over a contact's, up to which peaks keep 1 %",
                 share,
-                at_least=CHOSEN,
+                at_least=SOFTEST_LEFT_OUT,
                 by="program",
             ),
             page.value("harmonics that the worst wall needs for 1 %", waves),
             page.value("load cases that damped Newton leaves unsolved", lost, at_most=0.0),
-            page.value(
-                "loads that fail without damping, worst [%]", worst["plain Newton fails [%]"]
-            ),
+            page.value("loads that fail without damping, worst [%]", worst[FAILS]),
             page.value("most steps of damped Newton", max(row["steps, worst"] for row in rows)),
         ],
         hero=LEFT_OUT,
         cautions=[
-            f"Without damping most cases are lost at {formatted(worst['load over nominal'])} of "
+            f"Without damping most cases are lost at {formatted(worst['load over nominal'], 2, '')} of "
             f"nominal loads, a clearance of {worst['clearance [µm]']:.0f}\u00a0µm and a wall of "
             f"{worst['wall [mm]']:.0f}\u00a0mm."
         ],
@@ -172,7 +170,7 @@ def damping(wall: float, clearance: float, factor: float, n: int) -> Record:
         "wall [mm]": 1e3 * wall,
         "clearance [µm]": 1e6 * clearance,
         "load over nominal": factor,
-        "plain Newton fails [%]": 100.0 * float(1.0 - plain.converged.mean()),
+        FAILS: 100.0 * float(1.0 - plain.converged.mean()),
         "not converged": int((~damped.converged).sum()),
         "steps, worst": int(damped.iterations.max()),
         "shapes": damped.shapes.shape[1],
