@@ -128,8 +128,8 @@ def answer(page: Page, rows: list[Record], share: float, waves: float) -> None:
         hero=LEFT_OUT,
         cautions=[
             "Without damping most cases are lost at "
-            f"{formatted(worst['load over nominal'], 2, '')} of nominal loads, a clearance of {worst['clearance [µm]']:.0f}\u00a0µm and a wall of "
-            f"{worst['wall [mm]']:.0f}\u00a0mm."
+            f"{formatted(worst['load over nominal'], 2, '')} of nominal loads, a clearance of "
+            f"{worst['clearance [µm]']:.0f}\u00a0µm and a wall of {worst['wall [mm]']:.0f}\u00a0mm."
         ],
     )
 

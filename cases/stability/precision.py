@@ -89,9 +89,9 @@ def run(run: Run, page: Page) -> None:
     page.text(
         "The reference is the solution with residuals of 80 bits on the same mesh; an error above "
         "1 leaves no digit. Assembly, sums and factor are all in the precision named; the nodes "
-        "have coordinates of 32 bits in each, so that all solve the same solid. The number of elements does not depend "
-        "on the length from three diameters on: their own error is the same in each precision and "
-        "not in the comparison."
+        "have coordinates of 32 bits in each, so that all solve the same solid. The number of "
+        "elements does not depend on the length from three diameters on: their own error is the "
+        "same in each precision and not in the comparison."
     )
     page.data("slenderness and relative errors", rows)
     answer(page, rows, highest)

@@ -63,7 +63,7 @@ LINEAR = {"8 nodes": "8-node hexahedra", "tetrahedra of 4 nodes": "4-node tetrah
 WORST = "cantilever, {}, 1 across: stiffness over the exact one where it is worst, L/D = {:g}"
 TIPS = (
     f"Error of the tip stiffness over length by depth, {ALONG} elements along; dashed: remedies; "
-    "shaded: 8 nodes, {} across, within 1 %"
+    "shaded, if anywhere: 8 nodes, {} across, within 1 %"
 )
 OVER_DEPTH = "length of an element over the depth of a square bar [-]"
 SECOND_ORDER = "elements of second order"

@@ -118,11 +118,11 @@ def answer(page: Page, points: list[sweep.Point], patches: list[int], within: fl
         "L/D from which the program refuses": refused,
     }
     page.answer(
-        "How slender may a solid shaft be?",
-        "No solver keeps four digits of a bent solid shaft beyond L/D\u00a0=\u00a0"
+        "How slender may a shaft of solid elements be?",
+        "No solver keeps four digits of a bent shaft in solid elements beyond L/D\u00a0=\u00a0"
         f"{formatted(last if digits is None else digits)}; multigrid stops at "
         f"{formatted(multigrid or 0.0)}, and the program "
-        + ("never refuses." if refused is None else f"refuses from {formatted(refused)} on."),
+        + ("never refuses." if refused is None else f"refuses from {formatted(refused)}."),
         [
             *(page.value(name, value) for name, value in ends.items() if value is not None),
             page.judged(PATCHES, "most over least iterations of patches", "theorem"),
@@ -131,8 +131,8 @@ def answer(page: Page, points: list[sweep.Point], patches: list[int], within: fl
         ],
         hero=ERRORS,
         cautions=[
-            f"Of shafts in {ALONG} elements along: longer elements condition a shaft better. A beam "
-            "has no such limit."
+            f"Shafts here are {ALONG} elements long; longer elements condition a shaft better, and "
+            "a beam has no such limit."
         ],
     )
 

@@ -206,9 +206,9 @@ def answer(page: Page, rows: list[Record], inside_out: float) -> None:
         f"holds to {alone}, and the program refuses meshes below {formatted(FLATTEST, 2, '')}.",
         [
             *(page.value(name, at) for name, at in ends.items() if at is not None),
-            page.value("flatness below which the program refuses", FLATTEST),
+            page.value("flatness below which the program refuses a mesh", FLATTEST),
             page.value(
-                "worst error of bending, slivers inside out, unnoticed [%]", 100 * inside_out
+                "worst error of bending, slivers inside out, unnoticed [%]", 100 * abs(inside_out)
             ),
             page.judged(REMEDIED, "error of bending once slivers are taken out", "exact"),
         ],
