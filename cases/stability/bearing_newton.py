@@ -9,6 +9,7 @@ from fe_drivetrain.bearing import Bearing, RollerRow, catalogue_bearing, equilib
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability.random_loads import random_loads
 from fe_drivetrain.common import InputError
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.comparison import decades
 from fe_drivetrain.report import rolling_elements
 from fe_drivetrain.report.number_text import formatted
@@ -69,7 +70,7 @@ def answer(
     )
     plain = (
         f"without damping up to {worst:.0f}\u00a0% fail once the clearance is "
-        f"{formatted(least_failing, 2)} times the rollers' deflection."
+        f"{formatted(rounded([least_failing], 2)[0], unit='')} times the rollers' deflection."
         if least_failing is not None
         else "without damping none fails either, 0\u00a0%."
     )

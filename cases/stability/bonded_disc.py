@@ -34,8 +34,8 @@ COARSER = (0.08, 0.09, 0.1)
 QUICK_COARSER = (0.1,)
 
 REMEDIED = (
-    "disc, curved tetrahedra of 10 nodes, averaged: stiffness over the exact one where it is worst, "
-    "nu = {:g}"
+    "disc, curved tetrahedra of 10 nodes, averaged: stiffness over the exact one where it is "
+    "worst, nu = {:g}"
 )
 DISC_ERRORS = (
     "Error of the bonded disc's stiffness in tetrahedra over bulk by shear modulus; shaded: plain "

@@ -11,6 +11,7 @@ from pydantic import ValidationError
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import layers
 from fe_drivetrain.common import Bools, Floats
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.comparison import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
 from fe_drivetrain.drivetrain_file import Material
 from fe_drivetrain.report import crosses, trace
@@ -305,7 +306,8 @@ def answer(
     }
 
     def least(ends: dict[str, float | None]) -> float:
-        return min((end for end in ends.values() if end is not None), default=math.inf)
+        known = [end for end in ends.values() if end is not None]
+        return rounded([min(known)], 2)[0] if known else math.inf
 
     page.answer(
         "How different may the moduli of bodies that share a load be?",

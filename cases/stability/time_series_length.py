@@ -7,6 +7,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability import streamed_series as series
 from fe_drivetrain.common import Floats
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.comparison import moments
 from fe_drivetrain.report import marked, trace
 from fe_drivetrain.report.number_text import formatted
@@ -193,7 +194,7 @@ def answer(page: Page, errors: dict[str, Floats], longest: Record, each: float) 
         "How long may a load history be, and how far from zero?",
         f"In chunks {formatted(samples)} samples take {memory:.0f}\u00a0MiB; sums of squares lose "
         "four digits beyond a mean of "
-        f"{formatted(RATIOS[-1] if safe is None else safe, 2, '')} deviations, chunks "
+        f"{formatted(rounded([safe or RATIOS[-1]], 2)[0], unit='')} deviations, chunks "
         + ("never." if merged <= SAFE else "as well."),
         figures,
         hero=MEMORY,

@@ -37,8 +37,8 @@ SLOPE = "average acceleration: error of a mesh force over the steps in its perio
 STABLE = "linear acceleration: longest stable step over the period"
 GROWN = "growth in a step of linear acceleration, longest step tried"
 ERRORS = (
-    "Largest error of the mesh force, of its swing, over the steps in a mesh period; shaded: within "
-    f"{100 * ENOUGH:g} %"
+    "Largest error of the mesh force, of its swing, over the steps in a mesh period; shaded: "
+    f"within {100 * ENOUGH:g} %"
 )
 #: 0.551 of the period: sqrt(3) / pi.
 CRITICAL = float(np.sqrt(3.0) / np.pi)

@@ -100,9 +100,9 @@ def answer(page: Page, found: Sweeps, at: tuple[float, float, float, float]) -> 
     parting = float(max(up[:, 1].max(), down[:, 1].max()))
     page.answer(
         "Where do the teeth of a mesh part, and what does a model without backlash miss?",
-        f"Teeth part from {low:.2f} to {high:.2f} of the natural frequency, down to {past:.2f} "
-        f"coming from above; a mesh without backlash peaks at {linear[:, 1].max():.2f}, not "
-        f"{parting:.2f}, mean forces.",
+        f"Teeth part from {low:.2f} ({past:.2f} coming down) to {high:.2f} of the natural "
+        f"frequency; without backlash a mesh peaks at {linear[:, 1].max():.2f} mean forces, not "
+        f"{parting:.2f}.",
         [
             page.value("mesh over natural frequency from which teeth stay in contact", safe),
             page.value("peak force over the mean, with backlash", parting),
