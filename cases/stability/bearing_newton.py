@@ -43,23 +43,23 @@ def run(run: Run, page: Page) -> None:
     with run.step("mechanism"):
         arms = [mechanism(a) for a in decades(-9, -1, 1 if run.quick else 2)]
     check(page, rows, preload)
-    least_failing = state_limits(page, rows, arms)
+    last_safe = state_limits(page, rows, arms)
     sizes, stiff = (np.log(column(preload, k)) for k in ("preload [µm]", "radial stiffness [N/m]"))
     power = float(np.polyfit(sizes, stiff, 1)[0])
-    answer(page, rows, arms, n * len(rows), least_failing)
+    answer(page, rows, arms, n * len(rows), last_safe)
     page.say(
         "With preload or without clearance plain Newton converges, too.",
         "There is no least preload: the stiffness of the unloaded bearing falls with its power "
         f"{power:.2g} only.",
     )
-    show(page, rows, preload, arms, least_failing)
+    show(page, rows, preload, arms, last_safe)
     page.image(
         "The rollers of bearing S", run.sketch(*rolling_elements(catalogue_bearing("bearing_s")))
     )
 
 
 def answer(
-    page: Page, rows: list[Record], arms: list[Record], cases: int, least_failing: float | None
+    page: Page, rows: list[Record], arms: list[Record], cases: int, last_safe: float | None
 ) -> None:
     """State whether damped Newton's method always converges, and from where plain steps do not."""
     lost, worst = sum(column(rows, "not converged")), max(column(rows, FAILS))
@@ -69,9 +69,9 @@ def answer(
         else f"not {formatted(lost)} of {formatted(cases)} random loads"
     )
     plain = (
-        f"without damping up to {worst:.0f}\u00a0% fail once the clearance is "
-        f"{formatted(rounded([least_failing], 2)[0], unit='')} times the rollers' deflection."
-        if least_failing is not None
+        f"without damping up to {worst:.0f}\u00a0% fail beyond a clearance of "
+        f"{formatted(rounded([last_safe], 2)[0], unit='')} times the rollers' deflection."
+        if last_safe is not None
         else "without damping none fails either, 0\u00a0%."
     )
     figures = [
@@ -80,9 +80,9 @@ def answer(
         page.value("most steps of damped Newton", max(column(rows, "steps, worst"))),
         page.value("least arm over pitch radius for small tilts", least_arm(arms)),
     ]
-    if least_failing is not None:
-        name = "clearance over deflection from which loads fail without damping"
-        figures.insert(2, page.value(name, least_failing))
+    if last_safe is not None:
+        name = "clearance over deflection up to which none fails without damping"
+        figures.insert(2, page.value(name, last_safe))
     page.answer(
         "Does the equilibrium of a roller bearing converge, whatever its clearance and load?",
         f"Damped Newton solves {damped}; {plain}",
@@ -138,16 +138,18 @@ def state_limits(page: Page, rows: list[Record], arms: list[Record]) -> float | 
 
     Returns
     -------
-    least_failing : float or None
-        Clearance over deflection from which loads fail; None where none does.
+    last_safe : float or None
+        Clearance over deflection up to which no load fails; None where none does at any.
     """
     worst = max(rows, key=lambda row: row[FAILS])
     tight = [row for row in rows if row["clearance [µm]"] > 0.0]
-    least_failing = min((row[SHARE] for row in tight if row[FAILS] > 0.0), default=None)
+    least = min((row[SHARE] for row in tight if row[FAILS] > 0.0), default=None)
+    safe = [row[SHARE] for row in tight if least is not None and row[SHARE] < least]
+    last_safe = max(safe, default=0.0) if least is not None else None
     page.limit(
         "plain Newton's method on the rollers, in place of a damped one",
         SHARE,
-        high=least_failing,
+        high=last_safe,
         criterion="none of the random loads fails",
         beyond="few rollers carry, as between rigid bodies, and steps jump from one set of them to "
         f"the next: {worst[FAILS]:.0f} % of the cases fail",
@@ -164,7 +166,7 @@ def state_limits(page: Page, rows: list[Record], arms: list[Record]) -> float | 
         program="answers, and refuses the moment where the arm is below 1e-6 of the radius",
         remedy="a bearing that resists tilt, or no moment",
     )
-    return least_failing
+    return last_safe
 
 
 def show(
@@ -172,7 +174,7 @@ def show(
     rows: list[Record],
     preload: list[Record],
     arms: list[Record],
-    least_failing: float | None,
+    last_safe: float | None,
 ) -> None:
     """Show the three sweeps."""
     page.section("Clearance and load")
@@ -184,7 +186,7 @@ def show(
         FAILS,
         by="clearance [µm]",
         log="x",
-        safe=(None, least_failing),
+        safe=(None, last_safe),
         table=False,
     )
     for y in (FAILS, "evaluations, mean"):

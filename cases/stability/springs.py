@@ -195,9 +195,6 @@ def answer(page: Page, errors: Errors, bonded_high: float | None) -> None:
                 "softest spring that is answered [N/m]", found.stiffness[found.answered].min()
             ),
             page.value("answers without four digits and without a warning", missed, at_most=0.0),
-            page.value(
-                "worst error of a beam where the solid answers", errors.beam[found.answered].max()
-            ),
         ],
         hero=ERRORS,
         cautions=[
