@@ -246,7 +246,7 @@ def show(page: Page, settled: list[Record], as_meshed: list[Record]) -> None:
     ]
     of = {nodes: [r for r in as_meshed if r["elements"] == name] for nodes, name in NODES.items()}
     needed = {nodes: round_needed(rows) for nodes, rows in of.items()}
-    worst = {nodes: 100 * np.nanmax(column(rows, "torque lost")) for nodes, rows in of.items()}
+    worst = 100 * np.nanmax(column(of[8], "torque lost"))
     lost, ratio = max(column(settled, "torque lost")), settled[-1]["ratio"]
     page.answer(
         "How fine must the meshes of a tied cylinder be, and how far apart may they be?",
@@ -255,8 +255,9 @@ def show(page: Page, settled: list[Record], as_meshed: list[Record]) -> None:
         + ("nothing" if lost < SETTLED else f"{formatted(100 * lost, 2)}\u00a0%")
         + f" up to {ratio:g}\u00a0:\u00a01.",
         [
-            page.value("worst torque lost, curved facets as meshed [%]", worst[10]),
-            page.value("worst torque lost, straight facets as meshed [%]", worst[8]),
+            page.value(f"curved elements round for {100 * LOST:g} %", needed[10]),
+            page.value(f"straight elements round for {100 * LOST:g} %", needed[8]),
+            page.value("worst torque lost, straight facets as meshed [%]", worst),
             page.value("worst torque lost, nodes settled [%]", 100 * lost, at_most=100 * SETTLED),
             page.value("worst error of torsional stiffness, settled [%]", 100 * max(stiffness)),
             page.value("worst error of the stress, node by node, settled [%]", 100 * node.max()),

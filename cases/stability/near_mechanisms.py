@@ -237,8 +237,8 @@ def show(page: Page, joint: str, found: Softened, low: float) -> None:
 def answer(page: Page, rows: list[Record]) -> None:
     """State how soft the only restraint of a motion may be, and what the program says below."""
     safe = max(column(rows, "least safe"))
-    errors = np.array([[row[f"error of the {motion}"] for motion in MOTIONS] for row in rows])
-    worst, warned = np.nanmax(errors, axis=1), np.array(column(rows, "warnings")) > 0
+    errors = (np.array(column(rows, f"error of the {motion}")) for motion in MOTIONS)
+    worst, warned = np.fmax(*errors), np.array(column(rows, "warnings")) > 0
     silent = int(((worst >= FOUR_DIGITS) & ~warned).sum())
     solved = min(row["ratio"] for row in rows if not row["refused"])
     page.answer(

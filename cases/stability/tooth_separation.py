@@ -104,6 +104,8 @@ def answer(page: Page, found: Sweeps, at: tuple[float, float, float, float]) -> 
         f"frequency; without backlash a mesh peaks at {linear[:, 1].max():.2f} mean forces, not "
         f"{parting:.2f}.",
         [
+            page.value("mesh over natural frequency from which teeth part", low),
+            page.value("the same, coming from higher frequencies", past),
             page.value("mesh over natural frequency from which teeth stay in contact", safe),
             page.value("peak force over the mean, with backlash", parting),
             page.value(
@@ -113,10 +115,6 @@ def answer(page: Page, found: Sweeps, at: tuple[float, float, float, float]) -> 
                 by="backlash",
             ),
             page.value("largest pull over the mean force, spring that pulls", -linear[:, 0].min()),
-            page.value(
-                "largest difference of sweeps up and down over the mean force",
-                np.abs(up[:, 1] - down[:, 1]).max(),
-            ),
         ],
         hero=LARGEST,
         cautions=[
