@@ -97,7 +97,8 @@ def answer(
 
 def least_arm(arms: list[Record]) -> float:
     """Least arm over the pitch radius with a tilt below 10 mrad."""
-    return min(row["arm over pitch radius"] for row in arms if (row["tilt [mrad]"] or 1e9) < 10.0)
+    fine = [row for row in arms if (row["tilt [mrad]"] or 1e9) < 10.0]
+    return float(min(column(fine, "arm over pitch radius")))
 
 
 def check(page: Page, rows: list[Record], preload: list[Record]) -> None:

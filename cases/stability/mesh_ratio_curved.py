@@ -278,7 +278,7 @@ def show(page: Page, settled: list[Record], as_meshed: list[Record]) -> None:
 
 def round_needed(rows: list[Record]) -> int:
     """Elements round a cylinder from which on no tie as meshed loses more than is accepted."""
-    turns = sorted({r["elements round"] for r in rows})
+    turns: list[int] = sorted(set(column(rows, "elements round")))
     bad = [r["elements round"] for r in rows if r["torque lost"] > LOST]
     return min((turn for turn in turns if turn > max(bad, default=0)), default=turns[-1])
 

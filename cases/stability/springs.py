@@ -175,22 +175,23 @@ def answer(page: Page, errors: Errors, bonded_high: float | None) -> None:
     stiff = min(STIFFEST, high or STIFFEST)
     silent = found.answered & ~found.warned & ~(errors.worst < FOUR_DIGITS)
     missed = int(silent[found.stiffness <= STIFFEST].sum())
-    ends = {
-        "softest spring with four digits, spherical bearing": (low, {}),
-        "stiffest spring with four digits, spherical bearing": (high, {"at_least": STIFFEST}),
-        "stiffest spring with four digits, bonded bearing": (bonded_high, {"at_least": STIFFEST}),
-    }
+    softest = "softest spring with four digits, spherical bearing [N/m]"
+    figures = [] if low is None else [page.value(softest, low)]
+    figures += [
+        page.value(
+            f"stiffest spring with four digits, {name} bearing [N/m]", end, at_least=STIFFEST
+        )
+        for name, end in (("spherical", high), ("bonded", bonded_high))
+        if end is not None
+    ]
     page.answer(
         "How soft or stiff may the springs of a gearbox be?",
-        f"Gearbox springs from {newtons(low or found.stiffness[0])} to {newtons(stiff)}, the "
-        "stiffest that a scene may have, keep four digits; softer ones are "
+        f"Gearbox springs from {newtons(low or found.stiffness[0])} to {newtons(stiff)}, "
+        + ("the stiffest that" if stiff == STIFFEST else "less than")
+        + " a scene may have, keep four digits; softer ones are "
         + ("warned of or refused." if missed == 0 else f"wrong without a sign in {missed} cases."),
         [
-            *(
-                page.value(f"{name} [N/m]", end, **limit)
-                for name, (end, limit) in ends.items()
-                if end is not None
-            ),
+            *figures,
             page.value(
                 "softest spring that is answered [N/m]", found.stiffness[found.answered].min()
             ),
