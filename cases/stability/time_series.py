@@ -379,24 +379,8 @@ def show_crossing(page: Page, found: Crossing, theory: float) -> None:
         "error, mean |model - reference| over mean |reference|, counts every newton equally and "
         "needs no cut."
     )
-    page.text(
-        f"The curves are medians of {found.cut.shape[1]} histories: normal samples about a mean, "
-        f"the model with an error of {100 * NOISE:g} % of their standard deviation."
-    )
+    show_percentages(page, found)
     means = found.means
-    page.chart(
-        PERCENTAGES,
-        [
-            marked("mean percentage error", means, np.median(found.percent, axis=1)),
-            trace("its largest of all histories", means, found.percent.max(axis=1)),
-            marked("relative error", means, np.median(found.relative, axis=1)),
-            trace("its largest of all histories ", means, found.relative.max(axis=1)),
-        ],
-        "mean of the reference over its standard deviation",
-        "error [%]",
-        "xy",
-        (found.safe, None),
-    )
     by_theory = found.cut.mean() - theory * (np.log(CUTS) - np.mean(np.log(CUTS)))
     page.chart(
         "At a mean of zero: the mean percentage error against the cut below which samples are left "
@@ -427,6 +411,28 @@ def show_crossing(page: Page, found: Crossing, theory: float) -> None:
             "largest over least of the histories",
             "relative error over expected",
         ],
+    )
+
+
+def show_percentages(page: Page, found: Crossing) -> None:
+    """Chart of both errors over the mean of the reference."""
+    page.text(
+        f"The curves are medians of {found.cut.shape[1]} histories: normal samples about a mean, "
+        f"the model with an error of {100 * NOISE:g} % of their standard deviation."
+    )
+    means = found.means
+    page.chart(
+        PERCENTAGES,
+        [
+            marked("mean percentage error", means, np.median(found.percent, axis=1)),
+            trace("its largest of all histories", means, found.percent.max(axis=1)),
+            marked("relative error", means, np.median(found.relative, axis=1)),
+            trace("its largest of all histories ", means, found.relative.max(axis=1)),
+        ],
+        "mean of the reference over its standard deviation",
+        "error [%]",
+        "xy",
+        (found.safe, None),
     )
 
 
