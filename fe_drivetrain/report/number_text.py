@@ -377,7 +377,10 @@ def band_text(verdict: Verdict) -> str:
 
 def safe_range(limit: Limit) -> str:
     """The safe range of a limit, as a table shows it."""
-    low, high = (None if end is None else formatted(end, 3) for end in (limit.low, limit.high))
+    unit = None if limit.parameter.endswith("]") else ""
+    low, high = (
+        None if end is None else formatted(end, 3, unit) for end in (limit.low, limit.high)
+    )
     if low is None:
         return "the whole sweep" if high is None else f"up to {high}"
     return f"from {low}" if high is None else f"{low} to {high}"
