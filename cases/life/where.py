@@ -139,8 +139,8 @@ def answer(page: Page, thesis: Record, own: Record) -> None:
     other = "there as well" if also else "downwind row not on top"
     page.answer(
         "Where is the life of a main bearing used up?",
-        f"The upwind row does {share:.0f}\u00a0% of the damage, at {places[0]:.0f}°, {stated}; with "
-        f"our choices {ours:.0f}\u00a0%, {other}.",
+        f"The upwind row does {share:.0f}\u00a0% of the damage, at {places[0]:.0f}°, {stated}; "
+        f"with our choices {ours:.0f}\u00a0%, {other}.",
         [
             page.value("damage of the upwind row, thesis's choices [%]", share),
             page.value(upwind, places[0], beside=270.0, by="thesis, bottom"),
