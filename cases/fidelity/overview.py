@@ -3,7 +3,14 @@
 from dataclasses import asdict
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.fidelity.side_by_side import FORCE, QUANTITIES, Compared, compared, show
+from fe_drivetrain.cases.fidelity.side_by_side import (
+    FORCE,
+    QUANTITIES,
+    Compared,
+    compared,
+    hero,
+    show,
+)
 from fe_drivetrain.drivetrain_file import library_scene
 from fe_drivetrain.report.suite import Page, Run
 
@@ -58,6 +65,13 @@ def check(page: Page, one: Compared) -> None:
     )
 
 
+def titled(scene: str) -> str:
+    """A scene's name in words: "IEA 15 MW main shaft"."""
+    words = scene.replace("_15mw_", " 15 MW ").replace("_5mw_", " 5 MW ")
+    words = words.replace("_750kw_", " 750 kW ").replace("_", " ")
+    return words.replace("iea", "IEA").replace("nrel", "NREL")
+
+
 def answer(page: Page, found: list[Compared]) -> None:
     """In how many scenes the beam is enough, and what else counts."""
     bending, torsion, _ = QUANTITIES
@@ -73,13 +87,49 @@ def answer(page: Page, found: list[Compared]) -> None:
     uncertain = [one.scene for one in found if one.changes[FORCE].faces > BEARABLE]
     bare = [one.scene for one in found if one.changes[bending].bare > BEARABLE]
     share = f"{100 * BEARABLE:g} %"
+    worst_bending = max(found, key=lambda one: one.changes[bending].beam)
+    page.answer(
+        "For which shafts is a beam enough?",
+        f"A beam is within {100 * BEARABLE:g}\u00a0% in bending for {len(enough[bending])} of "
+        f"{len(found)} shafts, in torsion for {len(enough[torsion])}; the worst, "
+        f"{titled(worst_bending.scene)}, is {100 * worst_bending.changes[bending].beam:.2g}\u00a0% "
+        "off.",
+        [
+            *(
+                page.value(
+                    f"shafts within {share} in {words}",
+                    len(enough[key]),
+                    beside=len(found),
+                    by="all",
+                )
+                for key, words in (
+                    (bending, "bending"),
+                    (torsion, "torsion"),
+                    (FORCE, "the first bearing's force"),
+                )
+            ),
+            page.value(
+                f"largest error in bending, {titled(worst_bending.scene)} [%]",
+                100 * worst_bending.changes[bending].beam,
+            ),
+            page.value(
+                f"largest error in torsion, {titled(worst.scene)} [%]",
+                100 * worst.changes[torsion].beam,
+            ),
+            page.value("shafts whose housings do more than beam theory", supports),
+        ],
+        hero=hero(bending),
+        cautions=[
+            "Errors are of the shaft's theory alone: supports are the same in both, and may do "
+            "more.",
+            *(
+                [f"In bending a beam is not enough for {', '.join(map(titled, poor))}."]
+                if poor
+                else []
+            ),
+        ],
+    )
     page.say(
-        "A beam in place of the exact shaft changes the hub's bending stiffness by at most "
-        f"{share} in {len(enough[bending])} of {len(found)} scenes"
-        + (f" (not in {', '.join(poor)})" if poor else "")
-        + f", the first bearing's force in {len(enough[FORCE])}, torsion in "
-        f"{len(enough[torsion])}; the most in torsion is "
-        f"{100 * worst.changes[torsion].beam:.2g} %, {worst.scene}.",
         "A beam counts the rings of its bearings as wholly part of the shaft: of the same shafts "
         f"without rings, its bending stiffness has an error of more than {share} in "
         f"{', '.join(bare) or 'no scene'}.",

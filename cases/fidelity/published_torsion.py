@@ -11,6 +11,7 @@ from fe_drivetrain.geometry import (
     Shaft,
 )
 from fe_drivetrain.report import Cell
+from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.suite import Page
 from fe_drivetrain.shafts.beam import Beam, BeamSection, shaft_stiffness
 
@@ -41,8 +42,23 @@ class Published:
     rounding: float = 0.0
 
 
-def beside_published(page: Page, scene: Scene, published: Published) -> None:
-    """The shaft from its front face to a station, ends rigid, beside what the sources say."""
+def beside_published(page: Page, scene: Scene, published: Published) -> KeyFigure:
+    """The shaft from its front face to a station, ends rigid, beside what the sources say.
+
+    Parameters
+    ----------
+    page : Page
+        Takes checks and a section.
+    scene : Scene
+        The scene.
+    published : Published
+        What its sources say.
+
+    Returns
+    -------
+    KeyFigure
+        The stiffness by finite elements, beside the published one.
+    """
     shaft = front_part(scene.shaft, published.to)
     material = scene.material_of("shaft")
     found, coarser = (
@@ -87,6 +103,10 @@ def beside_published(page: Page, scene: Scene, published: Published) -> None:
         f"Torsional stiffness from the {where}",
         rows,
         ["how", "stiffness [N m/rad]", "half width of the band", "over the published"],
+    )
+    title = f"torsional stiffness of the shaft, {published.name} [MN m/rad]"
+    return page.value(
+        title, found / 1e6, band / 1e6, beside=published.value / 1e6, by=published.source
     )
 
 

@@ -164,6 +164,11 @@ _TITLES = {
 }
 
 
+def hero(key: str) -> str:
+    """Caption of the bars of one quantity, by key of `QUANTITIES`."""
+    return f"{QUANTITIES[key]}; beside each scene its length over its largest diameter"
+
+
 def _bars(key: str, found: Sequence[Compared]) -> Chart:
     """Bars of each scene's changes, the stoutest scene at the top."""
     ordered = sorted(found, key=lambda one: one.slenderness)
@@ -174,5 +179,4 @@ def _bars(key: str, found: Sequence[Compared]) -> Chart:
         }
         for part, title in _TITLES.items()
     }
-    caption = f"{QUANTITIES[key]}; beside each scene its length over its largest diameter"
-    return bars(caption, groups, f"change [%]; {_MINIMUM:g} stands for less", least=_MINIMUM)
+    return bars(hero(key), groups, f"change [%]; {_MINIMUM:g} stands for less", least=_MINIMUM)

@@ -222,7 +222,7 @@ def answer(page: Page, rows: list[Record]) -> None:
     little = largest < LITTLE
     page.answer(
         "What does a bored shaft change in the reactions of its main bearing?",
-        f"With {wall} % of the wall a bonded bearing's force changes by {largest:.2g} % on "
+        f"With {wall}\u00a0% of the wall a bonded bearing's force changes by {largest:.2g} % on "
         "average, a spherical one's not at all: the thesis's finding "
         f"{'holds' if little else 'does not hold'}.",
         [

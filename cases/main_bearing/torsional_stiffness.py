@@ -11,7 +11,6 @@ from fe_drivetrain.shafts.response import PLANES
 from fe_drivetrain.studies import Assembly, SeatStiffness
 from fe_drivetrain.studies.solved_assembly import timed_mesh
 
-
 HERO = "K_R by plane and estimator"
 
 

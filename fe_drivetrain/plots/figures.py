@@ -194,8 +194,22 @@ def error_traces(
     errors: Sequence[float],
     tolerance: float,
     chosen: int | None = None,
+    bands: Sequence[float] = (),
 ) -> list[dict[str, Any]]:
-    """Traces of `error_against_time`, for a figure of one's own; the arguments are its.
+    """Traces of `error_against_time`, for a figure of one's own; the other arguments are its.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Names of the models.
+    seconds, errors : sequence of float
+        Time [s] and relative error of each.
+    tolerance : float
+        Allowed error, relative.
+    chosen : int or None
+        Index of the model that is accurate enough, drawn as a star.
+    bands : sequence of float
+        Half width of the uncertainty of each error, drawn as a bar; none where left out, 0 or NaN.
 
     Returns
     -------
@@ -210,7 +224,8 @@ def error_traces(
             "name": names[k],
             "x": rounded([seconds[k]]),
             "y": rounded([100.0 * max(errors[k], MINIMUM)]),
-            "marker": {"size": 14 if k == chosen else 9},
+            "marker": {"size": 17, "symbol": "star"} if k == chosen else {"size": 9},
+            **_error_bar(errors[k], bands[k] if bands else 0.0),
         }
         for k in known
     ]
@@ -221,6 +236,16 @@ def error_traces(
         "line": {"dash": "dash"},
     }
     return [*traces, {"type": "scatter", "mode": "lines", "name": "tolerance", **limit}]
+
+
+def _error_bar(error: float, band: float) -> dict[str, Any]:
+    """Bar of an error's band on a logarithmic axis; nothing without one."""
+    if not band > 0.0:
+        return {}
+    # down to zero would be without end: a decade below the error says that it may be none
+    down = min(band, 0.9 * max(error, MINIMUM))
+    bar = {"type": "data", "symmetric": False, "thickness": 1.5, "width": 4}
+    return {"error_y": {**bar, "array": [100.0 * band], "arrayminus": [100.0 * down]}}
 
 
 def error_against_time(
@@ -245,7 +270,7 @@ def error_against_time(
     tolerance : float
         Allowed relative error.
     chosen : int, optional
-        Index of the model that is good enough, drawn larger.
+        Index of the model that is good enough, drawn as a star.
     title : str
         Title: the quantity that the error is of.
 

@@ -199,10 +199,12 @@ def _level(result: LevelResult, unit: str) -> Record:
 
 
 def _against_time(advice: Advice) -> Chart:
-    traces = error_traces(*advice.ladder, advice.tolerance, advice.chosen)
+    # errors are differences from the last level: its own error is the band of each
+    bands = [advice.top.estimate] * (len(advice.results) - 1) + [0.0]
+    traces = error_traces(*advice.ladder, advice.tolerance, advice.chosen, bands)
     return chart(
-        "Error over time; for the last level its estimated own error. The largest marker is the "
-        f"level that is accurate enough. Errors of zero are drawn at {100 * MINIMUM:g} %",
+        "Error of each level against its time, bars: own error of the last. The star is accurate "
+        f"enough; errors of zero are drawn at {100 * MINIMUM:g} %",
         traces,
         x="time [s]",
         y="error [%]",

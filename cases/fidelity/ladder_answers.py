@@ -1,0 +1,116 @@
+"""The answer of a scene's ladder of model levels: which of them is enough."""
+
+from __future__ import annotations
+
+from fe_drivetrain.report.answer import KeyFigure
+from fe_drivetrain.report.number_text import formatted
+from fe_drivetrain.report.suite import Page, Record
+from fe_drivetrain.shafts.fidelity.adviser import LevelResult
+from fe_drivetrain.studies import AdviseResult
+
+MOST_OTHERS = 2
+"""Levels that are shown beside the one that is enough."""
+
+
+def answer(page: Page, result: AdviseResult, row: Record, torsion: KeyFigure | None) -> None:
+    """State which level is enough, how far it and its neighbours are off, and their times.
+
+    Parameters
+    ----------
+    page : Page
+        Takes the answer.
+    result : AdviseResult
+        All levels.
+    row : Record
+        Of the table of cases: ``question``, and ``asked``, the quantity in words.
+    torsion : KeyFigure or None
+        Torsional stiffness beside a published one.
+    """
+    advice = result.advice
+    chosen, top = result.chosen, advice.top
+    known = top if chosen is None else chosen
+    own = [] if torsion is None else [torsion]
+    page.answer(
+        row["question"],
+        _verdict(result, row["asked"]),
+        [
+            _error(page, known, top, advice.tolerance),
+            *own,
+            *_value(page, result),
+            *(_error(page, one, top) for one in _others(result, known)),
+            page.value(f"time of the {_name(known)} [s]", known.seconds),
+            *([] if known is top else [page.value(f"time of the {_name(top)} [s]", top.seconds)]),
+        ][:6],
+        hero=result.chart().caption,
+        cautions=_cautions(result, known),
+    )
+
+
+def _name(one: LevelResult) -> str:
+    """Title of a level in a sentence: "solid shaft with housings as springs"."""
+    return one.model.title.replace(", ", " with ")
+
+
+def _verdict(result: AdviseResult, asked: str) -> str:
+    """Which level is enough for what is asked."""
+    advice, chosen = result.advice, result.chosen
+    top, share = advice.top, f"{100 * advice.tolerance:g}\u00a0%"
+    own = f"{formatted(100 * top.estimate, 2)}\u00a0%"
+    if chosen is None:
+        return (
+            f"No model is known to give {asked} within {share}: the {_name(top)} itself is known "
+            f"to {own} only."
+        )
+    if chosen is top:
+        nearest = min((one for one in advice.results[:-1]), key=lambda one: one.error, default=None)
+        verdict = f"Only the {_name(top)} gives {asked} within {share}, to {own}"
+        if nearest is None:
+            return f"{verdict}."
+        size = f"{formatted(100 * nearest.error, 2)}\u00a0%"
+        return f"{verdict}; the next best, the {_name(nearest)}, is {size} off."
+    return (
+        f"The {_name(chosen)} is enough for {asked}: {formatted(100 * chosen.error, 2)}\u00a0% "
+        f"from the {_name(top)}, {share} allowed."
+    )
+
+
+def _error(
+    page: Page, one: LevelResult, top: LevelResult, tolerance: float | None = None
+) -> KeyFigure:
+    """Error of a level in percent, of the last one its own; judged where a tolerance is given."""
+    name = f"error of the {_name(one)} [%]"
+    value = 100.0 * (top.estimate if one is top else one.error)
+    band = None if one is top else 100.0 * top.estimate
+    if tolerance is None:
+        return page.value(name, value, band)
+    return page.value(name, value, band, at_most=100.0 * tolerance)
+
+
+def _others(result: AdviseResult, known: LevelResult) -> list[LevelResult]:
+    """Levels beside the one that is enough: the next cheaper ones, or those above it."""
+    results = [one for one in result.advice.results[:-1] if one is not known]
+    place = result.advice.results.index(known)
+    below = [one for one in reversed(results) if result.advice.results.index(one) < place]
+    above = [one for one in results if result.advice.results.index(one) > place]
+    return [*below, *above][:MOST_OTHERS]
+
+
+def _value(page: Page, result: AdviseResult) -> list[KeyFigure]:
+    """The stiffness of the last level with its band; none of reactions, of which there are six."""
+    advice = result.advice
+    if len(advice.top.values) != 1:
+        return []
+    value = float(advice.top.values[0]) / 1e6
+    name = f"stiffness by the {_name(advice.top)} [M{advice.quantity.unit}]"
+    return [page.value(name, value, abs(value) * advice.top.estimate)]
+
+
+def _cautions(result: AdviseResult, known: LevelResult) -> list[str]:
+    """What the level neglects, and what the band of the last one rests on."""
+    cautions = []
+    if known.model.neglects and known is not result.advice.top:
+        cautions.append(f"It neglects {', '.join(known.model.neglects)}.")
+    band = result.advice.top.band
+    if band is not None:
+        cautions.append(f"On the error of the last level: {band.sentence()}.")
+    return cautions
