@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import isfinite
+
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record
@@ -62,16 +64,27 @@ def _verdict(result: AdviseResult, asked: str) -> str:
             f"to {own} only."
         )
     if chosen is top:
-        nearest = min((one for one in advice.results[:-1]), key=lambda one: one.error, default=None)
+        nearest = min(_below(result), key=lambda one: one.error, default=None)
         verdict = f"Only the {_name(top)} gives {asked} within {share}, to {own}"
         if nearest is None:
             return f"{verdict}."
-        size = f"{formatted(100 * nearest.error, 2)}\u00a0%"
-        return f"{verdict}; the next best, the {_name(nearest)}, is {size} off."
+        return f"{verdict}; the next best, the {_name(nearest)}, is {_size(nearest, top)} off."
     return (
-        f"The {_name(chosen)} is enough for {asked}: {formatted(100 * chosen.error, 2)}\u00a0% "
-        f"from the {_name(top)}, {share} allowed."
+        f"The {_name(chosen)} is enough for {asked}: {_size(chosen, top)} from the {_name(top)}, "
+        f"{share} allowed."
     )
+
+
+def _size(one: LevelResult, top: LevelResult) -> str:
+    """Error of a level in words, in the digits that the last level's own error leaves."""
+    if one.error < top.estimate:
+        return f"less than {formatted(100 * top.estimate, 2)}\u00a0%"
+    return f"{formatted(100 * one.error, 2)}\u00a0%"
+
+
+def _below(result: AdviseResult) -> list[LevelResult]:
+    """Levels below the last whose error is known: statics tells only some quantities."""
+    return [one for one in result.advice.results[:-1] if isfinite(one.error)]
 
 
 def _error(
@@ -88,7 +101,7 @@ def _error(
 
 def _others(result: AdviseResult, known: LevelResult) -> list[LevelResult]:
     """Levels beside the one that is enough: the next cheaper ones, or those above it."""
-    results = [one for one in result.advice.results[:-1] if one is not known]
+    results = [one for one in _below(result) if one is not known]
     place = result.advice.results.index(known)
     below = [one for one in reversed(results) if result.advice.results.index(one) < place]
     above = [one for one in results if result.advice.results.index(one) > place]
