@@ -148,7 +148,13 @@ def answer(page: Page, compared: Compared, rigid: float, softer: float) -> None:
                 by="solid",
             ),
             *(
-                page.value(f"error, {model.title} [%]", 100 * one, band, at_most=100 * TOLERANCE)
+                page.value(
+                    f"error, {model.title} [%]",
+                    100 * one,
+                    band,
+                    beside=100 * TOLERANCE,
+                    by="allowed",
+                )
                 for model, one in zip(models[:-1], errors[:-1], strict=True)
                 if np.isfinite(one)
             ),

@@ -426,7 +426,9 @@ def answer(page: Page, rows: list[Record]) -> None:
                 for ground, row in near.items()
             ),
             *(
-                page.value(f"life over that of the best model, {words}", row[OVER], beside=1.0)
+                page.value(
+                    f"life over that of the best model, {words}", row[OVER], beside=1.0, by="best"
+                )
                 for words, row in shown.items()
             ),
         ],
@@ -435,5 +437,6 @@ def answer(page: Page, rows: list[Record]) -> None:
             "A model is near enough if lives at all wind speeds are, each by its share of damage: "
             "at a site errors may cancel.",
             "Face to face flexible rings matter more than in this arrangement, back to back.",
+            "In five degrees a bearing moves along and tilts about all axes but turns freely.",
         ],
     )
