@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from typing import TypedDict, Unpack
 
 from fe_drivetrain.report.answer import Bound, KeyFigure, status_of
 from fe_drivetrain.report.results import Figure, Verdict
+
+
+_PREFIXES = {"": 1.0, "k": 1e3, "M": 1e6, "G": 1e9, "m": 1e-3, "µ": 1e-6}
 
 
 class KeyLimit(TypedDict, total=False):
@@ -75,6 +79,51 @@ def key_figure(
             "status": status_of(
                 found.computed, bound, found.reference, found.upper, found.band, allowed
             ),
+        }
+    )
+
+
+def in_unit(figure: KeyFigure, unit: str) -> KeyFigure:
+    """A key figure in a unit that people use: GN/m in place of N/m, % in place of a share.
+
+    Parameters
+    ----------
+    figure : KeyFigure
+        In any unit.
+    unit : str
+        That of the figure with another prefix, or "%" of a pure number.
+
+    Returns
+    -------
+    KeyFigure
+        With value, band and limits converted.
+
+    Raises
+    ------
+    ValueError
+        The units differ by more than a prefix.
+    """
+    shares = {"": 1.0, "-": 1.0, "%": 0.01}
+    if figure.unit in shares and unit in shares:
+        factor = shares[figure.unit] / shares[unit]
+    else:
+        base = os.path.commonprefix([figure.unit[::-1], unit[::-1]])[::-1]
+        old, new = (_PREFIXES.get(one.removesuffix(base)) for one in (figure.unit, unit))
+        if not base or old is None or new is None:
+            raise ValueError(f"{figure.name}: {figure.unit!r} cannot be shown in {unit!r}")
+        factor = old / new
+
+    def of(value: float | None) -> float | None:
+        return None if value is None else value * factor
+
+    return figure.model_copy(
+        update={
+            "value": figure.value * factor,
+            "unit": unit,
+            "band": of(figure.band),
+            "limit": of(figure.limit),
+            "upper": of(figure.upper),
+            "allowed": figure.allowed * factor,
         }
     )
 
