@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import os
 from typing import TypedDict, Unpack
 
 from fe_drivetrain.report.answer import Bound, KeyFigure, status_of
 from fe_drivetrain.report.results import Figure, Verdict
-
 
 _PREFIXES = {"": 1.0, "k": 1e3, "M": 1e6, "G": 1e9, "m": 1e-3, "µ": 1e-6}
 
@@ -107,11 +105,11 @@ def in_unit(figure: KeyFigure, unit: str) -> KeyFigure:
     if figure.unit in shares and unit in shares:
         factor = shares[figure.unit] / shares[unit]
     else:
-        base = os.path.commonprefix([figure.unit[::-1], unit[::-1]])[::-1]
-        old, new = (_PREFIXES.get(one.removesuffix(base)) for one in (figure.unit, unit))
-        if not base or old is None or new is None:
+        old, new = _sizes(figure.unit), _sizes(unit)
+        if not old.keys() & new.keys():
             raise ValueError(f"{figure.name}: {figure.unit!r} cannot be shown in {unit!r}")
-        factor = old / new
+        base = min(old.keys() & new.keys())
+        factor = old[base] / new[base]
 
     def of(value: float | None) -> float | None:
         return None if value is None else value * factor
@@ -126,6 +124,15 @@ def in_unit(figure: KeyFigure, unit: str) -> KeyFigure:
             "allowed": figure.allowed * factor,
         }
     )
+
+
+def _sizes(unit: str) -> dict[str, float]:
+    """What a unit is without a prefix, and the size of that prefix: N of kN is 1000, kN of kN 1."""
+    return {
+        unit.removeprefix(prefix): size
+        for prefix, size in _PREFIXES.items()
+        if unit.startswith(prefix) and unit != prefix
+    }
 
 
 def limited(
