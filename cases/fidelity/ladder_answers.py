@@ -14,7 +14,9 @@ MOST_OTHERS = 2
 """Levels that are shown beside the one that is enough."""
 
 
-def answer(page: Page, result: AdviseResult, row: Record, torsion: KeyFigure | None) -> None:
+def answer(
+    page: Page, result: AdviseResult, row: Record, torsion: KeyFigure | None, quick: bool
+) -> None:
     """State which level is enough, how far it and its neighbours are off, and their times.
 
     Parameters
@@ -27,6 +29,8 @@ def answer(page: Page, result: AdviseResult, row: Record, torsion: KeyFigure | N
         Of the table of cases: ``question``, and ``asked``, the quantity in words.
     torsion : KeyFigure or None
         Torsional stiffness beside a published one.
+    quick : bool
+        Whether the mesh is coarser than asked for, so that no error is judged.
     """
     advice = result.advice
     chosen, top = result.chosen, advice.top
@@ -36,7 +40,7 @@ def answer(page: Page, result: AdviseResult, row: Record, torsion: KeyFigure | N
         row["question"],
         _verdict(result, row["asked"]),
         [
-            _error(page, known, top, advice.tolerance),
+            _error(page, known, top, None if quick else advice.tolerance),
             *own,
             *_value(page, result),
             *(_error(page, one, top) for one in _others(result, known)),
@@ -60,19 +64,15 @@ def _verdict(result: AdviseResult, asked: str) -> str:
     own = f"{formatted(100 * top.estimate, 2)}\u00a0%"
     if chosen is None:
         return (
-            f"No model is known to give {asked} within {share}: the {_name(top)} itself is known "
-            f"to {own} only."
+            f"No model is known to give {asked} within {share}: the {_name(top)} may err by {own}."
         )
     if chosen is top:
         nearest = min(_below(result), key=lambda one: one.error, default=None)
-        verdict = f"Only the {_name(top)} gives {asked} within {share}, to {own}"
+        verdict = f"Only the {_name(top)} gives {asked} within {share}"
         if nearest is None:
-            return f"{verdict}."
-        return f"{verdict}; the next best, the {_name(nearest)}, is {_size(nearest, top)} off."
-    return (
-        f"The {_name(chosen)} is enough for {asked}: {_size(chosen, top)} from the {_name(top)}, "
-        f"{share} allowed."
-    )
+            return f"{verdict}, to {own}."
+        return f"{verdict}; the {_name(nearest)} is {_size(nearest, top)} off."
+    return f"The {_name(chosen)} is enough for {asked}: {_size(chosen, top)} off, {share} allowed."
 
 
 def _size(one: LevelResult, top: LevelResult) -> str:
@@ -113,9 +113,10 @@ def _value(page: Page, result: AdviseResult) -> list[KeyFigure]:
     advice = result.advice
     if len(advice.top.values) != 1:
         return []
-    value = float(advice.top.values[0]) / 1e6
-    name = f"stiffness by the {_name(advice.top)} [M{advice.quantity.unit}]"
-    return [page.value(name, value, abs(value) * advice.top.estimate)]
+    value = float(advice.top.values[0])
+    prefix, size = ("G", 1e9) if abs(value) >= 1e9 else ("M", 1e6)
+    name = f"stiffness by the {_name(advice.top)} [{prefix}{advice.quantity.unit}]"
+    return [page.value(name, value / size, abs(value) / size * advice.top.estimate)]
 
 
 def _cautions(result: AdviseResult, known: LevelResult) -> list[str]:

@@ -40,4 +40,4 @@ def run(run: Run, page: Page, row: Record) -> None:
     if published and (scene.shaft, scene.materials) == (original.shaft, original.materials):
         with run.step("torsion beside the published figure"):
             torsion = beside_published(page, scene, Published(**published))
-    answer(page, result, row, torsion)
+    answer(page, result, row, torsion, run.quick)

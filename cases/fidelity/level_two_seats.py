@@ -188,9 +188,9 @@ def answer(page: Page, largest: float, milliseconds: float) -> None:
     terms = [check for check in page.checks if check.measure == "stiffness"]
     agree = all(check.passed for check in terms)
     shown_first = (
-        ("bored: tension at the seat", "tension at the seat, bored"),
-        ("bored: bending at the seat", "bending at the seat, bored"),
-        ("stepped: torsion at the seat", "torsion at the seat, stepped"),
+        ("bored: tension at the seat", "tension at the seat, bored", "GN/m"),
+        ("bored: bending at the seat", "bending at the seat, bored", "GN m/rad"),
+        ("stepped: torsion at the seat", "torsion at the seat, stepped", "GN m/rad"),
     )
     page.answer(
         "Is the meridian of a shaft between its seats as good as solids?",
@@ -201,7 +201,10 @@ def answer(page: Page, largest: float, milliseconds: float) -> None:
             page.value("largest difference from the solids' limit [%]", largest),
             page.value("stiffnesses compared", len(terms)),
             page.value("time of the meridian [ms]", milliseconds),
-            *(page.judged(quantity, name, "solids") for quantity, name in shown_first),
+            *(
+                page.judged(quantity, name, "solids", unit=unit)
+                for quantity, name, unit in shown_first
+            ),
         ],
         hero=HERO,
         cautions=[

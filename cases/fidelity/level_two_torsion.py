@@ -121,6 +121,7 @@ def answer(page: Page, finest: dict[str, Record], width: float) -> None:
             f"{name}: torsional stiffness, order {row[ORDER]}",
             f"torsional stiffness, {name} shaft",
             "two bounds",
+            unit="MN m/rad",
         )
         for name, row in finest.items()
     ]

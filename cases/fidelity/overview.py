@@ -12,6 +12,7 @@ from fe_drivetrain.cases.fidelity.side_by_side import (
     show,
 )
 from fe_drivetrain.drivetrain_file import library_scene
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Run
 
 SCENES = (
@@ -90,10 +91,10 @@ def answer(page: Page, found: list[Compared]) -> None:
     worst_bending = max(found, key=lambda one: one.changes[bending].beam)
     page.answer(
         "For which shafts is a beam enough?",
-        f"A beam is within {100 * BEARABLE:g}\u00a0% in bending for {len(enough[bending])} of "
-        f"{len(found)} shafts, in torsion for {len(enough[torsion])}; the worst, "
-        f"{titled(worst_bending.scene)}, is {100 * worst_bending.changes[bending].beam:.2g}\u00a0% "
-        "off.",
+        f"Beams are within {100 * BEARABLE:g}\u00a0% in bending for {len(enough[bending])} of "
+        f"{len(found)} shafts, in torsion for {len(enough[torsion])}; at worst "
+        f"{formatted(100 * worst_bending.changes[bending].beam, 2)}\u00a0% off "
+        f"({titled(worst_bending.scene)}).",
         [
             *(
                 page.value(

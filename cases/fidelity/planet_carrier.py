@@ -144,11 +144,14 @@ def answer(
         "wind-up of the pins at the rated torque", "wind-up of the pins at rated torque"
     )
     solid = compared.chosen == len(compared.ladder.models) - 1
-    stiff = f"{abs(off[0]):.2g}\u00a0% too {'stiff' if off[0] > 0.0 else 'soft'}"
+    beams = f"beams are {abs(off[0]):.2g}\u00a0% {'stiffer' if off[0] > 0.0 else 'softer'}"
+    if compared.own > TOLERANCE:
+        which = f"but the solid is known to {100 * compared.own:.2g}\u00a0% only"
+    else:
+        which = "not enough" if solid else "which is enough"
     page.answer(
         "How far does a planet carrier wind up, and are beams enough for it?",
-        f"The pins wind up by {certain_value(wound)} at rated torque; beams between rigid cheeks "
-        f"are {stiff}{', not enough.' if solid else ', which is enough.'}",
+        f"The pins wind up by {certain_value(wound)} at rated torque; {beams}, {which}.",
         [
             wound,
             page.value("tilt of a pin over the face width [µm]", skew, abs(skew) * tilt_band),

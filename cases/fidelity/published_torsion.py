@@ -104,9 +104,14 @@ def beside_published(page: Page, scene: Scene, published: Published) -> KeyFigur
         rows,
         ["how", "stiffness [N m/rad]", "half width of the band", "over the published"],
     )
-    title = f"torsional stiffness of the shaft, {published.name} [MN m/rad]"
+    prefix, size = ("G", 1e9) if published.value >= 1e9 else ("M", 1e6)
+    title = f"torsional stiffness of the shaft, {published.name} [{prefix}N m/rad]"
     return page.value(
-        title, found / 1e6, band / 1e6, beside=published.value / 1e6, by=published.source
+        title,
+        found / size,
+        beside=published.value / size,
+        by=published.source,
+        printed=f"{published.value / size:.4g}",
     )
 
 
