@@ -71,7 +71,8 @@ def _verdict(result: AdviseResult, asked: str) -> str:
         verdict = f"Only the {_name(top)} gives {asked} within {share}"
         if nearest is None:
             return f"{verdict}, to {own}."
-        return f"{verdict}; the {_name(nearest)} is {_size(nearest, top)} off."
+        most = f"{formatted(100 * (nearest.error + top.estimate), 2)}\u00a0%"
+        return f"{verdict}; the {_name(nearest)} may be {most} off."
     return f"The {_name(chosen)} is enough for {asked}: {_size(chosen, top)} off, {share} allowed."
 
 
