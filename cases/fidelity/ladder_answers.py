@@ -71,16 +71,16 @@ def _verdict(result: AdviseResult, asked: str) -> str:
         verdict = f"Only the {_name(top)} gives {asked} within {share}"
         if nearest is None:
             return f"{verdict}, to {own}."
-        most = f"{formatted(100 * (nearest.error + top.estimate), 2)}\u00a0%"
-        return f"{verdict}; the {_name(nearest)} may be {most} off."
-    return f"The {_name(chosen)} is enough for {asked}: {_size(chosen, top)} off, {share} allowed."
+        return f"{verdict}; the {_name(nearest)} may be {_most(nearest, top)} off."
+    return (
+        f"The {_name(chosen)} is enough for {asked}: at most {_most(chosen, top)} off, {share} "
+        "allowed."
+    )
 
 
-def _size(one: LevelResult, top: LevelResult) -> str:
-    """Error of a level in words, in the digits that the last level's own error leaves."""
-    if one.error < top.estimate:
-        return f"less than {formatted(100 * top.estimate, 2)}\u00a0%"
-    return f"{formatted(100 * one.error, 2)}\u00a0%"
+def _most(one: LevelResult, top: LevelResult) -> str:
+    """The largest error that a level may have: its difference from the last, and the last's own."""
+    return f"{formatted(100 * (one.error + top.estimate), 2)}\u00a0%"
 
 
 def _below(result: AdviseResult) -> list[LevelResult]:

@@ -196,7 +196,7 @@ def answer(page: Page, largest: float, milliseconds: float) -> None:
         "Is the meridian of a shaft between its seats as good as solids?",
         f"{'All' if agree else 'Not all'} {len(terms)} stiffnesses of the meridian agree with "
         f"solids within their bands, {largest:.2g} % apart at most, after "
-        f"{value_text(float(f'{milliseconds:.2g}'), 'ms')}.",
+        f"{value_text(float(f'{milliseconds / 1e3:.2g}'), 's')}.",
         [
             page.value("largest difference from the solids' limit [%]", largest),
             page.value("stiffnesses compared", len(terms)),

@@ -234,7 +234,7 @@ def twenty_years(page: Page) -> list[Record]:
     damages = (d.flank for d in by_wind[str(worst)])
     of_wind = {"flank": dict(zip(labels, damages, strict=True))}
     of_teeth = {"flank": {str(row["tooth"]): float(row["flank"]) for row in rows}}
-    page.add(bars(DAMAGES, of_teeth, "damage", least=1e-6))
+    page.add(bars(DAMAGES, of_teeth, "damage; 10⁻⁶ stands for less", least=1e-6))
     page.add(bars(f"Damage of the flank by wind speed: {worst}", of_wind, "damage"))
     page.text(
         f"Site with {SITE.mean_wind:.0f} m/s of mean wind, Rayleigh. Torque follows the power up "
