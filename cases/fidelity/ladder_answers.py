@@ -80,7 +80,8 @@ def _verdict(result: AdviseResult, asked: str) -> str:
 
 def _most(one: LevelResult, top: LevelResult) -> str:
     """The largest error that a level may have: its difference from the last, and the last's own."""
-    return f"{formatted(100 * (one.error + top.estimate), 2)}\u00a0%"
+    own = 0.0 if one.estimate == 0.0 else top.estimate  # where statics decides, a level is exact
+    return f"{formatted(100 * (one.error + own), 2)}\u00a0%"
 
 
 def _below(result: AdviseResult) -> list[LevelResult]:

@@ -6,7 +6,13 @@ import pytest
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.elasticity.solve.solvers import Diagnostics
 from fe_drivetrain.export.superelement import Superelement
-from fe_drivetrain.plots.figures import MINIMUM, figure, load_lines, stiffness_map
+from fe_drivetrain.plots.figures import (
+    MINIMUM,
+    error_traces,
+    figure,
+    load_lines,
+    stiffness_map,
+)
 from fe_drivetrain.plots.style import PALETTE
 from fe_drivetrain.shafts.fidelity.adviser import Advice, LevelResult
 from fe_drivetrain.shafts.fidelity.ladder import Cost, LevelModel
@@ -74,6 +80,18 @@ def test_the_ladder_is_drawn_with_its_tolerance_and_what_is_enough() -> None:
     assert shown.data[1].marker.size > shown.data[0].marker.size
     exact = Advice(Quantity("gearbox.Fz"), 0.05, [result(0, 1e-3, 0.0, 0.0)], 0).plot()
     assert exact.data[0].y[0] == 100 * MINIMUM
+
+
+def test_bands_of_errors_are_bars_that_a_logarithmic_axis_can_hold() -> None:
+    times, errors, bands = [1.0, 2.0, 3.0], [0.5, 0.01, 0.03], [0.03, 0.03, 0.0]
+    first, second, last, _ = error_traces(["a", "b", "c"], times, errors, 0.05, 1, bands)
+    assert first["error_y"]["array"] == first["error_y"]["arrayminus"] == pytest.approx([3.0])
+    # a band larger than the error itself reaches to zero, which has no place: a decade below
+    assert second["error_y"]["array"] == pytest.approx([3.0])
+    assert second["error_y"]["arrayminus"] == pytest.approx([0.9])
+    assert second["marker"]["symbol"] == "star"
+    assert "error_y" not in last
+    assert "error_y" not in error_traces(["a"], [1.0], [0.5], 0.05)[0]
 
 
 def test_own_traces_take_the_colours_of_the_pages() -> None:
