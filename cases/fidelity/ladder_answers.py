@@ -13,6 +13,8 @@ from fe_drivetrain.studies import AdviseResult
 MOST_OTHERS = 2
 """Levels that are shown beside the one that is enough."""
 
+_ROUND_OFF = 1e-9  # relative: what solvers leave of a quantity that statics decides
+
 
 def answer(
     page: Page, result: AdviseResult, row: Record, torsion: KeyFigure | None, quick: bool
@@ -44,8 +46,8 @@ def answer(
             *own,
             *_value(page, result),
             *(_error(page, one, top) for one in _others(result, known)),
-            page.value(f"time of the {_name(known)} [s]", known.seconds),
-            *([] if known is top else [page.value(f"time of the {_name(top)} [s]", top.seconds)]),
+            page.value(f"time of {_name(known)} [s]", known.seconds),
+            *([] if known is top else [page.value(f"time of {_name(top)} [s]", top.seconds)]),
         ][:6],
         hero=result.chart().caption,
         cautions=_cautions(result, known),
@@ -53,8 +55,9 @@ def answer(
 
 
 def _name(one: LevelResult) -> str:
-    """Title of a level in a sentence: "solid shaft with housings as springs"."""
-    return one.model.title.replace(", ", " with ")
+    """Title of a level in a sentence: "the solid shaft with housings as springs", "statics"."""
+    title = one.model.title.replace(", ", " with ")
+    return title if one.model.level == 0 else f"the {title}"
 
 
 def _verdict(result: AdviseResult, asked: str) -> str:
@@ -63,19 +66,19 @@ def _verdict(result: AdviseResult, asked: str) -> str:
     top, share = advice.top, f"{100 * advice.tolerance:g}\u00a0%"
     own = f"{formatted(100 * top.estimate, 2)}\u00a0%"
     if chosen is None:
-        return (
-            f"No model is known to give {asked} within {share}: the {_name(top)} may err by {own}."
-        )
+        return f"No model is known to give {asked} within {share}: {_name(top)} may err by {own}."
     if chosen is top:
         nearest = min(_below(result), key=lambda one: one.error, default=None)
-        verdict = f"Only the {_name(top)} gives {asked} within {share}"
+        verdict = f"Only {_name(top)} gives {asked} within {share}"
         if nearest is None:
             return f"{verdict}, to {own}."
-        return f"{verdict}; the {_name(nearest)} may be {_most(nearest, top)} off."
-    return (
-        f"The {_name(chosen)} is enough for {asked}: at most {_most(chosen, top)} off, {share} "
-        "allowed."
-    )
+        return f"{verdict}; {_name(nearest)} may be {_most(nearest, top)} off."
+    name = _name(chosen)
+    if chosen.error < _ROUND_OFF:
+        off = "the best model agrees to round-off"
+    else:
+        off = f"at most {_most(chosen, top)} off"
+    return f"{name[0].upper()}{name[1:]} is enough for {asked}: {off}, {share} allowed."
 
 
 def _most(one: LevelResult, top: LevelResult) -> str:
@@ -93,7 +96,7 @@ def _error(
     page: Page, one: LevelResult, top: LevelResult, tolerance: float | None = None
 ) -> KeyFigure:
     """Error of a level in percent, of the last one its own; judged where a tolerance is given."""
-    name = f"error of the {_name(one)} [%]"
+    name = f"error of {_name(one)} [%]"
     value = 100.0 * (top.estimate if one is top else one.error)
     band = None if one is top else 100.0 * top.estimate
     if tolerance is None:
@@ -117,7 +120,7 @@ def _value(page: Page, result: AdviseResult) -> list[KeyFigure]:
         return []
     value = float(advice.top.values[0])
     prefix, size = ("G", 1e9) if abs(value) >= 1e9 else ("M", 1e6)
-    name = f"stiffness by the {_name(advice.top)} [{prefix}{advice.quantity.unit}]"
+    name = f"stiffness by {_name(advice.top)} [{prefix}{advice.quantity.unit}]"
     return [page.value(name, value / size, abs(value) / size * advice.top.estimate)]
 
 

@@ -22,7 +22,7 @@ TITLES = (
 def found(chosen: int | None, errors: tuple[float, float], own: float) -> Any:
     """Three levels, of which one is enough: errors of the first two, and the last one's own."""
     levels = [
-        SimpleNamespace(model=SimpleNamespace(title=title), error=error, estimate=estimate)
+        SimpleNamespace(model=SimpleNamespace(title=title, level=1), error=error, estimate=estimate)
         for title, error, estimate in zip(TITLES, (*errors, 0.0), (0.5, 0.5, own), strict=True)
     ]
     advice = SimpleNamespace(results=levels, top=levels[-1], tolerance=0.05)
@@ -57,3 +57,11 @@ def test_a_level_below_the_last_has_that_ones_own_error_on_top() -> None:
         "with housings as springs may be 12\u00a0% off."
     )
     assert "may err by 7" in ladder_answers._verdict(found(None, (0.3, 0.1), 0.07), "the force")
+
+
+def test_statics_that_decides_is_said_to_be_enough_without_digits_of_round_off() -> None:
+    result = found(0, (2e-12, 0.1), 0.07)
+    result.chosen.model = SimpleNamespace(title="statics", level=0)
+    assert ladder_answers._verdict(result, "the force") == (
+        "Statics is enough for the force: the best model agrees to round-off, 5\u00a0% allowed."
+    )
