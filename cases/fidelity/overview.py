@@ -10,6 +10,7 @@ from fe_drivetrain.cases.fidelity.side_by_side import (
     compared,
     hero,
     show,
+    titled,
 )
 from fe_drivetrain.drivetrain_file import library_scene
 from fe_drivetrain.report.number_text import formatted
@@ -64,13 +65,6 @@ def check(page: Page, one: Compared) -> None:
         source="a beam keeps its sections plane and round (least potential energy)",
         measure="identity",
     )
-
-
-def titled(scene: str) -> str:
-    """A scene's name in words: "IEA 15 MW main shaft"."""
-    words = scene.replace("_15mw_", " 15 MW ").replace("_5mw_", " 5 MW ")
-    words = words.replace("_750kw_", " 750 kW ").replace("_", " ")
-    return words.replace("iea", "IEA").replace("nrel", "NREL")
 
 
 def answer(page: Page, found: list[Compared]) -> None:

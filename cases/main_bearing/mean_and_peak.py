@@ -173,7 +173,7 @@ def answer(page: Page, found: dict[str, Quantity], agree: list[int], less: Float
         "Does the thesis say rightly what wind, turbulence and shear do to main-bearing loads?",
         f"All {always} statements of the thesis on order hold."
         if holds
-        else f"Of {len(agree)} statements of the thesis on order {always} hold everywhere, "
+        else f"Of {len(agree)} statements of the thesis on order, {always} hold everywhere, "
         f"{mostly - always} mostly, {len(agree) - mostly} do not; tilting stiffness takes "
         f"{less[LOW]:.0f} % off the peak force.",
         [
@@ -193,7 +193,8 @@ def answer(page: Page, found: dict[str, Quantity], agree: list[int], less: Float
         hero=HERO,
         cautions=[
             "Ours are of a surrogate turbine whose pitch is held in a history; the thesis's hub "
-            "loads are not public."
+            "loads are not public.",
+            "DSRB is a spherical bearing, DTRB a double-row tapered one.",
         ],
         claim="holds" if holds else "holds in part",
     )
