@@ -68,19 +68,13 @@ def check(page: Page, one: Compared) -> None:
 
 
 def answer(page: Page, found: list[Compared]) -> None:
-    """In how many scenes the beam is enough, and what else counts."""
+    """State for how many shafts the beam is enough, and for which it is not."""
     bending, torsion, _ = QUANTITIES
     enough = {
         key: [one.scene for one in found if one.changes[key].beam <= BEARABLE] for key in QUANTITIES
     }
     poor = [one.scene for one in found if one.scene not in enough[bending]]
-    supports = sum(
-        max(one.changes[bending].housings, one.changes[bending].faces) > one.changes[bending].beam
-        for one in found
-    )
     worst = max(found, key=lambda one: one.changes[torsion].beam)
-    uncertain = [one.scene for one in found if one.changes[FORCE].faces > BEARABLE]
-    bare = [one.scene for one in found if one.changes[bending].bare > BEARABLE]
     share = f"{100 * BEARABLE:g} %"
     worst_bending = max(found, key=lambda one: one.changes[bending].beam)
     page.answer(
@@ -111,7 +105,7 @@ def answer(page: Page, found: list[Compared]) -> None:
                 f"largest error in torsion, {titled(worst.scene)} [%]",
                 100 * worst.changes[torsion].beam,
             ),
-            page.value("shafts whose housings do more than beam theory", supports),
+            page.value("shafts whose housings do more than beam theory", supported_more(found)),
         ],
         hero=hero(bending),
         cautions=[
@@ -124,11 +118,28 @@ def answer(page: Page, found: list[Compared]) -> None:
             ),
         ],
     )
+
+
+def supported_more(found: list[Compared]) -> int:
+    """In how many scenes the housings do more to the bending stiffness than beam theory does."""
+    bending = next(iter(QUANTITIES))
+    return sum(
+        max(one.changes[bending].housings, one.changes[bending].faces) > one.changes[bending].beam
+        for one in found
+    )
+
+
+def explain(page: Page, found: list[Compared]) -> None:
+    """State what else counts: rings, housings, and how the shaft holds their faces."""
+    bending = next(iter(QUANTITIES))
+    uncertain = [one.scene for one in found if one.changes[FORCE].faces > BEARABLE]
+    bare = [one.scene for one in found if one.changes[bending].bare > BEARABLE]
+    share = f"{100 * BEARABLE:g} %"
     page.say(
         "A beam counts the rings of its bearings as wholly part of the shaft: of the same shafts "
         f"without rings, its bending stiffness has an error of more than {share} in "
         f"{', '.join(bare) or 'no scene'}.",
-        f"In {supports} of {len(found)} scenes the housings do more to the bending stiffness than "
+        f"In {supported_more(found)} of {len(found)} scenes the housings do more to the bending stiffness than "
         "beam theory does: whether they give, or how the shaft holds their faces, which only the "
         "assembly of solids decides.",
         f"The force of the first bearing depends on that by more than {share} in "
@@ -147,6 +158,7 @@ def run(run: Run, page: Page) -> None:
         found.append(compared_scene(run, page, name))
         check(page, found[-1])
     answer(page, found)
+    explain(page, found)
     page.section("What is compared")
     page.text(
         "Changes are relative to the meridian on housings as springs whose faces keep in "

@@ -104,10 +104,14 @@ def beside_published(page: Page, scene: Scene, published: Published) -> KeyFigur
         rows,
         ["how", "stiffness [N m/rad]", "half width of the band", "over the published"],
     )
+    return _key_figure(page, published, found)
+
+
+def _key_figure(page: Page, published: Published, found: float) -> KeyFigure:
+    """The stiffness by finite elements [N m/rad], beside the published one."""
     prefix, size = ("G", 1e9) if published.value >= 1e9 else ("M", 1e6)
-    title = f"torsional stiffness of the shaft, {published.name} [{prefix}N m/rad]"
     return page.value(
-        title,
+        f"torsional stiffness of the shaft, {published.name} [{prefix}N m/rad]",
         found / size,
         beside=published.value / size,
         by=published.source,
