@@ -139,9 +139,9 @@ def explain(page: Page, found: list[Compared]) -> None:
         "A beam counts the rings of its bearings as wholly part of the shaft: of the same shafts "
         f"without rings, its bending stiffness has an error of more than {share} in "
         f"{', '.join(bare) or 'no scene'}.",
-        f"In {supported_more(found)} of {len(found)} scenes the housings do more to the bending stiffness than "
-        "beam theory does: whether they give, or how the shaft holds their faces, which only the "
-        "assembly of solids decides.",
+        f"In {supported_more(found)} of {len(found)} scenes the housings do more to the bending "
+        "stiffness than beam theory does: whether they give, or how the shaft holds their faces, "
+        "which only the assembly of solids decides.",
         f"The force of the first bearing depends on that by more than {share} in "
         f"{', '.join(uncertain) or 'no scene'}.",
     )

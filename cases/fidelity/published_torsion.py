@@ -86,10 +86,17 @@ def beside_published(page: Page, scene: Scene, published: Published) -> KeyFigur
         source="sections kept plane and round only make it stiffer (least potential energy)",
         measure="identity",
     )
-    less = 100 * (1 - found / published.value)
+    _compare(page, published, (found, band), summed)
+    return _key_figure(page, published, found)
+
+
+def _compare(page: Page, published: Published, found: tuple[float, float], summed: float) -> None:
+    """The published stiffness beside that of the sections in series, and finite elements' (±)."""
+    value, band = found
+    less = 100 * (1 - value / published.value)
     page.say(
         f"{published.name} is published as {published.value:.4g} N m/rad; the shaft of this scene "
-        f"has {found:.4g} ± {band:.1g} by finite elements"
+        f"has {value:.4g} ± {band:.1g} by finite elements"
         + (f", {less:.2g} % less" if abs(less) > 0.01 else "")
         + "."
     )
@@ -97,14 +104,13 @@ def beside_published(page: Page, scene: Scene, published: Published) -> KeyFigur
     rows: list[list[Cell]] = [
         [published.name, published.value, published.half_digit, 1.0],
         ["G J / L of the sections in series", summed, None, summed / published.value],
-        ["finite elements, ends rigid", found, band, found / published.value],
+        ["finite elements, ends rigid", value, band, value / published.value],
     ]
     page.table(
-        f"Torsional stiffness from the {where}",
+        f"Torsional stiffness from the front face to x = {published.to:g} m",
         rows,
         ["how", "stiffness [N m/rad]", "half width of the band", "over the published"],
     )
-    return _key_figure(page, published, found)
 
 
 def _key_figure(page: Page, published: Published, found: float) -> KeyFigure:
