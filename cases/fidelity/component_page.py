@@ -20,7 +20,7 @@ from fe_drivetrain.export import (
     Superelement,
 )
 from fe_drivetrain.pages import QUICK_BAND
-from fe_drivetrain.plots.figures import error_traces
+from fe_drivetrain.plots.figures import error_range, error_traces
 from fe_drivetrain.report import (
     Cell,
     Chart,
@@ -203,7 +203,8 @@ class Compared:
     def caption(self) -> str:
         """Caption of the chart of errors against time."""
         return _capital(
-            f"{self.first.name}: error against time, bars: band of the solid; the star is enough"
+            f"{self.first.name}: error against time, bars: band of the solid; the chosen "
+            "level is enough"
         )
 
     def sentence(self) -> str:
@@ -337,13 +338,17 @@ def _against_time(found: Compared) -> Chart:
         found.chosen,
         [found.own] * below + [0.0],
     )
-    return chart(
+    drawn = chart(
         found.caption,
         traces,
         x="time [s]",
         y="error [%]",
         logarithmic=("x", "y"),
     )
+    drawn.figure["layout"]["yaxis"]["range"] = error_range(
+        [*found.errors[0][:-1], found.own], TOLERANCE, found.own
+    )
+    return drawn
 
 
 def _capital(text: str) -> str:

@@ -129,7 +129,7 @@ class Advice:
         return _difference(self.results[number].values, self.results[number + 1].values)
 
     def plot(self) -> Any:
-        """Error of each level over its time, as a Plotly figure; the chosen one a star.
+        """Error of each level over its time, as a Plotly figure; the chosen one drawn larger.
 
         Returns
         -------
