@@ -24,6 +24,7 @@ from fe_drivetrain.command_line.life import life_command
 from fe_drivetrain.command_line.loads import loads_command
 from fe_drivetrain.command_line.new_scene import new_command
 from fe_drivetrain.command_line.part import part_command
+from fe_drivetrain.command_line.report import report_command
 from fe_drivetrain.command_line.run import (
     HelpOfCases,
     OutFolder,
@@ -59,6 +60,7 @@ app.command("check")(check_command)
 app.command("study")(study_command)
 app.command("loads")(loads_command)
 app.command("life")(life_command)
+app.command("report")(report_command)
 app.command("list")(list_command)
 app.command("run", cls=HelpOfCases)(run_command)
 app.command("history")(history_command)
