@@ -1,13 +1,14 @@
 """Charts of lines, bars and colours, as Plotly's JSON."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats, rounded
 from fe_drivetrain.common.components import MOTIONS
+from fe_drivetrain.report.chart_parts import ChartParts, add_parts
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.results import Chart
 
@@ -43,6 +44,7 @@ def chart(
     y: str,
     logarithmic: Iterable[str] = (),
     safe: tuple[float | None, float | None] | None = None,
+    **parts: Unpack[ChartParts],
 ) -> Chart:
     """A chart of traces.
 
@@ -58,6 +60,8 @@ def chart(
         "x", "y" or both.
     safe : tuple[float or None, float or None] or None
         Range of x that is shaded as safe; None for an end without a bound.
+    **parts : object
+        Events, differences below, and ranges of the axes; see `ChartParts`.
     """
     axes: dict[str, Any] = {
         "xaxis": {"title": {"text": x}},
@@ -69,7 +73,9 @@ def chart(
         axes[f"{axis}axis"]["exponentformat"] = "power"
     if safe is not None:
         axes["shapes"] = [_shaded(traces, safe)]
-    return Chart(caption=caption, figure={"data": list(traces), "layout": axes})
+    figure = {"data": list(traces), "layout": axes}
+    add_parts(figure, parts)
+    return Chart(caption=caption, figure=figure)
 
 
 def instead_of_chart(caption: str, traces: Sequence[Any], x: str, y: str) -> str:
@@ -81,6 +87,49 @@ def instead_of_chart(caption: str, traces: Sequence[Any], x: str, y: str) -> str
         return f"{caption}: there is nothing to show in this run."
     at, value = (formatted(v, 4) for v in points[0])
     return f"{caption}: {y} {value} at {x} {at}, the only point of this run."
+
+
+def mark_events(item: Chart, events: Mapping[str, float]) -> Chart:
+    """A chart with a named vertical line at each event.
+
+    Parameters
+    ----------
+    item : Chart
+        Whose horizontal axis is not logarithmic.
+    events : dict of str to float
+        What happens, and where on the horizontal axis.
+    """
+    lines = [
+        {
+            "type": "line",
+            "x0": at,
+            "x1": at,
+            "yref": "paper",
+            "y0": 0,
+            "y1": 1,
+            "line": {"color": "#7a7a7a", "width": 1.5, "dash": "dash"},
+        }
+        for at in events.values()
+    ]
+    names = [
+        {
+            "text": name,
+            "x": at,
+            "yref": "paper",
+            # one below the other, so that neighbours can be read
+            "y": 1.0 - 0.07 * (place % 3),
+            "xanchor": "left",
+            "yanchor": "top",
+            "showarrow": False,
+        }
+        for place, (name, at) in enumerate(events.items())
+    ]
+    layout = item.figure["layout"]
+    more = {
+        "shapes": [*layout.get("shapes", []), *lines],
+        "annotations": [*layout.get("annotations", []), *names],
+    }
+    return item.model_copy(update={"figure": {**item.figure, "layout": {**layout, **more}}})
 
 
 def density_chart(
