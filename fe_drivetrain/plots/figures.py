@@ -189,6 +189,29 @@ def _written(stiffness: Floats, coupling: Floats) -> list[list[str]]:
     ]
 
 
+def error_range(errors: Sequence[float], tolerance: float, band: float = 0.0) -> list[float]:
+    """Ends of a logarithmic axis of errors in percent: all points, and bars but for those to zero.
+
+    Parameters
+    ----------
+    errors : sequence of float
+        Relative errors; what is not known is left out.
+    tolerance : float
+        Allowed relative error.
+    band : float
+        Half width of the largest uncertainty of an error, relative as that.
+
+    Returns
+    -------
+    list of float
+        Powers of ten of both ends.
+    """
+    known = [max(error, MINIMUM) for error in errors if np.isfinite(error)]
+    high = max([*known, tolerance]) + (band if np.isfinite(band) else 0.0)
+    ends = 100.0 * np.array([0.3 * min([*known, tolerance]), 2.0 * high])
+    return [float(power) for power in np.log10(ends)]
+
+
 def error_traces(
     names: Sequence[str],
     seconds: Sequence[float],
