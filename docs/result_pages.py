@@ -110,17 +110,18 @@ def of_the_run(found: Mapping[str, tuple[Results, Path]]) -> str:
     days = sorted({environment.date[:10] for environment in environments})
     quick = sum(environment.quick for environment in environments)
     when = days[0] if len(days) == 1 else f"{days[0]} to {days[-1]}"
-    coarse = f" {quick} of them are quick: coarser and smaller than the case." if quick else ""
+    coarse = f" Quick runs, coarser and smaller than the case: {quick}." if quick else ""
     now = program_hash()
     if older := sum(environment.code != now for environment in environments):
-        coarse += f" {older} of them were found by another state of the program."
+        coarse += f" Results of another state of the program: {older}."
     links = [
         f'<a href="../{SITE}/{name}">{what}</a>'
         for name, what in LISTS.items()
         if (results_folder() / name).is_file()
     ]
-    return f"Answers are those of the last run: {len(found)} results of {when}.{coarse} " + (
-        f"{', '.join(links)}." if links else ""
+    return (
+        f"Answers are those of the last run, of {when}; cases with results: {len(found)}.{coarse} "
+        + (f"{', '.join(links)}." if links else "")
     )
 
 

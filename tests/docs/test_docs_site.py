@@ -115,8 +115,8 @@ def test_the_answer_of_a_case_leads_to_its_page(
     )
     assert result_pages.answer_of("a/two", found) == ""
     said = result_pages.of_the_run(found)
-    assert "1 results of" in said
-    assert "1 of them were found by another state of the program" in said
+    assert "cases with results: 1." in said
+    assert "another state of the program: 1." in said
     assert 'href="../results/index.html"' in said
     assert "atlas.html" not in said  # the run has none
     (folder / "a/one/report.html").unlink()
