@@ -193,6 +193,8 @@ def record_run(folder: Path, results: Results) -> None:
     """
     environment, answer = results.environment, headline(results)
     found: list[Figure | Verdict] = [*results.answers, *results.verdicts]
+    if answer is not None and answer not in found:
+        found.append(answer)  # a key figure that is neither a value nor a check
     with _opened(folder) as database:
         cursor = database.execute(
             "INSERT INTO runs (date, name, code, version, quick, settings, headline, checks, "
