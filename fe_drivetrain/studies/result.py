@@ -13,7 +13,7 @@ from pydantic import BaseModel
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.report.results import Chart, Figure
 from fe_drivetrain.report.suite.findings import Found
-from fe_drivetrain.report.suite.records import as_json
+from fe_drivetrain.report.suite.records import strict_json
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -24,8 +24,9 @@ if TYPE_CHECKING:
 class Result(Found):
     """What a study found.
 
-    `answer` is the answer, ``result["L10mr of bearing front"]`` a figure, `to_frame` a table, `plot` the chart that
-    answers; `to_json` holds all of it for other programs. Samples of histories are not in it.
+    `answer` is the answer, ``result["L10mr of bearing front"]`` a figure, `to_frame` a table,
+    `plot` the chart that answers; `to_json` holds all of it for other programs. Samples of
+    histories are not in it.
     """
 
     STUDY: ClassVar[str] = ""
@@ -62,8 +63,8 @@ class Result(Found):
             "schema": f"fe-drivetrain/{self.STUDY}/{self.SCHEMA_VERSION}",
             "version": version("fe-drivetrain"),
             "drivetrains": _models(self.drivetrains),
-            "options": _plain(self.options),
-            "answer": _plain(self.answer.model_dump()),
+            "options": strict_json(self.options),
+            "answer": strict_json(self.answer.model_dump()),
             "details": list(self.details),
             "figures": _models(self.figures),
             "checks": _models(self.checks),
@@ -72,7 +73,7 @@ class Result(Found):
             "skipped": list(self.skipped),
             "assumptions": _models(self.assumptions),
             "limits": _models(self.limits),
-            "tables": _plain(self.all_tables()),
+            "tables": strict_json(self.all_tables()),
             "seed": self.seed,
             "times": dict(self.times),
         }
@@ -130,18 +131,4 @@ class Result(Found):
 
 def _models(records: Iterable[BaseModel]) -> list[Any]:
     """Records as plain JSON data."""
-    return [_plain(one.model_dump()) for one in records]
-
-
-def _plain(value: Any) -> Any:
-    """The same as plain JSON data, NaN and infinity as strings."""
-    if isinstance(value, float):
-        return value if abs(value) < float("inf") else str(value)
-    if isinstance(value, str | int) or value is None:
-        return value
-    plain = as_json(value)
-    if isinstance(plain, dict):
-        return {key: _plain(inner) for key, inner in plain.items()}
-    if isinstance(plain, list):
-        return [_plain(inner) for inner in plain]
-    return str(value) if plain is value else _plain(plain)
+    return [strict_json(one.model_dump()) for one in records]
