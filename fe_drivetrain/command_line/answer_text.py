@@ -18,6 +18,7 @@ from fe_drivetrain.common.typeset import MINUS, THIN_SPACE
 
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
+    from rich.table import Table
 
     from fe_drivetrain.report.answer import Answer, KeyFigure
     from fe_drivetrain.report.results import Problem, Results, Verdict
@@ -85,6 +86,7 @@ def outcome_text(results: Results, page: Path, more: Sequence[str] = ()) -> str:
     from fe_drivetrain.report.results import verdict_sentence
 
     notes = [*results.unsettled, *results.notes]
+    parts: list[RenderableType]
     if results.answer is None:
         parts = [*notes, *([""] if notes else []), *results.details[:_DETAILS]]
     else:
@@ -149,7 +151,7 @@ def figures_table(figures: Sequence[KeyFigure]) -> RenderableType:
     from fe_drivetrain.report.number_text import limit_text, value_with_band
 
     words = {"good": "ok", "watch": "near", "bad": "beyond", "none": ""}
-    table = _table(4)
+    table = _table()
     for figure in figures:
         cells = (figure.name, value_with_band(figure), limit_text(figure), words[figure.status])
         name, value, limit, status = (cell.translate(_TYPED) for cell in cells)
@@ -158,14 +160,11 @@ def figures_table(figures: Sequence[KeyFigure]) -> RenderableType:
     return table
 
 
-def _table(columns: int) -> Any:
+def _table() -> Table:
     """A table without lines, two spaces between its columns."""
     from rich.table import Table
 
-    table = Table.grid(padding=(0, 2, 0, 0))
-    for _ in range(columns):
-        table.add_column(overflow="fold")
-    return table
+    return Table.grid(padding=(0, 2, 0, 0))
 
 
 def rendered(*parts: RenderableType) -> str:
@@ -285,7 +284,7 @@ def _answers_table(
     from fe_drivetrain.report.results import verdict_sentence
 
     colours = {"pass": "green", "open": "yellow", "skip": "yellow", "FAIL": "red", "none": "red"}
-    table = _table(3)
+    table = _table()
     for name in names:
         if name in problems:
             outcome = "skip" if problems[name].state == "skipped" else "none"

@@ -192,8 +192,8 @@ def _answer(found: Findings, advice: Advice, ranked: list[Effect]) -> None:
     band = None if known is top else 100.0 * top.estimate
     size = formatted(100.0 * error, 2)
     if advice.chosen is None:
-        verdict = f"No level is known to have {name} within {share}: the finest, the "
-        verdict += f"{model.title}, may err by {size}\u00a0%."
+        verdict = f"Not known within {share}: the finest model, {model.title}, may err by "
+        verdict += f"{size}\u00a0% in {name}."
     elif known is top:
         verdict = f"Level\u00a0{model.level} ({model.title}) is needed to have {name} within "
         verdict += f"{share}; it may err by {size}\u00a0%."

@@ -41,8 +41,12 @@ def state_answer(found: Findings, lives: Sequence[BearingLife], site: Site | Non
     else:
         verdict = _lives(shortest, years[shortest.name], site, len(lives), safety)
         figures = [*[*years.values()][:_SHOWN], pressure, safety]
+    figures = figures[: _SHOWN + 2]
+    if shortest.site is not None:
+        covered = 100.0 * shortest.site.covered
+        figures.append(found.value("time whose winds the files have [%]", covered))
     which = "do the bearings" if len(lives) > 1 else f"does {shortest.name}"
-    found.answer(f"How long {which} live under these loads?", verdict, figures[: _SHOWN + 2])
+    found.answer(f"How long {which} live under these loads?", verdict, figures)
 
 
 def hardest_loaded(lives: Sequence[BearingLife]) -> BearingLife:

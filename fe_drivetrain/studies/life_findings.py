@@ -54,16 +54,17 @@ def answers(
     """
     for life in lives:
         years, band = life.years, scatter(life)
-        words = f"Bearing {life.name} lives {in_years(years['L10mr'])} {_under(life, site)} (L10mr"
+        shown = in_years(years["L10mr"])
         if np.isfinite(years["L10mr"]):
             which = f"L10mr of bearing {life.name} [years]"
             found.found(which, years["L10mr"], band, (TORQUE_AND_BENDING,))
         if band is not None:
-            shown = value_with_band(found.figures[-1])
-            words = f"Bearing {life.name} lives {shown} {_under(life, site)} (L10mr, ± two "
-            words += "standard errors of files of the same wind"
-        words += f"; L10r {in_years(years['L10r'])}, L10 {in_years(years['L10'])})"
-        found.say(f"{words}{_takes_longest(life, rules)}.")
+            shown = f"{value_with_band(found.figures[-1])} (two standard errors of files of the "
+            shown += "same wind)"
+        found.say(
+            f"Bearing {life.name}: L10mr {shown}, L10r {in_years(years['L10r'])}, L10 "
+            f"{in_years(years['L10'])}, {_under(life, site)}{_takes_longest(life, rules)}."
+        )
 
 
 def _under(life: BearingLife, site: Site | None) -> str:

@@ -12,7 +12,7 @@ from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import certain_value
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.load_cautions import cautions
-from fe_drivetrain.studies.load_comparison import CHANCE, Comparison
+from fe_drivetrain.studies.load_comparison import Comparison
 from fe_drivetrain.studies.load_digest import CHANNELS, UNIT_OF, LoadOptions
 from fe_drivetrain.studies.load_records import (
     loop_rows,
@@ -24,6 +24,7 @@ from fe_drivetrain.studies.load_totals import LoadTotals
 from fe_drivetrain.studies.load_winds import Capture, CaptureTarget, winds_not_used
 from fe_drivetrain.studies.shown_units import in_large_unit
 from fe_drivetrain.studies.unused import speed_not_used
+from fe_drivetrain.turbine_loads.histories.sets import CHANCE
 from fe_drivetrain.turbine_loads.histories.spectra import MULTIPLES
 
 _NAMED = 3  # files that are sampled too slowly
