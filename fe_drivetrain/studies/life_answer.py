@@ -9,6 +9,7 @@ import numpy as np
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import certain_value, value_text
 from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.studies.life_assumptions import in_years
 from fe_drivetrain.studies.life_sums import BearingLife, scatter
 from fe_drivetrain.turbine_loads.histories.sites import Site
 
@@ -91,7 +92,9 @@ def _safety(found: Findings, life: BearingLife) -> KeyFigure:
 
 
 def _life_text(years: KeyFigure) -> str:
-    return certain_value(years) if np.isfinite(years.value) else "for ever"
+    if years.band and np.isfinite(years.value):
+        return certain_value(years)
+    return in_years(years.value).replace(" ", "\u00a0")
 
 
 def _not_usable(life: BearingLife, overload: KeyFigure, years: KeyFigure) -> str:
