@@ -11,10 +11,12 @@ from fe_drivetrain.report.number_text import certain_value, value_text
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.life_assumptions import in_years
 from fe_drivetrain.studies.life_sums import BearingLife, scatter
+from fe_drivetrain.studies.shown_units import bearing_in_words
 from fe_drivetrain.turbine_loads.histories.sites import Site
 
 _SHOWN = 3  # bearings with a life among the key figures
 _FAR = 0.2  # share of the design life below which a life is far below it
+_SHORTEST, _LONGEST = 1e-3, 1e4  # years, between which a number needs no power of ten
 _STANDARD = "ISO 76"
 
 
@@ -46,7 +48,7 @@ def state_answer(found: Findings, lives: Sequence[BearingLife], site: Site | Non
     if shortest.site is not None:
         covered = 100.0 * shortest.site.covered
         figures.append(found.value("time whose winds the files have [%]", covered))
-    which = "do the bearings" if len(lives) > 1 else f"does {shortest.name}"
+    which = "do the bearings" if len(lives) > 1 else f"does {bearing_in_words(shortest.name)}"
     found.answer(f"How long {which} live under these loads?", verdict, figures)
 
 
@@ -92,7 +94,7 @@ def _safety(found: Findings, life: BearingLife) -> KeyFigure:
 
 
 def _life_text(years: KeyFigure) -> str:
-    if years.band and np.isfinite(years.value):
+    if years.band or _SHORTEST <= years.value < _LONGEST:
         return certain_value(years)
     return in_years(years.value).replace(" ", "\u00a0")
 
@@ -102,11 +104,12 @@ def _not_usable(life: BearingLife, overload: KeyFigure, years: KeyFigure) -> str
     of, rated = life.limits, life.bearing.rated
     if _is_pressed(life):
         limit = value_text(1e-6 * rated.static_pressure, "MPa")
-        why = f"{certain_value(overload)} contact pressure in {life.name}, above the {limit} limit "
-        why += f"of {_STANDARD}"
+        why = f"{certain_value(overload)} contact pressure in {bearing_in_words(life.name)}, above "
+        why += f"the {limit} limit of {_STANDARD}"
     else:
         load, limit = (value_text(1e-3 * one, "kN") for one in (of.max_static, rated.static))
-        why = f"a static load of {load} on {life.name}, above its rating C0 of {limit}"
+        why = f"a static load of {load} on {bearing_in_words(life.name)}, above its rating C0 of "
+        why += limit
     return f"Not usable: {why}; its rated life is {_life_text(years)}."
 
 
@@ -114,12 +117,14 @@ def _lives(
     life: BearingLife, years: KeyFigure, site: Site | None, number: int, safety: KeyFigure
 ) -> str:
     """The shortest life, beside the one that is asked for."""
+    who = bearing_in_words(life.name)
+    who = f"{who[:1].upper()}{who[1:]}"
     if np.isinf(years.value):
-        who = "No bearing" if number > 1 else f"{life.name}: nothing"
+        takes = "No bearing takes" if number > 1 else f"{who} takes no"
         least = certain_value(safety)
-        return f"{who} takes damage (L10mr) under these loads; static safety is {least} at least."
+        return f"{takes} damage (L10mr) under these loads; static safety is {least} at least."
     shortest = f", the shortest of {number}" if number > 1 else ""
-    words = f"{life.name} lives {_life_text(years)} (L10mr){shortest}"
+    words = f"{who} lives {_life_text(years)} (L10mr){shortest}"
     if site is None:
         return f"{words}, if these files repeat for ever."
     asked = value_text(site.years, "years")

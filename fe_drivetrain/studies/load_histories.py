@@ -140,7 +140,8 @@ class LoadsResult(Result):
             classes = self.hub.cycles.ranges[name]
             traces.append(trace(name, classes.edges()[:-1] / 1e3, classes.at_least))
         unit = shown_unit(UNIT_OF[loads[0]])
-        caption = f"Cycles of a range or a larger one; {self.asked.counted}"
+        what = "forces" if UNIT_OF[loads[0]] == "N" else "moments"
+        caption = f"Cycles of a range or a larger one, of {what}; {self.asked.counted}"
         return caption, traces, f"range [{unit}]", "cycles", "y"
 
 

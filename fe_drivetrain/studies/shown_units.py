@@ -1,4 +1,4 @@
-"""Units in which loads are shown, and how they are written in keys of records."""
+"""Units in which loads are shown, in keys of records, too; quantities and bearings in words."""
 
 SHOWN_UNITS = (*3 * ("kN",), *3 * ("kN m",))
 """Units in which the components of a load are shown; with a plain space, which can be typed."""
@@ -44,6 +44,21 @@ def in_large_unit(value: float, unit: str) -> tuple[float, str]:
     return value / factor, large
 
 
+def bearing_in_words(name: str) -> str:
+    """A bearing in a sentence: "the main bearing" of main_bearing, "bearing front" of front.
+
+    Parameters
+    ----------
+    name : str
+        Name of the bearing.
+
+    Returns
+    -------
+    str
+    """
+    return f"the {name.replace('_', ' ')}" if "bearing" in name else f"bearing {name}"
+
+
 def quantity_in_words(name: str) -> str:
     """A quantity by what it is at, for sentences.
 
@@ -55,12 +70,12 @@ def quantity_in_words(name: str) -> str:
     Returns
     -------
     str
-        As "My on main_bearing", "Fz on the gearbox", "stiffness of the hub about z".
+        As "My on the main bearing", "Fz on the gearbox", "stiffness of the hub about z".
     """
     where, dot, what = name.partition(".")
     if not dot or " " in name:
         return name
-    place = f"the {where}" if where in ("hub", "gearbox") else where
+    place = f"the {where}" if where in ("hub", "gearbox") else bearing_in_words(where)
     kind, _, motion = what.partition(".")
     if kind != "stiffness":
         return f"{what} on {place}"

@@ -9,6 +9,7 @@ from fe_drivetrain.report.number_text import certain_value
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.shafts.fidelity.judgement import Judgement
 from fe_drivetrain.studies.reaction_statistics import ReactionStatistics, peak_across
+from fe_drivetrain.studies.shown_units import bearing_in_words
 
 _PEAKS, _STIFFNESSES = 3, 2  # key figures of each kind
 _GEARBOX = "gearbox"
@@ -50,9 +51,11 @@ def state_answer(
     ]
     if len(figures) < _PEAKS and _GEARBOX in reactions:
         figures.append(found.value(*peak_across(_GEARBOX, reactions[_GEARBOX].whole)))
+    who = bearing_in_words(first)
     found.answer(
         "What do the bearings carry under these loads, and which model is enough?",
-        f"{first} carries up to {_size(peaks[first])} across the shaft; {_level(judgement)}.",
+        f"{who[:1].upper()}{who[1:]} carries up to {_size(peaks[first])} across the shaft; "
+        f"{_level(judgement)}.",
         figures,
         cautions=cautions,
     )
@@ -66,12 +69,12 @@ def _size(peak: KeyFigure) -> str:
 def _error(found: Findings, judgement: Judgement) -> KeyFigure:
     """Error of the cheapest level that is enough, or of the nearest one."""
     number, _, title = judgement.nearest.partition(" ")
-    return found.value(
-        f"error of level {number} ({title}) [%]",
-        100.0 * judgement.error,
-        100.0 * judgement.failing.band or None,
-        at_most=100.0 * judgement.tolerance,
-    )
+    name = f"error of level {number} ({title}) [%]"
+    error, band = 100.0 * judgement.error, 100.0 * judgement.failing.band or None
+    allowed = 100.0 * judgement.tolerance
+    if judgement.level is None:  # nothing is wrong: the assembly has answered
+        return found.value(name, error, band, beside=allowed, by="allowed")
+    return found.value(name, error, band, at_most=allowed)
 
 
 def _level(judgement: Judgement) -> str:
@@ -79,5 +82,5 @@ def _level(judgement: Judgement) -> str:
     number, _, title = judgement.nearest.partition(" ")
     error = f"{100.0 * judgement.error:.2g}\u00a0%"
     if judgement.level is None:
-        return f"no model below the assembly of solids is enough: {title} errs by {error}"
+        return f"only the assembly of solids is enough: {title} errs by {error}"
     return f"level\u00a0{number} ({title}) is enough, {error} from the assembly of solids"

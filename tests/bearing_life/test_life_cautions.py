@@ -171,7 +171,7 @@ def test_a_bearing_beyond_the_pressure_of_its_rating_is_not_usable(run) -> None:
     over, printed = run(factor=8.0)
     of = over.figures["limits"][0]
     assert of["min S0"] < 1.0 < of["max pressure [MPa]"] / 4000.0
-    words = f"{of['max pressure [MPa]']:,.0f} MPa contact pressure in main_bearing"
+    words = f"{of['max pressure [MPa]']:,.0f} MPa contact pressure in the main bearing"
     assert printed.startswith(f"Not usable: {words}, above the 4,000 MPa limit of ISO 76")
     assert over.answer is not None
     assert broken_rules(over) == []

@@ -69,7 +69,7 @@ def test_lives_of_constant_loads_are_those_of_one_step(
         *("--out", str(out), "--bearing", "main_bearing=bearing_s_o20"),
     )
     assert status == 0, printed + error
-    assert printed.startswith("main_bearing lives ")
+    assert printed.startswith("The main bearing lives ")
     (one,) = bearings_of(
         library_scene(SCENE), Choices({"main_bearing": "bearing_s_o20"}, (), *CHOICES_REST)
     )
@@ -235,7 +235,7 @@ def test_a_bearing_that_stands_is_said_to_stand(
     )
     assert status == 0, error
     assert "the bearing stands: no life is computed" in printed
-    assert printed.startswith("main_bearing: nothing takes damage (L10mr)")
+    assert printed.startswith("The main bearing takes no damage (L10mr)")
 
 
 @pytest.mark.parametrize(
