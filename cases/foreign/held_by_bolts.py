@@ -23,6 +23,7 @@ WAYS = {
     "washers": f"bolts: {{{BOLTS}}}",
     "bolts as beams": f"bolts: {{{BOLTS}, hold: beams, diameter: 48}}",
 }
+TILT = "Tilt of the seat under 1 MN m about y"
 MOMENT = 1e6  # N m, which tilts the seat about y
 PRINTED = (1.25, 2.07)  # minutes of arc
 SIZES, QUICK_SIZES = (0.07, 0.05), (0.1,)  # m
@@ -62,7 +63,7 @@ def run(run: Run, page: Page) -> None:
     page.table("Seat held in shape; tilt about y under 1 MN m", rows)
     page.add(
         bars(
-            "Tilt of the seat under 1 MN m about y",
+            TILT,
             {n: {way: tilts[n, way] for way in WAYS} for n in dict.fromkeys(k for k, _ in tilts)},
             "tilt [arcmin]",
         )
@@ -73,15 +74,34 @@ def run(run: Run, page: Page) -> None:
         shown = mesh_scene(held(run.folder, names[0], "bolts as beams", QUICK_SIZES[-1]))
         page.image("The first of the housings, as meshed", run.sketch(shown))
     show_published(page)
-    foot, washers, beams = (tilts[HOUSINGS[names[0]], way] for way in WAYS)
-    page.found(f"{HOUSINGS[names[0]]}: tilt under 1 MN m, washers held [arcmin]", washers)
-    page.say(
-        f"How it is held moves the tilt of the {HOUSINGS[names[0]]} from {foot:.3g} minutes of arc "
-        f"(whole foot) to {washers:.3g} (washers, {washers / foot:.1f} times) and {beams:.3g} "
-        f"(bolts as beams, {beams / foot:.0f} times).",
-        "A stiffness of a housing says little without how its bolts are held.",
-    )
+    first = HOUSINGS[names[0]]
+    page.found(f"{first}: tilt under 1 MN m, washers held [arcmin]", tilts[first, "washers"])
+    answer(page, first, [tilts[first, way] for way in WAYS])
     page.data("rows", rows)
+
+
+def answer(page: Page, name: str, tilts: list[float]) -> None:
+    """State the tilt [arcmin] of a housing by how it is held, in the order of `WAYS`."""
+    foot, washers, beams = tilts
+    page.answer(
+        "How much does it matter how the bolts of a housing are held?",
+        f"The {name} tilts {foot:.3g} minutes of arc on its whole foot, {washers:.3g} on washers "
+        f"and {beams:.3g} on bolts alone: the hold decides.",
+        [
+            page.judged(f"{name}: tilt under 1 MN m, washers held", "tilt, washers held"),
+            page.value("tilt, whole foot held [arcmin]", foot),
+            page.value("tilt, bolts as beams [arcmin]", beams),
+            page.value("washers over whole foot", washers / foot),
+            page.value("bolts as beams over whole foot", beams / foot),
+            page.judged(
+                "rigid housing on its bolts: K about y", "rigid housing, K about y", "beams"
+            ),
+        ],
+        hero=TILT,
+        cautions=[
+            "Neither washers nor bolts as beams let the ground press on the foot between the bolts."
+        ],
+    )
 
 
 def tilts_of(run: Run, name: str) -> list[Record]:

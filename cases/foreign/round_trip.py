@@ -13,6 +13,7 @@ from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.fidelity import UnitBounds, unit_bounds, unit_stiffness
 
 NAME = "main_bearing"
+READ_BACK = "Stiffness of the housing read back, against the parametric one"
 COARSER, QUICK_COARSER = 1.0, 2.5
 SPRING = [1e10, 1e10, 1e10, 1e8, 1e8, 1e8]  # N/m, N m/rad
 FROM_STEP = {
@@ -133,16 +134,43 @@ def run(run: Run, page: Page) -> None:
     check_stiffness(page, bounds, own, step, splines)
     page.section("Differences")
     page.table("Stiffness read back over that of the parametric housing, less one", rows)
-    off, by_splines = (
-        max(abs(x) for x in row.values() if isinstance(x, float)) for row in (rows[-2], rows[-1])
-    )
-    page.say(
-        "A mesh file of ours read back gives the stiffness of the parametric housing to round-off, "
-        f"its STEP file within {100 * off:.2g} %, and one that has all faces as B-splines within "
-        f"{100 * by_splines:.2g} %, which is less than the errors of the two meshes, "
-        f"{100 * (bounds.mesh + step.mesh).bending:.2g} %."
-    )
+    answer(page, rows, 100 * (bounds.mesh + step.mesh).bending)
     page.image("The block as read from STEP, with its own mesh", run.sketch(placed.mesh))
+
+
+def answer(page: Page, rows: list[Record], by_mesh: float) -> None:
+    """State how far what is read back is from the parametric housing; error of both meshes [%]."""
+    meshes, off, splines = (
+        100 * max(abs(x) for row in some for x in row.values() if isinstance(x, float))
+        for some in (rows[:-2], rows[-2:-1], rows[-1:])
+    )
+    both = "along z", "about y"
+    step, by_splines = (
+        [page.judged(f"{name}: K {motion}", f"{file}, {motion}", "parametric") for motion in both]
+        for name, file in (
+            ("block.step, bonded", "STEP"),
+            ("splines.step, 6x6 spring", "STEP of splines"),
+        )
+    )
+    inside = max(off, splines) <= by_mesh
+    page.answer(
+        "Is a housing that is read back from a file as stiff as the one that was written?",
+        f"{'Yes' if inside else 'No'}: from STEP within {off:.2g} %, as splines within "
+        f"{splines:.2g} %, {'less' if inside else 'more'} than the errors of both meshes, "
+        f"{by_mesh:.2g} %; from mesh files to round-off.",
+        [
+            page.value("largest difference, STEP [%]", off, at_most=by_mesh, by="both meshes"),
+            page.value("largest difference, all faces splines [%]", splines, at_most=by_mesh),
+            page.value("largest difference, mesh files [%]", meshes),
+            *step,
+            by_splines[0],
+        ],
+        hero=READ_BACK,
+        cautions=[
+            "From STEP the bearing is tied to the housing, where it shared its nodes before."
+        ],
+    )
+    page.errors(READ_BACK, [*step, *by_splines])
 
 
 def with_bore(bearing: Bearing) -> Bearing:

@@ -10,6 +10,7 @@ from fe_drivetrain.cases.foreign.seats import picture_under_hub_load
 from fe_drivetrain.common import Floats
 from fe_drivetrain.drivetrain_file import Scene, change_scene, parse_scene
 from fe_drivetrain.geometry import gmsh_session, write_step
+from fe_drivetrain.report import bars
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.fidelity import LevelModel, housing_springs, shaft_level, unit_stiffness
 from fe_drivetrain.shafts.response import (
@@ -35,6 +36,7 @@ mesh: {shaft: 0.3, bearing: 0.2, housing: 0.3, bearing_edge: 0.2, elements_per_t
 UNITS, X = ("front", "rear"), (0.0, 1.5)
 TOP = {"point": [0, 0, -420], "normal": [0, 0, 1]}  # mm
 END = {"point": [-400, 0, -500], "normal": [-1, 0, 0]}  # the bedplate hangs on its front end
+ON_REAR = "Force on the rear bearing for 1 N or 1 N m at the hub, by how supports are modelled"
 LOADS = {"Fy": 1, "Fz": 2, "My": 4, "Mz": 5}
 
 
@@ -95,6 +97,32 @@ def check(page: Page, found: dict[str, LevelModel], solid: Response) -> None:
     )
 
 
+def answer(page: Page, on_rear: dict[str, float]) -> None:
+    """State the force on the rear bearing [kN] under a pitching moment of 1 MN m, by supports."""
+    solids, apart, ground = (
+        on_rear[name] for name in ("assembly of solids", "each by itself", "on the ground")
+    )
+    page.answer(
+        "How do two bearings on one bedplate share the loads of the hub?",
+        f"Of a pitching moment of 1\u00a0MN\u00a0m the rear bearing carries {solids:.3g}\u00a0kN; "
+        f"supports that are not coupled say {apart:.3g}\u00a0kN, a rigid ground "
+        f"{ground:.3g}\u00a0kN.",
+        [
+            page.value("rear bearing, assembly of solids [kN]", solids),
+            *(
+                page.value(f"rear bearing, {name} [kN]", on_rear[name], beside=solids, by="solids")
+                for name in on_rear
+                if name != "assembly of solids"
+            ),
+            page.judged(
+                "force on the rear bearing for Fz at the hub, coupled", "share of Fz", "solids"
+            ),
+        ],
+        hero=ON_REAR,
+        cautions=["Tied faces are glued all over: no joint opens or slides."],
+    )
+
+
 @case(
     "Two housings on one bedplate: supports that are coupled",
     source="equilibrium; the assembly of solids; the bearing units on the ground",
@@ -119,13 +147,7 @@ def run(run: Run, page: Page) -> None:
     ]
     page.section("Force on the rear bearing")
     page.table("Of 1 N [-] and of 1 N m [1/m], along z for Fz and My, y for Fy and Mz", rows)
-    page.text("Tied faces are glued all over: no joint opens or slides.")
     picture_under_hub_load(run, page, model, solid)
-    solids, apart, base = (
-        share(answers[n], "My") for n in ("assembly of solids", "each by itself", "on the ground")
-    )
-    page.say(
-        f"Of a pitching moment of 1 N m at the hub the rear bearing carries {abs(solids):.3g} N. "
-        f"Coupled supports say so within their band; supports that each know their own share of "
-        f"the bedplate alone say {abs(apart):.3g} N, and housings on the ground {abs(base):.3g} N."
-    )
+    of_load = {name: {load: abs(share(of, load)) for load in LOADS} for name, of in answers.items()}
+    page.add(bars(ON_REAR, of_load, "force [N]"))
+    answer(page, {name: 1e3 * of["My"] for name, of in of_load.items()})

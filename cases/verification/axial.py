@@ -8,6 +8,7 @@ from fe_drivetrain.cases.references.end_loaded import section_area
 from fe_drivetrain.cases.references.exact_shafts import pulled
 from fe_drivetrain.cases.verification.shaft_inputs import begin_uniform
 from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.report.number_text import certain_value
 from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target, column
 
 STEEL = MATERIALS["steel"]
@@ -18,6 +19,7 @@ SIGMA = 1e8  # Pa
 SHAFT, REFINEMENT, STIFFNESS = "shaft", "refinement", "axial stiffness [N/m]"
 EXACT, ERROR = "E A / L [N/m]", "error of the stiffness"
 MOVED = "largest difference from the exact displacements, over the largest"
+ERRORS = "Error of the stiffness: of the area, which parabolic arcs make too small"
 STRESSED = "largest difference from the uniform stress, over it"
 
 
@@ -40,6 +42,27 @@ def solve(name: str, refinement: int) -> Record:
     }
 
 
+def answer(page: Page, finest: list[Record]) -> None:
+    """State the stiffness of both shafts, and how far it is from the closed form."""
+    solid, bored = (
+        page.judged(f"{row[SHAFT]}: axial stiffness", f"{row[SHAFT]} shaft", "E A / L", unit="GN/m")
+        for row in finest
+    )
+    page.answer(
+        "How stiff is a uniform shaft in tension?",
+        f"The solid shaft has {certain_value(solid)} and the bored one {certain_value(bored)}, "
+        f"within {100 * max(column(finest, ERROR)):.1g} % of E A / L.",
+        [
+            solid,
+            bored,
+            page.value("share of the stiffness that the bore takes [%]", 100 * BORE**2 / OUTER**2),
+            page.value("stress in both, uniform [MPa]", SIGMA / 1e6),
+        ],
+        hero=ERRORS,
+        cautions=["The ends are free to contract; ends that are held make a shaft stiffer."],
+    )
+
+
 @case("Tension of a uniform shaft", source="Closed form E A / L with uniform stress")
 def run(run: Run, page: Page) -> None:
     """Uniform traction on the ends, on three meshes each."""
@@ -58,16 +81,12 @@ def run(run: Run, page: Page) -> None:
         for target in (moved, stressed):
             page.meets(best[target.key], target, of=name)
         rows += meshes
-    solid, bored = (row[ERROR] for row in rows[len(refinements) - 1 :: len(refinements)])
-    page.say(
-        f"E A / L is met to {solid:.1g} (solid) and {bored:.1g} (bored), and the exact linear "
-        f"displacements to {max(column(rows, MOVED)):.0e} of the largest."
-    )
+    answer(page, rows[len(refinements) - 1 :: len(refinements)])
     pull = "tension on the ends", SIGMA / 1e6, "MPa"
     length = "length", LENGTH, "m"
     begin_uniform(run, page, "Tension", (OUTER, BORE), length, pull, steel=STEEL)
     page.sweep(
-        "Error of the stiffness: of the area, which parabolic arcs make too small",
+        ERRORS,
         rows,
         "per turn",
         ERROR,

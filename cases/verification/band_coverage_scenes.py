@@ -16,12 +16,15 @@ from fe_drivetrain.cases.verification.bands_over_errors import (
     WIDE,
     coverage,
     histogram,
+    share_that_holds,
+    words_of_share,
 )
 from fe_drivetrain.cases.verification.random_scenes import random_scene
 from fe_drivetrain.common import MOTIONS, Cache, Floats, InputError
 from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.elasticity.mesh import mean_size
 from fe_drivetrain.report import shaft_with_rings
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run, column, grouped
 from fe_drivetrain.shafts.fidelity import (
     LevelModel,
@@ -44,6 +47,7 @@ FINER, APART = (0.75, 0.55, 0.45, 0.4), 1.15
 #: Order of the reference: that of energy at a crack, where it converges most slowly.
 ORDER = 1.0
 
+HISTOGRAM = "Histogram of bands over errors: below 1 a band does not hold"
 BOTH = "bands of both values, relative"
 STIFFNESS, REACTION, CHANGE = "stiffness at the hub", "reaction", "change to a like design"
 
@@ -215,12 +219,7 @@ def run(run: Run, page: Page) -> None:
     values = [row for row in rows if row["kind"] != CHANGE]
     median = float(np.median(column(values, RATIO)))
     check(page, whole, median, run.quick)
-    page.say(
-        f"{whole['bands that hold']} of {whole['figures']} bands hold of {count} scenes "
-        f"({whole['coverage [%]']:.3g} %); those of values at a median of "
-        f"{median:.2g} times the error.",
-        *(["A quick run is a sample: too few to judge 95 % by."] if run.quick else []),
-    )
+    answer(page, rows, count, run.quick)
     if changed := [row[BAND] / row[BOTH] for row in rows if row["kind"] == CHANGE]:
         page.say(
             f"Bands of {len(changed)} changes are {min(changed):.2g} to {max(changed):.2g} of the "
@@ -233,6 +232,28 @@ def run(run: Run, page: Page) -> None:
     )
     page.data("coverage", found)
     page.data("figures", rows)
+
+
+def answer(page: Page, rows: list[Record], count: int, quick: bool) -> None:
+    """State the share of bands that hold, and how wide they are."""
+    page.answer(
+        "How often do the bands of an assembly's stiffness and reactions hold?",
+        f"{words_of_share(rows, quick)}, of {count} random scene{'' if count == 1 else 's'}.",
+        [
+            share_that_holds(page, rows, quick),
+            page.judged("median band over error, values", "median band over error"),
+            page.value("least band over error", min(column(rows, RATIO))),
+            *(
+                page.value(f"median error, {kind} [%]", 100 * float(np.median(column(of, ERROR))))
+                for kind, of in grouped(rows, "kind")
+            ),
+        ],
+        hero=HISTOGRAM,
+        cautions=[
+            "The reference errs, too: what may be missing from it counts against the band.",
+            f"Scenes of more than {formatted(MAX_CELLS)} elements are left out.",
+        ],
+    )
 
 
 def all_judged(run: Run, count: int) -> tuple[Scene, list[Record]]:
@@ -273,7 +294,7 @@ def show(page: Page, rows: list[Record], found: list[Record]) -> None:
     """Bands over errors, and every figure."""
     page.section("Bands over errors")
     page.chart(
-        "Histogram of bands over errors: below 1 a band does not hold",
+        HISTOGRAM,
         histogram(grouped(rows, "kind")),
         "band over error",
         "figures",

@@ -6,7 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.report.suite import Record, column
+from fe_drivetrain.report.answer import KeyFigure
+from fe_drivetrain.report.number_text import formatted
+from fe_drivetrain.report.suite import Page, Record, column
 
 #: Required: share of the bands that hold, and median of the bands over their errors.
 COVERED, WIDE = 0.95, 5.0
@@ -27,6 +29,26 @@ def coverage(rows: list[Record]) -> Record:
         "coverage [%]": 100 * float(np.mean(column(rows, HOLDS))),
         "median band over error": float(np.median(column(rows, RATIO))),
     }
+
+
+def share_that_holds(page: Page, rows: list[Record], quick: bool) -> KeyFigure:
+    """Share of the bands that hold; a quick run has too few for the share that is required."""
+    name, share = "bands that hold [%]", 100 * float(np.mean(column(rows, HOLDS)))
+    if quick:
+        return page.value(name, share)
+    return page.value(name, share, at_least=100 * COVERED, by="asked for")
+
+
+def words_of_share(rows: list[Record], quick: bool) -> str:
+    """How many of the bands hold, and what that says of the share that is required."""
+    hold, asked = sum(column(rows, HOLDS)), f"{100 * COVERED:g}\u00a0%"
+    share = 100 * hold / len(rows)
+    judged = f"{asked} are asked for"
+    if quick:
+        judged = f"too few to judge {asked} by"
+    elif share < 100 * COVERED:
+        judged = f"not the {asked} that are asked for"
+    return f"{hold} of {len(rows)} bands hold ({formatted(share, 3)}\u00a0%: {judged})"
 
 
 def histogram(kinds: Iterable[tuple[str, list[Record]]]) -> list[Any]:

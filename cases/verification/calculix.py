@@ -26,6 +26,7 @@ from fe_drivetrain.export import (
     write_inp,
 )
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Run
 from fe_drivetrain.shafts.response import (
     LOADS,
@@ -243,15 +244,7 @@ def run(run: Run, page: Page, row: Mapping[str, Any]) -> None:
     for one in found:
         page.about(forms[one.label], one.label)
         check(page, one)
-    worst = ", ".join(f"{one.label} {_worst(one.differences):.1e}" for one in found)
-    usual = ", ".join(f"{one.label} {one.usual[QUANTITIES[0]].max():.1e}" for one in found)
-    page.say(
-        "CalculiX and this project agree on displacements, reactions and strain energy of the "
-        f"{row['scene']} main bearing under each unit load: largest differences {worst}, the "
-        "digits that CalculiX prints.",
-        "With this project's usual integration of curved elements displacements differ by "
-        f"{usual} on this coarse mesh.",
-    )
+    answer(page, found, row["question"], row["subject"])
     add_results(page, found)
     page.section("How it was compared")
     page.text(
@@ -269,6 +262,48 @@ def run(run: Run, page: Page, row: Mapping[str, Any]) -> None:
     for one in found:
         page.data(one.label, one.differences)
     page.image("The scene, as meshed here", run.sketch(mesh))
+
+
+def answer(page: Page, found: Sequence[Compared], question: str, subject: str) -> None:
+    """State how far CalculiX is from the project's answers, over all forms of the interface."""
+    worst = max(_worst(one.differences) for one in found)
+    loads = f"{len(found[0].loads)} unit loads"
+    digits = f"by {formatted(1e6 * worst, 2)} millionths at most"
+    verdict = f"Yes: on {subject} both programs differ {digits} under {loads}, within CalculiX's "
+    verdict += "printed digits."
+    if worst > TOLERANCE:
+        verdict = f"No: on {subject} both programs differ {digits} under {loads}, more than "
+        verdict += "CalculiX's rounding."
+    usual = 100 * max(float(one.usual[QUANTITIES[0]].max()) for one in found)
+    page.answer(
+        question,
+        verdict,
+        [
+            *(
+                page.value(
+                    f"largest difference, {quantity} [-]",
+                    max(float(one.differences[quantity].max()) for one in found),
+                    at_most=TOLERANCE,
+                    by="printed digits",
+                )
+                for quantity in (*QUANTITIES[:1], *QUANTITIES[2:])
+            ),
+            page.value("displacements, usual integration here [%]", usual),
+        ],
+        hero=_caption(found[0]),
+        cautions=[
+            "Both programs integrate elements at four points here; this project's usual eleven "
+            f"points change displacements by {usual:.2g} % on this coarse mesh."
+        ],
+    )
+
+
+def _caption(one: Compared) -> str:
+    """Of the chart of one deck's differences."""
+    return (
+        f"{one.label}: largest difference between CalculiX and this project, relative to the "
+        "largest value of the load"
+    )
 
 
 def check(page: Page, one: Compared) -> None:
@@ -346,8 +381,7 @@ def add_differences(page: Page, one: Compared) -> None:
     ends, bound = (one.loads[0], one.loads[-1]), np.full(2, TOLERANCE)
     lines.append(line("tolerance", ends, bound, line={"color": "#888888", "dash": "dot"}))
     page.chart(
-        f"{one.label}: largest difference between CalculiX and this project, relative to the "
-        "largest value of the load",
+        _caption(one),
         lines,
         "unit load",
         "relative difference [-]",

@@ -16,6 +16,11 @@ OUTER, REFINEMENTS = 0.4, (1, 2)  # m; of the solids
 #: Length over diameter, and up to which it is solved as a solid, too: long ones show nothing new.
 RATIOS, QUICK_RATIOS = ((1.0, 2.0, 5.0, 10.0, 20.0), 5.0), ((1.0, 5.0, 10.0, 20.0), 1.0)
 
+POWER = "clamped: power with which the beam's error falls with length over diameter"
+STIFFNESS_BY_LENGTH = (
+    "How much stiffer a clamped shaft with a rigid tip is than Timoshenko's beam, "
+)
+STIFFNESS_BY_LENGTH += "against length over diameter"
 RATIO, STIFFER, HEXAHEDRA = "length over diameter", "stiffer by [%]", "hexahedra, stiffer by [%]"
 
 
@@ -52,28 +57,52 @@ def run(run: Run, page: Page) -> None:
     for row in ends:
         if row["by mesh"]:
             check(page, row)
-    first, before, last = ends[0], *ends[-2:]
+    before, last = ends[-2:]
     power = np.log(last[STIFFER] / before[STIFFER]) / np.log(last[RATIO] / before[RATIO])
-    title = "clamped: power with which the beam's error falls with length over diameter"
     why = f"from L = {before[RATIO]:g} D to {last[RATIO]:g} D; what shear adds is of second "
     why += "order in D / L, a tenth of the first there"
     turns = "a clamp turns less than Saint-Venant's root by a share of M D / EI: the error is in "
     turns += "proportion to D / L"
-    page.meets(float(power), order_of(title, -1.0, 0.15, why, turns))
-    page.say(
-        f"A clamped end and a rigid tip are stiffer than the beam by {first[STIFFER]:.1f} % at "
-        f"L = {first[RATIO]:g} D and {last[STIFFER]:.2f} % at L = {last[RATIO]:g} D."
-    )
+    page.meets(float(power), order_of(POWER, -1.0, 0.15, why, turns))
+    answer(page, ends)
     shaft, shown = solid_shafts.straight((0.0, 5.0 * OUTER), OUTER), "Shaft of five diameters"
     begin(run, page, "Clamped end", shaft, shown)
     show_inputs(page, ("outer diameter", OUTER, "m", SIZE), steel=STEEL)
-    title = "How much stiffer a clamped shaft with a rigid tip is than Timoshenko's beam, against "
-    title += "length over diameter"
-    curves = {STIFFER: "meridian", HEXAHEDRA: "hexahedra"}
+    title, curves = STIFFNESS_BY_LENGTH, {STIFFER: "meridian", HEXAHEDRA: "hexahedra"}
     page.sweep(title, ends, RATIO, curves, log="xy", axis=STIFFER, table=(RATIO, *curves))
     page.text(
         "A clamp keeps the section flat and round, where Saint-Venant's solution warps. It is no "
         "error of the beam, but of its boundary condition."
+    )
+
+
+def answer(page: Page, ends: list[Record]) -> None:
+    """State how much stiffer the clamped shaft is, by its length."""
+    first, last = ends[0], ends[-1]
+    solid = [
+        page.value(
+            f"the same as a solid, {row[RATIO]:g} D [%]",
+            row[HEXAHEDRA],
+            beside=row[STIFFER],
+            by="meridian",
+        )
+        for row in ends
+        if row[HEXAHEDRA] is not None
+    ]
+    page.answer(
+        "How much stiffer is a cantilever with clamped ends than Timoshenko's beam?",
+        f"By {first[STIFFER]:.2g} % at L = {first[RATIO]:g} D and {last[STIFFER]:.2g} % at "
+        f"L = {last[RATIO]:g} D: the error falls as D / L.",
+        [
+            *(
+                page.value(f"stiffer, length {of[RATIO]:g} D [%]", of[STIFFER])
+                for of in (first, last)
+            ),
+            *solid[:2],
+            page.judged(POWER, "power of the length in it", "theory"),
+        ],
+        hero=STIFFNESS_BY_LENGTH,
+        cautions=["The difference is one of the boundary condition, and no error of the beam."],
     )
 
 

@@ -9,6 +9,7 @@ from fe_drivetrain.common import Floats, rigid_motions
 from fe_drivetrain.elasticity.mesh import Block, brick, shaft_hexahedra
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run, column
 
 #: Bored shaft: outer and inner diameter, length [m].
@@ -16,6 +17,9 @@ OUTER, BORE, LENGTH = 0.7, 0.3, 2.0
 ENDS = np.array([[0.0, 0.0, 0.0], [LENGTH, 0.0, 0.0]])
 
 EXACT = "exact: reciprocity, and rigid motions without strain"
+EIGENVALUES = "Eigenvalues of the condensed stiffness of a free body, of the largest; rotations in "
+EIGENVALUES += "units of its length. Magnitudes of those that are zero but for round-off"
+TWIST = "bored shaft: twist of one end against the other"
 GAP = "below the gap over above [-]"
 
 
@@ -152,12 +156,7 @@ def run(run: Run, page: Page) -> None:
         shown = np.maximum(np.abs(values) / values[-1], 1e-18)
         traces.append(trace(label, np.arange(1, 13), shown, mode="lines+markers"))
     check_twist(page, coarse, fine, turns, run.quick)
-    page.say(
-        "The 12 x 12 stiffness of a free body between two rigid ends has exactly six zero modes: "
-        f"the widest gap, a factor of {1 / max(column(rows, GAP)):.0e} or more, lies between the "
-        "sixth and the seventh eigenvalue. It is symmetric, and with one end held positive "
-        "definite."
-    )
+    answer(page, rows)
     page.section("Condensed stiffness")
     page.text(
         "Both ends are rigid faces with a reference point each. Each of the twelve motions of the "
@@ -166,8 +165,7 @@ def run(run: Run, page: Page) -> None:
         "The rank is decided by the widest gap between neighbours in the sorted eigenvalues."
     )
     page.chart(
-        "Eigenvalues of the condensed stiffness of a free body, of the largest; rotations in units "
-        "of its length. Magnitudes of those that are zero but for round-off",
+        EIGENVALUES,
         traces,
         "number",
         "eigenvalue, relative",
@@ -176,6 +174,27 @@ def run(run: Run, page: Page) -> None:
     page.table("Eigenvalues [N/m], rotations in units of the body's length", rows)
     page.image("The quarter ring, the second of the bodies", run.sketch(block))
     page.data("eigenvalues [N/m], rotations in units of the body's length", rows)
+
+
+def answer(page: Page, rows: list[Record]) -> None:
+    """State how many rigid motions a condensed free body has, and how clearly."""
+    gap, six = max(column(rows, GAP)), all(row["zero modes"] == 6 for row in rows)
+    page.answer(
+        "Does the condensed stiffness of a free body know its six rigid motions?",
+        f"{'Yes' if six else 'No'}: the condensed shaft and quarter ring have "
+        f"{' and '.join(str(row['zero modes']) for row in rows)} motions without strain, their "
+        f"stiffness {formatted(gap, 1, '')} of the next or less.",
+        [
+            *(
+                page.value(f"free motions, {row['body']}", row["zero modes"], beside=6, by="exact")
+                for row in rows
+            ),
+            page.value("stiffness of the sixth motion over that of the seventh", gap, at_most=1e-9),
+            page.judged(TWIST, "torsional stiffness of the shaft", "GJ / L", unit="MN m/rad"),
+        ],
+        hero=EIGENVALUES,
+        cautions=["Both ends are rigid faces: bodies whose ends deform are not condensed so."],
+    )
 
 
 def quarter_ring(quick: bool) -> tuple[Block, Condensed, Floats]:
@@ -195,7 +214,7 @@ def check_twist(
     """The shaft's torsional stiffness in closed form."""
     twist, twist_coarse = fine.by_energy[9, 9], coarse.by_energy[9, 9]
     page.equals(
-        "bored shaft: twist of one end against the other [N m/rad]",
+        f"{TWIST} [N m/rad]",
         float(twist),
         manufactured.LAME[1] * np.pi / 32.0 * (OUTER**4 - BORE**4) / LENGTH,
         within=2e-3 if quick else 5e-4,

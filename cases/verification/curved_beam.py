@@ -10,6 +10,8 @@ from fe_drivetrain.cases.references.plane_rings import CURVED_BAR, CurvedBar, pl
 from fe_drivetrain.cases.verification.curved_bars import bent_and_pulled, curvature_of, quarter_of
 from fe_drivetrain.common import Floats
 from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import certain_value
 from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target
 
 INNER, OUTER = 0.1, 0.3  # m
@@ -19,6 +21,7 @@ STEEL = Material(youngs_modulus=200e9, poisson_ratio=0.3, density=0.0)
 PLANE = plane_strain(STEEL.youngs_modulus, STEEL.poisson_ratio)
 QUARTER = 0.5 * np.pi
 
+THROUGH_HEIGHT = "Hoop stress through the height of the bent bar"
 THROUGH = "elements through the height"
 TURNED = "bending: rotation of the ends [mrad]"
 INSIDE, OUTSIDE = "bending: hoop stress inside [MPa]", "bending: hoop stress outside [MPa]"
@@ -63,6 +66,48 @@ def target(key: str, within: float, h: float) -> Target:
     return Target(key, EXACT[key], *recovered, CURVED_BAR, relative=False)
 
 
+def answer(page: Page) -> None:
+    """State the stress inside, beside what simpler formulae make of it."""
+    inside, outside = (
+        page.judged(key.removesuffix(" [MPa]"), f"hoop stress {where}", "exact")
+        for key, where in ((INSIDE, "inside"), (OUTSIDE, "outside"))
+    )
+    straight = 6.0 * MOMENT / (OUTER - INNER) ** 2 / 1e6
+    winkler = float(BAR.winkler(np.array(INNER), MOMENT)) / 1e6
+    by_hook, by_beam = (100 * (of / EXACT[INSIDE] - 1) for of in (winkler, straight))
+    page.answer(
+        "Which stress does the inside of a thick curved bar, as of a hook, carry?",
+        f"It carries {certain_value(inside)}, and {certain_value(outside)} at its outside: a "
+        f"straight beam's formula is {by_beam:+.0f} % off inside, Winkler's for hooks "
+        f"{by_hook:+.1f} %.",
+        [
+            inside,
+            outside,
+            page.value("inside, straight beam [MPa]", straight, beside=EXACT[INSIDE], by="exact"),
+            page.value("inside, Winkler [MPa]", winkler, beside=EXACT[INSIDE], by="exact"),
+            page.judged(TURNED.removesuffix(" [mrad]"), "rotation of the ends", "exact"),
+            page.judged(PULLED.removesuffix(" [MPa]"), "inside, under an end force", "exact"),
+        ],
+        hero=THROUGH_HEIGHT,
+        cautions=["The ends carry the exact tractions: a clamp would disturb the stress near it."],
+    )
+
+
+def show_hoop(page: Page, finest: Record) -> None:
+    """Hoop stress of the bent bar over the radius, exact and by simpler formulae."""
+    r = np.linspace(INNER, OUTER, 60)
+    half = 0.5 * (OUTER - INNER)
+    straight = 6.0 * MOMENT / (OUTER - INNER) ** 2 * (INNER + half - r) / half
+    surfaces = [1e3 * INNER, 1e3 * OUTER]
+    curves = [
+        trace("exact", 1e3 * r, BAR.bending(r, MOMENT)[1] / 1e6),
+        trace("Winkler's hook", 1e3 * r, BAR.winkler(r, MOMENT) / 1e6, line={"dash": "dash"}),
+        trace("straight beam", 1e3 * r, straight / 1e6, line={"dash": "dot"}),
+        trace("solid, at the surfaces", surfaces, [finest[INSIDE], finest[OUTSIDE]], points=True),
+    ]
+    page.chart(THROUGH_HEIGHT, curves, "radius [mm]", "hoop stress [MPa]")
+
+
 @case(
     "Thick curved bar in bending and under an end force",
     source="theory: Golovin's bar of 1881, in equilibrium, compatible, free on its surfaces and "
@@ -72,16 +117,10 @@ def run(run: Run, page: Page) -> None:
     """Solve a quarter circle of the bar under the exact tractions on its ends."""
     divisions = (3, 6, 12) if run.quick else (4, 8, 16)
     series = MeshSeries([run.timed(f"{n} {THROUGH}", solve, n) for n in divisions], THROUGH)
-    straight = 6.0 * MOMENT / (OUTER - INNER) ** 2
-    winkler = float(BAR.winkler(np.array(INNER), MOMENT))
-    errors = [100 * (of / 1e6 / EXACT[INSIDE] - 1) for of in (winkler, straight)]
-    page.say(
-        f"A bar with b/a = {OUTER / INNER:g} carries {series.last[INSIDE]:.3f} MPa inside (exact "
-        f"{EXACT[INSIDE]:.3f}); the error of Winkler's hook is {errors[0]:+.1f} %, that of a "
-        f"straight beam {errors[1]:+.0f} %."
-    )
     within, h = 1e-3 if run.quick else 1e-4, (OUTER - INNER) / divisions[-1]
     page.targets("By mesh", series, [target(key, within, h) for key in EXACT], "exact")
+    answer(page)
+    show_hoop(page, series.last)
     page.text(
         "Plane strain, hexahedra of 27 nodes, a quarter circle. The ends carry the exact "
         "tractions, so no clamp disturbs the stress."

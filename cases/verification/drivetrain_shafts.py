@@ -17,6 +17,8 @@ from fe_drivetrain.report import trace
 from fe_drivetrain.report.suite import Page, Record, Run, Target
 
 LENGTHS = 0.5, 1.0, 2.0
+DIAMETERS = "Diameter of the solid steel shaft of each stiffness, k = G J / L (Eq 4.4), by its "
+DIAMETERS += "length; and what drivetrain D's damper implies"
 STIFFNESS, DIAMETER = "k [N m/rad]", "diameter at 1 m"
 STRESS = "rated shear stress at 1 m [MPa]"
 
@@ -35,6 +37,27 @@ def solids(letter: str) -> dict[str, Record]:
     }
 
 
+def answer(page: Page, rows: dict[str, dict[str, Record]], meshed: str) -> None:
+    """State which solid shafts of 1 m the published stiffnesses are."""
+    of_d, of_a, of_c = (rows[letter]["LSS"] for letter in "DAC")
+    page.answer(
+        "Which shafts do the stiffnesses of the published gear tables imply?",
+        f"Solid and 1 m long, low-speed shafts would be {of_d[DIAMETER]:.2f} m (D), "
+        f"{of_c[DIAMETER]:.2f} m (C) and {of_a[DIAMETER]:.2f} m thick (A, B): rather a flange.",
+        [
+            *(
+                page.value(f"{name}: diameter at 1 m [m]", of[DIAMETER])
+                for name, of in (("D, 750 kW", of_d), ("C, 2 MW", of_c), ("A and B, 3 MW", of_a))
+            ),
+            page.value("A over C: stiffness", of_a[STIFFNESS] / of_c[STIFFNESS]),
+            page.value("A and B: shear stress at rated torque [MPa]", of_a[STRESS]),
+            page.judged(meshed, "D: stiffness as a solid", "Al-Hamadani", unit="MN m/rad"),
+        ],
+        hero=DIAMETERS,
+        cautions=["The tables give stiffnesses alone: lengths and solid sections are chosen here."],
+    )
+
+
 @case(
     "Shafts of published gear tables: geometry implied by their stiffness",
     source="Al-Hamadani 2018, Eq 4.4 and 4.5, Tables 4.1-4.3",
@@ -50,14 +73,11 @@ def run(run: Run, page: Page) -> None:
     title += f"{uniform.length:.4f} m, finite elements [N m/rad]"
     printed = low.stiffness, found.tolerance, found.reason, "Al-Hamadani 2018, Table 4.2"
     page.meets(found.stiffness, Target(title, *printed), found.band)
-    of_d, of_a, of_c = (rows[letter]["LSS"] for letter in "DAC")
+    of_a, of_c = (rows[letter]["LSS"] for letter in "AC")
+    answer(page, rows, title.removesuffix(" [N m/rad]"))
     page.say(
-        f"As solid steel over 1 m, the low-speed shafts are {of_d[DIAMETER]:.2f} m (D), "
-        f"{of_a[DIAMETER]:.2f} m (A, B) and {of_c[DIAMETER]:.2f} m (C); the 3 MW one is "
-        f"{of_a[STIFFNESS] / of_c[STIFFNESS]:.0f} times as stiff as the 2 MW one.",
-        f"The damper of drivetrain D's low-speed shaft implies its J: {uniform.polar:.3e} m^4, a "
-        f"solid of {uniform.diameter:.3f} m over {uniform.length:.2f} m, which finite elements "
-        f"give {found.stiffness:.4g} N m/rad.",
+        f"The damper of drivetrain D's low-speed shaft implies its J, {uniform.polar:.3e} m^4: a "
+        f"solid of {uniform.diameter:.3f} m over {uniform.length:.2f} m."
     )
     page.section("What the stiffnesses imply")
     show_inputs(
@@ -73,9 +93,7 @@ def run(run: Run, page: Page) -> None:
     shown |= {"A, B LSS": of_a[STIFFNESS], "C LSS": of_c[STIFFNESS]}
     curves = [trace(of, lengths, [diameter(k, L) for L in lengths]) for of, k in shown.items()]
     curves.append(trace("D LSS by its damper", [uniform.length], [uniform.diameter], points=True))
-    title = "Diameter of the solid steel shaft of each stiffness, k = G J / L (Eq 4.4), by its "
-    title += "length; and what drivetrain D's damper implies"
-    page.chart(title, curves, "length [m]", "diameter [m]")
+    page.chart(DIAMETERS, curves, "length [m]", "diameter [m]")
     title = "Diameters [m] of solid steel shafts; stress at rated torque of those of 1 m, steel "
     title += "shafts being built for some 30 to 80 MPa"
     page.table(title, [row for of in rows.values() for row in of.values()])

@@ -6,12 +6,15 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification import scenes
 from fe_drivetrain.common import GRAVITY, Floats
 from fe_drivetrain.report import bars
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Run, Target
 from fe_drivetrain.shafts.response import LOADS
 
 #: A typical mean load: hub forces [N] and moments [N m] (Fx 200 kN, Fz -370 kN, My 660 kN m), then
 #: accelerations, and the weight of the gearbox.
 HUB = (200e3, 0.0, -370e3, 0.0, 660e3, 0.0)
+STORED = "energy stored under a working load, gravity and gearbox weight"
+WHERE = "{}: where the work of each load is stored"
 LABELS = [*LOADS, "working load"]
 STOPS = "the energy error at which the solver stops"
 CLAPEYRON = "Clapeyron: half the work of the loads is stored"
@@ -28,7 +31,7 @@ def run(run: Run, page: Page) -> None:
         f"{HUB[2] / 1e3:g} kN, My {HUB[4] / 1e3:g} kN m at the hub with self-weight and the "
         "gearbox's weight, applied from the unstressed state."
     )
-    rows, worst = [], {}
+    rows, worst, of_working = [], {}, {}
     for kind in scenes.KINDS:
         model, response = scenes.solved(run, kind)
         work = scenes.work(model, response)
@@ -44,8 +47,7 @@ def run(run: Run, page: Page) -> None:
         error = response.diagnostics.energy_error
         title = "work less energy stored, largest of ten unit loads, relative"
         page.meets(imbalance, Target(title, 0.0, 1e-9, STOPS, CLAPEYRON), error, kind)
-        title = "energy stored under a working load, gravity and gearbox weight [J]"
-        stores = Target(title, float(done), 1e-9, STOPS, CLAPEYRON, measure="energy")
+        stores = Target(f"{STORED} [J]", float(done), 1e-9, STOPS, CLAPEYRON, measure="energy")
         page.meets(float(kept), stores, error * float(done), kind)
         worst[kind] = max(imbalance, abs(float(kept / done) - 1.0))
 
@@ -65,16 +67,36 @@ def run(run: Run, page: Page) -> None:
             )
         shares = {part: 100.0 * e / works for part, e in energies.items()}
         groups = {part: dict(zip(LABELS, share, strict=True)) for part, share in shares.items()}
-        title = f"{kind}: where the work of each load is stored"
-        page.add(bars(title, groups, "share of the work [%]", stacked=True))
+        of_working[kind] = {part: share[LABELS[-1]] for part, share in groups.items()}
+        page.add(bars(WHERE.format(kind), groups, "share of the work [%]", stacked=True))
     page.image(f"The {kind} scene, as meshed here", run.sketch(model.mesh))
     page.table("Work of each load and energy stored", rows)
-    page.say(
-        "Half the work of the loads is found again in parts and springs to "
-        f"{worst['spherical']:.0e} in the spherical and {worst['bonded']:.0e} in the bonded scene, "
-        "gravity included."
-    )
+    answer(page, worst, of_working["spherical"])
     page.data("energies", rows)
+
+
+def answer(page: Page, worst: dict[str, float], shares: dict[str, float]) -> None:
+    """State the energy that is stored, and what is missing; shares [%] of the spherical scene."""
+    spherical, bonded = (
+        page.judged(f"{kind}: {STORED}", f"stored, {kind} scene", "half the work")
+        for kind in ("spherical", "bonded")
+    )
+    missing = max(worst.values())
+    most = sorted(shares, key=lambda part: -shares[part])[:2]
+    page.answer(
+        "Where does the work of the loads go?",
+        f"A working load stores {formatted(spherical.value, 4)}\u00a0J in the spherical scene and "
+        f"{formatted(bonded.value, 4)}\u00a0J in the bonded one: all of its work but for "
+        f"{formatted(missing, 1, '')} of it.",
+        [
+            spherical,
+            bonded,
+            *(page.value(f"stored in {part}, spherical [%]", shares[part]) for part in most),
+            page.value("largest share that is not found again", missing, at_most=1e-9, by="solver"),
+        ],
+        hero=WHERE.format("spherical"),
+        cautions=["Joint, couplings and supports do no work, and store none."],
+    )
 
 
 def _of_each(loads: Floats, energy: Floats) -> Floats:

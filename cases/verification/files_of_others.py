@@ -13,11 +13,13 @@ from fe_drivetrain.common import (
     run_python,
     scratch_folder,
 )
+from fe_drivetrain.report import bars
 from fe_drivetrain.report.suite import Page, Run, column
 
 KILLS, QUICK_KILLS = 100, 3
 KINDS, QUICK_KINDS = [*command_kills.QUICK, *command_kills.OTHERS], [*command_kills.QUICK]
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+AFTER = "What kills at random moments did: runs that they ended, and what was damaged"
 COUNTED = "counted: kind, mode and SHA-256 of every file, link and folder, before and after"
 
 
@@ -62,15 +64,15 @@ def run(run: Run, page: Page) -> None:
     with run.step("kills, and folders of others"):
         found = experiment(kills, chosen(run))
     check(page, kills, found)
-    names = ", ".join(column(found, "command"))
-    total = sum(column(found, "ended"))
-    page.say(
-        f"Of {kills * len(found)} runs of {len(found)} kinds of command {total} were ended by a "
-        f"kill at a random moment; {sum(column(found, 'lost'))} lost or changed a file of others, "
-        f"and {sum(column(found, 'broken'))} left half a result.",
-        f"Into a folder of others all of them ({names}) write nothing, or their own file alone.",
-    )
+    answer(page, kills, found)
     page.section("Each kind of command")
+    fates = {
+        "ended by the kill": "ended",
+        "lost a file of others": "lost",
+        "half a result": "broken",
+    }
+    by_fate = {name: {one["command"]: one[key] for one in found} for name, key in fates.items()}
+    page.add(bars(AFTER, by_fate, "runs"))
     page.table(
         "Kills at random moments of a run, and what was there afterwards",
         [
@@ -96,6 +98,27 @@ def run(run: Run, page: Page) -> None:
         "without such a list, which is not empty, is refused before any work."
     )
     page.data("commands", found)
+
+
+def answer(page: Page, kills: int, found: list[dict[str, Any]]) -> None:
+    """State what kills and folders of others came to."""
+    total, ended = kills * len(found), sum(column(found, "ended"))
+    lost, broken = sum(column(found, "lost")), sum(column(found, "broken"))
+    polite = sum(one["refused"] and one["untouched"] for one in found)
+    page.answer(
+        "Can a command that is killed damage files of others?",
+        f"{'Yes' if lost + broken else 'No'}: {ended} of {total} runs of {len(found)} commands "
+        f"were ended by a kill, {lost} lost a file of others, {broken} left half a result.",
+        [
+            page.value("files of others lost or changed", lost, at_most=0),
+            page.value("results that are neither old nor new", broken, at_most=0),
+            page.value("hidden files after the next run", sum(column(found, "left")), at_most=0),
+            page.value("runs that a kill ended", ended),
+            page.value("commands that leave folders of others alone", polite, at_least=len(found)),
+        ],
+        hero=AFTER,
+        cautions=["A kill comes at a random moment: more of them would try more moments."],
+    )
 
 
 def check(page: Page, kills: int, found: list[dict[str, Any]]) -> None:

@@ -23,6 +23,8 @@ from fe_drivetrain.plots import PALETTE
 from fe_drivetrain.report import trace
 from fe_drivetrain.report.suite import Page, Record, Run
 
+CHARTS = {"torsion": "The chart is from a mathematical analysis; its fit is within 5 % of it."}
+CURVES = "Stress concentration in {}: computed, and as published"
 #: r/d of the sweep.
 RADII = (0.03, 0.05, 0.12, 0.2, 0.3)
 
@@ -79,20 +81,7 @@ def run(run: Run, page: Page, row: Mapping[str, Any]) -> None:
             if radius <= (wide - 1.0) / 2.0 and not math.isnan(peterson(load, wide, radius))
         ]
     check(page, load, factors, judged)
-    deviation = deviations(load, factors, peterson)
-    worst = int(np.abs(deviation).argmax())
-    f = factors[worst]
-    page.say(
-        f"Over {len(factors)} shoulders Peterson's fit differs from the finite elements by "
-        f"{deviation.mean():+.1f} % on average and at worst by {deviation[worst]:+.1f} % "
-        f"(D/d = {f.wide:g}, r/d = {f.radius:g}: K_t = {f.peak.factor:.4f}, band {f.band:.1g})."
-    )
-    if len(PUBLISHED[load]) == 2:
-        other = deviations(load, factors, tipton)
-        page.say(
-            "The formula of Tipton, Sorem and Rolovic, itself from finite elements, differs by "
-            f"{other.mean():+.1f} % on average and {np.abs(other).max():.1f} % at worst."
-        )
+    answer(page, row["question"], load, factors)
     page.section("Result")
     add_curves(page, load, factors)
     add_profile(page, factors)
@@ -106,8 +95,52 @@ def run(run: Run, page: Page, row: Mapping[str, Any]) -> None:
     )
     rows = [shoulder(load, f) for f in factors]
     page.table("Every shoulder", rows)
+    f = _sharpest(factors)
     page.image("The sharpest of the shoulders", run.sketch(shouldered(f.wide, f.radius)))
     page.data(f"shoulders in {load}", rows)
+
+
+def answer(page: Page, question: str, load: str, factors: Sequence[Factor]) -> None:
+    """State how far the published fits are from the finite elements, and the worst shoulder."""
+    fits = {"Peterson": deviations(load, factors, peterson)}
+    if len(PUBLISHED[load]) == 2:
+        fits["Tipton"] = deviations(load, factors, tipton)
+    off = fits["Peterson"]
+    worst = int(np.abs(off).argmax())
+    f, mean, most = factors[worst], float(off.mean()), float(off[worst])
+    peak = {name: float(np.abs(of).max()) for name, of in fits.items()}
+    other = f"; Tipton's formula is within {peak['Tipton']:.2g} %" if "Tipton" in fits else ""
+    page.answer(
+        question,
+        f"In {load} Peterson's chart is {_too(mean)} on average and {_too(most)} at worst{other}.",
+        [
+            page.value("Peterson's fit, mean difference [%]", mean),
+            page.value("Peterson's fit, worst difference [%]", most),
+            *(
+                page.value(f"{name}'s fit, worst difference [%]", peak[name])
+                for name in [*fits][1:]
+            ),
+            page.value(
+                f"K_t at D/d = {f.wide:g}, r/d = {f.radius:g}",
+                f.peak.factor,
+                f.band,
+                beside=peterson(load, f.wide, f.radius),
+                by="Peterson",
+            ),
+            page.value("shoulders compared", len(factors)),
+        ],
+        hero=CURVES.format(load),
+        cautions=[CHARTS.get(load, "The charts are drawn from photoelastic tests.")],
+    )
+
+
+def _too(difference: float) -> str:
+    """A difference [%] in words."""
+    return f"{abs(difference):.2g} % too {'low' if difference < 0 else 'high'}"
+
+
+def _sharpest(factors: Sequence[Factor]) -> Factor:
+    return min(factors, key=lambda f: (f.radius, -f.wide))
 
 
 def check(page: Page, load: str, factors: Sequence[Factor], judged: Sequence[Any]) -> None:
@@ -170,7 +203,8 @@ def add_curves(page: Page, load: str, factors: Sequence[Factor]) -> None:
                 marker={"color": colour},
             )
         )
-        radii = np.geomspace(min(f.radius for f in mine), max(f.radius for f in mine), 25)
+        # as far as the shoulder leaves room, also beside a single point
+        radii = np.geomspace(min(RADII), min(max(RADII), (wide - 1.0) / 2.0), 25)
         for name, formula, dash in (("Peterson", peterson, "solid"), ("Tipton", tipton, "dot")):
             values = np.array([formula(load, wide, radius) for radius in radii])
             inside = ~np.isnan(values)  # of the fit's range
@@ -179,13 +213,12 @@ def add_curves(page: Page, load: str, factors: Sequence[Factor]) -> None:
                 lines.append(
                     trace(f"D/d = {wide:g}, {name}", radii[inside], values[inside], line=style)
                 )
-    caption = f"Stress concentration in {load}: computed, and as published"
-    page.chart(caption, lines, "r/d [-]", "K_t [-]", "x")
+    page.chart(CURVES.format(load), lines, "r/d [-]", "K_t [-]", "x")
 
 
 def add_profile(page: Page, factors: Sequence[Factor]) -> None:
     """Stress along the sharpest fillet."""
-    sharpest = min(factors, key=lambda f: (f.radius, -f.wide))
+    sharpest = _sharpest(factors)
     step = max(1, len(sharpest.peak.profile) // 120)
     page.chart(
         f"Along the fillet of D/d = {sharpest.wide:g}, r/d = {sharpest.radius:g}",

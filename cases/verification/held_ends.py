@@ -15,6 +15,7 @@ OUTER, BORE, STRETCH = 0.4, 0.28, 1e-4  # m
 RATIOS, QUICK_RATIOS, SOLVED = (0.5, 1.0, 2.0, 4.0, 8.0), (1.0, 4.0, 8.0), 1.0
 LENGTH = SOLVED * OUTER
 
+ADDED = "What ends that can neither contract nor warp add to E A / L"
 SHAFT, RATIO, SHORTER = "shaft", "length over diameter", "length taken off, over diameter"
 STIFFER, SOLIDS = "stiffer by [%]", "hexahedra, stiffer by [%]"
 PRINCIPLE = "Saint-Venant's principle: the ends' disturbance dies out within a few diameters, and "
@@ -40,6 +41,33 @@ def as_solid(bore: float, refinement: int, layers: int) -> float:
     # of the meshed area: what is left is the effect of the ends
     EA = STEEL.youngs_modulus * end_loaded.section_area(mesh, 0.0)
     return 2 * energy / STRETCH**2 * LENGTH / EA
+
+
+def answer(page: Page, rows: list[Record]) -> None:
+    """State the length that held ends take off, and what that is of a short shaft's stiffness."""
+    short = {row[SHAFT]: row[STIFFER] for row in rows if row[RATIO] == SOLVED}
+    off = {
+        row[SHAFT]: page.value(f"length taken off, {row[SHAFT]} [diameters]", row[SHORTER])
+        for row in rows
+    }
+    page.answer(
+        "How much stiffer is a shaft in tension whose ends are clamped?",
+        f"By {short['solid']:.2g} % (solid) and {short['bored']:.2g} % (bored) where it is as long "
+        f"as wide: as if {off['solid'].value:.2g} and {off['bored'].value:.2g} diameters shorter.",
+        [
+            *off.values(),
+            *(
+                page.judged(
+                    f"{name}: stiffness over E A / L between held ends, L = {SOLVED:g} D",
+                    f"stiffness over E A / L, L = {SOLVED:g} D, {name}",
+                    "meridian",
+                )
+                for name in off
+            ),
+        ],
+        hero=ADDED,
+        cautions=["Ends are held flat and round, as by rigid flanges; free ends take nothing off."],
+    )
 
 
 @case(
@@ -71,15 +99,11 @@ def run(run: Run, page: Page) -> None:
         page.meets(last[SHORTER], shorter, of=name)
         rows += held
     off = {row[SHAFT]: row[SHORTER] for row in rows}  # of the longest
-    page.say(
-        f"Ends that are held flat and round take {off['solid']:.3f} diameters off a solid shaft's "
-        f"length, {off['bored']:.3f} off a bored one's."
-    )
+    answer(page, rows)
     meshed = "length of the shaft in three dimensions", LENGTH, "m"
     begin_uniform(run, page, "Held ends", (OUTER, BORE), meshed, steel=STEEL)
-    title = "What ends that can neither contract nor warp add to E A / L"
     curves = {STIFFER: "meridian", SOLIDS: "hexahedra"}
-    page.sweep(title, rows, RATIO, curves, by=SHAFT, log="xy", axis=STIFFER)
+    page.sweep(ADDED, rows, RATIO, curves, by=SHAFT, log="xy", axis=STIFFER)
     page.text(
         "Traction leaves the ends free to contract, and the stress is uniform to the ends. A rigid "
         "flange does not: the shaft is stiffer, as if shorter by a fixed part of its diameter."

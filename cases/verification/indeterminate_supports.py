@@ -18,6 +18,8 @@ from fe_drivetrain.cases.verification.shaft_inputs import begin, show_inputs
 from fe_drivetrain.common import Floats
 from fe_drivetrain.drivetrain_file import MATERIALS
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.answer import KeyFigure
+from fe_drivetrain.report.number_text import certain_value
 from fe_drivetrain.report.suite import Page, Record, Run, Target
 from fe_drivetrain.shafts.beam import torsional_spring_reaction
 
@@ -30,6 +32,8 @@ TUBE = Tube(OUTER, 0.0, LENGTH, STEEL)
 #: Radial stiffness of the bearings and of the gearbox [N/m], tilt of the main bearing [N m/rad].
 RADIAL, GEARBOX, TILT = 2e9, 8e7, 145e6
 RIGID = float("inf")
+SHARED = "Loads on three supports under a hub force of 1 MN, as the second bearing is made "
+SHARED += "stiffer: Macaulay's beam, and the solid by its compliance"
 NAMES = ("main bearing", "second bearing", "gearbox")
 
 
@@ -74,10 +78,7 @@ def run(run: Run, page: Page) -> None:
     ]
     check_thesis(page)
     largest = max(abs(row["solid"] / row["Macaulay"] - 1) for row in rows)
-    page.say(
-        "On five sets of supports the frame and Macaulay's beam agree to round-off, and the "
-        f"solid's largest reactions differ from them by at most {100 * largest:.2f} %."
-    )
+    answer(page, 100 * largest)
     begin(run, page, "Indeterminate supports", straight((0.0, LENGTH), OUTER))
     show_inputs(
         page,
@@ -99,6 +100,38 @@ def run(run: Run, page: Page) -> None:
     )
     page.data("largest load on a support [N, N m]", rows)
     page.data("largest_difference", largest)
+
+
+def answer(page: Page, largest: float) -> None:
+    """State loads on bearings that statics leaves open, and how far solids are [%] from beams."""
+
+    def on_main(supports: str) -> KeyFigure:
+        quantity = f"{supports}, force: load on the main bearing, solid"
+        return page.judged(quantity, f"main bearing, {supports}", "beam", unit="MN")
+
+    rigid, soft = on_main("three rigid supports"), on_main("two bearings, soft gearbox")
+    page.answer(
+        "How is a hub force shared where statics leaves the supports open?",
+        f"Under 1\u00a0MN at the hub the main bearing carries {certain_value(rigid)} on three "
+        f"rigid supports; solids and beams agree within {largest:.2g} % on five sets.",
+        [
+            rigid,
+            soft,
+            on_main("two bearings with tilt, gearbox"),
+            on_main("bearing with tilt, gearbox"),
+            page.judged(
+                "clamped in the bearing, gearbox, moment: load on the main bearing, solid",
+                "moment on a clamped bearing under 1 MN m",
+                "beam",
+                unit="MN m",
+            ),
+            page.value("largest difference of solid and beam [%]", largest),
+        ],
+        hero=SHARED,
+        cautions=[
+            "Supports act evenly on a section of the solid: seats of bearings are not modelled."
+        ],
+    )
 
 
 def check(
@@ -185,6 +218,4 @@ def add_sweep(page: Page, C: Compliance) -> None:
             trace(name, stiff, beams[:, 2 * i]),
             trace(f"{name}, solid", shown, meshed[:, 2 * i], True),
         ]
-    title = "Loads on three supports under a hub force of 1 MN, as the second bearing is made "
-    title += "stiffer: Macaulay's beam, and the solid by its compliance"
-    page.chart(title, traces, "radial stiffness of the second bearing [N/m]", "load [MN]", "x")
+    page.chart(SHARED, traces, "radial stiffness of the second bearing [N/m]", "load [MN]", "x")

@@ -12,6 +12,7 @@ from fe_drivetrain.cases.references.interference_fits import (
 )
 from fe_drivetrain.drivetrain_file import Material
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import certain_value
 from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target, targets_of
 
 RADII = BORE, SEAT, OUTER = 0.15, 0.3175, 0.348  # m
@@ -20,6 +21,7 @@ MISFIT = 100e-6  # m, on the radius
 IRON = Material(youngs_modulus=169e9, poisson_ratio=0.275, density=0.0)
 STEEL = Material(youngs_modulus=206e9, poisson_ratio=0.3, density=0.0)
 
+BY_RADIUS = "Finest mesh against Lame's cylinders: stress by the radius"
 THROUGH, PRESSURE = "elements through the ring", "contact pressure [MPa]"
 OF_RING = "seat of the ring, radial displacement [µm]"
 OF_SHAFT = "seat of the shaft, radial displacement [µm]"
@@ -43,6 +45,28 @@ def shown(found: Pressed | ExactFit) -> Record:
     }
 
 
+def answer(page: Page) -> None:
+    """State the pressure of the fit and the stresses that come of it."""
+    pressure, bore, outside, shaft, seat = (
+        page.judged(key.partition(" [")[0], name, "Lame")
+        for key, name in (
+            (PRESSURE, "contact pressure"),
+            (RING_BORE, "hoop stress, ring's bore"),
+            (RING_OUTSIDE, "hoop stress, ring's outside"),
+            (SHAFT_BORE, "hoop stress, shaft's bore"),
+            (OF_RING, "ring's seat moves out by"),
+        )
+    )
+    page.answer(
+        f"What does an interference of {1e6 * MISFIT:g} µm on the radius do to ring and shaft?",
+        f"It presses them together with {certain_value(pressure)} and puts {certain_value(bore)} "
+        "of hoop stress into the ring's bore.",
+        [pressure, bore, outside, shaft, seat],
+        hero=BY_RADIUS,
+        cautions=["The misfit is chosen, of a usual order; the answer grows in proportion to it."],
+    )
+
+
 @case(
     "Bearing ring pressed on a hollow shaft",
     source="Two Lame cylinders: Timoshenko, Strength of Materials, part II, 3rd edition, 1956",
@@ -53,11 +77,6 @@ def run(run: Run, page: Page) -> None:
     meshes = {n: run.timed(f"{n} {THROUGH}", press, *fit, n) for n in (1, 2, 4)}
     series = MeshSeries([{THROUGH: n} | shown(found) for n, found in meshes.items()], THROUGH)
     exact, finest, last = exact_fit(*fit), meshes[4], series.last
-    page.say(
-        f"A misfit of {1e6 * MISFIT:g} µm on the radius presses ring and shaft together with "
-        f"{last[PRESSURE]:.4f} MPa; Lame's cylinders give {exact.pressure / 1e6:.4f} MPa. The "
-        f"ring's bore carries {last[RING_BORE]:.2f} MPa of hoop stress."
-    )
     page.section("Stress along the radius")
     curves = []
     for name, part, of in (("shaft", exact.shaft, finest.shaft), ("ring", exact.ring, finest.ring)):
@@ -66,13 +85,14 @@ def run(run: Run, page: Page) -> None:
             curves.append(trace(f"{name}, {stress}, Lame", r, field(r) / 1e6))
             at, nodes = of.along(stress)
             curves.append(trace(f"{name}, {stress}, nodes", at, nodes / 1e6, True))
-    page.chart("Finest mesh against Lame", curves, "radius [m]", "stress [MPa]")
+    page.chart(BY_RADIUS, curves, "radius [m]", "stress [MPa]")
     recovered = "recovered stress at a surface: s'' h^2 / 12 with h a sixteenth of the shaft's "
     recovered += "wall is 0.1 % at its bore"
     fourth = "(h/r)^4 of the finest mesh is below 1e-5 at the shaft's bore; no more than 1e-4 "
     fourth += "shall be left"
     allowed = {"hoop stress": (5e-3, recovered), "": (1e-4, fourth)}
     page.targets("By mesh", series, targets_of(shown(exact), allowed, LAME), "exact")
+    answer(page)
     closed, holds = (last[OF_RING] - last[OF_SHAFT]) / (1e6 * MISFIT) - 1.0, "a constraint holds "
     title, prescribed = "misfit that is closed, against the one prescribed", "what was prescribed"
     page.meets(closed, Target(title, 0.0, 1e-9, f"{holds}to round-off", prescribed))

@@ -2,8 +2,28 @@
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import manufactured as m
-from fe_drivetrain.cases.verification.orders import add_manufactured
+from fe_drivetrain.cases.verification.orders import SOLUTION, add_manufactured, captioned
 from fe_drivetrain.report.suite import Page, Run
+
+
+def answer(page: Page) -> None:
+    """State the orders in L2 and in energy of linear and quadratic tetrahedra."""
+    labels = {"P1, quarter ring": "P1", "P2 straight, bar": "P2", "P2 curved, quarter ring": "P2"}
+    l2, energy = (
+        [page.judged(f"{label}: order in {norm}", f"{label}, {norm}", "theory") for label in labels]
+        for norm in ("L2 norm", "energy norm")
+    )
+    theory = all(one.status == "good" for one in (*l2, *energy))
+    page.answer(
+        "Do linear and quadratic tetrahedra converge at the orders of theory?",
+        f"{'Yes' if theory else 'No'}: in L2 linear ones at {l2[0].value:.2f}, quadratic ones at "
+        f"{l2[1].value:.2f} on a bar and {l2[2].value:.2f} on a curved ring.",
+        [*l2, *energy],
+        hero=captioned(SOLUTION),
+        cautions=[
+            "On a curved body quadratic tetrahedra keep their order only if they are curved."
+        ],
+    )
 
 
 @case(
@@ -28,10 +48,10 @@ def run(run: Run, page: Page) -> None:
             series.append(
                 m.convergence(label, divisions, mesh, domain, m.three_waves(), theory, degree=6)
             )
-    page.headline = "P2 curved, quarter ring: order in L2 norm"
     add_manufactured(
         run, page, series, "Straight P2 on a curved body: see the case straight_on_curved."
     )
+    answer(page)
     page.image(
         "The quarter ring in curved tetrahedra", run.sketch(m.regular(10, m.quarter_ring)(2))
     )

@@ -37,6 +37,7 @@ ENTRIES = (
     ("torsion", 3, 3, "N m/rad"),
     ("bending", 5, 5, "N m/rad"),
 )
+GAPS = "Largest difference of the 12 x 12 from the meridian's, scaled to 1 on the diagonal"
 MERIDIAN_TIME = "meridian, from the shaft to the 12 x 12 [ms]"
 
 
@@ -128,17 +129,44 @@ def run(run: Run, page: Page) -> None:
         }
         for name, found in by_name.items()
     ]
-    largest = max(abs(row["meridian"] / row["its limit"] - 1.0) for row in rows)
-    milliseconds = column(cost, MERIDIAN_TIME)
-    page.say(
-        "The meridian has every stiffness of the solids within their bands, at most "
-        f"{100 * largest:.2g} % from their limit, in {min(milliseconds):.0f} to "
-        f"{max(milliseconds):.0f} ms a shaft."
-    )
+    answer(page, rows, cost)
     show(page, by_name, rows, cost)
     page.image("The last of the shafts", run.sketch(shaft))
     page.data("stiffness", rows)
     page.data("time", cost)
+
+
+def answer(page: Page, rows: list[Record], cost: list[Record]) -> None:
+    """State how far the meridian is from the limit of the solids, and what it costs."""
+    largest = max(abs(row["meridian"] / row["its limit"] - 1.0) for row in rows)
+    figures = [
+        page.judged(f"stepped: {entry}", f"{entry}, stepped shaft", "solids", unit=unit)
+        for entry, unit in (
+            ("tension", "GN/m"),
+            ("torsion", "MN m/rad"),
+            ("bending", "MN m/rad"),
+        )
+    ]
+    entries = {f"{row['shaft']}: {row['entry']}" for row in rows}
+    good = all(check.passed for check in page.checks if check.quantity in entries)
+    slowest = max(column(cost, MERIDIAN_TIME))
+    page.answer(
+        "Can a shaft's stiffness come from its meridian in place of a solid?",
+        f"{'Yes' if good else 'No'}: stiffnesses of {len(cost)} shafts are "
+        f"{'all' if good else 'not all'} within the solids' bands, at most {100 * largest:.2g} % "
+        f"from their limits, in {slowest:.0f} ms or less.",
+        [
+            page.value("largest difference from the limit of the solids [%]", 100 * largest),
+            *figures,
+            page.value("slowest meridian [ms]", slowest),
+            page.value(
+                "slowest solid, assembly and solve [s]",
+                max(column(cost, "its assembly and solve [s]")),
+            ),
+        ],
+        hero=GAPS,
+        cautions=["Both ends are rigid: seats of bearings that deform are another question."],
+    )
 
 
 def convergence(name: str, found: Compared) -> Any:
@@ -153,7 +181,7 @@ def show(page: Page, by_name: dict[str, Compared], rows: list[Record], cost: lis
     """Differences by the solid's size, and stiffness in numbers."""
     page.section("Result")
     page.chart(
-        "Largest difference of the 12 x 12 from the meridian's, scaled to 1 on the diagonal",
+        GAPS,
         [convergence(name, found) for name, found in by_name.items()],
         "unknowns of the solid",
         "difference [-]",

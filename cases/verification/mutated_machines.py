@@ -19,6 +19,7 @@ from fe_drivetrain.cases.verification.machine_facts import (
 from fe_drivetrain.cases.verification.mutated_tables import mutated
 from fe_drivetrain.dynamics import MACHINES, Machine, MachineTable, library_machine, parse_machine
 from fe_drivetrain.dynamics.torsion import GearTable, parse_gear_table
+from fe_drivetrain.report import bars
 from fe_drivetrain.report.suite import Page, Record, Run
 
 MACHINES_TRIED, TABLES_TRIED, QUICK, FEWEST = 300, 200, 40, 20
@@ -26,6 +27,7 @@ TABLES = ("drivetrain_a", "drivetrain_b", "drivetrain_c", "nrel_750kw")
 SEED = 20163
 #: Of those that are tried: so many are taken, and so many refused, or the case would test little.
 MINIMUM = 0.1
+FATES = "Machines and gear tables with slips: refused, taken and right, or wrong"
 FACTS = (
     "mass symmetric and positive, stiffness symmetric and not negative, no motion of 0 Hz beside "
     "turning, Rayleigh's quotients, twice the frequencies of four times the stiffness, turning at "
@@ -43,6 +45,7 @@ FACTS = (
 )
 def run(run: Run, page: Page) -> None:
     """Change tables at random, read them, and hold what is taken to facts."""
+    every: dict[str, list[Record]] = {}
     for name, given, count, attempt in (
         (
             "machines",
@@ -61,7 +64,40 @@ def run(run: Run, page: Page) -> None:
             rows = slips(given, count, attempt)
         check(page, name, rows)
         show(page, name, rows)
+        every[name] = rows
     control(page)
+    answer(page, every)
+
+
+def answer(page: Page, every: dict[str, list[Record]]) -> None:
+    """State what became of all tables with slips, and show it."""
+    fates = {
+        "refused": lambda row: not row["taken"] and not row["wrong"],
+        "taken and right": lambda row: row["taken"] and not row["wrong"],
+        "wrong": lambda row: bool(row["wrong"]),
+    }
+    counts = {
+        fate: {name: sum(map(is_so, rows)) for name, rows in every.items()}
+        for fate, is_so in fates.items()
+    }
+    refused, right, wrong = (sum(of.values()) for of in counts.values())
+    page.answer(
+        "What happens to a machine whose file has a slip of the pen?",
+        f"Of {refused + right + wrong} machines and gear tables with slips {refused} are refused "
+        f"in one sentence, {right} are taken and right by physics, {wrong} are wrong.",
+        [
+            page.value("wrong without a word", wrong, at_most=0),
+            *(page.value(f"{name} refused", n) for name, n in counts["refused"].items()),
+            *(
+                page.value(f"{name} taken, right", n)
+                for name, n in counts["taken and right"].items()
+            ),
+        ],
+        hero=FATES,
+        cautions=["What is taken is held to facts of mechanics, not to what its author meant."],
+    )
+    page.section("What became of them")
+    page.add(bars(FATES, counts, "tables", stacked=True))
 
 
 def slips(
@@ -158,13 +194,9 @@ def control(page: Page) -> None:
 
 
 def show(page: Page, name: str, rows: list[Record]) -> None:
-    """Answer and tables."""
+    """Tables."""
     taken = [row for row in rows if row["taken"]]
     wrong = [row for row in rows if row["wrong"]]
-    page.say(
-        f"Of {len(rows)} {name} with one or two slips {len(rows) - len(taken)} are refused with "
-        f"one sentence, {len(taken)} are taken and right by physics but for {len(wrong)} of all."
-    )
     page.section(name.capitalize())
     if wrong:
         page.table("Wrong", wrong)

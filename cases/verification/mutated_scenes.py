@@ -14,6 +14,7 @@ COUNT, QUICK_COUNT = 500, 60
 MERIDIAN, QUICK_MERIDIAN = 15, 40
 CAD, QUICK_CAD = 3, 6
 
+BY_CHANGE = "Mutants by kind of change: refused in one sentence, or taken and right"
 FACTS = {
     "equilibrium": "reactions balance the hub loads about the hub",
     "statics": "reactions that equilibrium alone decides are those of level 0",
@@ -46,11 +47,7 @@ def run(run: Run, page: Page) -> None:
     worst = worst_errors(taken)
     check(page, found, worst)
     page.seed = seed
-    page.say(
-        f"Of {count} mutated scenes {count - len(taken)} are refused in one sentence and "
-        f"{len(taken)} are taken; what is taken is balanced, reciprocal, elastic and as heavy as "
-        "its solids, and no later step refuses it.",
-    )
+    answer(page, found, worst)
     show(page, found, worst)
 
 
@@ -62,6 +59,27 @@ def worst_errors(taken: list[Outcome]) -> dict[str, tuple[float, str]]:
             if not error <= worst.get(fact, (-1.0, ""))[0]:
                 worst[fact] = (error, f"{outcome.mutant.library}: {outcome.mutant.change}")
     return worst
+
+
+def answer(page: Page, found: list[Outcome], worst: dict[str, tuple[float, str]]) -> None:
+    """State what became of the mutants, and how far the facts were from being broken."""
+    faults = sum(bool(o.faults) for o in found)
+    refused = sum(bool(o.sentence) and not o.faults for o in found)
+    taken, most = len(found) - refused - faults, max(error for error, _ in worst.values())
+    page.answer(
+        "What happens to a scene that is wrong in some place?",
+        f"Of {len(found)} mutated scenes {refused} are refused in one sentence, {taken} are taken "
+        f"and {'obey' if most <= 1 else 'do not all obey'} mechanics, {faults} fail otherwise.",
+        [
+            page.value("neither refused in one sentence nor taken throughout", faults, at_most=0),
+            page.value("refused in one sentence", refused),
+            page.value("taken", taken),
+            page.value("worst error of any fact, over round-off", most, at_most=1.0),
+            page.value("facts that are looked at", len(worst)),
+        ],
+        hero=BY_CHANGE,
+        cautions=["Facts are those of any sound scene: what its author meant cannot be known."],
+    )
 
 
 def check(page: Page, found: list[Outcome], worst: dict[str, tuple[float, str]]) -> None:
@@ -104,7 +122,7 @@ def show(page: Page, found: list[Outcome], worst: dict[str, tuple[float, str]]) 
     page.section("What becomes of the mutants")
     page.add(
         bars(
-            "Mutants by kind of change: refused in one sentence, or taken and right",
+            BY_CHANGE,
             {
                 fate: {row["change"]: row[fate] for row in rows}
                 for fate in ("refused", "taken", "fault")

@@ -25,6 +25,7 @@ from fe_drivetrain.common import InputError, cores
 from fe_drivetrain.report import Chart, bars
 from fe_drivetrain.report.suite import Page, Record, Run
 
+ROOMS = "Faults of each room: caught by tests, or not"
 LIMIT, GOAL, CONFIDENCE = 240, 95.0, 0.95
 """Seconds for the tests of a fault; share to catch [%]; level of the interval."""
 
@@ -113,12 +114,22 @@ def _show(page: Page, root: Path, tried: Sequence[Tried], others: dict[str, str]
     low, high = 100.0 * interval.low, 100.0 * interval.high
     rate = 100.0 * caught / count
     page.found("faults that tests catch [%]", rate)
-    page.say(
-        f"Of {count} single faults the tests catch {caught}: {rate:.1f} %; of all faults of such "
-        f"kinds between {low:.1f} and {high:.1f} %, at a confidence of {100 * CONFIDENCE:g} % "
-        "(Clopper and Pearson 1934, of an independent sample: rows that are chosen by hand, and "
-        "that tests are written for, are none, so that of other faults fewer may be caught).",
-        f"The goal, {GOAL:g} %, is {'reached' if rate >= GOAL else 'not reached'}.",
+    page.answer(
+        "How many faults that somebody could make do the tests catch?",
+        f"The tests catch {caught} of {count} single faults, {rate:.1f} %, which "
+        f"{'reaches' if rate >= GOAL else 'does not reach'} the goal of {GOAL:g} %.",
+        [
+            page.value("faults that tests catch [%]", rate, at_least=GOAL, by="goal"),
+            page.value("of all such faults, at least [%]", low),
+            page.value("faults that were tried", count),
+            page.value("faults that survive", count - caught),
+        ],
+        hero=ROOMS,
+        cautions=[
+            "Rows are chosen by hand, and tests written for them: of other faults fewer may be "
+            f"caught. The bounds, {low:.1f} to {high:.1f} % at a confidence of "
+            f"{100 * CONFIDENCE:g} %, are those of an independent sample (Clopper, Pearson 1934)."
+        ],
     )
     survivors = [_survivor(one) for one in tried if not one.caught]
     page.section("Survivors")
@@ -153,7 +164,7 @@ def _bars(tried: Sequence[Tried]) -> Chart:
         }
         for name, is_caught in (("caught", True), ("survive", False))
     }
-    return bars("Faults of each room", groups, "faults", stacked=True)
+    return bars(ROOMS, groups, "faults", stacked=True)
 
 
 def _survivor(one: Tried) -> Record:

@@ -9,6 +9,7 @@ from fe_drivetrain.plots import PALETTE
 from fe_drivetrain.report import Cell, Chart, Table, chart, trace
 from fe_drivetrain.report.suite import Page, Run
 
+SOLUTION = "Errors of the manufactured solution"
 SIZE = "element size relative to the body [-]"
 
 #: Allowed difference of observed order and theory. On the coarser meshes of a quick run terms of
@@ -77,18 +78,13 @@ def check_fields(page: Page) -> None:
 
 
 def add_manufactured(run: Run, page: Page, series: Sequence[Series], *notes: str) -> None:
-    """Answer, checks, chart and table of a manufactured solution."""
-    orders = "; ".join(
-        f"{one.label} {' and '.join(f'{one.order(name)[0]:.2f}' for name in one.errors)}"
-        for one in series
-    )
-    page.say(f"Observed orders in L2 and energy norm: {orders}.")
+    """Checks, chart and table of a manufactured solution; the chart is `captioned(SOLUTION)`."""
     check_orders(run, page, series, THEORY)
     check_fields(page)
     page.section("Problem")
     page.text(PROBLEM)
     page.section("Convergence")
-    add_convergence(page, "Errors of the manufactured solution", series)
+    add_convergence(page, SOLUTION, series)
     for note in notes:
         page.text(note)
 
@@ -98,6 +94,14 @@ def add_convergence(page: Page, caption: str, series: Sequence[Series], size: st
     page.add(convergence_chart(caption, series, size), convergence_table(series, size))
     for one in series:
         page.data(one.label, {"sizes": one.sizes, "unknowns": one.unknowns, "errors": one.errors})
+
+
+def captioned(caption: str) -> str:
+    """The whole caption of the chart of `add_convergence`."""
+    return (
+        f"{caption}. In the legend the observed order of the two finest meshes; thin dotted lines "
+        "have the order of theory"
+    )
 
 
 def convergence_chart(caption: str, series: Sequence[Series], size: str) -> Chart:
@@ -114,8 +118,7 @@ def convergence_chart(caption: str, series: Sequence[Series], size: str) -> Char
             label = f"order {one.orders[name]:g}"
             lines.append(trace(label, h, theory, line=dots, showlegend=False))
     return chart(
-        f"{caption}. In the legend the observed order of the two finest meshes; thin dotted lines "
-        "have the order of theory",
+        captioned(caption),
         lines,
         size,
         "relative error",

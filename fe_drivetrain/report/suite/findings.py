@@ -18,7 +18,7 @@ from fe_drivetrain.report.results import (
     Verdict,
 )
 from fe_drivetrain.report.suite.checks import Checks
-from fe_drivetrain.report.suite.key_figures import KeyLimit, key_figure, limited
+from fe_drivetrain.report.suite.key_figures import KeyLimit, in_unit, key_figure, limited
 from fe_drivetrain.report.suite.records import as_json
 from fe_drivetrain.report.suite.targets import split_unit
 
@@ -264,7 +264,9 @@ class Findings(Checks):
         """Explain the answer: sentences that stand below it."""
         self.sentences.extend(sentences)
 
-    def judged(self, quantity: str, name: str = "", by: str = "", printed: str = "") -> KeyFigure:
+    def judged(
+        self, quantity: str, name: str = "", by: str = "", printed: str = "", unit: str = ""
+    ) -> KeyFigure:
         """A key figure that is a check or a value of these findings, so that it stands once.
 
         Parameters
@@ -277,6 +279,9 @@ class Findings(Checks):
             Whose reference it is, in a word or two, as in "NAFEMS", "closed form", "thesis".
         printed : str
             The reference as its source prints it, as in "727.0".
+        unit : str
+            In which it is shown, where people use another: "GN/m" of a check in N/m; "%" of a
+            share.
 
         Returns
         -------
@@ -286,13 +291,16 @@ class Findings(Checks):
         ------
         KeyError
             There is no such check or value, or there are several.
+        ValueError
+            The unit is not that of the check with another prefix.
         """
         every: list[Figure | Verdict] = [*self.figures, *self.checks]
         found = [one for one in every if one.quantity == quantity]
         if len(found) != 1:
             known = ", ".join(repr(one.quantity) for one in every)
             raise KeyError(f"{quantity!r} stands {len(found)} times among: {known}")
-        return key_figure(found[0], name, by, printed)
+        figure = key_figure(found[0], name, by, printed)
+        return in_unit(figure, unit) if unit else figure
 
     def value(
         self, name: str, value: float, band: float | None = None, **limit: Unpack[KeyLimit]

@@ -7,6 +7,8 @@ from typing import TypedDict, Unpack
 from fe_drivetrain.report.answer import Bound, KeyFigure, status_of
 from fe_drivetrain.report.results import Figure, Verdict
 
+_PREFIXES = {"": 1.0, "k": 1e3, "M": 1e6, "G": 1e9, "m": 1e-3, "µ": 1e-6}
+
 
 class KeyLimit(TypedDict, total=False):
     """What is asked of a key figure.
@@ -77,6 +79,60 @@ def key_figure(
             ),
         }
     )
+
+
+def in_unit(figure: KeyFigure, unit: str) -> KeyFigure:
+    """A key figure in a unit that people use: GN/m in place of N/m, % in place of a share.
+
+    Parameters
+    ----------
+    figure : KeyFigure
+        In any unit.
+    unit : str
+        That of the figure with another prefix, or "%" of a pure number.
+
+    Returns
+    -------
+    KeyFigure
+        With value, band and limits converted.
+
+    Raises
+    ------
+    ValueError
+        The units differ by more than a prefix.
+    """
+    shares = {"": 1.0, "-": 1.0, "%": 0.01}
+    if figure.unit in shares and unit in shares:
+        factor = shares[figure.unit] / shares[unit]
+    else:
+        old, new = _sizes(figure.unit), _sizes(unit)
+        if not old.keys() & new.keys():
+            raise ValueError(f"{figure.name}: {figure.unit!r} cannot be shown in {unit!r}")
+        base = min(old.keys() & new.keys())
+        factor = old[base] / new[base]
+
+    def of(value: float | None) -> float | None:
+        return None if value is None else value * factor
+
+    return figure.model_copy(
+        update={
+            "value": figure.value * factor,
+            "unit": unit,
+            "band": of(figure.band),
+            "limit": of(figure.limit),
+            "upper": of(figure.upper),
+            "allowed": figure.allowed * factor,
+        }
+    )
+
+
+def _sizes(unit: str) -> dict[str, float]:
+    """What a unit is without a prefix, and the size of that prefix: N of kN is 1000, kN of kN 1."""
+    return {
+        unit.removeprefix(prefix): size
+        for prefix, size in _PREFIXES.items()
+        if unit.startswith(prefix) and unit != prefix
+    }
 
 
 def limited(
