@@ -226,8 +226,9 @@ def _answer(
         figures.append(found.value("designs", len(names)))
     if known:
         one, other = known[0], names[int(np.argmax(known[0].ranks)) + 1]
+        at = other if varied is None else f"{varied.key} = {other}"
         verdict = f"{quantity_in_words(one.quantity.name)} changes most: {_change_text(one)} "
-        verdict += f"at {other} against {first}."
+        verdict += f"at {at} against {names[0]}."
     else:
         verdict = f"Nothing changes from {first} by more than its band; the widest band is "
         verdict += f"{certain_value(widest)}."
