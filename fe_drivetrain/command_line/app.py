@@ -26,6 +26,7 @@ from fe_drivetrain.command_line.loads import loads_command
 from fe_drivetrain.command_line.new_scene import new_command
 from fe_drivetrain.command_line.output_options import LOOK, with_shared_options
 from fe_drivetrain.command_line.part import part_command
+from fe_drivetrain.command_line.report import report_command
 from fe_drivetrain.command_line.run import (
     HelpOfCases,
     OutFolder,
@@ -61,6 +62,7 @@ _COMMANDS: tuple[tuple[str, str, Callable[..., None]], ...] = (
     (_STUDY, "life", life_command),
     (_STUDY, "compare", compare_command),
     (_STUDY, "uncertainty", uncertainty_command),
+    (_STUDY, "report", report_command),
     (_PROVE, "run", run_command),
     (_PROVE, "list", list_command),
     (_PROVE, "validate", validate_command),

@@ -29,6 +29,10 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
         "two_bearings --vary shaft.front=-1.2:-0.8:5",
     ),
     "uncertainty": ("mine.yaml --quantity main_bearing.My --sobol",),
+    "report": (
+        "mine.yaml --loads 'outputs/*.outb' --site class-II --open",
+        "mine.yaml --loads outputs --pdf",
+    ),
     "run": (
         "verification/nafems_le10 --quick",
         "gear --quick --out results",

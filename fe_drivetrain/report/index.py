@@ -128,7 +128,10 @@ def write_index(
     rows = sorted(_rows(folder, problems or {}), key=lambda row: (row.badness, row.name))
     _keep_problems(folder, problems or {})
     limits = _limits(rows)
-    _write_list(folder, rows, set(known) - {row.name for row in rows}, bool(limits))
+    here = {row.name for row in rows}
+    # a folder of commands alone lacks no case
+    missing = set(known) - here if here & set(known) else set()
+    _write_list(folder, rows, missing, bool(limits))
     checks = [check for row in rows for check in row.checks]
     checks.sort(key=lambda check: (check[0].passed, -share_of_tolerance(check[0])))
     _write(folder / "checks.html", "checks.html", checks=checks)

@@ -354,6 +354,13 @@ class Environment(_Result):
     command: str = Field(default="", description="what to type to run it again")
 
 
+class PageLink(_Result):
+    """A page that belongs to this one."""
+
+    title: str
+    address: str = Field(description="relative to the page; empty: this page")
+
+
 State = Literal["failed", "not run", "running", "planned", "skipped"]
 """Of a case without results of this run: it ended by an error, or its turn never came since the run
 was stopped; it is at work; its turn comes; a program that it needs is not installed."""
@@ -398,6 +405,9 @@ class Results(_Result):
     )
     skipped: list[str] = Field(
         default=[], description="checks that were not made, and why, in sentences"
+    )
+    links: list[PageLink] = Field(
+        default=[], description="pages that belong together, of a dossier: its menu"
     )
     environment: Environment
     digest: str = Field(default="", description="SHA-256 of all other values")

@@ -6,6 +6,8 @@ from .closed_forms import closed_form_errors as closed_form_errors
 from .design_comparison import CompareResult as CompareResult
 from .design_comparison import Varied as Varied
 from .design_comparison import compare as compare
+from .dossier_overview import DossierResult as DossierResult
+from .dossier_overview import dossier as dossier
 from .export_content import ExportResult as ExportResult
 from .export_content import prepare_export as prepare_export
 from .input_uncertainty import UncertaintyResult as UncertaintyResult

@@ -21,7 +21,7 @@ from fe_drivetrain.report.results import Results, read_results
 from fe_drivetrain.studies.life_assumptions import Assumption, in_words, sampled, what_ifs
 from fe_drivetrain.studies.rolling_bearings import Choices, bearings_of
 
-SCENE = "main_bearing_spherical"
+SCENE, ENTRY = "main_bearing_spherical", "spherical_23180"
 STATED = (
     *("--temperature", "50", "--lubricant", "VG 460", "--cleanliness", "normal"),
     *("--profile", "--riser", "--turning", "inner"),
@@ -53,7 +53,7 @@ def run(invoke: Callable[..., Result], tmp_path: Path) -> Callable[..., tuple[Re
 
 def own_entry(folder: Path, **changes: object) -> tuple[str, ...]:
     """Options that name the spherical roller bearing with other values."""
-    entry = catalogue_entry("main_bearing_spherical").model_dump(exclude_unset=True) | changes
+    entry = catalogue_entry(ENTRY).model_dump(exclude_unset=True) | changes
     file = folder / "own.yaml"
     file.write_text(yaml.safe_dump({"own": entry}))
     return "--catalogue", str(file), "--bearing", "main_bearing=own"
@@ -70,13 +70,13 @@ def life_of(results: Results) -> float:
 def test_a_clearance_that_is_not_stated_is_said_with_what_it_does(run, tmp_path: Path) -> None:
     taken, printed = run()
     row = assumed(taken)["clearance 0"]
-    # 1/4000 of 780 mm, to one digit
-    assert row["instead"] == "0.2 mm along the contact normal"
-    loose, other = run(*own_entry(tmp_path, clearance=2e-4))
+    # 1/4000 of 525 mm, to one digit
+    assert row["instead"] == "0.1 mm along the contact normal"
+    loose, other = run(*own_entry(tmp_path, clearance=1e-4))
     assert row["L10mr then [years]"] == pytest.approx(life_of(loose), rel=1e-6)
     assert life_of(loose) < 0.9 * life_of(taken)
     (note,) = [note for note in taken.notes if "was not stated" in note]
-    assert f"clearance 0 (0.2 mm along the contact normal: {life_of(loose):.2g} years)" in note
+    assert f"clearance 0 (0.1 mm along the contact normal: {life_of(loose):.2g} years)" in note
     assert note in printed
     # a clearance that is stated, 0 or not, is no assumption
     assert "clearance" not in other.split("was not stated")[1].splitlines()[0]
@@ -195,7 +195,7 @@ def test_speeds_of_no_bearing_are_refused_and_nothing_is_written(
         *own_entry(
             tmp_path,
             limiting_speed_rpm=10.0,
-            sources=catalogue_entry(SCENE).sources | {"limiting_speed_rpm": "of its maker"},
+            sources=catalogue_entry(ENTRY).sources | {"limiting_speed_rpm": "of its maker"},
         )
     )
     assert "in 100 % of the time it turns faster than its limiting speed, 10.0 1/min" in printed
@@ -205,7 +205,7 @@ def test_speeds_of_no_bearing_are_refused_and_nothing_is_written(
     )
     assert status == 2
     assert "turns at 1.2e+07 1/min" in error
-    assert "none runs faster than 3.85e+03 1/min" in error
+    assert "none runs faster than 5.71e+03 1/min" in error
     assert not (tmp_path / "fast").exists()
 
 

@@ -22,7 +22,7 @@ from fe_drivetrain.studies.unused import choices_not_used, own_speeds, speed_not
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.turbine_loads.hub_loads.recorded import read_recorded
 
-SCENE, ENTRY = "main_bearing_spherical", "main_bearing_spherical"
+SCENE, ENTRY = "main_bearing_spherical", "spherical_23180"
 
 Invoke = Callable[..., Result]
 

@@ -19,7 +19,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.near_words import did_you_mean
 
 if TYPE_CHECKING:
-    from fe_drivetrain.report.results import Results
+    from fe_drivetrain.report.results import PageLink, Results
     from fe_drivetrain.report.suite.page import Page
     from fe_drivetrain.report.suite.run import Run
 
@@ -58,6 +58,8 @@ class Case:
         where it takes no others.
     command : str
         What to type to run it again; that of ``fe-drivetrain run`` where left out.
+    links : tuple of PageLink
+        Pages that belong to that of a dossier.
     """
 
     name: str
@@ -68,6 +70,7 @@ class Case:
     settings: Mapping[str, str] | tuple[str, ...] = ()
     changes: str = ""
     command: str = ""
+    links: tuple[PageLink, ...] = ()
 
     def runs_alone(self, quick: bool) -> bool:
         """Whether nothing may run beside its quick form, or beside its full one."""
@@ -103,6 +106,7 @@ class Case:
             figures=page.tables,
             scene=page.scene,
             drivetrains=page.drivetrains,
+            links=list(self.links),
             skipped=page.skipped,
             headline=page.headline,
             environment=environment(

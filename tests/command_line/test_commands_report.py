@@ -1,0 +1,91 @@
+"""``report``: one folder that answers, made once, and made anew where something has changed."""
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from answer_rules import broken_rules
+from tiny_case import Result
+
+from fe_drivetrain.command_line import printing
+from fe_drivetrain.command_line.report import ReportRequest, content_of
+from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.drivetrain_file import library_scene
+from fe_drivetrain.drivetrain_file.without_weight import weightless
+from fe_drivetrain.report.results import read_results
+
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
+SCENE = "main_bearing_spherical"
+COARSE = ("mesh.shaft=0.5", "mesh.bearing=0.2", "mesh.housing=0.3", "mesh.elements_per_turn=6")
+
+
+@pytest.fixture
+def loads(tmp_path: Path) -> Path:
+    """A minute of loads that swing, and the rotor's speed."""
+    time = np.arange(0.0, 60.0, 0.5)
+    swing = np.sin(2 * np.pi * time / 10.0)
+    mean = np.array([2e5, 0.0, -3e5, 9e5, 0.0, 0.0])
+    each = mean + np.outer(swing, [5e4, 1e3, 1e4, 0.0, 6e5, 1e5])
+    names = [f"{name} [{'N' if k < 3 else 'N m'}]" for k, name in enumerate(FORCES)]
+    header = ",".join(["time [s]", *names, "RotSpeed [rpm]"])
+    table = np.column_stack([time, each, np.full(len(time), 15.0)])
+    file = tmp_path / "gust.csv"
+    np.savetxt(file, table, delimiter=",", header=header, comments="", fmt="%.9g")
+    return file
+
+
+def test_a_dossier_answers_and_is_made_once(
+    invoke: Callable[..., Result], loads: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "boss"
+    words = ["report", SCENE, "--loads", str(loads), "--quick", "--out", str(out)]
+    words += [word for change in COARSE for word in ("--set", change)]
+    status, said, error = invoke(*words)
+    assert status == 0, error
+    pages = {folder.name for folder in (out / "dossier").iterdir()}
+    assert pages == {"overview", "loads", "reactions", "life", "model", "check"}
+    overview = read_results(out / "dossier/overview/results.json")
+    assert broken_rules(overview) == []
+    assert overview.answer is not None
+    assert overview.answer.verdict in said
+    assert overview.links[0].title == "Overview"
+    extremes = {(row["place"], row["load"]): row for row in overview.figures["extremes"]}
+    assert extremes["hub", "My"]["largest [kN m]"] == pytest.approx(600.0, rel=0.05)
+    assert extremes["hub", "My"]["file"] == "gust"
+
+    made = {path: path.stat().st_mtime_ns for path in (out / "dossier").rglob("results.json")}
+    assert invoke(*words)[0] == 0
+    assert {path: path.stat().st_mtime_ns for path in made} == made
+
+
+def test_a_file_that_has_changed_is_other_content(loads: Path) -> None:
+    asked, scene = ReportRequest(SCENE, [str(loads)]), library_scene(SCENE)
+    before = content_of(asked, scene)
+    assert content_of(asked, scene) == before
+    loads.write_text(loads.read_text() + "60,2e5,0,-3e5,9e5,7e5,0,15\n")
+    assert content_of(asked, scene) != before
+    assert content_of(asked, weightless(scene)) != content_of(asked, scene)
+
+
+def test_without_a_browser_nothing_is_begun(
+    invoke: Callable[..., Result], loads: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(printing.shutil, "which", lambda name: None)
+    out = tmp_path / "boss"
+    status, _, error = invoke("report", SCENE, "--loads", str(loads), "--pdf", "--out", str(out))
+    assert status == 2
+    assert "--pdf and --png need Chromium or Chrome" in error
+    assert not out.exists()
+
+
+@pytest.mark.skipif(
+    not any(map(shutil.which, printing.BROWSERS)), reason="no Chromium or Chrome is installed"
+)
+def test_a_page_is_printed_as_a_pdf(tmp_path: Path) -> None:
+    page, target = tmp_path / "page.html", tmp_path / "page.pdf"
+    page.write_text("<!DOCTYPE html><title>t</title><p>One page.", encoding="utf-8")
+    printing.write_pdf(printing.browser(), page, target)
+    assert target.read_bytes().startswith(b"%PDF")
