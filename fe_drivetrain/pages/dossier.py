@@ -8,7 +8,7 @@ from typing import Any
 from fe_drivetrain.pages.drivetrain_sketch import drivetrain_sketch
 from fe_drivetrain.report.answer import Status
 from fe_drivetrain.report.number_text import value_text
-from fe_drivetrain.report.results import Results, Table
+from fe_drivetrain.report.results import Cell, Results, Table
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.run import Run
 from fe_drivetrain.studies.dossier_overview import (
@@ -86,7 +86,7 @@ def _answers(page: Page, parts: Mapping[str, Results]) -> None:
     """What each part has answered, with the way to it."""
     page.section("All answers")
     titles = {REACTIONS: "reactions", MODEL: "which model"}
-    rows = [
+    rows: list[list[Cell]] = [
         [titles.get(name, name), part.answer.verdict if part.answer else " ".join(part.details[:1])]
         for name, part in parts.items()
     ]
