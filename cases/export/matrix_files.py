@@ -7,10 +7,41 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.export.matrix_readers import READERS
 from fe_drivetrain.cases.export.samples import matrices, samples, show
 from fe_drivetrain.common import MissingToolError, max_difference, scratch_folder
-from fe_drivetrain.report.suite import Page, Record, Run, column
+from fe_drivetrain.report import bars
+from fe_drivetrain.report.number_text import formatted
+from fe_drivetrain.report.suite import Page, Record, Run, column, grouped
 
 WRITTEN = "the matrix before it was written"
+#: Allowed difference, of a unit diagonal.
+WITHIN = 1e-15
+BY_FORMAT = "Largest difference of each format; the shortest bars stand for none"
+FORMATS = {"json": "JSON", "csv": "CSV", "mtx": "Matrix Market", "mtx-mass": "Matrix Market, mass"}
+FORMATS |= {"hdf5": "HDF5"}
 DIFFERENCE = "difference of a unit diagonal"
+
+
+def answer(page: Page, rows: list[Record]) -> None:
+    """State how far matrices that are read are from those that were written, by format."""
+    worst = {FORMATS[name]: max(column(of, DIFFERENCE)) for name, of in grouped(rows, "format")}
+    largest = max(worst.values())
+    libraries = ", ".join(dict.fromkeys(column(rows, "read by")))
+    page.answer(
+        "Do other libraries read the exported matrices as they were written?",
+        f"Read by other libraries, {len(rows)} matrices of {len(worst)} formats differ by at most "
+        f"{formatted(largest, 2, '')} of a unit diagonal from those that were written.",
+        [
+            page.value(
+                f"largest difference, {name}, of a unit diagonal",
+                value,
+                at_most=WITHIN,
+                by="as written",
+            )
+            for name, value in worst.items()
+        ],
+        hero=BY_FORMAT,
+    )
+    page.say(f"They are read by {libraries}, which know nothing of this project.")
+    page.add(bars(BY_FORMAT, {DIFFERENCE: worst}, DIFFERENCE, least=1e-18))
 
 
 @case(
@@ -52,12 +83,8 @@ def run(run: Run, page: Page) -> None:
     for row in rows:
         kind, name = row["matrix"], f"{row['superelement']}, {row['format']}"
         title = f"{name}: {kind} read less {kind} written, of a unit diagonal"
-        page.vanishes(title, row[DIFFERENCE], within=1e-15, why=why, source=WRITTEN)
-    page.say(
-        "JSON, CSV, Matrix Market and HDF5 give the matrices back with a largest difference of "
-        f"{max(column(rows, DIFFERENCE)):.1e} of a unit diagonal, each by a library that knows "
-        "nothing of this project."
-    )
+        page.vanishes(title, row[DIFFERENCE], within=WITHIN, why=why, source=WRITTEN)
+    answer(page, rows)
     show(run, page)
     page.section("Files")
     page.table("Largest difference between what was written and what is read", rows)

@@ -7,7 +7,9 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.export.samples import frequencies, matrices, samples, show
 from fe_drivetrain.common import max_difference, scratch_folder
 from fe_drivetrain.export import pynastran
-from fe_drivetrain.report.suite import Page, Run, Target, column, grouped
+from fe_drivetrain.report import bars
+from fe_drivetrain.report.number_text import difference_text, formatted
+from fe_drivetrain.report.suite import Page, Record, Run, Target, column, grouped
 
 WRITTEN = "the matrices before they were written"
 #: By format: largest difference that the digits of its numbers leave, and why.
@@ -24,7 +26,51 @@ DIGITS = {
 }
 SOFTEST = "rounding by 1e-10, over the softest elastic motion's share in a unit diagonal, which is "
 SOFTEST += "above 1e-2"
+BY_FORMAT = "Largest difference of matrices that pyNastran reads; the shortest bars stand for none"
+NAMES = {"dmig": "DMIG", "op4": "OUTPUT4"}
 DIFFERENCE = "difference of a unit diagonal"
+
+
+def answer(page: Page, rows: list[Record], compared: dict[str, str]) -> None:
+    """State how far matrices that pyNastran reads are from those that were written.
+
+    Parameters
+    ----------
+    page : Page
+        With the checks of all files.
+    rows : list of dict
+        A matrix of a file each.
+    compared : dict
+        Quantity of the check of a natural frequency, by format.
+    """
+    worst = {name: max(column(of, DIFFERENCE)) for name, of in grouped(rows, "format")}
+    dmig, output4 = (formatted(worst[name], 2, "") for name in NAMES)
+    furthest = "natural frequency furthest off, {}"
+    frequency = page.judged(compared["dmig"], furthest.format("DMIG"), "as written")
+    page.answer(
+        "Does pyNastran read the exported matrices as they were written?",
+        f"Its matrices differ by at most {dmig} of a unit diagonal by DMIG and {output4} by "
+        f"OUTPUT4; natural frequencies shift by at most {difference_text(frequency)}.",
+        [
+            *(
+                page.value(
+                    f"largest difference, {NAMES[name]}, of a unit diagonal",
+                    worst[name],
+                    at_most=within,
+                    by="digits of the file",
+                )
+                for name, (within, _) in DIGITS.items()
+            ),
+            frequency,
+            page.judged(compared["op4"], furthest.format("OUTPUT4"), "as written"),
+        ],
+        hero=BY_FORMAT,
+    )
+    found = {
+        kind: {f"{row['superelement']}, {NAMES[row['format']]}": row[DIFFERENCE] for row in of}
+        for kind, of in grouped(rows, "matrix")
+    }
+    page.add(bars(BY_FORMAT, found, DIFFERENCE, least=1e-18))
 
 
 @case(
@@ -36,7 +82,8 @@ def run(run: Run, page: Page) -> None:
     """Write, read by pyNastran, compare."""
     pynastran("bdf.bdf")  # absent, it is missed before anything is solved
     elements = samples(run)
-    rows = []
+    rows: list[Record] = []
+    compared: dict[str, str] = {}
     for label, element in elements.items():
         for format, (tolerance, digits) in DIGITS.items():
             with run.step("write and read"), scratch_folder() as folder:
@@ -69,14 +116,11 @@ def run(run: Run, page: Page) -> None:
             )
             computed, exact = (frequencies(m["stiffness"], m["mass"], 3) for m in (found, written))
             k = int(np.argmax(np.abs(computed / exact - 1.0)))
-            title = f"{name}: natural frequency {k + 1} of the first three [Hz]"
-            page.meets(computed[k], Target(title, exact[k], 1e-6, SOFTEST, WRITTEN))
-    worst_of = {name: max(column(of, DIFFERENCE)) for name, of in grouped(rows, "format")}
-    page.say(
-        f"pyNastran reads the exported DMIG with a largest difference of {worst_of['dmig']:.1e} of "
-        f"a unit diagonal, and OUTPUT4 with {worst_of['op4']:.1e}.",
-        "A symmetric DMIG holds one triangle; the whole matrix comes back from it.",
-    )
+            title = f"{name}: natural frequency {k + 1} of the first three"
+            compared[format] = title
+            page.meets(computed[k], Target(f"{title} [Hz]", exact[k], 1e-6, SOFTEST, WRITTEN))
+    answer(page, rows, compared)
+    page.say("A symmetric DMIG holds one triangle; the whole matrix comes back from it.")
     show(run, page)
     page.section("Files")
     page.table("Largest difference between what was written and what pyNastran reads", rows)

@@ -17,6 +17,7 @@ from fe_drivetrain.export import (
     unit_superelement,
 )
 from fe_drivetrain.export.formats import elastodyn, extptfm, subdyn
+from fe_drivetrain.report.number_text import certain_value, value_text
 from fe_drivetrain.report.suite import Page, Run
 
 PUBLISHED = "OpenFAST r-test, SD_Spring_Case1"
@@ -28,6 +29,8 @@ NREL_5_MW = {
     "generator_inertia": 534.116,
     "gear_ratio": 97.0,
 }
+NREL_DAMPER = "damper of the NREL 5 MW drivetrain for 5 % of critical"
+FROM_REFERENCES = "Differences from closed forms and published values, over what is allowed"
 NREL_DAMPING = 6.215e6
 #: Rotor of the made-up turbine whose file is edited [kg m^2].
 ROTOR_INERTIA = 9.0e6
@@ -54,12 +57,12 @@ def run(run: Run, page: Page) -> None:
     page.about(scene)
     shaft = run.timed("free shaft", shaft_superelement, scene, 2)
     with scratch_folder() as folder:
-        drivetrain_torsion(run, page, scene, shaft, folder)
+        torsion, others = drivetrain_torsion(run, page, scene, shaft, folder)
         spring_element(run, page, scene, folder / "spring.dat")
         platform_superelement(run, page, shaft, folder / "superelement.dat")
     with page.of(None):
         page.equals(
-            "damper of the NREL 5 MW drivetrain for 5 % of critical [N m s/rad]",
+            f"{NREL_DAMPER} [N m s/rad]",
             torsional_damping(0.05, **NREL_5_MW),
             NREL_DAMPING,
             within=1e-3,
@@ -67,11 +70,40 @@ def run(run: Run, page: Page) -> None:
             "sixteenth",
             source="Jonkman et al. 2009, NREL/TP-500-38060, section 5",
         )
+    answer(page, torsion, others)
     page.say(
         "SubDyn's spring element and ExtPtfm's superelement come back from openfast_io with every "
         "digit that was written."
     )
     show(run, page, scene)
+
+
+def answer(page: Page, torsion: elastodyn.Torsion, others: int) -> None:
+    """State the torsion that openfast_io reads; `others` is how many other values changed."""
+    spring = page.judged("DTTorSpr of the uniform shaft", by="G J / L", unit="MN m/rad")
+    damper = page.value("DTTorDmp, 5 % of critical [kN m s/rad]", torsion.damper / 1e3)
+    figures = [
+        spring,
+        damper,
+        page.judged(NREL_DAMPER, "damper of the NREL 5 MW turbine", "Jonkman", unit="MN m s/rad"),
+        page.judged("SubDyn spring of 3947.8 N/m with 100 kg: sag", by="r-test", unit="mm"),
+        page.judged(
+            "ExtPtfm: lowest elastic frequency of the free shaft",
+            "lowest frequency of the shaft, ExtPtfm",
+            "as written",
+        ),
+    ]
+    left = "nothing else" if others == 0 else f"{others} other values"
+    page.answer(
+        "Which drivetrain torsion goes into OpenFAST, and is it read as it was written?",
+        f"openfast_io reads {certain_value(spring)} and "
+        f"{value_text(damper.value, damper.unit)} from the ElastoDyn input, in which {left} "
+        "changed; OpenFAST itself is not run.",
+        figures,
+        hero=FROM_REFERENCES,
+        cautions=["The turbine of the ElastoDyn input is made up."],
+    )
+    page.errors(FROM_REFERENCES, figures)
 
 
 def exact(page: Page, quantity: str, difference: float) -> None:
@@ -87,8 +119,8 @@ def exact(page: Page, quantity: str, difference: float) -> None:
 
 def drivetrain_torsion(
     run: Run, page: Page, scene: Scene, shaft: Superelement, folder: Path
-) -> None:
-    """Spring and damper of a shaft in the place of those of an ElastoDyn input."""
+) -> tuple[elastodyn.Torsion, int]:
+    """Spring and damper of a shaft in an ElastoDyn input; how many other values changed."""
     source, target = folder / "elastodyn.dat", folder / "new.dat"
     with run.step("write and read"):
         source.write_text(TEXT)
@@ -102,7 +134,8 @@ def drivetrain_torsion(
     changed = {key for key in before if before[key] != after[key]}
     exact(page, "ElastoDyn: DTTorSpr read less written [N m/rad]", after["DTTorSpr"] - spring)
     exact(page, "ElastoDyn: DTTorDmp read less written [N m s/rad]", after["DTTorDmp"] - damper)
-    exact(page, "ElastoDyn: other values that changed", len(changed - {"DTTorSpr", "DTTorDmp"}))
+    others = len(changed - {"DTTorSpr", "DTTorDmp"})
+    exact(page, "ElastoDyn: other values that changed", others)
     section, material = scene.shaft.sections[0], scene.material_of("shaft")
     page.equals(
         "DTTorSpr of the uniform shaft [N m/rad]",
@@ -112,11 +145,7 @@ def drivetrain_torsion(
         why="the elements contain the exact solution: round-off of the condensation",
         source="Coulomb's torsion of a round shaft, G J / L",
     )
-    page.say(
-        f"A drivetrain spring of {spring:.4g} N m/rad from the finite-element shaft and its damper "
-        f"of {damper:.4g} N m s/rad are what openfast_io reads from the edited ElastoDyn input; "
-        f"{len(before) - len(changed)} other values are as before."
-    )
+    page.say(f"{len(before) - len(changed)} other values of the ElastoDyn input are as before.")
     page.section("Drivetrain torsion")
     page.text(
         "The stiffness is that of the free shaft between hub and gearbox, on the low-speed side; "
@@ -132,6 +161,7 @@ def drivetrain_torsion(
     )
     page.data("spring [N m/rad]", spring)
     page.data("damper [N m s/rad]", damper)
+    return elastodyn.Torsion(after["DTTorSpr"], after["DTTorDmp"]), others
 
 
 def spring_element(run: Run, page: Page, scene: Scene, path: Path) -> None:

@@ -12,7 +12,9 @@ from fe_drivetrain.common import Floats, max_difference
 from fe_drivetrain.drivetrain_file import library_scene
 from fe_drivetrain.export import craig_bampton_shaft, free_frequencies, natural_frequencies
 from fe_drivetrain.export.programs import ross_rotor
-from fe_drivetrain.report.suite import Page, Record, Run, column
+from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import formatted, percent_text
+from fe_drivetrain.report.suite import Page, Record, Run, column, grouped
 from fe_drivetrain.shafts.beam import (
     Beam,
     Support,
@@ -32,6 +34,46 @@ FREE = 4
 #: How many times the spring in place of a rigid support is stiffer than the shaft there.
 STIFFER = 1e6
 
+#: Allowed difference of deflections and reactions: what such a spring leaves.
+WITHIN = 10.0 / STIFFER
+
+DIFFERENCE = "difference [%]"
+FREQUENCIES = "Natural frequencies of ROSS's beam less those of the solid of revolution"
+
+
+def answer(page: Page, version: str, errors: Floats, difference: float) -> None:
+    """State how far ROSS is from this project's beam and from the solid of revolution.
+
+    Parameters
+    ----------
+    page : Page
+        With the checks of all scenes.
+    version : str
+        That of ROSS.
+    errors : ndarray
+        (2,) largest differences of deflections and of reactions from the beam, over their kind.
+    difference : float
+        Largest difference of natural frequencies from the solid of revolution [%].
+    """
+    moved, reacted = errors.tolist()
+    page.answer(
+        "Does ROSS find the deflections, reactions and frequencies of a rotor from a scene?",
+        f"ROSS {version} differs from this project's beam by {formatted(moved, 2, '')} in "
+        f"deflections and {formatted(reacted, 2, '')} in reactions; its frequencies are up to "
+        f"{percent_text(difference / 100)} from a solid's.",
+        [
+            page.value("largest difference of deflections", moved, at_most=WITHIN, by="beam"),
+            page.value("largest difference of reactions", reacted, at_most=WITHIN, by="beam"),
+            page.value("largest difference of frequencies from the solid [%]", difference),
+            page.judged(
+                "free shaft of main_bearing_bonded, natural frequency 1",
+                "first natural frequency of a free shaft",
+                "solid",
+            ),
+        ],
+        hero=FREQUENCIES,
+    )
+
 
 @case(
     "ROSS: rotors from scenes",
@@ -47,15 +89,17 @@ def run(run: Run, page: Page) -> None:
     for name in scenes:
         check_scene(run, page, name, f"ROSS {version}", errors, rows)
     free_shaft(run, page)
-    moved, reacted = np.max(errors, axis=0)
-    difference = column(rows, "difference [%]")
+    answer(page, version, np.max(errors, axis=0), max(map(abs, column(rows, DIFFERENCE))))
     page.say(
-        f"ROSS {version} gives the deflections of level 1 to {moved:.1e} and its reactions to "
-        f"{reacted:.1e}, with the full 6x6 stiffness of every bearing unit.",
-        f"On those supports its lowest {COUNT} natural frequencies are up to "
-        f"{max(map(abs, difference)):.1f} % from those of the shaft as a solid of revolution with "
-        "twelve modes of Craig and Bampton.",
+        "ROSS is given the full 6x6 stiffness of every bearing unit. Its lowest "
+        f"{COUNT} natural frequencies on those supports are compared with those of the shaft as a "
+        "solid of revolution with twelve modes of Craig and Bampton."
     )
+    curves = [
+        trace(name, column(of, "mode"), column(of, DIFFERENCE), mode="lines+markers")
+        for name, of in grouped(rows, "scene")
+    ]
+    page.chart(FREQUENCIES, curves, "mode", DIFFERENCE)
     show(run, page, library_scene(scenes[-1]))
     page.table(
         "ROSS's beam against level 2 (meridian, Craig-Bampton); both on the same bearing units and "
@@ -125,7 +169,7 @@ def check_scene(
             "mode": mode,
             "ROSS [Hz]": theirs,
             "level 2 [Hz]": ours,
-            "difference [%]": 100 * (theirs / ours - 1),
+            DIFFERENCE: 100 * (theirs / ours - 1),
         }
         for mode, (theirs, ours) in enumerate(zip(found, second, strict=True), start=1)
     ]
@@ -138,7 +182,7 @@ def check_answers(page: Page, name: str, error: Floats) -> None:
             f"{name}: {what} under 12 unit loads and gravity along 3 axes, largest difference "
             "from level 1 over the largest of its kind",
             value,
-            10.0 / STIFFER,
+            WITHIN,
             why=f"what the gearbox holds rigidly is a spring {STIFFER:.0e} times as stiff as an "
             "element of the shaft",
             source="level 1 of this project, in which rigid is rigid",

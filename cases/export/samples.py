@@ -9,6 +9,8 @@ from fe_drivetrain.export import Superelement, superelement_of
 from fe_drivetrain.report import shaft_with_rings
 from fe_drivetrain.report.suite import Page, Run
 
+#: Name of the shaft among them.
+FREE = "free shaft"
 SCENE = "two_bearings"
 
 #: Coarsening of the bearing's mesh: its matrix is written, whatever it is.
@@ -22,7 +24,7 @@ def samples(run: Run) -> dict[str, Superelement]:
     """
     scene = library_scene(SCENE)
     scene = scene.model_copy(update={"mesh": scene.mesh.scaled(FACTOR)})
-    found = {"free shaft": run.timed("free shaft", superelement_of, scene, "shaft")}
+    found = {FREE: run.timed(FREE, superelement_of, scene, "shaft")}
     if not run.quick:
         bearing = scene.bearing_units[0].bearing.name
         label = "bearing with housing"

@@ -15,12 +15,16 @@ from fe_drivetrain.common import MissingToolError, scratch_folder
 from fe_drivetrain.drivetrain_file import Material, Scene, change_scene, library_scene
 from fe_drivetrain.export import Torsion, shaft_superelement, torsional_damping, torsional_stiffness
 from fe_drivetrain.export.formats import windio
+from fe_drivetrain.report import bars
+from fe_drivetrain.report.number_text import certain_value, value_text
 from fe_drivetrain.report.suite import Page, Run
 
 RATIO = 0.05
 #: Main shaft: outer and inner diameter [m].
 OUTER, INNER = 3.0, 2.4
 DENSITY = 7850.0
+
+SPRINGS = "Torsional spring of WISDEM's drivetrain: its own, and from the turbine file"
 
 #: Its bearings fit a shaft of 3 m.
 MAIN_SHAFT = "iea_15mw_main_shaft"
@@ -182,6 +186,44 @@ def check_files(page: Page, used: Torsion, stated: Any, ours: Torsion) -> None:
         )
 
 
+def answer(page: Page, own: Torsion, used: Torsion, ours: Torsion) -> None:
+    """State the torsion that WISDEM continues with, beside its own and what was written."""
+    spring = page.value(
+        "spring that WISDEM continues with [GN m/rad]",
+        used.spring / 1e9,
+        beside=ours.spring / 1e9,
+        by="as written",
+    )
+    damper = page.value(
+        "damper that WISDEM continues with [MN m s/rad]",
+        used.damper / 1e6,
+        beside=ours.damper / 1e6,
+        by="as written",
+    )
+    how = "as" if (used.spring, used.damper) == (ours.spring, ours.damper) else "not as"
+    page.answer(
+        "Does WISDEM take the torsion of a finite-element shaft from its turbine file?",
+        f"It continues with {certain_value(spring)} and {certain_value(damper)}, {how} written, in "
+        f"place of its own {value_text(own.spring / 1e9, 'GN m/rad')}.",
+        [
+            spring,
+            damper,
+            page.judged(
+                "main shaft: stiffness of the finite-element model",
+                "main shaft alone, finite elements",
+                "WISDEM",
+                unit="GN m/rad",
+            ),
+            page.value("WISDEM's own damper [MN m s/rad]", own.damper / 1e6),
+        ],
+        hero=SPRINGS,
+        cautions=[
+            "WISDEM's own damper is of critical with the generator held, ours with it free.",
+            "The turbine is made up, with its hub's and generator rotor's stiffness assumed.",
+        ],
+    )
+
+
 @case(
     "WISDEM's drivetrain with the torsion of a finite-element shaft",
     source="WISDEM and windIO, run here",
@@ -209,11 +251,15 @@ def run(run: Run, page: Page) -> None:
         source="WISDEM's drivetrain, G J / L of its uniform shaft",
     )
     check_files(page, used, stated, ours)
-    page.say(
-        f"WISDEM's drivetrain takes {used.spring:.4g} N m/rad from the turbine file in place of "
-        f"its own {own.spring:.4g} N m/rad, and the damper with it.",
-        "For a uniform shaft its own stiffness is that of the finite-element shaft.",
-    )
+    answer(page, own, used, ours)
+    page.say("For a uniform shaft WISDEM's own stiffness is that of the finite-element shaft.")
+    by = {
+        "WISDEM's own, main shaft": own.spring,
+        "finite elements, main shaft": spring,
+        "with hub and generator rotor, from the file": used.spring,
+    }
+    giga = {name: k / 1e9 for name, k in by.items()}
+    page.add(bars(SPRINGS, {"spring": giga}, "spring [GN m/rad]"))
     show(run, page, scene)
     page.section("Torsion of the drivetrain")
     page.text(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy import sparse
@@ -18,6 +18,7 @@ from fe_drivetrain.elasticity.interfaces import Constraint, held_nodes
 from fe_drivetrain.elasticity.mesh import Block
 from fe_drivetrain.elasticity.operator import nodal_stresses
 from fe_drivetrain.elasticity.solve import solve_solid
+from fe_drivetrain.report import trace
 
 QUARTER = np.pi / 2
 
@@ -152,6 +153,29 @@ def press(radii: Sequence[float], misfit: float, materials: Sequence[Material], 
         float(static.energy[0]) / width,
         *_profiles(parts, lames, u),
     )
+
+
+def stress_by_radius(exact: ExactFit, found: Pressed, names: tuple[str, str]) -> list[Any]:
+    """Curves of hoop and radial stress [MPa] over the radius [m], by Lame and of a mesh's nodes.
+
+    Parameters
+    ----------
+    exact : ExactFit
+        Lame's cylinders.
+    found : Pressed
+        Those of a mesh.
+    names : tuple of str
+        Names of the inner and the outer part.
+    """
+    curves = []
+    parts = (exact.shaft, found.shaft), (exact.ring, found.ring)
+    for name, (part, of) in zip(names, parts, strict=True):
+        r = np.linspace(part.inner, part.outer, 60)
+        for stress, field in (("hoop", part.hoop), ("radial", part.radial)):
+            curves.append(trace(f"{name}, {stress}, Lame", r, field(r) / 1e6))
+            at, nodes = of.along(stress)
+            curves.append(trace(f"{name}, {stress}, nodes", at, nodes / 1e6, True))
+    return curves
 
 
 def _together(parts: Sequence[Block]) -> Block:

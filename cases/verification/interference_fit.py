@@ -1,7 +1,5 @@
 """Bearing ring pressed on a hollow shaft: two Lame cylinders of different materials."""
 
-import numpy as np
-
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.interference_fits import (
     ExactFit,
@@ -9,9 +7,9 @@ from fe_drivetrain.cases.references.interference_fits import (
     exact_fit,
     press,
     quarters,
+    stress_by_radius,
 )
 from fe_drivetrain.drivetrain_file import Material
-from fe_drivetrain.report import trace
 from fe_drivetrain.report.number_text import certain_value
 from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target, targets_of
 
@@ -76,15 +74,9 @@ def run(run: Run, page: Page) -> None:
     fit = RADII, MISFIT, (IRON, STEEL)
     meshes = {n: run.timed(f"{n} {THROUGH}", press, *fit, n) for n in (1, 2, 4)}
     series = MeshSeries([{THROUGH: n} | shown(found) for n, found in meshes.items()], THROUGH)
-    exact, finest, last = exact_fit(*fit), meshes[4], series.last
+    exact, last = exact_fit(*fit), series.last
     page.section("Stress along the radius")
-    curves = []
-    for name, part, of in (("shaft", exact.shaft, finest.shaft), ("ring", exact.ring, finest.ring)):
-        r = np.linspace(part.inner, part.outer, 60)
-        for stress, field in (("hoop", part.hoop), ("radial", part.radial)):
-            curves.append(trace(f"{name}, {stress}, Lame", r, field(r) / 1e6))
-            at, nodes = of.along(stress)
-            curves.append(trace(f"{name}, {stress}, nodes", at, nodes / 1e6, True))
+    curves = stress_by_radius(exact, meshes[4], ("shaft", "ring"))
     page.chart(BY_RADIUS, curves, "radius [m]", "stress [MPa]")
     recovered = "recovered stress at a surface: s'' h^2 / 12 with h a sixteenth of the shaft's "
     recovered += "wall is 0.1 % at its bore"

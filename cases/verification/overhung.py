@@ -13,6 +13,7 @@ from fe_drivetrain.cases.references.supported_shafts import (
 )
 from fe_drivetrain.cases.verification import shaft_inputs as inputs
 from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.report.number_text import certain_value, percent_text
 from fe_drivetrain.report.suite import Page, Record, Run, Target
 from fe_drivetrain.shafts.beam import pinned_reaction
 
@@ -25,6 +26,7 @@ PINNED, FREE = (np.inf, 0.0), (0.0, 0.0)
 SHAFT = SupportedShaft(TUBE, STATIONS, (FREE, PINNED, FREE, PINNED))
 HUB, BEARING, GEARBOX = 0, 1, 3
 LOADS = {"force": Load(HUB, force=1e6), "moment": Load(HUB, moment=1e6)}
+BENT = "Deflection: Macaulay's beam with shear, and the means of the solid's sections"
 SHEARED = "closed form with shear"
 STATICS = "statics: Stirling 2023, Eq 3.1, (M + (L1 + L2) B) / L2"
 EI, KGA = TUBE.EI, TUBE.kGA
@@ -34,6 +36,44 @@ CLOSED = {
     "force": (1e6 * (L1**2 * (L1 + L2) / (3 * EI) + L1 / KGA + L1**2 / (L2 * KGA)), CROSS),
     "moment": (CROSS, 1e6 * (L1 / EI + L2 / (3 * EI) + 1 / (L2 * KGA))),
 }
+
+
+def answer(page: Page, rows: list[Record]) -> None:
+    """State how far the hub moves, and how far solid and beam are from each other."""
+    sag = page.judged(
+        "deflection of the hub by a force, solid",
+        "deflection of the hub under 1 MN, solid",
+        "beam with shear",
+        unit="mm",
+    )
+    largest = max(abs(row["solid"] / row["frame"] - 1) for row in rows)
+    page.answer(
+        "How far does the hub of an overhung main shaft move under its loads?",
+        f"1 MN moves the hub by {certain_value(sag)}; the meshed solid and a beam with shear "
+        f"differ by at most {percent_text(largest)} in all motions.",
+        [
+            sag,
+            page.judged(
+                "rotation of the hub by a moment, solid",
+                "rotation of the hub under 1 MN m, solid",
+                "beam with shear",
+                unit="mrad",
+            ),
+            page.judged(
+                "load on the bearing by a force, solid",
+                "load on the bearing under 1 MN, solid",
+                "statics",
+                unit="MN",
+            ),
+            page.judged(
+                "deflection of the hub by a force, frame",
+                "deflection of the hub under 1 MN, frame",
+                "closed form",
+                unit="mm",
+            ),
+        ],
+        hero=BENT,
+    )
 
 
 @case(
@@ -73,8 +113,9 @@ def run(run: Run, page: Page) -> None:
             title, why = f"load on the bearing by a {name}", f"statically determinate: {why}"
             page.meets(value, Target(f"{title}, {who} [N]", statics, within, why, STATICS))
         traces += inputs.beside_beam(name, SHAFT, load, fine, solids[-1])
+    answer(page, rows)
     met = ", ".join(f"{r['quantity']} {100 * (r['solid'] / r['frame'] - 1):+.3f} %" for r in rows)
-    page.say(f"The frame meets the closed forms with shear, and the solid the frame: {met}.")
+    page.say(f"The solid beside the frame: {met}.")
     inputs.begin(run, page, "Overhung shaft", straight((0.0, LENGTH), OUTER))
     inputs.show_inputs(
         page,
@@ -85,8 +126,7 @@ def run(run: Run, page: Page) -> None:
         ("force and moment at the hub", 1, "MN, MN m"),
         steel=STEEL,
     )
-    title = "Deflection: Macaulay's beam with shear, and the means of the solid's sections"
-    page.chart(title, traces, "x from the hub [m]", "u_z [mm]")
+    page.chart(BENT, traces, "x from the hub [m]", "u_z [mm]")
     page.table("Hub [m, rad]", rows)
     page.text(
         "Both cross terms, deflection by a moment and rotation by a force, are one number, as "

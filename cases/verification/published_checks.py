@@ -7,6 +7,7 @@ import numpy as np
 
 from fe_drivetrain.cases.references.shaft_theory import polar_moment
 from fe_drivetrain.cases.references.twisted_tubes import TwistedTube, twisted_tube
+from fe_drivetrain.report import bars
 from fe_drivetrain.report.suite import Page, Run, Target
 
 DIGITS = "half of the last published digit"
@@ -77,10 +78,21 @@ def check_frequency(
 
 
 def compare_stiffness(
-    page: Page, caption: str, heading: str, by: Mapping[str, float], over: str, reference: float
+    page: Page,
+    caption: str,
+    heading: str,
+    by: Mapping[str, float],
+    over: str,
+    reference: float,
+    without: str = "",
 ) -> None:
-    """A table of stiffness by description, and each over a reference of that name."""
+    """Bars and a table of stiffness by description, and each over a reference of that name.
+
+    The one description `without` has no bar.
+    """
+    giga = {name: k / 1e9 for name, k in by.items() if name != without}
+    page.add(bars(caption, {"stiffness": giga}, "stiffness [GN m/rad]"))
     page.table(
-        caption,
+        "The same in numbers",
         [{heading: name, STIFFNESS: k, f"over {over}": k / reference} for name, k in by.items()],
     )

@@ -20,8 +20,10 @@ from fe_drivetrain.cases.verification.published_checks import (
     check_frequency,
 )
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import certain_value, percent_text
 from fe_drivetrain.report.suite import Page, Record, Target
 
+BY_STIFFNESS = "Frequencies of the two masses by the stiffness between them"
 STEEL_DENSITY = 7850.0  # kg/m^3
 
 
@@ -40,11 +42,11 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     formula = "sqrt(k / J_rotor) / 2 pi"
     check_frequency(page, "free-fixed", held, fixed, "one eigenvalue", formula)
     check_shaft(page, given, sources, shaft)
+    answer(page, shaft, with_shaft, free)
     page.say(
-        f"Two masses give {free:.4f} Hz free-free and {fixed:.4f} Hz free-fixed, as published. "
         f"The stiffness is K G / L of a solid shaft of {shaft.outer:g} m over {shaft.length:g} m "
         "to its last digit; that shaft's own inertia would lower the first frequency by "
-        f"{100 * (1 - with_shaft / free):.3f} %."
+        f"{percent_text(1 - with_shaft / free)}."
     )
     show_by_stiffness(page, given, (rotor, generator), published)
     page.table(
@@ -62,6 +64,38 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     page.assume("density of the shaft", STEEL_DENSITY, "kg/m^3", "steel")
     page.data("free_free", free)
     page.data("free_fixed", fixed)
+
+
+def answer(page: Page, shaft: MainShaft, with_shaft: float, free: float) -> None:
+    """State the frequencies of rotor and generator, and the shaft that they belong to."""
+    wang = "Wang et al."
+    swings = page.judged("free-free frequency, two masses", "free-free frequency", wang, "4.003")
+    held = page.judged(
+        "free-fixed frequency, two masses", "frequency with the generator held", wang, "0.612"
+    )
+    same = "as published" if swings.status == held.status == "good" else "other than published"
+    page.answer(
+        "At which frequencies do rotor and generator of the DTU 10 MW turbine swing?",
+        f"They swing against each other at {certain_value(swings)}, and the rotor at "
+        f"{certain_value(held)} where the generator is held: {same}.",
+        [
+            swings,
+            held,
+            page.value(
+                "free-free frequency with the shaft's own inertia [Hz]",
+                with_shaft,
+                beside=free,
+                by="shaft without mass",
+            ),
+            page.judged(
+                f"finite elements, solid shaft of {shaft.outer:g} m",
+                f"torsional stiffness of a solid shaft of {shaft.outer:g} m",
+                wang,
+                unit="GN m/rad",
+            ),
+        ],
+        hero=BY_STIFFNESS,
+    )
 
 
 def check_frequencies(
@@ -98,5 +132,4 @@ def show_by_stiffness(
         trace("free-fixed", sweep, lines[:, 1]),
         trace("published", [given["stiffness"]] * 2, published, True, marker={"size": 10}),
     ]
-    title = "Frequencies of the two masses by the stiffness between them"
-    page.chart(title, curves, STIFFNESS, "frequency [Hz]", "xy")
+    page.chart(BY_STIFFNESS, curves, STIFFNESS, "frequency [Hz]", "xy")

@@ -15,7 +15,10 @@ from fe_drivetrain.cases.verification.published_checks import (
     compare_stiffness,
 )
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import certain_value, value_text
 from fe_drivetrain.report.suite import Page, Record
+
+BY_SHAFT = "Torsional stiffness by description of the shaft"
 
 
 def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaft) -> None:
@@ -36,11 +39,10 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     dtu = "what the placeholder is: K G / L of the DTU 10 MW turbine's shaft [N m/rad]"
     by_dtu = G * given["dtu_polar"] / length
     check_digits(page, dtu, by_dtu, placeholder, 500.0, sources["placeholder"])
+    answer(page, placeholder, (low, high))
     page.say(
-        f"DTTorSpr for the main shaft alone: {found.stiffness:.4g} N m/rad (numerical band "
-        f"± {found.band:.1g}; {low:.4g} to {high:.4g} for any usual G). The published "
-        f"{placeholder:.4g} is the DTU 10 MW turbine's, carried over, and "
-        f"{found.stiffness / placeholder:.1f} times softer."
+        "The published figure is K G / L of the DTU 10 MW turbine's shaft, carried over. Shear "
+        f"moduli of usual steels give {low / 1e9:.2f} to {high / 1e9:.2f} GN m/rad."
     )
     later = shaft.G * polar_moment(2.5, 2.3) / 2.2
     by = {
@@ -52,8 +54,7 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
         "the turbine's HAWC2 shaft, by its sections over 5.4 m": G / flexibility.sum(),
         "placeholder in the OpenFAST model": placeholder,
     }
-    title = "Torsional stiffness by description of the shaft"
-    compare_stiffness(page, title, "shaft", by, "the placeholder", placeholder)
+    compare_stiffness(page, BY_SHAFT, "shaft", by, "the placeholder", placeholder)
     fine = np.linspace(0.0, x[-1], 400)
     along = np.interp(fine, x, polar)
     twist = np.cumsum(np.diff(fine) / (G * 0.5 * (along[1:] + along[:-1])))
@@ -73,4 +74,41 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
         "The descriptions differ by far more than any numerical band: what counts as the shaft, "
         "from where to where, decides. The HAWC2 sections include the thin tube between bearing "
         "and generator, and hold most twist there."
+    )
+
+
+def answer(page: Page, placeholder: float, usual: tuple[float, float]) -> None:
+    """State the shaft's stiffness, and that the published one is another's.
+
+    `usual` is the stiffness for the least and the largest modulus of usual steels; all in N m/rad.
+    """
+    found = page.judged(
+        "finite elements, tube over 3.0 m",
+        "main shaft, 3.0 m, wall 0.1 m, over 3.0 m",
+        "closed form",
+        unit="GN m/rad",
+    )
+    is_softer = placeholder < 0.9 * usual[0]
+    published = value_text(placeholder / 1e9, "GN\u00a0m/rad")
+    times = f"{1e9 * found.value / placeholder:.0f} times softer"
+    page.answer(
+        "Which torsional stiffness has the main shaft of the IEA 10 MW turbine?",
+        f"Its tube has {certain_value(found)}; the published {published} is not that of this "
+        f"shaft but of the DTU 10 MW turbine's, {times}."
+        if is_softer
+        else f"Its tube has {certain_value(found)}, beside the published {published}.",
+        [
+            found,
+            page.value(
+                "published stiffness [GN m/rad]",
+                placeholder / 1e9,
+                beside=found.value,
+                by="this shaft",
+            ),
+            page.value("the shaft with G = 79.3 GPa [GN m/rad]", usual[0] / 1e9),
+            page.value("the shaft with G = 80.8 GPa [GN m/rad]", usual[1] / 1e9),
+        ],
+        hero=BY_SHAFT,
+        cautions=["What counts as the shaft, from where to where, decides: see the bars."],
+        claim="does not hold" if is_softer else "holds",
     )

@@ -18,7 +18,10 @@ from fe_drivetrain.cases.verification.published_checks import (
 )
 from fe_drivetrain.elasticity.revolution import end_stiffness
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import certain_value, value_text
 from fe_drivetrain.report.suite import Page, Record, Target
+
+BY_METHOD = "Torsional stiffness of the main shaft by each method, and in the released model"
 
 
 def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaft) -> None:
@@ -40,11 +43,10 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     check_torsion(page, "finite elements", found, earlier, sources["earlier"])
     page.meets(by_meridian, Target(meridian, closed, 1e-8, linear, CLOSED_FORM))
     page.meets(thin, Target(title, closed, thick, square, CLOSED_FORM))
+    answer(page, placeholder, (low, high))
     page.say(
-        f"DTTorSpr for the main shaft alone: {found.stiffness:.5g} N m/rad (numerical band "
-        f"± {found.band:.1g}; {low:.4g} to {high:.4g} for any usual G). The released model holds "
-        f"{placeholder:.0e} with the degree of freedom off, {placeholder / found.stiffness:.0f} "
-        f"times as much; one before it held {earlier:,.0f}, which is G J / L to round-off."
+        "The released model has the degree of freedom off. Shear moduli of usual steels give "
+        f"{low / 1e9:.2f} to {high / 1e9:.2f} GN m/rad."
     )
     by = {
         "finite elements": found.stiffness,
@@ -54,7 +56,7 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
         "earlier release": earlier,
         "placeholder": placeholder,
     }
-    compare_stiffness(page, "Torsional stiffness", "by", by, "G J / L", closed)
+    compare_stiffness(page, BY_METHOD, "by", by, "G J / L", closed)
     walls = np.array([0.01, 0.02, 0.05, 0.1, 0.2, 0.3])
     by_wall = [G * polar_moment(shaft.outer, shaft.outer - 2 * w) / length for w in walls]
     curves = [
@@ -67,4 +69,41 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     page.text(
         "A wall of 20 mm on 3.1 m is thin enough to buckle or ovalise before it yields; torsion "
         "between rigid ends knows nothing of that."
+    )
+
+
+def answer(page: Page, placeholder: float, usual: tuple[float, float]) -> None:
+    """State the shaft's stiffness, and that the released one is none of it.
+
+    `usual` is the stiffness for the least and the largest modulus of usual steels; all in N m/rad.
+    """
+    found = page.judged(
+        "finite elements", "main shaft, finite elements", "earlier release", unit="GN m/rad"
+    )
+    released = value_text(placeholder / 1e9, "GN\u00a0m/rad")
+    times = 1e9 * found.value
+    is_placeholder = placeholder > 1.1 * usual[1]
+    page.answer(
+        "Which torsional stiffness has the main shaft of the IEA 22 MW turbine?",
+        f"Its thin tube has {certain_value(found)}; the {released} of the released model, "
+        f"{placeholder / times:.0f} times as much, is not a stiffness of this shaft."
+        if is_placeholder
+        else f"Its thin tube has {certain_value(found)}, beside {released} of the released model.",
+        [
+            found,
+            page.value(
+                "released model [GN m/rad]", placeholder / 1e9, beside=found.value, by="this shaft"
+            ),
+            page.judged(
+                "thin-walled formula 2 pi G r^3 t / L",
+                "thin-walled formula",
+                "closed form",
+                unit="GN m/rad",
+            ),
+            page.value("the shaft with G = 79.3 GPa [GN m/rad]", usual[0] / 1e9),
+            page.value("the shaft with G = 80.8 GPa [GN m/rad]", usual[1] / 1e9),
+        ],
+        hero=BY_METHOD,
+        cautions=["Ends turn as rigid planes: a thin wall that buckles or ovalises is softer."],
+        claim="does not hold" if is_placeholder else "holds",
     )

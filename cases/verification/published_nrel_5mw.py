@@ -20,7 +20,11 @@ from fe_drivetrain.cases.verification.published_checks import (
     compare_stiffness,
 )
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import certain_value, value_text
 from fe_drivetrain.report.suite import Page, Record
+
+HIGH_SPEED = "high-speed shaft, G J n^2 / L"
+BY_PART = "Torsional stiffness of the main shaft and of the whole drivetrain, on the rotor's side"
 
 
 def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaft) -> None:
@@ -35,23 +39,22 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     check_damping(page, given, rotor * generator / (rotor + generator))
     check_free_free(page, float(chain_frequencies([rotor, generator], [stiffness])[1]), free)
     check_torsion(page, "finite elements, low-speed shaft alone", found, shaft.closed, CLOSED_FORM)
+    needed = solid_diameter(stiffness * length / G)
+    answer(page, stiffness, (shaft.outer, needed), (free, soft))
     page.say(
-        f"The main shaft in WISDEM's model, {shaft.outer:g} m over {length:.2f} m, has "
-        f"{found.stiffness:.4g} N m/rad alone (± {found.band:.1g}): "
-        f"{stiffness / shaft.closed:.2f} times softer than the {stiffness:,.0f} that the "
-        "aeroelastic model has for the whole drivetrain. So the two do not belong to one machine: "
-        f"the published figure would need that shaft to be {length * shaft.closed / stiffness:.2f} "
-        f"m long, or {solid_diameter(stiffness * length / G):.2f} m thick, with all else rigid."
+        f"The shaft of WISDEM's model, {shaft.outer:g} m over {length:.2f} m, and the stiffness of "
+        "the aeroelastic model do not belong to one machine: that stiffness would need the shaft "
+        f"to be {length * shaft.closed / stiffness:.2f} m long, or {needed:.2f} m thick, with all "
+        "else rigid."
     )
     by = {
         "published, whole drivetrain": stiffness,
         "low-speed shaft, G J / L": shaft.closed,
         "low-speed shaft, finite elements": found.stiffness,
-        "high-speed shaft, G J n^2 / L": high,
+        HIGH_SPEED: high,
         "both in series, as WISDEM does": series,
     }
-    title = "Stiffness, on the rotor's side"
-    compare_stiffness(page, title, "part", by, "the published", stiffness)
+    compare_stiffness(page, BY_PART, "part", by, "the published", stiffness, HIGH_SPEED)
     frequencies = [
         ("published", free),
         ("WISDEM's shafts in series", soft),
@@ -60,7 +63,7 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     page.table("Frequencies of rotor and generator", frequencies, ["stiffness", "frequency [Hz]"])
     show_by_diameter(page, stiffness, shaft)
     page.text(
-        "A shaft can only be softer than all of itself: compliances add. With the published "
+        "Compliances add: a drivetrain is softer than each of its shafts. With the published "
         "figure and a shaft that takes half of the compliance, it would be "
         f"{solid_diameter(2 * stiffness * length / G):.2f} m thick over {length:.2f} m. Gearbox "
         "and generator have the other half then; no published split is known."
@@ -97,3 +100,62 @@ def show_by_diameter(page: Page, stiffness: float, shaft: MainShaft) -> None:
     title = "Stiffness of a solid main shaft by its diameter, for several lengths, beside the "
     title += "published figure of the drivetrain"
     page.chart(title, curves, "diameter [m]", STIFFNESS, "y")
+
+
+def answer(
+    page: Page, stiffness: float, diameters: tuple[float, float], modes: tuple[float, float]
+) -> None:
+    """State whether the main shaft fits the stiffness that is published for the whole drivetrain.
+
+    Parameters
+    ----------
+    page : Page
+        With the check of the shaft.
+    stiffness : float
+        That of the whole drivetrain, published [N m/rad].
+    diameters : tuple of float
+        Of the shaft, and what the published stiffness would need [m].
+    modes : tuple of float
+        Free-free frequency of rotor and generator by the published stiffness and by the shafts
+        [Hz].
+    """
+    found = page.judged(
+        "finite elements, low-speed shaft alone",
+        "main shaft alone, finite elements",
+        "closed form",
+        unit="MN m/rad",
+    )
+    published = stiffness / 1e6
+    fits = found.value >= published
+    whole = value_text(published, "MN\u00a0m/rad")
+    page.answer(
+        "Does the main shaft fit the torsional stiffness published for the NREL 5 MW drivetrain?",
+        f"It can: alone it has {certain_value(found)}, more than the {whole} of the drivetrain."
+        if fits
+        else f"It does not: alone it has {certain_value(found)}, {published / found.value:.2f} "
+        f"times softer than the {whole} published for the whole drivetrain.",
+        [
+            found,
+            page.value(
+                "published for the whole drivetrain [MN m/rad]",
+                published,
+                beside=found.value,
+                by="main shaft alone",
+            ),
+            page.value(
+                "diameter that the published stiffness needs [m]",
+                diameters[1],
+                beside=diameters[0],
+                by="WISDEM",
+            ),
+            page.value(
+                "free-free frequency with WISDEM's shafts [Hz]",
+                modes[1],
+                beside=modes[0],
+                by="published stiffness",
+            ),
+        ],
+        hero=BY_PART,
+        cautions=["Compliances add in series: a whole drivetrain is softer than its shaft alone."],
+        claim="holds" if fits else "does not hold",
+    )

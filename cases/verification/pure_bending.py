@@ -7,6 +7,7 @@ from fe_drivetrain.cases.verification import shaft_inputs as inputs
 from fe_drivetrain.cases.verification.shaft_inputs import ERROR, SHAFT
 from fe_drivetrain.drivetrain_file import MATERIALS
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import certain_value, percent_text
 from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target, column
 
 STEEL = MATERIALS["steel"]
@@ -14,6 +15,9 @@ OUTER, BORE, LENGTH, CURVATURE = 0.4, 0.28, 0.8, 1e-3  # m, and 1/m
 TUBES = theory.solid_and_bored(OUTER, BORE, LENGTH, STEEL)
 STIFFNESS, SAG = "bending stiffness M L / theta [N m^2]", "mean deflection of the far end [m]"
 SIDEWAYS = "sideways displacement of the skin at mid length, at 45 degrees [m]"
+ANTICLASTIC = (
+    "Anticlastic bending: sideways displacement of the skin round the shaft, at mid length"
+)
 EXACT, STRESS = "E I [N m^2]", "stress at the top of the skin at mid length [Pa]"
 FIELD = "Timoshenko and Goodier, article 102"
 
@@ -36,6 +40,44 @@ def solve(name: str, refinement: int) -> Record:
         STRESS: float(shaft.found.stress[top, 0]),
         "skin": (shaft.angle, 1e6 * moved, 1e6 * exact),
     }
+
+
+def answer(page: Page, finest: list[Record]) -> None:
+    """State the bending stiffness of both shafts, and how far it is from E I."""
+    solid, bored = (
+        page.judged(
+            f"{name}: bending stiffness M L / theta",
+            f"bending stiffness, {name} shaft",
+            "E I",
+            unit="MN m^2",
+        )
+        for name in TUBES
+    )
+    sideways = page.judged(
+        "bored: sideways displacement of the skin at mid length, at 45 degrees",
+        "sideways displacement of the skin, bored shaft",
+        "exact",
+        unit="µm",
+    )
+    largest = max(abs(row[STIFFNESS] / row[EXACT] - 1) for row in finest)
+    page.answer(
+        "How stiff is a meshed shaft in pure bending, and how does its section deform?",
+        f"It has {certain_value(solid)} solid and {certain_value(bored)} bored, at most "
+        f"{percent_text(largest)} from E I; its skin moves sideways by {certain_value(sideways)}, "
+        f"{percent_text(sideways.value / (sideways.limit or 1.0) - 1)} from exact.",
+        [
+            solid,
+            bored,
+            sideways,
+            page.judged(
+                "bored: stress at the top of the skin at mid length",
+                "bending stress of the skin, bored shaft",
+                "exact",
+                unit="MPa",
+            ),
+        ],
+        hero=ANTICLASTIC,
+    )
 
 
 @case(
@@ -70,17 +112,16 @@ def run(run: Run, page: Page) -> None:
         angle, moved, exact = best["skin"]
         profiles.append(trace(f"{name}, finite elements", angle, moved, True))
         profiles.append(trace(f"{name}, exact", angle, exact))
-    solid, bored = (abs(row[STIFFNESS] / row[EXACT] - 1) for row in finest)
     worst = max(column(finest, ERROR))
+    answer(page, finest)
     page.say(
-        f"E I is met to {solid:.1g} (solid) and {bored:.1g} (bored), and every node lies within "
-        f"{worst:.1g} of the exact field, over the largest displacement."
+        f"Every node lies within {percent_text(worst)} of the exact field, over the largest "
+        "displacement."
     )
     sizes, curved = (OUTER, BORE), ("curvature", CURVATURE, "1/m", "chosen: 40 MPa at the skin")
     length = "length", LENGTH, "m"
     inputs.begin_uniform(run, page, "Pure bending", sizes, length, curved, steel=STEEL)
-    title = "Anticlastic bending: sideways displacement of the skin round the shaft, at mid length"
-    page.chart(title, profiles, "angle from the neutral axis [degrees]", "u_y [µm]")
+    page.chart(ANTICLASTIC, profiles, "angle from the neutral axis [degrees]", "u_y [µm]")
     listed = SHAFT, "unknowns", STIFFNESS, EXACT, ERROR
     inputs.show_errors(page, "Error of the displacements", rows, table=listed)
     page.text(

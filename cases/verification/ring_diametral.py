@@ -9,6 +9,7 @@ from fe_drivetrain.cases.references.plane_rings import plane_strain
 from fe_drivetrain.cases.verification import squeezed_rings as rings
 from fe_drivetrain.drivetrain_file import Material
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import percent_text, value_text
 from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target, targets_of
 
 RADIUS, FORCE = 0.33, 1e6  # m, of the wall's middle; N/m of width
@@ -18,6 +19,7 @@ PLANE = plane_strain(STEEL.youngs_modulus, STEEL.poisson_ratio)
 ring = partial(rings.SqueezedRing, RADIUS, force=FORCE, plane=PLANE)
 RATIOS, QUICK_RATIOS = (2.0, 5.0, 10.0, 20.0), (2.0, 20.0)
 THROUGH, CLOSING = "elements through the wall", "change of the bore's diameter along the load [µm]"
+BY_RATIO = "Change of the bore's diameter along the load over W R^3 / (E' I)"
 CURVED = "change of the bore's diameter along the load, curved beam with shear"
 THIN = "change of the bore's diameter along the load, thin ring, 0.1488 W R^3 / (E' I)"
 #: Title with the unit shown, and its factor from SI.
@@ -35,6 +37,43 @@ BEAMS = "Timoshenko, Strength of Materials, part II, 1956, thick and thin rings;
 def shown(found: dict[str, float]) -> Record:
     """Quantities in SI by their titles, in the units shown."""
     return {title: factor * found[key] for key, (title, factor) in SHOWN.items()}
+
+
+def answer(page: Page, ratios: tuple[float, ...], exact: dict[float, Record]) -> None:
+    """State how far rings close, and how far a thin ring's formula is from that."""
+    closing = "change of the bore's diameter along the load"
+    thick, thin = (
+        page.judged(
+            f"R/h = {ratio:g}: {closing}",
+            f"change of diameter along the load, R/h = {ratio:g}",
+            "exact series",
+            unit="mm",
+        )
+        for ratio in (ratios[0], ratios[-1])
+    )
+    misses = [
+        -1e6 * ring(ratio).thin() / exact[ratio][CLOSING] - 1 for ratio in (ratios[0], ratios[-1])
+    ]
+    page.answer(
+        "How far does a ring close between opposite loads, and when is the thin-ring formula good?",
+        f"With R/h = {ratios[-1]:g} it closes by {value_text(-thin.value, thin.unit)} under "
+        f"1 MN/m; the thin-ring formula misses {percent_text(misses[1])} of that, at "
+        f"R/h = {ratios[0]:g} {percent_text(misses[0])}.",
+        [
+            thin,
+            thick,
+            *(
+                page.value(f"error of the thin-ring formula, R/h = {ratio:g} [%]", 100 * miss)
+                for ratio, miss in zip((ratios[-1], ratios[0]), reversed(misses), strict=True)
+            ),
+            page.judged(
+                f"R/h = {ratios[0]:g}: hoop stress of the bore under the load",
+                f"hoop stress of the bore under the load, R/h = {ratios[0]:g}",
+                "exact series",
+            ),
+        ],
+        hero=BY_RATIO,
+    )
 
 
 @case(
@@ -66,19 +105,19 @@ def run(run: Run, page: Page) -> None:
     curved = Target(CLOSING, -1e6 * thinnest.curved_beam(), 2 / over, beam, BEAMS, CURVED)
     straight = Target(CLOSING, -1e6 * thinnest.thin(), 4 / over, thin, BEAMS, THIN)
     page.finest(found[thinnest.ratio], curved, straight, of=f"R/h = {ratios[-1]:g}")
+    answer(page, ratios, exact)
     points = [ring(ratio).share(of.last[CLOSING] / 1e6) for ratio, of in found.items()]
     by_series = [ring(ratio).share(of[CLOSING] / 1e6) for ratio, of in exact.items()]
     page.say(
-        f"A ring with R/h = {ratios[-1]:g} closes by {points[-1]:.5f} W R^3/(E' I) along the load "
-        f"(exact series {by_series[-1]:.5f}, thin ring {np.pi / 4.0 - 2.0 / np.pi:.5f}); "
-        f"one with R/h = {ratios[0]:g} by "
-        f"{points[0]:.4f} (exact {by_series[0]:.4f}): there the thin ring is of no use."
+        f"Over W R^3/(E' I), a ring with R/h = {ratios[-1]:g} closes by {points[-1]:.5f} along "
+        f"the load (exact series {by_series[-1]:.5f}, thin ring "
+        f"{np.pi / 4.0 - 2.0 / np.pi:.5f}); one with R/h = {ratios[0]:g} by {points[0]:.4f} "
+        f"(exact {by_series[0]:.4f})."
     )
     lines = run.timed("series", rings.shares, ring, np.geomspace(1.5, 30.0, 25))
     curves = [*(trace(*of) for of in lines), trace("finite elements", ratios, points, True)]
-    title = "Change of the bore's diameter along the load over W R^3 / (E' I)"
     x, y = "mean radius over wall thickness", "diameter change E' I / (W R^3)"
-    page.chart(title, curves, x, y, "x")
+    page.chart(BY_RATIO, curves, x, y, "x")
     page.text(
         "Plane strain, E' = E / (1 - nu^2), a quarter of the ring. Each load is a smooth bump of "
         "pressure over one wall thickness of arc, the same for elements and series "

@@ -14,6 +14,7 @@ from fe_drivetrain.cases.references.supported_shafts import (
 from fe_drivetrain.cases.verification.shaft_inputs import SIZE, begin, check_motion, show_inputs
 from fe_drivetrain.common import GRAVITY
 from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.report.number_text import percent_text, value_text
 from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target, column
 
 STEEL = MATERIALS["steel"]
@@ -25,6 +26,8 @@ Q = STEEL.density * TUBE.area * DOWN  # N/m
 ROTATION = -Q * LENGTH**3 / (6 * TUBE.EI)  # rad
 RATIOS = (1.5, 2.0, 3.0, 4.0)  # of the chart
 OVERHANG, FOUND, EVEN = "overhang over diameter", "solid", "beam, evenly held"
+BEYOND = "Sag of the solid beyond Timoshenko's beam with Cowper's coefficient, of the meshed "
+BEYOND += "section; beside it the beam with that of an evenly held root"
 COWPER = "q L^4 / 8EI + q L^2 / 2kGA, k of Cowper 1966"
 RECIPROCAL = "q L^3 / 6EI: exact for a root held evenly, by reciprocity with pure bending"
 SAG, TURNED, MASS, TURN = "sag [m]", "rotation [rad]", "mass [kg]", "elements round a turn"
@@ -42,6 +45,28 @@ def beyond_the_beam(ratio: float) -> Record:
     """Sag beyond Timoshenko's beam with Cowper's coefficient [%], at another length."""
     excess = sag_over_beam(Tube(OUTER, 0.0, ratio * OUTER, STEEL))
     return {OVERHANG: ratio, FOUND: 100 * (excess[0] - 1), EVEN: 100 * (excess[1] - 1)}
+
+
+def answer(page: Page, over_cowper: float, over_even: float) -> None:
+    """State the sag, and how far it is from the two beams."""
+    sag = page.judged(
+        "sag of the tip, solid", "displacement of the tip", "beam, root held evenly", unit="mm"
+    )
+    page.answer(
+        "How far does an overhung shaft sag under its own weight?",
+        f"With {RATIO:g} diameters of overhang it sags by "
+        f"{value_text(-sag.value, sag.unit, sag.band, with_band=False)}; a beam with Cowper's "
+        f"shear coefficient is {percent_text(over_cowper)} off, one held evenly "
+        f"{percent_text(over_even)}.",
+        [
+            sag,
+            page.judged("rotation of the tip, solid", "rotation of the tip", "beam", unit="µrad"),
+            page.judged("mass", by="density times volume"),
+            page.value("beyond the beam with Cowper's coefficient [%]", 100 * over_cowper),
+            page.value("beyond the beam held evenly [%]", 100 * over_even),
+        ],
+        hero=BEYOND,
+    )
 
 
 @case(
@@ -68,18 +93,12 @@ def run(run: Run, page: Page) -> None:
     turning = check_motion(page, "rotation of the tip", "rad", rotation, frame[1], turned, exact)
     page.finest(series, Target(MASS, weight, *within_arcs(turn, "the area", 2), density, order=4.0))
     over_cowper, over_even = down[-1] / closed - 1, down[-1] / even - 1
-    page.say(
-        f"An overhang of {RATIO:g} diameters sags {-1e3 * down[-1]:.4f} mm; by Timoshenko's "
-        f"beam {-1e3 * closed:.4f} mm with Cowper's shear coefficient ({100 * over_cowper:+.3f} "
-        f"%), {-1e3 * even:.4f} mm with that of an evenly held root ({100 * over_even:+.3f} %)."
-    )
+    answer(page, over_cowper, over_even)
     sizes = ("diameter, solid", OUTER, "m", SIZE), ("overhang", LENGTH, "m")
     begin(run, page, "Sag", solid_shafts.straight((0.0, LENGTH), OUTER))
     show_inputs(page, *sizes, steel=STEEL, gravity=DOWN)
-    title = "Sag of the solid beyond Timoshenko's beam with Cowper's coefficient, of the meshed "
-    title += "section; beside it the beam with that of an evenly held root"
     curves = {FOUND: FOUND, EVEN: EVEN}
-    page.sweep(title, sweep, OVERHANG, curves, axis="difference [%]", table=False)
+    page.sweep(BEYOND, sweep, OVERHANG, curves, axis="difference [%]", table=False)
     tip = {"quantity": SAG, EVEN: even} | sagging, {"quantity": TURNED, EVEN: ROTATION} | turning
     page.table("Tip", tip)
     page.text(

@@ -14,6 +14,7 @@ from fe_drivetrain.cases.references.supported_shafts import (
 from fe_drivetrain.cases.verification import shaft_inputs as inputs
 from fe_drivetrain.common import GRAVITY
 from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.report.number_text import certain_value, percent_text
 from fe_drivetrain.report.suite import Page, Record, Run, Target
 
 STEEL, OUTER, L = MATERIALS["steel"], 0.4, 2.4  # m
@@ -33,7 +34,37 @@ LOADS = {
     "moment at the end": (Load(END, moment=M), M / L * BENT / 16, M / L),
     "own weight": (Load(MIDDLE, gravity=DOWN), W * (5 * BENT / 384 + SHEARED / 8), abs(W) / 2),
 }
+DEFLECTED = "Deflection over its largest: Macaulay's beam with shear, and the means of the solid's "
+DEFLECTED += "sections"
 FRAME, REACTION = "Timoshenko frame of the library", "reaction of the downwind support, solid [N]"
+
+
+def answer(page: Page, largest: float) -> None:
+    """State the deflection at mid span, and the largest difference of solid and beam."""
+    name = "{}: deflection at mid span, solid"
+    by_force, by_moment, by_weight = (
+        page.judged(
+            name.format(load), f"deflection at mid span, {words}", "beam with shear", unit=unit
+        )
+        for load, words, unit in (
+            ("force at mid span", "1 MN at mid span", "mm"),
+            ("moment at the end", "1 MN m at the end", "mm"),
+            ("own weight", "own weight", "µm"),
+        )
+    )
+    reaction = f"own weight: {REACTION.partition(' [')[0]}"
+    page.answer(
+        "How far does a shaft on two simple supports deflect at mid span?",
+        f"1 MN at mid span moves it by {certain_value(by_force)}; the meshed solid and a beam with "
+        f"shear differ by at most {percent_text(largest)} under all loads.",
+        [
+            by_force,
+            by_moment,
+            by_weight,
+            page.judged(reaction, "reaction to the own weight", "statics", unit="kN"),
+        ],
+        hero=DEFLECTED,
+    )
 
 
 @case(
@@ -66,11 +97,12 @@ def run(run: Run, page: Page) -> None:
         page.meets(reactions[-1], target, band, name)
         traces += inputs.beside_beam(name, SHAFT, load, fine, solids[-1], over_max=True)
     differences = {row["load"]: row["solid"] / row["frame"] - 1 for row in rows}
+    answer(page, max(map(abs, differences.values())))
     page.say(
-        "The frame meets the closed forms with shear to round-off. The solid, held and loaded "
-        "through the mean motions of its sections, differs from it by "
+        "The solid, held and loaded through the mean motions of its sections, differs from the "
+        "frame by "
         + ", ".join(f"{100 * d:+.3f} % ({name})" for name, d in differences.items())
-        + f" at L = {L / OUTER:g} D."
+        + "."
     )
     inputs.begin(run, page, "Simple supports", straight((0.0, L), OUTER))
     inputs.show_inputs(
@@ -82,8 +114,7 @@ def run(run: Run, page: Page) -> None:
         steel=STEEL,
         gravity=DOWN,
     )
-    title = "Deflection over its largest: Macaulay's beam with shear, and the means of the solid's "
-    page.chart(f"{title}sections", traces, "x [m]", "deflection over the largest")
+    page.chart(DEFLECTED, traces, "x [m]", "deflection over the largest")
     page.table("Deflection at mid span [m]", rows)
     page.text(
         "The solid's sections are free to warp: supports and loads act on their mean displacement, "

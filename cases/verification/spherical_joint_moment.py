@@ -5,7 +5,8 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification.determinate_bearings import carried, coarse_bearing
 from fe_drivetrain.report import trace
-from fe_drivetrain.report.suite import Page, Run, Target, column
+from fe_drivetrain.report.number_text import formatted, value_text
+from fe_drivetrain.report.suite import Page, Record, Run, Target, column
 from fe_drivetrain.shafts.response import LOADS, build_model, mesh_scene
 
 FORMS = "sliding", "averaged", "rigid", "bonded"  # of the joint, the last one for comparison
@@ -33,6 +34,9 @@ CHECKS = {
         "equilibrium of the housing, on which no load acts in between",
     ),
 }
+CARRIED = "Moment that the interface carries about the joint's centre"
+WITHIN = 1e-9  # of an error that is round-off
+NM = "N\u00a0m"
 MOMENT, DISTANCE, MY = "largest moment [N m]", "largest distance [m]", LOADS.index("hub.My")
 #: Axis of the force through the joint, and load, of the table.
 SHARES = {
@@ -42,6 +46,49 @@ SHARES = {
 }
 
 
+def answer(page: Page, rows: list[Record], from_statics: float, bonded: float) -> None:
+    """State the moment of a spherical and of a bonded bearing.
+
+    Parameters
+    ----------
+    page : Page
+        Where it stands.
+    rows : list of dict
+        Of each form of the spherical joint.
+    from_statics : float
+        Largest difference of the reactions from statics, relative.
+    bonded : float
+        What a bonded bearing takes of 1 N m about y at the hub [N m].
+    """
+    moment = max(column(rows, MOMENT))
+    page.answer(
+        "Does a spherical main bearing carry a moment, and are its reactions those of statics?",
+        f"Each spherical joint carries at most {value_text(moment, NM)} under unit hub loads, "
+        f"a bonded bearing {value_text(bonded, NM)}; reactions differ from statics "
+        f"by {formatted(from_statics, 2, '')} at most.",
+        [
+            page.value(
+                "largest moment of a spherical joint, unit hub loads [N m]",
+                moment,
+                at_most=WITHIN,
+                by="no friction",
+            ),
+            page.value("moment of a bonded bearing, 1 N m at the hub [N m]", bonded),
+            page.value(
+                "largest difference of reactions from statics",
+                from_statics,
+                at_most=WITHIN,
+                by="Eq 3.1",
+            ),
+            page.value(
+                "largest distance of the force's line from the centre [m]",
+                max(column(rows, DISTANCE)),
+            ),
+        ],
+        hero=CARRIED,
+    )
+
+
 @case(
     "Spherical joint of a main bearing: no moment about its centre, reactions by statics",
     source="Stirling 2023, PhD thesis, section 3.1 (Eq 3.1) and section 3.2 (DSRB: three forces, "
@@ -49,7 +96,7 @@ SHARES = {
 )
 def run(run: Run, page: Page) -> None:
     """Solve the three forms, and a bonded bearing beside them."""
-    rows, points = [], []
+    rows, points, apart = [], [], []
     for form in FORMS:
         scene = coarse_bearing(form, QUICK_FACTOR if run.quick else FACTOR)
         if form in ("sliding", "bonded"):  # the others have the mesh of the first
@@ -63,21 +110,17 @@ def run(run: Run, page: Page) -> None:
         if form == "bonded":
             continue
         spherical, worst = mesh, found.max_moment
+        apart.append(found.from_statics)
         values = worst, found.distance / found.radius, found.from_statics, found.apart
         for value, (what, reason) in zip(values, CHECKS.items(), strict=True):
-            page.meets(value, Target(what, 0.0, 1e-9, *reason), of=form)
+            page.meets(value, Target(what, 0.0, WITHIN, *reason), of=form)
         shares = {name: float(found.joint[where]) for name, where in SHARES.items()}
         rows.append({"form": form, **shares, MOMENT: worst, DISTANCE: found.distance})
-    page.say(
-        "All three forms of the spherical joint carry forces through the centre and nothing else: "
-        f"at most {max(column(rows, MOMENT)):.1e} N m over the unit hub loads, where a bonded "
-        f"bearing takes {abs(found.joint[4, MY]):.2f} N m of 1 N m at the hub.",
-        "Reactions are those of statics (Eq 3.1) to round-off, and say nothing about the mesh.",
-    )
+    answer(page, rows, max(apart), abs(float(found.joint[4, MY])))
+    page.say("Reactions are those of statics (Eq 3.1), and say nothing about the mesh.")
     page.section("What the joint carries")
     page.image("Shaft, bearing and housing, as meshed here", run.sketch(spherical))
-    title = "Moment that the interface carries about the joint's centre"
-    page.chart(title, points, "unit load", "moment [N m]", "y")
+    page.chart(CARRIED, points, "unit load", "moment [N m]", "y")
     title = "Force through the joint for unit hub loads, its moment, and the distance of its line "
     page.table(f"{title}from the centre", rows)
     page.text(

@@ -5,8 +5,13 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.manufactured import NORMS, Series
 from fe_drivetrain.cases.verification import round_shafts as bodies
-from fe_drivetrain.cases.verification.orders import add_convergence, check_orders
+from fe_drivetrain.cases.verification.orders import (
+    add_convergence,
+    captioned,
+    check_orders,
+)
 from fe_drivetrain.elasticity.mesh import straightened
+from fe_drivetrain.report.number_text import formatted, percent_text
 from fe_drivetrain.report.suite import Page, Run, Target
 
 WALLS, QUICK_WALLS = (3, 6, 9, 12), (2, 3, 4)  # elements through; eight times as many round
@@ -20,7 +25,41 @@ THEORY = (
     "1986 (second-hand: neither was read itself); that straight elements lose their order on a "
     "curved boundary, and curved ones keep it, in Ruas 2017, J. Appl. Math. Phys. 5(11), abstract"
 )
+TWISTED = "Torsion of a bored shaft"
 SIZE = "element over circumference [-]"
+
+
+def answer(page: Page, sides: int, chords: float, arcs: float) -> None:
+    """State the error of the torsional rigidity with straight and with curved elements."""
+    page.answer(
+        "What do elements with straight sides cost on a curved surface?",
+        f"With {sides} elements round a shaft they miss {percent_text(chords)} of its torsional "
+        f"rigidity, curved elements {percent_text(arcs)}: {formatted(abs(chords / arcs), 2)} times "
+        "less with as many unknowns.",
+        [
+            page.judged(
+                f"shaft, straight P2, {sides} sides: torsional rigidity less GJ, relative",
+                "error of the rigidity, straight sides",
+                "polygon",
+                unit="%",
+            ),
+            page.judged(
+                f"shaft, curved P2, {sides} elements round: torsional rigidity",
+                "torsional rigidity, curved sides",
+                "G J",
+                unit="GN m²",
+            ),
+            page.judged(
+                "shaft, straight P2: order in torsional stiffness",
+                "order, straight sides",
+                "theory",
+            ),
+            page.judged(
+                "shaft, curved P2: order in torsional stiffness", "order, curved sides", "theory"
+            ),
+        ],
+        hero=captioned(TWISTED),
+    )
 
 
 @case(
@@ -56,17 +95,13 @@ def run(run: Run, page: Page) -> None:
     exact = SHAFT.rigidity, 1e-3, good, "exact: GJ, Saint-Venant"
     band = SHAFT.rigidity * abs(arcs - coarser) * ratio**4 / (1.0 - ratio**4)
     page.meets(SHAFT.rigidity * (1.0 + arcs), Target(title, *exact, measure="stiffness"), band)
-    page.headline = "shaft, curved P2: order in torsional stiffness"
+    answer(page, sides, chords, arcs)
     page.say(
-        f"With {sides} elements round the shaft the torsional rigidity of straight-sided P2 has an "
-        f"error of {chords:.1e} and converges with order {shafts[0].order(STIFFNESS)[0]:.2f}, "
-        f"that of curved P2 on the same corners {arcs:.1e} and order "
-        f"{shafts[1].order(STIFFNESS)[0]:.2f}: {abs(chords / arcs):,.0f} times less at the "
-        "same number of unknowns. On a surface that is held the energy norm falls from order "
+        "On a surface that is held the energy norm falls from order "
         f"{bushes[1].order(ENERGY)[0]:.2f} to {bushes[0].order(ENERGY)[0]:.2f}."
     )
     page.section("Free surface: a bored shaft in torsion")
-    add_convergence(page, "Torsion of a bored shaft", shafts, SIZE)
+    add_convergence(page, TWISTED, shafts, SIZE)
     page.text(
         "A slice of a bored shaft, one element thick, held on one side, under a torque on the "
         "other. The exact displacement is quadratic, so straight P2 elements hold it: all of their "

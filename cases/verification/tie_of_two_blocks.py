@@ -14,6 +14,7 @@ from fe_drivetrain.comparison import GridConvergence, grid_convergence
 from fe_drivetrain.elasticity.interfaces import eliminate, mortar_tie
 from fe_drivetrain.elasticity.mesh import brick
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import percent_text
 from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Divisions of the section's sides: of the slave, of the master.
@@ -24,6 +25,7 @@ QUICK_UNCUT = (1, 2, 3)
 MORTAR: tuple[Literal["dual", "standard"], ...] = ("dual", "standard")
 
 TITLES = {"twist": "torsion", "bend": "pure bending", "across": "force across a clamped bar"}
+ERROR_OF = "Error of the stiffness: {}"
 UNITS = {"twist": "N m/rad", "across": "N/m"}
 WORST = "worst of all ratios"
 
@@ -106,16 +108,7 @@ def run(run: Run, page: Page) -> None:
     check_stiffness(page, found, "across")
     check_bending(page, found)
     check_balance(page, found)
-    largest = max(
-        float(found.errors(kind, q).max()) for kind in MORTAR for q in ("twist", "across")
-    )
-    coarse = found.coarse
-    page.say(
-        "A bar cut in two and tied with meshes of ratios up to "
-        f"{max(max(r) / min(r) for r in found.ratios):g} to 1 is within {100 * largest:.2g} % of "
-        "the whole bar, whichever side is the slave; the coarser half alone accounts for "
-        f"{100 * max(coarse['twist'], coarse['across']):.2g} %."
-    )
+    answer(page, found)
     page.section("Stiffness against mesh ratio")
     for quantity in TITLES:
         add_chart(page, found, quantity)
@@ -152,6 +145,42 @@ def run(run: Run, page: Page) -> None:
         run.sketch(tied_bars.tied(2, 3, "standard")[0]),
     )
     page.data("whole bar", {q: [getattr(bar, q) for bar in whole] for q in TITLES})
+
+
+def answer(page: Page, found: Found) -> None:
+    """State the largest error of a tied bar, and that of the whole bar of the coarser mesh."""
+    errors = {
+        q: max(float(found.errors(kind, q).max()) for kind in MORTAR) for q in ("twist", "across")
+    }
+    coarse = max(found.coarse[q] for q in errors)
+    ratio = max(max(r) / min(r) for r in found.ratios)
+    page.answer(
+        "What does a tie between meshes that do not match cost in stiffness?",
+        f"Tied at mesh ratios up to {ratio:g} to 1, a cut bar is within "
+        f"{percent_text(max(errors.values()))} of the whole; its coarser mesh alone accounts for "
+        f"{percent_text(coarse)}.",
+        [
+            *(
+                page.judged(
+                    f"{TITLES[q]}: stiffness, standard multipliers, "
+                    f"{worst(found, 'standard', q)[0]}",
+                    f"{TITLES[q]}, worst ratio",
+                    by,
+                    unit="G" + UNITS[q],
+                )
+                for q, by in (("twist", "St Venant"), ("across", "whole bar"))
+            ),
+            page.judged(
+                f"pure bending: stiffness, dual multipliers, {WORST}",
+                "pure bending, worst ratio, dual multipliers",
+                "E I / L",
+                unit="GN m/rad",
+            ),
+            page.value("largest error of a tied bar [%]", 100 * max(errors.values())),
+            page.value("error of the whole bar, coarser mesh [%]", 100 * coarse),
+        ],
+        hero=ERROR_OF.format(TITLES["twist"]),
+    )
 
 
 def worst(found: Found, kind: TieKind, quantity: str) -> tuple[str, float]:
@@ -234,7 +263,7 @@ def add_chart(page: Page, found: Found, quantity: str) -> None:
         line = trace("whole bar, 2 divisions", [], [coarse] * len(labels), line={"dash": "dot"})
         traces.append(line | {"x": labels})
     page.chart(
-        f"Error of the stiffness: {TITLES[quantity]}",
+        ERROR_OF.format(TITLES[quantity]),
         traces,
         "divisions of the slave on those of the master",
         "relative error",

@@ -9,11 +9,14 @@ from fe_drivetrain.cases.references.torsion_meridian import series_stiffness, to
 from fe_drivetrain.cases.verification.conical_shaft import HALF_ANGLE, INPUTS, RADII, SHAFT, STEEL
 from fe_drivetrain.cases.verification.shaft_inputs import begin, show_inputs
 from fe_drivetrain.cases.verification.torsion_bound import between, check_plane_sections
+from fe_drivetrain.report.number_text import certain_value, percent_text
 from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target
 
 G = STEEL.shear_modulus
 ANGLES, QUICK_ANGLES = (2.5, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0), (5.0, 10.0, 20.0, 30.0)
 
+TOO_STIFF = "How much too stiff the integral of dx / GJ is: against rigid flat ends, and against "
+TOO_STIFF += "Michell's cone between spheres through the ends' centres"
 ANGLE, FLAT, SPHERES = "half angle [degrees]", "rigid flat ends", "spheres"
 TURN, RIGID = "per turn", "stiffness between rigid flat ends [N m/rad]"
 
@@ -32,6 +35,43 @@ def too_stiff(degrees: float) -> Record:
     by = {FLAT: flat, SPHERES: between_spheres(RADII, np.radians(degrees), G)}
     simple = series_stiffness(shaft, G)
     return {ANGLE: degrees} | {name: 100 * (simple / k - 1) for name, k in by.items()}
+
+
+def answer(page: Page, simple: str, excess: float, widest: Record) -> None:
+    """State how much too stiff the integral is [%].
+
+    Parameters
+    ----------
+    page : Page
+        With the checks of the cone.
+    simple : str
+        Quantity of the check of the integral.
+    excess : float
+        How much too stiff the integral is [%].
+    widest : dict
+        The same of the widest cone of the sweep.
+    """
+    exact = page.judged(
+        RIGID.partition(" [")[0], "stiffness between rigid flat ends", "two bounds", unit="MN m/rad"
+    )
+    by_integral = page.judged(
+        simple, "stiffness by the integral of dx / GJ", "two bounds", unit="MN m/rad"
+    )
+    angle = widest[ANGLE]
+    page.answer(
+        "How good is the integral of dx / GJ for a conical shaft between rigid ends?",
+        f"At a half angle of {HALF_ANGLE:g}° it is "
+        f"{percent_text(excess / 100, 3)} too stiff, with {certain_value(by_integral)} against "
+        f"{certain_value(exact)} of the solid; at {angle:g}° "
+        f"{percent_text(widest[FLAT] / 100, 3)}.",
+        [
+            exact,
+            by_integral,
+            page.value(f"too stiff by, half angle of {HALF_ANGLE:g} degrees [%]", excess),
+            page.value(f"too stiff by, half angle of {angle:g} degrees [%]", widest[FLAT]),
+        ],
+        hero=TOO_STIFF,
+    )
 
 
 @case(
@@ -57,16 +97,11 @@ def run(run: Run, page: Page) -> None:
     meridian = "between two bounds from the meridian"
     page.meets(simple, Target(title, bounds.middle, within, first, meridian))
     excess = 100 * (simple / bounds.middle - 1)
-    page.say(
-        f"Between rigid flat ends the integral of dx / GJ is {excess:.2f} % too stiff at a half "
-        f"angle of {HALF_ANGLE:g} degrees."
-    )
+    answer(page, title.partition(" [")[0], excess, sweep[-1])
     begin(run, page, "Cone", SHAFT, "The cone")
     show_inputs(page, *INPUTS, steel=STEEL)
-    title = "How much too stiff the integral of dx / GJ is: against rigid flat ends, and against "
-    title += "Michell's cone between spheres through the ends' centres"
     curves = {FLAT: FLAT, SPHERES: SPHERES}
-    page.sweep(title, sweep, ANGLE, curves, axis="too stiff by [%]", table=False)
+    page.sweep(TOO_STIFF, sweep, ANGLE, curves, axis="too stiff by [%]", table=False)
     page.table(
         "Stiffness between rigid flat ends [N m/rad]",
         [

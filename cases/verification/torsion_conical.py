@@ -7,6 +7,7 @@ from fe_drivetrain.cases.references import end_loaded, solid_shafts
 from fe_drivetrain.cases.references.shaft_theory import michell_torque, within_arcs
 from fe_drivetrain.cases.verification.conical_shaft import HALF_ANGLE, INPUTS, RADII, SHAFT, STEEL
 from fe_drivetrain.cases.verification.shaft_inputs import begin, show_inputs
+from fe_drivetrain.report.number_text import certain_value, percent_text
 from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target
 
 #: Of Michell's displacements: u_t = -SCALE r / R^3 [m^3].
@@ -14,6 +15,7 @@ SCALE = 1e-3 * RADII[0] ** 3
 TORQUE = SCALE * michell_torque(np.radians(HALF_ANGLE), STEEL.shear_modulus)
 
 UNKNOWNS, TURN, MISSED = "unknowns", "per turn", "error of the torque"
+CONVERGENCE = "Convergence on Michell's field"
 TAKEN = "torque of Michell's displacements on the ends [N m]"
 ERROR = "largest difference from Michell's displacements, relative to the largest"
 MICHELL = "Michell 1899: 2 pi G (2 - 3 cos a + cos^3 a) for u_t = -r / R^3"
@@ -35,6 +37,23 @@ def solve(refinement: int) -> Record:
     }
 
 
+def answer(page: Page, before: Record, best: Record) -> None:
+    """State the torque of the cone, and how far the solid is from Michell."""
+    torque = page.judged(TAKEN.partition(" [")[0], "torque of the cone", "Michell", unit="kN m")
+    page.answer(
+        "Which torque twists a conical shaft, and does a solid find Michell's exact field?",
+        f"The solid cone takes {certain_value(torque)}, {percent_text(best[MISSED])} from "
+        f"Michell's torque, and its displacements lie within {percent_text(best[ERROR])} of his.",
+        [
+            torque,
+            page.judged(ERROR, "largest error of the displacements", "Michell", unit="%"),
+            page.value("error of the torque on the coarser mesh [%]", 100 * before[MISSED]),
+            page.value("elements round a turn", best[TURN]),
+        ],
+        hero=CONVERGENCE,
+    )
+
+
 @case(
     "Torsion of a conical shaft: Michell's exact field",
     source="Michell 1899; Timoshenko and Goodier, Theory of Elasticity, article 119 (3rd edition)",
@@ -48,15 +67,11 @@ def run(run: Run, page: Page) -> None:
     same, field = "as for the torque", "Michell 1899, u_t = -r / R^3"
     page.finest(series, torque)
     page.settled(series, Target(ERROR, 0.0, within, same, field, measure="deflection"))
-    page.say(
-        f"The solid cone meets Michell's torque to {best[MISSED]:.1g} and his displacements to "
-        f"{best[ERROR]:.1g}."
-    )
+    answer(page, *meshes[-2:])
     begin(run, page, "Cone", SHAFT, "The cone")
     show_inputs(page, *INPUTS, steel=STEEL)
     curves = {MISSED: "torque", ERROR: "displacement, largest"}
-    title, axis = "Convergence on Michell's field", "relative error"
-    page.sweep(title, meshes, UNKNOWNS, curves, log="xy", axis=axis)
+    page.sweep(CONVERGENCE, meshes, UNKNOWNS, curves, log="xy", axis="relative error")
     page.text(
         "On a complete cone, u_t / r is constant on spheres about the apex, and the surface is "
         "free of stress whatever the angle. With these displacements on its flat ends the solid "

@@ -11,6 +11,7 @@ from fe_drivetrain.cases.references.twisted_tubes import twisted_step
 from fe_drivetrain.cases.verification import torsion_bound as bound
 from fe_drivetrain.cases.verification.shaft_inputs import begin, show_inputs
 from fe_drivetrain.drivetrain_file import MATERIALS
+from fe_drivetrain.report.number_text import formatted, percent_text
 from fe_drivetrain.report.suite import Page, Record, Run
 
 STEEL = MATERIALS["steel"]
@@ -19,6 +20,8 @@ G = STEEL.shear_modulus
 LARGE, SMALL, LENGTH, BORE = 0.6, 0.4, 0.6, 0.2
 RATIOS, QUICK_RATIOS = (0.3, 0.45, 0.6, 0.75, 0.85, 0.95), (0.3, 0.6, 0.9)  # of the chart
 SERIES, SOLID, RATIO = "series sum", "three dimensions", "small over large diameter"
+BY_RATIO = "Length of the thin part that twists as the step does beside the series sum, solid "
+BY_RATIO += "shaft, sharp step: between the two bounds"
 TOO_STIFF, ADDED = "series too stiff by [%]", "added length over small diameter"
 MINIMUM, MAXIMUM = "least (upper bound of stiffness)", "most (lower bound of stiffness)"
 
@@ -59,6 +62,26 @@ def over_ratio(ratio: float, halvings: int) -> Record:
     return {RATIO: ratio, MINIMUM: least, MAXIMUM: most}
 
 
+def answer(page: Page, solid: Record, bored: Record) -> None:
+    """State what the step adds to the series sum, of both shafts."""
+    three = "torsional stiffness in three dimensions"
+    page.answer(
+        "What does a sharp step add to the torsional flexibility of a shaft?",
+        f"From {LARGE:g}\u00a0m to {SMALL:g}\u00a0m the sum of L / GJ is "
+        f"{percent_text(solid[TOO_STIFF] / 100, 3)} too stiff: the step twists like "
+        f"{formatted(solid[ADDED], 2)} diameters more of the thin part.",
+        [
+            page.value("length that the step adds, over the small diameter", solid[ADDED]),
+            page.judged(f"solid: {three}", "stiffness, solid shaft", "bounds", unit="MN m/rad"),
+            page.judged(f"bored: {three}", "stiffness, bored shaft", "bounds", unit="MN m/rad"),
+            page.value("sum of L / GJ too stiff by, solid shaft [%]", solid[TOO_STIFF]),
+            page.value("sum of L / GJ too stiff by, bored shaft [%]", bored[TOO_STIFF]),
+        ],
+        hero=BY_RATIO,
+        cautions=["The step is sharp: a fillet adds less."],
+    )
+
+
 @case(
     "Torsion of a stepped shaft: series stiffness and flexibility of the step",
     source="Closed form: sum of L / GJ, a bound; exact stiffness between two bounds from the "
@@ -70,11 +93,10 @@ def run(run: Run, page: Page) -> None:
     ratios, divisions = (QUICK_RATIOS, 3) if run.quick else (RATIOS, 4)
     sweep = [run.timed("other diameters", over_ratio, ratio, divisions) for ratio in ratios]
     middle = (solid["lower bound"] + solid["upper bound"]) / 2
+    answer(page, solid, bored)
     page.say(
-        f"From {LARGE:g} to {SMALL:g} m the series sum of L / GJ is {solid[TOO_STIFF]:.2f} % too "
-        f"stiff (bored: {bored[TOO_STIFF]:.2f} %): the step twists as {solid[ADDED]:.3f} diameters "
-        "more of the thin part would. The solid in three dimensions lies within "
-        f"{100 * abs(solid[SOLID] / middle - 1):.2g} % of the middle of two exact bounds."
+        "The solid in three dimensions lies within "
+        f"{percent_text(solid[SOLID] / middle - 1)} of the middle of two exact bounds."
     )
     bored_shaft = solid_shafts.stepped((LARGE, SMALL), LENGTH, BORE)
     begin(run, page, "What a step adds", bored_shaft, "The bored shaft")
@@ -82,9 +104,9 @@ def run(run: Run, page: Page) -> None:
     sizes = [(name, d, "m") for name, d in zip(names, (LARGE, SMALL, BORE, LENGTH), strict=True)]
     sharp = "fillet", 0.0, "m", "sharp step: the most that a step can add"
     show_inputs(page, *sizes, sharp, steel=STEEL)
-    title = "Length of the thin part that twists as the step does beside the series sum, solid "
-    title += "shaft, sharp step: between the two bounds"
-    page.sweep(title, sweep, RATIO, {MINIMUM: MINIMUM, MAXIMUM: MAXIMUM}, axis=ADDED, table=False)
+    page.sweep(
+        BY_RATIO, sweep, RATIO, {MINIMUM: MINIMUM, MAXIMUM: MAXIMUM}, axis=ADDED, table=False
+    )
     page.table("Torsional stiffness [N m/rad] between ends that turn as rigid planes", rows)
     page.text(
         "The bounds come from scalar problems in the meridian (Michell 1899), in fourth-order "

@@ -9,6 +9,7 @@ from fe_drivetrain.cases.references.solid_shafts import meshed_moment
 from fe_drivetrain.cases.verification.shaft_inputs import begin_uniform
 from fe_drivetrain.drivetrain_file import MATERIALS
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import certain_value, percent_text
 from fe_drivetrain.report.suite import (
     MeshSeries,
     Page,
@@ -25,6 +26,7 @@ OUTER, BORE, LENGTH, ANGLE = 0.4, 0.28, 0.8, 1e-3  # m, and rad between the ends
 TUBES = theory.solid_and_bored(OUTER, BORE, LENGTH, STEEL)
 SHAFT, TURN, ERROR = "shaft", "elements round a turn", "relative error"
 STIFFNESS, MESHED = "torsional stiffness [N m/rad]", "G J / L of the mesh [N m/rad]"
+SHORTFALL = "Relative error of the stiffness; the line is four times the mean shortfall of arcs"
 EXACT, BY_ENERGY = "G J / L [N m/rad]", "by energy [N m/rad]"
 BALANCE = "torque over angle against twice the energy over its square"
 STRESS = "shear stress on the surface at mid length, mean round the turn [Pa]"
@@ -50,6 +52,37 @@ def solve(name: str, refinement: int) -> Record:
         BALANCE: by_torque / by_energy - 1.0,
         STRESS: float(np.hypot(s[:, 3], s[:, 5]).mean()),
     }
+
+
+def answer(page: Page, turn: int, largest: float) -> None:
+    """State the stiffness with the finest mesh, and how far it is from G J / L."""
+    solid, bored = (
+        page.judged(
+            f"{name}: torsional stiffness",
+            f"torsional stiffness, {name} shaft",
+            "G J / L",
+            unit="MN m/rad",
+        )
+        for name in TUBES
+    )
+    order, stress = ORDER, STRESS.partition(" [")[0]
+    page.answer(
+        "How many elements round a turn does the torsional stiffness of a shaft need?",
+        f"With {turn} elements round a turn it is {certain_value(solid)} solid and "
+        f"{certain_value(bored)} bored, at most {percent_text(largest)} from G J / L.",
+        [
+            solid,
+            bored,
+            page.judged(f"solid: {order}", "order of convergence, solid shaft", "parabolic arcs"),
+            page.judged(
+                f"solid: {stress}",
+                "shear stress of the surface, solid shaft",
+                "G theta R / L",
+                unit="MPa",
+            ),
+        ],
+        hero=SHORTFALL,
+    )
 
 
 @case(
@@ -78,17 +111,14 @@ def run(run: Run, page: Page) -> None:
         page.settled(series, Target(STRESS, SKIN, *skin, "G theta R / L"), of=name)
         rows += meshes
     finest = max(row[ERROR] for row in rows if row[TURN] == rows[-1][TURN])
-    page.say(
-        f"G J / L is met to {finest:.1g} (relative) with {rows[-1][TURN]} elements of 27 nodes "
-        "round a turn, solid and bored; what is left is what parabolas miss of the circle."
-    )
+    answer(page, rows[-1][TURN], finest)
+    page.say("What is left is what the parabolic edges of the elements miss of the circle.")
     length = "length", LENGTH, "m", "chosen: the answer does not depend on it"
     begin_uniform(run, page, "Torsional stiffness", (OUTER, BORE), length, steel=STEEL)
     curves = [trace(of, column(r, TURN), column(r, ERROR), True) for of, r in grouped(rows, SHAFT)]
     missed = [4 * theory.parabola_shortfall(n) for n in range(4, 33)]
     curves.append(trace("shortfall of parabolic arcs", range(4, 33), missed))
-    title = "Relative error of the stiffness; the line is four times the mean shortfall of arcs"
-    page.chart(title, curves, TURN, ERROR, "xy")
+    page.chart(SHORTFALL, curves, TURN, ERROR, "xy")
     shown = SHAFT, TURN, "unknowns", STIFFNESS, MESHED, EXACT
     page.table("Stiffness between ends that turn as rigid planes", rows, shown)
     page.text(

@@ -8,6 +8,7 @@ from fe_drivetrain.cases.verification.units import INCH, POUND, PSI
 from fe_drivetrain.common import Floats
 from fe_drivetrain.drivetrain_file import Material
 from fe_drivetrain.elasticity.operator import principal
+from fe_drivetrain.report.number_text import certain_value, difference_text
 from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target
 
 LENGTH, DIAMETER = 300.0 * INCH, 4.67017 * INCH
@@ -21,6 +22,7 @@ PRINCIPAL = "largest principal stress at the root [MPa]"
 SHEAR = "largest shear stress at the root [MPa]"
 DEFLECTION, TWIST = "deflection of the end [mm]", "twist of the end [mrad]"
 
+FROM_MANUAL = "Differences from the manual and from beam theory, over what is allowed"
 MANUAL = "Ansys Mechanical APDL verification manual, VM12, target as in PyMAPDL's example"
 THEORY = "beam theory: F l^3 / (3 E I) + F l / (k G A), Cowper 1966; T l / (G J)"
 
@@ -46,6 +48,29 @@ def solve(around: int) -> Record:
     }
 
 
+def answer(page: Page) -> None:
+    """State the stresses of the root, and how far they are from the manual's."""
+    figures = [
+        page.judged(key.partition(" [")[0], by=by)
+        for key, by in (
+            (PRINCIPAL, "VM12"),
+            (SHEAR, "VM12"),
+            (DEFLECTION, "beam theory"),
+            (TWIST, "beam theory"),
+        )
+    ]
+    stress, shear = figures[:2]
+    page.answer(
+        "Which stresses does a round bar under an eccentric end force carry at its root?",
+        f"The root carries a largest principal stress of {certain_value(stress)}, "
+        f"{difference_text(stress)} from VM12, and a largest shear stress of "
+        f"{certain_value(shear)}, {difference_text(shear)} from it.",
+        figures,
+        hero=FROM_MANUAL,
+    )
+    page.errors(FROM_MANUAL, figures)
+
+
 @case(
     "Round bar in bending and torsion (VM12)",
     source="Ansys Mechanical APDL verification manual, VM12 (PyMAPDL examples); Timoshenko, "
@@ -68,16 +93,17 @@ def run(run: Run, page: Page) -> None:
         Target(TWIST, 1e3 * (TORQUE * LENGTH / (2.0 * G * INERTIA)), 1e-3, exact, THEORY),
     ]
     last = rows[-1]
-    page.say(
-        f"The bar's root carries a largest principal stress of {last[PRINCIPAL] * 1e6 / PSI:.0f} "
-        f"psi (target 7527) and a largest shear of {last[SHEAR] * 1e6 / PSI:.0f} psi (3777)."
-    )
     page.section("Stresses and motions")
     page.image(
         "The bar, clamped at its end on the left behind the root",
         run.sketch(round_bar(DIAMETER, LENGTH, 8, 14)),
     )
     page.targets("By mesh", MeshSeries(rows, ROUND), targets)
+    answer(page)
+    page.say(
+        f"In the manual's unit, psi: {last[PRINCIPAL] * 1e6 / PSI:.0f} (target 7527) and "
+        f"{last[SHEAR] * 1e6 / PSI:.0f} (3777)."
+    )
     page.text(
         "The bar continues two diameters behind its root and is clamped there, so that the clamp's "
         "singular rim does not reach the root; displacements are against the root section's mean "

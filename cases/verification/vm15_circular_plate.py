@@ -7,12 +7,14 @@ from fe_drivetrain.cases.references.loaded_blocks import edge_nodes, solve_block
 from fe_drivetrain.cases.verification.pressed_plate import PressedPlate
 from fe_drivetrain.cases.verification.units import INCH, PSI
 from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.report.number_text import certain_value, difference_text, percent_text
 from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target
 
 STEEL = Material(youngs_modulus=30e6 * PSI, poisson_ratio=0.3, density=0.0)
 PLATE = PressedPlate(radius=40.0 * INCH, thickness=1.0 * INCH, material=STEEL)
 PRESSURES = {"clamped": 6.0 * PSI, "simply supported": 1.5 * PSI}
 
+DIFFERENCES = "Differences from plate theory and from the manual, over what is allowed"
 COUNT = "elements from the middle to the edge"
 DEFLECTION, STRESS = "deflection of the middle [mm]", "greatest stress [MPa]"
 #: The manual's targets: deflection of the middle [mm], greatest stress [MPa].
@@ -57,6 +59,32 @@ def targets(support: str, thin: float, shear: float) -> list[Target]:
     ]
 
 
+def answer(page: Page) -> None:
+    """State how far both plates sink, and what they carry."""
+    sunk = "{}: deflection of the middle, {}"
+    clamped, simple = (
+        page.judged(sunk.format(support, "with shear"), f"deflection, {support}", "plate and shear")
+        for support in PRESSURES
+    )
+    manual = [
+        page.judged(sunk.format(support, "thin plate"), f"deflection, {support}, thin", "VM15")
+        for support in PRESSURES
+    ]
+    stresses = [
+        page.judged(f"{support}: greatest stress, at the {at}", f"stress, {support}", "VM15")
+        for support, at in (("clamped", "edge"), ("simply supported", "middle"))
+    ]
+    page.answer(
+        "How far does a circular plate sink under pressure, clamped and simply supported?",
+        f"Clamped it sinks by {certain_value(clamped)}, simply supported by "
+        f"{certain_value(simple)}: {difference_text(manual[0])} and "
+        f"{difference_text(manual[1])} from VM15, whose thin plate has no shear.",
+        [clamped, simple, *manual, *stresses],
+        hero=DIFFERENCES,
+    )
+    page.errors(DIFFERENCES, [clamped, simple, *manual, *stresses])
+
+
 @case(
     "Circular plate under pressure (VM15)",
     source="Ansys Mechanical APDL verification manual, VM15 (PyMAPDL examples); Timoshenko, "
@@ -74,10 +102,12 @@ def run(run: Run, page: Page) -> None:
         title = f"Plate with a {support} edge"
         page.targets(title, MeshSeries(rows, COUNT), targets(support, thin, shear))
         page.say(
-            f"The {support} plate sinks by {1e-3 * rows[-1][DEFLECTION] / INCH:.5f} in (thin plate "
+            f"In the manual's unit, the {support} plate sinks by "
+            f"{1e-3 * rows[-1][DEFLECTION] / INCH:.5f} in (thin plate "
             f"{1e-3 * TARGETS[support][0] / INCH:.5f}); shear accounts for "
-            f"{100 * shear / thin:.2f} %."
+            f"{percent_text(shear / thin)}."
         )
+    answer(page)
     page.text(
         "A quarter of hexahedra of 27 nodes, two through the thickness. A plate's supports are not "
         "a solid's: the edge is carried by the parabolic shear stress that plate theory has there, "

@@ -12,13 +12,18 @@ from fe_drivetrain.elasticity.interfaces import held_dofs, held_nodes
 from fe_drivetrain.elasticity.mesh import Block, brick
 from fe_drivetrain.elasticity.operator import nodal_stresses
 from fe_drivetrain.elasticity.solve import solve_solid
-from fe_drivetrain.report import Measure
+from fe_drivetrain.report import Measure, trace
+from fe_drivetrain.report.number_text import certain_value
 from fe_drivetrain.report.suite import Page, Run
 
 LENGTH, WIDTH, HEIGHT = 12.0 * INCH, 1.0 * INCH, 0.5 * INCH
 FORCE = 125.0 * POUND  # on this half of the bar
 STEEL = Material(youngs_modulus=30e6 * PSI, poisson_ratio=0.3, density=0.0)
 TARGETS = {"stress along the bar [psi]": 250.0, "closing of the cut [in]": 1e-4}
+ALONG = (
+    "Displacement along the bar: its halves stretch, and the cut between them closes by the jump"
+)
+UNIFORM = "a uniform stress is in every element's space; a condition number of 1e4"
 MANUAL = "Ansys Mechanical APDL verification manual, VM225, as quoted; F / A and F L / (E A)"
 
 
@@ -43,8 +48,8 @@ def sides(bar: Block) -> list[Ints]:
     return found
 
 
-def tighten(bar: Block) -> tuple[Floats, float]:
-    """Stress along the bar at all nodes [Pa], and by how much the cut closes [m]."""
+def tighten(bar: Block) -> tuple[Floats, Floats, float]:
+    """Stress and displacement along the bar at all nodes, and how far the cut closes [Pa, m, m]."""
     # after the nodes' degrees of freedom comes a block of three, whose first opens the cut
     opening, size = bar.points.size, bar.points.size + 3
     left, right = sides(bar)
@@ -61,7 +66,45 @@ def tighten(bar: Block) -> tuple[Floats, float]:
     F[opening] = -FORCE
     u = solve_solid(bar.points, bar.cells, STEEL.lame, constraints, F).u[:, 0]
     stress = nodal_stresses(bar.points, bar.cells, u[:opening], STEEL.lame)
-    return stress[:, 0], -float(u[opening])
+    return stress[:, 0], u[:opening:3], -float(u[opening])
+
+
+def answer(page: Page, closed: float, spread: float) -> None:
+    """State by how much the cut closes [m], and the stress; `spread` is that of the stress."""
+    stress = page.judged("stress along the bar", by="VM225", printed="250")
+    target = 1e6 * TARGETS["closing of the cut [in]"] * INCH
+    closing = page.value("closing of the cut [µm]", 1e6 * closed, beside=target, by="VM225")
+    same = "as" if all(check.passed for check in page.checks) else "not as"
+    page.answer(
+        "How far does a cut close when the bar is tightened in it, and what does the bar carry?",
+        f"Under 125\u00a0lbf the cut closes by {certain_value(closing)} and the bar carries "
+        f"{certain_value(stress)}, both {same} VM225 prints.",
+        [
+            closing,
+            stress,
+            page.value(
+                "unevenness of the stress, over its mean",
+                spread,
+                at_most=round_off(1e4, UNIFORM)["within"],
+                by="F / A",
+            ),
+        ],
+        hero=ALONG,
+    )
+
+
+def show_displacement(page: Page, bar: Block, moved: Floats) -> None:
+    """Displacement along the bar, over the bar, with its jump at the cut, and in closed form."""
+    x, half = bar.points[:, 0], len(bar.points) // 2
+    curves = []
+    for name, own in (("left half", slice(None, half)), ("right half", slice(half, None))):
+        at, first = np.unique(x[own].round(9), return_index=True)
+        curves.append(trace(f"{name}, nodes", 1e3 * at, 1e6 * moved[own][first], True))
+    strain = FORCE / (WIDTH * HEIGHT * STEEL.youngs_modulus)
+    ends = np.array([0.0, 0.5 * LENGTH, 0.5 * LENGTH, LENGTH])
+    jump = strain * np.array([0.0, 0.5 * LENGTH, -0.5 * LENGTH, 0.0])
+    curves.append(trace("F x / (E A)", 1e3 * ends, 1e6 * jump))
+    page.chart(ALONG, curves, "x along the bar [mm]", "displacement along the bar [µm]")
 
 
 @case(
@@ -72,24 +115,21 @@ def run(run: Run, page: Page) -> None:
     """Pull both sides of the cut over each other with the force of the problem."""
     bar = halves()
     with run.step("tighten"):
-        stress, closed = tighten(bar)
+        stress, moved, closed = tighten(bar)
     found = float(stress.mean()) / PSI, closed / INCH
-    uniform = "a uniform stress is in every element's space; a condition number of 1e4"
     measures: tuple[Measure, ...] = "stress", "deflection"
     for (quantity, target), value, measure in zip(TARGETS.items(), found, measures, strict=True):
-        rounded = round_off(1e4, uniform)
+        rounded = round_off(1e4, UNIFORM)
         page.equals(quantity, value, target, **rounded, source=MANUAL, measure=measure)
     spread = float(np.ptp(stress) / stress.mean())
     page.vanishes(
         "stress, largest less least, over its mean",
         spread,
-        **round_off(1e4, uniform),
+        **round_off(1e4, UNIFORM),
         source="F / A in every section",
     )
-    page.say(
-        f"The cut closes by {found[1]:.4g} in under 125 lbf, and the bar carries {found[0]:.6g} "
-        "psi."
-    )
+    answer(page, closed, spread)
+    show_displacement(page, bar, moved)
     page.text(
         "Both ends are held along the bar. Nodes on the two sides of the cut lie at the same "
         "places; each pair may slide, and along the bar they differ by one degree of freedom that "

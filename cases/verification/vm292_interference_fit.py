@@ -1,9 +1,15 @@
 """Interference fit of two cylinders of one material: verification problem VM292 of Ansys."""
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.references.interference_fits import exact_fit, press, quarters
+from fe_drivetrain.cases.references.interference_fits import (
+    exact_fit,
+    press,
+    quarters,
+    stress_by_radius,
+)
 from fe_drivetrain.comparison import as_printed
 from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.report.number_text import certain_value, value_text
 from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target
 
 RADII = 1.25, 1.516, 1.75  # m
@@ -11,14 +17,30 @@ MISFIT = 0.02  # m, on the radius
 EQUAL = Material(youngs_modulus=206e9, poisson_ratio=0.0, density=0.0)
 FIT = RADII, MISFIT, (EQUAL, EQUAL)
 
+BY_RADIUS = "Stress by the radius: finest mesh against Lame's cylinders"
+PRINTED = "221.638"  # MPa
 THROUGH, PRESSURE = "elements through the outer cylinder", "contact pressure [MPa]"
 MANUAL = "Ansys Mechanical APDL verification manual, VM292, as quoted"
 LAME = "two Lame cylinders (Lame 1852; Timoshenko, Strength of Materials II, 1956)"
 
 
-def solve(n: int) -> Record:
-    """A quarter of both cylinders, the misfit closed."""
-    return {THROUGH: n, PRESSURE: press(*FIT, n).pressure / 1e6}
+def answer(page: Page, found: float, band: float, exact: float) -> None:
+    """State the pressure [MPa], and the misfit that the printed one belongs to."""
+    pressed = page.value(PRESSURE, found, band, beside=float(PRINTED), by="VM292", printed=PRINTED)
+    same = "as" if all(check.passed for check in page.checks) else "not as"
+    half = value_text(0.5 * exact, "MPa")
+    page.answer(
+        "How hard do two cylinders press each other that are fitted with interference?",
+        f"By {certain_value(pressed)}, {same} VM292 prints, with 0.02\u00a0m on the radius; on the "
+        f"diameter, as the problem is quoted, it is not that but {half}.",
+        [
+            pressed,
+            page.judged("Lame's contact pressure", by="VM292", printed=PRINTED),
+            page.value("the same with 0.02 m on the diameter [MPa]", 0.5 * exact),
+        ],
+        hero=BY_RADIUS,
+        claim="holds in part",
+    )
 
 
 @case(
@@ -27,17 +49,18 @@ def solve(n: int) -> Record:
 )
 def run(run: Run, page: Page) -> None:
     """Press the cylinders together on ever finer meshes."""
-    series = MeshSeries([run.timed("press", solve, n) for n in (1, 2, 4)], THROUGH)
-    exact, found = exact_fit(*FIT).pressure / 1e6, series.last[PRESSURE]
+    meshes = {n: run.timed("press", press, *FIT, n) for n in (1, 2, 4)}
+    rows: list[Record] = [{THROUGH: n, PRESSURE: of.pressure / 1e6} for n, of in meshes.items()]
+    series, fit = MeshSeries(rows, THROUGH), exact_fit(*FIT)
+    exact, found = fit.pressure / 1e6, series.last[PRESSURE]
     fourth = "(h/r)^4 of the finest mesh is below 1e-5; no more than 1e-4 shall be left"
     page.targets("By mesh", series, [Target(PRESSURE, exact, 1e-4, fourth, LAME)], "exact")
-    printed, band = as_printed("221.638"), series.band(PRESSURE)
+    printed, band = as_printed(PRINTED), series.band(PRESSURE)
     page.equals(PRESSURE, found, band=band, **printed, source=MANUAL, basis="second-hand")
     page.equals(f"Lame's {PRESSURE}", exact, **printed, source=MANUAL, basis="second-hand")
-    page.say(
-        f"The cylinders press each other with {found:.3f} MPa; the manual has "
-        f"{printed['reference']:.3f}."
-    )
+    answer(page, found, band, exact)
+    curves = stress_by_radius(fit, meshes[4], ("inner cylinder", "outer cylinder"))
+    page.chart(BY_RADIUS, curves, "radius [m]", "stress [MPa]")
     page.text(
         "The problem is quoted with an interference of 0.02 m on the diameter. The printed "
         "pressure is that of 0.02 m on the radius, as it is solved here; on the diameter it would "

@@ -7,14 +7,43 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.comparison import as_printed, round_off
 from fe_drivetrain.gear import LineContact, reduced_modulus
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import certain_value
 from fe_drivetrain.report.suite import Page, Run
 
 # mm, N and MPa, as the manual has them
 SPHERE, SOFT, POISSON, FORCE = 8.0, 1000.0, 0.3, 60.0 * np.pi
 CYLINDERS, MODULI, RATIOS, PER_LENGTH = (10.0, 13.0), (30000.0, 29120.0), (0.25, 0.30), 3200.0
+BETWEEN = "Pressure between the cylinders"
 MANUAL = "Ansys Mechanical APDL verification manual, {}, as quoted"
 HALF_WIDTH, RADIUS = "cylinders: half width [mm]", "sphere: radius of the contact [mm]"
 PRESSURE = "cylinders: largest pressure [MPa]"
+
+
+def answer(page: Page, half_width: float) -> None:
+    """State the sizes of both contacts; `half_width` is that of the cylinders [mm]."""
+    sphere, closed = (
+        page.judged(f"{start}{RADIUS.partition(' [')[0]}", "radius of the sphere's contact", by, of)
+        for start, by, of in (("", "VM63", "1.010"), ("closed form, ", "closed form", ""))
+    )
+    width = page.value(
+        "half width of the cylinders' contact [mm]",
+        half_width,
+        beside=1.2,
+        by="VM191",
+        printed="1.20",
+    )
+    pressure = page.judged(
+        PRESSURE.partition(" [")[0], "largest pressure of the cylinders", "VM191", "1698.06"
+    )
+    same = "as" if all(check.passed for check in page.checks) else "not as"
+    page.answer(
+        "How large do Hertz contacts of a sphere and of two cylinders get?",
+        f"The sphere touches over a radius of {certain_value(sphere)}, the cylinders over a half "
+        f"width of {certain_value(width)} with {certain_value(pressure)}, {same} the manual "
+        "prints.",
+        [sphere, closed, width, pressure],
+        hero=BETWEEN,
+    )
 
 
 @case(
@@ -49,12 +78,9 @@ def run(run: Run, page: Page) -> None:
     steep = "trapezoids of a root that begins steeply miss some (2 / 400)^1.5"
     title = "cylinders: integral of the pressure [N/mm]"
     page.equals(title, carried, PER_LENGTH, within=(2 / 400) ** 1.5, why=steep, source="balance")
-    page.say(
-        f"The sphere touches over a radius of {axes[0]:.4f} mm, the cylinders over a half width of "
-        f"{line.half_width:.4f} mm with {line.pressure:.2f} MPa: what the manual has to its digits."
-    )
+    answer(page, line.half_width)
     page.chart(
-        "Pressure between the cylinders",
+        BETWEEN,
         [trace("Hertz", x, line.pressure_at(x))],
         "from the middle of the strip [mm]",
         "pressure [MPa]",

@@ -167,6 +167,48 @@ def certain_value(figure: KeyFigure) -> str:
     return value_text(figure.value, figure.unit, figure.band, with_band=False)
 
 
+def percent_text(share: float, digits: int = 2) -> str:
+    """The size of a share or relative difference in percent, for sentences: "0.083 %".
+
+    Parameters
+    ----------
+    share : float
+        1 of the whole; its sign is not shown.
+    digits : int
+        Significant digits.
+
+    Returns
+    -------
+    str
+    """
+    return with_unit(formatted(100.0 * abs(share), digits, "%"), "%")
+
+
+def difference_text(figure: KeyFigure, digits: int = 2) -> str:
+    """The size of the difference of a key figure from its reference, for sentences: "0.46 %".
+
+    Parameters
+    ----------
+    figure : KeyFigure
+        One with a reference other than 0.
+    digits : int
+        Significant digits.
+
+    Returns
+    -------
+    str
+        In percent of the reference.
+
+    Raises
+    ------
+    ValueError
+        There is no such reference.
+    """
+    if figure.bound not in ("equals", "beside") or not figure.limit:
+        raise ValueError(f"{figure.name}: there is no reference to be compared with")
+    return percent_text(figure.value / figure.limit - 1.0, digits)
+
+
 def limit_text(figure: KeyFigure) -> str:
     """The limit of a key figure, with whose it is: "at most 4 000 MPa", "727.0 Hz (NAFEMS)".
 
