@@ -184,7 +184,10 @@ def _digested(found: Findings, known: Study, tolerance: float) -> InputEffects:
 
 def _answer(found: Findings, effects: InputEffects, tolerance: float) -> None:
     """State by how much a quantity may be off, by its inputs and by the model."""
-    first, *others = effects.charted
+    by_load = [one for one in effects.charted if " of hub." in one.name]
+    # of a reaction to each hub load by itself the largest
+    first = max(by_load or effects.charted[:1], key=lambda one: abs(one.nominal))
+    others = [one for one in effects.charted if one is not first]
     name = quantity_in_words(first.name)
     ends = [100.0 * (end / first.nominal - 1.0) for end in (first.band.low, first.band.high)]
     error = 200.0 * first.half_error
@@ -201,8 +204,8 @@ def _answer(found: Findings, effects: InputEffects, tolerance: float) -> None:
         figures += _uncertainties(found, other, effects, tolerance)
     found.answer(
         f"How uncertain is {name}, by its inputs and by the model?",
-        f"{name[:1].upper()}{name[1:]} is {certain_value(value)}; inputs move it by {low} to "
-        f"{high} in {100 * SHARE:g}\u00a0% of samples; the model may err by {model}.",
+        f"{name[:1].upper()}{name[1:]} is {certain_value(value)}, {low} to {high} by its inputs "
+        f"and ±\u00a0{model} by the model.",
         figures,
     )
 
@@ -219,7 +222,9 @@ def _uncertainties(
     """What inputs and model leave open of a quantity."""
     name, error = quantity_in_words(one.name), 100.0 * one.error.share
     inputs = found.value(
-        f"half the range of {name} by the inputs [%]", 100.0 * one.half, 200.0 * one.half_error
+        f"half the {100 * SHARE:g}\u00a0% range of {name} by the inputs [%]",
+        100.0 * one.half,
+        200.0 * one.half_error,
     )
     what = f"error of level {effects.level} in {name} [%]"
     if not effects.advices:  # the level was given: nothing was asked of it

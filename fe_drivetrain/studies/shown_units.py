@@ -65,13 +65,17 @@ def quantity_in_words(name: str) -> str:
     Parameters
     ----------
     name : str
-        As "main_bearing.My", "gearbox.Fz" or "hub.stiffness.rz"; another stays as it is.
+        As "main_bearing.My", "gearbox.Fz", "gearbox.Fz of hub.My" or "hub.stiffness.rz"; another
+        stays as it is.
 
     Returns
     -------
     str
         As "My on the main bearing", "Fz on the gearbox", "stiffness of the hub about z".
     """
+    name, of, load = name.partition(" of hub.")
+    if of:
+        return f"{quantity_in_words(name)} by {load}"
     where, dot, what = name.partition(".")
     if not dot or " " in name:
         return name
