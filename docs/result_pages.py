@@ -11,7 +11,15 @@ import shutil
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from fe_drivetrain.report import Image, Limit, Results, Solid, read_results, results_below
+from fe_drivetrain.report import (
+    Image,
+    Limit,
+    Results,
+    Solid,
+    read_results,
+    results_below,
+    verdict_sentence,
+)
 
 ROOT = Path(__file__).parents[1]
 
@@ -86,16 +94,17 @@ def cards_of_cases(found: Mapping[str, tuple[Results, Path]], pictures: Path) ->
     pictures.mkdir(parents=True)
     lines = []
     for name, (each, folder) in sorted(found.items()):
-        items = [item for section in each.sections for item in section.items]
-        drawn = [i.still if isinstance(i, Solid) else i.file for i in items if _is_drawn(i)]
-        if not drawn or not (folder / drawn[-1]).is_file():
+        drawn = _picture(each)
+        if not drawn or not (folder / drawn).is_file():
             continue
         file = f"{name.replace('/', '-')}.png"
-        shutil.copyfile(folder / drawn[-1], pictures / file)
+        shutil.copyfile(folder / drawn, pictures / file)
+        said = [plain(verdict_sentence(each)), ""] if each.answer else []
         lines += [
             f":::{{grid-item-card}} {plain(each.title)}",
             f":img-top: {pictures.name}/{file}",
             "",
+            *said,
             f"`fe-drivetrain run {name}`",
             ":::",
             "",
@@ -103,5 +112,10 @@ def cards_of_cases(found: Mapping[str, tuple[Results, Path]], pictures: Path) ->
     return lines
 
 
-def _is_drawn(item: object) -> bool:
-    return isinstance(item, Image | Solid)
+def _picture(results: Results) -> str:
+    """The picture of the answer, or the last one; empty where there is none."""
+    items = [item for section in results.sections for item in section.items]
+    drawn = [item for item in items if isinstance(item, Image | Solid)]
+    hero = [item for item in drawn if results.answer and item.caption == results.answer.hero]
+    files = [item.still if isinstance(item, Solid) else item.file for item in [*drawn, *hero]]
+    return files[-1] if files else ""

@@ -233,7 +233,12 @@ LONG = (
 
 
 #: Files whose tests are whole cases, each of which runs by itself.
-WHOLE_CASES = ("test_cases.py", "test_consumer_cases.py", "test_waiting_cases.py")
+WHOLE_CASES = (
+    "test_answers.py",
+    "test_cases.py",
+    "test_consumer_cases.py",
+    "test_waiting_cases.py",
+)
 
 
 class ByFile(LoadScopeScheduling):

@@ -31,7 +31,7 @@ from fe_drivetrain.cases.references.housed_bearing import (
 )
 from fe_drivetrain.common import Floats
 from fe_drivetrain.drivetrain_file import change_scene, joint_stiffness, library_scene
-from fe_drivetrain.report import Chart, chart, rolling_elements, trace
+from fe_drivetrain.report import Chart, chart, roller_chart, rolling_elements, trace
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.fidelity import unit_stiffness
 
@@ -104,18 +104,11 @@ def run(run: Run, page: Page) -> None:
     with run.step("rollers as springs"):
         _check_springs(page, sizes[0])
     rows = _rows(housed)
-    at = {row["load"]: row for row in rows}
-    changes = [row[CHANGE] for row in rows]
-    page.found("largest change of the peak roller [%]", max(changes, key=abs))
-    page.say(
-        f"On the flexible housing the peak roller of bearing S changes by {min(changes):+.1f} to "
-        f"{max(changes):+.1f} % against rigid rings: "
-        + ", ".join(f"{name} {at[name][CHANGE]:+.1f} %" for name in SHOWN)
-        + ".",
-        f"The load zone of the combined load has {at['combined']['loaded rollers, flexible']} "
-        f"rollers in place of {at['combined']['loaded rollers, rigid']}.",
-    )
     page.section("Rollers on the housing and between rigid rings")
+    most = max(rows, key=lambda row: abs(row[CHANGE]))
+    hero = f"Load of each roller on the flexible housing: {most['load']}"
+    page.add(roller_chart(hero, bearing_s(), housed.flexible.rollers[rows.index(most)]))
+    answer(page, rows, hero)
     page.table("Peak roller", rows)
     for name in SHOWN:
         _show(page, housed, name)
@@ -132,6 +125,34 @@ def run(run: Run, page: Page) -> None:
     page.image("The rollers of bearing S", run.sketch(*rolling_elements(bearing_s())))
     page.data("rollers", {n: housed.flexible.rollers[k] for k, n in enumerate(LOADS)})
     page.data("rigid", {n: housed.rigid[k] for k, n in enumerate(LOADS)})
+
+
+def answer(page: Page, rows: list[Record], hero: str) -> None:
+    """State what the flexible housing changes of peak rollers and load zone."""
+    changes = [row[CHANGE] for row in rows]
+    combined = next(row for row in rows if row["load"] == "combined")
+    page.found("largest change of the peak roller [%]", max(changes, key=abs))
+    loaded = [combined[f"loaded rollers, {rings}"] for rings in ("flexible", "rigid")]
+    peaks = [
+        page.value(
+            f"peak roller, {row['load']} [kN]",
+            row["flexible housing [kN]"],
+            row["mesh changes it by [kN]"],
+            beside=row["rigid rings [kN]"],
+            by="rigid rings",
+        )
+        for row in rows
+        if row["load"] in SHOWN
+    ]
+    page.answer(
+        "What does a flexible housing do to the peak roller and the load zone?",
+        f"The flexible housing changes the peak roller by {min(changes):+.0f} to "
+        f"{max(changes):+.0f}\u00a0% against rigid rings; a combined load is carried by "
+        f"{loaded[0]} rollers, not {loaded[1]}.",
+        [page.judged("largest change of the peak roller"), *peaks],
+        hero,
+        ["Dimensions of the housing are assumed: that of the library, on a fixed foot."],
+    )
 
 
 def _rows(housed: Housed) -> list[Record]:

@@ -17,8 +17,10 @@ LOADS = 1e3 * np.array([*MOMENTS, (100, 0, -400, -300, 0), (-50, 90, 20, 10, -60
 MIRROR = np.array([-1, 1, 1, -1, -1])
 SOURCE = "identities of the model of Stirling 2023, ch. 4"
 RESIDUAL = "exact but for the solver's residual"
+FIVE = "peak roller, five [kN]"
 ANGLE, SIDE = "angle out of plane [deg]", "side force left [kN]"
 PEAK = "error of the peak roller [%]"
+TITLE = "{}: 200 kN axial, 400 kN down, 800 kN m, its axis turned out of plane"
 
 
 @case(
@@ -59,18 +61,30 @@ def run(run: Run, page: Page) -> None:
     why, eq = f"{RESIDUAL}: 1e-8 of the load", "Stirling 2023, section 4.2.1"
     page.meets(rows[0][SIDE], Target(title, 0.0, 1e-3, why, eq, measure="identity"))
     worst = max(rows, key=lambda row: abs(row[PEAK]))
-    page.say(
-        "Balance, symmetry and homogeneity hold to the solver's residual.",
-        "The reduction to three degrees is exact where force and moment act in one plane; a moment "
-        f"turned by {worst[ANGLE]:.0f} deg out of it leaves {worst[SIDE]:.0f} kN of side force "
-        f"unbalanced and changes the peak roller by {worst[PEAK]:.0f} %.",
-    )
+    answer(page, worst)
     page.section("Three degrees against five")
-    moment = "200 kN axial, 400 kN down, 800 kN m, its axis turned out of plane"
     for y, table in ((SIDE, True), (PEAK, False)):
-        title = f"{y.partition(' [')[0].capitalize()}: {moment}"
-        page.sweep(title, rows, ANGLE, y, table=table)
+        page.sweep(TITLE.format(y.partition(" [")[0].capitalize()), rows, ANGLE, y, table=table)
     page.image("The rollers of bearing S", run.sketch(*rolling_elements(BEARING)))
+
+
+def answer(page: Page, worst: Record) -> None:
+    """State where three degrees of freedom are exact, and what they miss elsewhere."""
+    out = f"{worst[ANGLE]:.0f} deg out of plane"
+    page.answer(
+        "When are three degrees of freedom enough for a double-row bearing?",
+        "Three degrees are enough only where force and moment act in one plane: "
+        f"{worst[ANGLE]:.0f}\u00a0deg out of it they miss the peak roller by "
+        f"{abs(worst[PEAK]):.0f}\u00a0%.",
+        [
+            page.value(f"error of the peak roller, {out} [%]", worst[PEAK]),
+            page.value(f"side force left unbalanced, {out} [kN]", worst[SIDE]),
+            page.value(f"peak roller by five degrees, {out} [kN]", worst[FIVE]),
+            page.judged("displacements under three times the loads", by="3 to the power 1/1.1"),
+        ],
+        TITLE.format(PEAK.partition(" [")[0].capitalize()),
+    )
+    page.say("Balance, symmetry and homogeneity of all five hold to the solver's residual.")
 
 
 def reduced(degrees: float) -> Record:
@@ -83,6 +97,6 @@ def reduced(degrees: float) -> Record:
         ANGLE: degrees,
         SIDE: float(np.hypot(*left[1:3])) / 1e3,
         "moment left [kN m]": float(np.hypot(*left[3:])) / 1e3,
-        "peak roller, five [kN]": float(five.rollers.max()) / 1e3,
+        FIVE: float(five.rollers.max()) / 1e3,
         PEAK: 100.0 * float(three.rollers.max() / five.rollers.max() - 1.0),
     }

@@ -9,11 +9,14 @@ from fe_drivetrain.bearing import Bearing, catalogue_bearing, equilibrium, super
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report.suite import Page, Record
 
+COMBINED = "combined, in one plane"
+PEAK_CHART = "Error of the peak roller against time, the star is the model chosen: {}"
+
 #: Loads [N, N m]: where closed forms hold, and where they do not.
 LOADS = {
     "radial": (0, 0, -4e5, 0, 0),
     "moment": (0, 0, 0, 8e5, 0),
-    "combined, in one plane": (2e5, 0, -4e5, 8e5, 0),
+    COMBINED: (2e5, 0, -4e5, 8e5, 0),
     "combined, 45 deg out of plane": (2e5, 0, -4e5, 5.7e5, 5.7e5),
 }
 CROWN = 0.00045
@@ -62,16 +65,17 @@ def timed_rungs(
     return rows
 
 
-def error_against_time(page: Page, rows: list[Record]) -> None:
-    """Each rung's error of the peak roller against its time, load by load."""
+def error_against_time(page: Page, rows: list[Record], chosen: str) -> None:
+    """Each rung's error of the peak roller against its time, load by load; one is marked."""
     page.section("Error against time")
     for kind in LOADS:
         page.sweep(
-            f"Peak roller, {kind}",
+            PEAK_CHART.format(kind),
             [row for row in rows if row["load"] == kind],
             "time per load case [µs]",
             "error [%]",
             by="model",
             log="xy",
             points=True,
+            chosen_curve=chosen,
         )

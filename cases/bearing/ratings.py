@@ -3,6 +3,7 @@
 from fe_drivetrain.bearing import read_bearing_catalogue
 from fe_drivetrain.bearing_life.life import rated_bearing
 from fe_drivetrain.cases import case
+from fe_drivetrain.report.number_text import percent_text, value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Assumed rollers were sized to fit the printed ratings to this.
@@ -60,12 +61,37 @@ def run(run: Run, page: Page) -> None:
         for key, _ in NAMES
     ]
     misfit = next(row for row in rows if row["bearing"] == "bearing_s")
-    page.say(
-        "The assumed rollers of bearing S fit its printed C, C0 and C_u to "
-        f"{100.0 * max(misfits):.1f} % at {fitted['contact angle [deg]']:.0f} deg.",
-        "At 38 deg, the angle that gives the thesis's tilting stiffness face to face, C would be "
-        f"{misfit['C, from its insides [kN]']:.0f} kN, not {misfit['C, printed [kN]']:.0f}: that "
-        "angle is a fit, no insight into the bearing.",
-    )
+    answer(page, fitted, misfit, max(misfits))
     page.section("Catalogue")
     page.table("Ratings from rollers beside printed ones; empty where none is printed", rows)
+
+
+def answer(page: Page, fitted: Record, misfit: Record, largest: float) -> None:
+    """State how well the assumed rollers fit printed ratings, and that 38 deg do not."""
+    own, printed = "C, from its insides [kN]", "C, printed [kN]"
+    of, angle = fitted["bearing"], f"{fitted['contact angle [deg]']:.0f}\u00a0deg"
+    figures = [
+        page.judged(f"{of}: C", f"bearing S at {angle}, C", "Table 4.1", "6710"),
+        page.judged(f"{of}: C0", f"bearing S at {angle}, C0", "Table 4.1", "16600"),
+        page.judged(f"{of}: Cu", f"bearing S at {angle}, C_u", "Table 4.1", "1100"),
+        page.value(
+            "bearing S at 38\u00a0deg, C [kN]", misfit[own], beside=misfit[printed], by="Table 4.1"
+        ),
+        page.judged("masta_single: C", "tapered bearing of 26 MW, C", "MASTA"),
+        page.judged("masta_single: Cu", "tapered bearing of 26 MW, C_u", "MASTA"),
+    ]
+    fit = "fit" if largest <= FITS else "do not fit"
+    hero = "Ratings from rollers: differences from printed ones, over what is allowed"
+    page.answer(
+        "Do the rollers assumed inside bearings fit their printed load ratings?",
+        f"Rollers assumed in bearing S {fit} its ratings to {percent_text(largest)} at {angle}; at "
+        f"38\u00a0deg C would be {value_text(misfit[own], 'kN')}, not {misfit[printed]:.0f}.",
+        figures,
+        hero,
+        [
+            "38 deg is the angle that gives the thesis's tilting stiffness face to face: a fit, no "
+            "insight into the bearing. The thesis prints no contact angle."
+        ],
+    )
+    page.section("Differences from printed ratings")
+    page.errors(hero, figures)

@@ -96,15 +96,16 @@ def run(run: Run, page: Page) -> None:
         with run.step(name):
             found = coupled_equilibrium(body, {"bearing": bearing}, flat)
             loads[name] = found.of("bearing").reshape(len(factors), -1, 5)
-    directions(page, loads)
+    ranges = directions(page, loads)
     loops = {
         name: [find_loops(hub.time, *(1e-3 * one[:, 3:].T)) for one in of]
         for name, of in loads.items()
     }
     loop_table(page, loops, float(hub.time[-1]))
     with run.step("rollers"):
-        zones_and_edges(page, laminae, loads[ALONE], every=1 if run.quick else 10)
-        follow(page, laminae, hub.time, loads[ALONE], loops[ALONE])
+        zones = zones_and_edges(page, laminae, loads[ALONE], every=1 if run.quick else 10)
+        hero = follow(page, laminae, hub.time, loads[ALONE], loops[ALONE])
+    answer(page, ranges, zones, hero)
     check(page, laminae, loads[ALONE][0])
     page.section("Other controller")
     page.text(
@@ -116,8 +117,8 @@ def run(run: Run, page: Page) -> None:
     page.image("The rollers of bearing S", run.sketch(*rolling_elements(bearing)))
 
 
-def directions(page: Page, loads: dict[str, Floats]) -> None:
-    """Range of force and shape of the moment's cloud, as figures 4.13 and 4.14."""
+def directions(page: Page, loads: dict[str, Floats]) -> dict[str, float]:
+    """Range of force [kN] at 24 m/s, and shape of the moment's cloud, as figures 4.13 and 4.14."""
     rows: list[Record] = []
     for name, files in loads.items():
         for speed, one in zip(WIND_SPEEDS, files, strict=True):
@@ -141,13 +142,6 @@ def directions(page: Page, loads: dict[str, Floats]) -> None:
     page.data("directions", rows)
     last = {row["bearing"]: row for row in rows if row["wind [m/s]"] == WIND_SPEEDS[-1]}
     key = "force, least to largest [kN]"
-    page.found("range of the radial force at 24 m/s, rollers alone [kN]", last[ALONE][key])
-    page.say(
-        f"At 24 m/s the radial force ranges over {last[ALONE][key]:.0f} kN on rollers in a rigid "
-        f"housing and {last[CONSTANT][key]:.0f} kN with K_R of 145 MN m/rad (the thesis: under "
-        f"200, against 800 at 20 m/s); with rollers and housing in series it is "
-        f"{last[HOUSED][key]:.0f} kN."
-    )
     page.text(
         "The thesis puts the smaller range of the force down to the varying stiffness. It is the "
         "mean stiffness: rollers alone are ten times as stiff as the 145 MN m/rad of the housing, "
@@ -160,6 +154,48 @@ def directions(page: Page, loads: dict[str, Floats]) -> None:
             for word, part, unit in (("force", one[:, 1:3], "kN"), ("moment", one[:, 3:], "kN m")):
                 caption = f"Radial {word} at {speed:g} m/s, rollers alone, looking downwind"
                 page.add(density_chart(caption, -1e-3 * part[:, 0], 1e-3 * part[:, 1], unit))
+    return {name: row[key] for name, row in last.items()}
+
+
+def answer(page: Page, ranges: dict[str, float], zones: tuple[float, float], hero: str) -> None:
+    """State how rollers follow the moment, and what makes the range of the force [kN] smaller."""
+    opposite, follows = zones
+    page.found("range of the radial force at 24 m/s, rollers alone [kN]", ranges[ALONE])
+    # with the same varying rollers and the housing the range is that of a constant again
+    of_mean = abs(ranges[HOUSED] - ranges[CONSTANT]) < abs(ranges[HOUSED] - ranges[ALONE])
+    of_zones = opposite > 50.0
+    cause = (
+        "contrary to the thesis, the rigid housing, not varying stiffness, makes"
+        if of_mean
+        else "as in the thesis, varying stiffness makes"
+    )
+    verdict = f"Both rows carry opposite each other in {opposite:.0f}\u00a0% of steps; {cause} "
+    verdict += "the force range smaller."
+    page.answer(
+        "What do the rollers of a main bearing feel while its moment runs in loops?",
+        verdict,
+        [
+            page.value(
+                "load zones of the rows opposite, least of four wind files [%]",
+                opposite,
+                at_least=50.0,
+                by="thesis: most of the time",
+            ),
+            page.value("correlation of the peak roller with the moment, least", follows),
+            page.judged(
+                "range of the radial force at 24 m/s, rollers alone",
+                "range of force, rollers alone",
+            ),
+            page.value("range of force, rollers and housing [kN]", ranges[HOUSED]),
+            page.value("range of force, constant 145 MN m/rad [kN]", ranges[CONSTANT]),
+        ],
+        hero,
+        [
+            "The range of force is smaller on rollers alone since they are ten times as stiff as "
+            "the housing, not since they vary; the thesis prints under 200 kN, against 800 kN."
+        ],
+        claim="holds" if of_zones and not of_mean else "holds in part",
+    )
 
 
 def loop_table(page: Page, loops: dict[str, list[Loops]], duration: float) -> None:
@@ -200,8 +236,11 @@ def end_difference(row: RollerRow, displacements: Floats) -> tuple[Floats, Float
     return q.sum(axis=2), np.abs(q[..., -1] - q[..., 0])
 
 
-def zones_and_edges(page: Page, bearing: Bearing, loads: Floats, every: int) -> None:
-    """Show load zones of whole wind files, peak rollers with the moment, and edge loading."""
+def zones_and_edges(page: Page, bearing: Bearing, loads: Floats, every: int) -> tuple[float, float]:
+    """Load zones of whole wind files, peak rollers with the moment, and edge loading.
+
+    Returns the least share of time with opposite zones [%] and the least correlation.
+    """
     rows: list[Record] = []
     for speed, one in zip(WIND_SPEEDS, loads, strict=True):
         some = one[::every]
@@ -248,15 +287,14 @@ def zones_and_edges(page: Page, bearing: Bearing, loads: Floats, every: int) -> 
         why="moments drive the rollers more than forces do",
         source="Stirling 2023, section 4.6: three of four examples",
     )
-    page.say(
-        f"Load zones of the two rows are on opposite sides in {least:.0f} % of the steps or more "
-        "(the thesis: in three of four examples); the largest roller follows the moment with a "
-        f"correlation of {min(r['peak roller with |M|, correlation'] for r in rows):.2f} or more."
-    )
+    return least, min(r["peak roller with |M|, correlation"] for r in rows)
 
 
-def follow(page: Page, bearing: Bearing, time: Floats, loads: Floats, loops: list[Loops]) -> None:
-    """The loop of each wind file that changes most, and the roller that feels it most."""
+def follow(page: Page, bearing: Bearing, time: Floats, loads: Floats, loops: list[Loops]) -> str:
+    """The loop of each wind file that changes most, and the roller that feels it most.
+
+    Returns the caption of the last file's chart.
+    """
     rows: list[Record] = []
     page.section("Rollers in a loop")
     for speed, one, of in zip(WIND_SPEEDS, loads, loops, strict=True):
@@ -280,7 +318,7 @@ def follow(page: Page, bearing: Bearing, time: Floats, loads: Floats, loops: lis
                 "over load [%]": 100.0 * float(share.max()),
             }
         )
-        draw(page, speed, example)
+        caption = draw(page, speed, example)
     page.table(
         "The moment's loop of largest range in each wind file, and the roller that changes most in "
         f"the {WINDOW:g} s about it",
@@ -294,6 +332,7 @@ def follow(page: Page, bearing: Bearing, time: Floats, loads: Floats, loops: lis
         "together has a simple reason: it is the tilt of the inner ring about the tangent at that "
         "place, which both rows share. Its size goes as one over the number of laminae."
     )
+    return caption
 
 
 def _span(values: Floats) -> str:
@@ -314,8 +353,8 @@ def in_window(bearing: Bearing, time: Floats, loads: Floats, rotor_speed: float)
     return Example(time, 1e-3 * loads[:, 3:], Q[:, roller], ends[:, roller], roller + 1, at)
 
 
-def draw(page: Page, speed: float, example: Example) -> None:
-    """Draw what figures 4.15 and 4.16 show."""
+def draw(page: Page, speed: float, example: Example) -> str:
+    """Draw what figures 4.15 and 4.16 show; the caption of the roller's chart."""
     right, up = -example.moment[:, 0], example.moment[:, 1]
     page.chart(
         f"Moment at {speed:g} m/s, looking downwind: right is that of the rotor's weight",
@@ -328,9 +367,12 @@ def draw(page: Page, speed: float, example: Example) -> None:
         "up [kN m]",
     )
     t = example.time - example.time[0]
-    page.chart(
+    caption = (
         f"Roller {example.roller} of both rows at {speed:g} m/s, which moves from "
-        f"{example.at[0]:.0f} to {example.at[-1]:.0f} deg",
+        f"{example.at[0]:.0f} to {example.at[-1]:.0f} deg"
+    )
+    page.chart(
+        caption,
         [
             trace(f"{row} row{words}", t, values, line={"color": color, "dash": dash})
             for k, (row, color) in enumerate((("upwind", "#0072b2"), ("downwind", "#d55e00")))
@@ -342,6 +384,7 @@ def draw(page: Page, speed: float, example: Example) -> None:
         "time [s]",
         "load [kN]",
     )
+    return caption
 
 
 def check(page: Page, bearing: Bearing, loads: Floats) -> None:

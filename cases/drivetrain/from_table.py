@@ -27,6 +27,7 @@ from fe_drivetrain.dynamics.torsion import (
     static_stiffness,
     two_masses,
 )
+from fe_drivetrain.report.number_text import percent_text, value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 
 GEARS = "a mass for each gear"
@@ -69,21 +70,17 @@ def run(run: Run, page: Page) -> None:
             rows += frequency_rows(name, system, modes, state)
     whole, rigid = check_gears_and_stages(page, table)
     first = [found[name, "free"].frequencies[1] for name in MAKERS]
-    page.say(
-        f"{table.title}: with the generator free, its first frequency above zero is "
-        f"{first[0]:.4g} Hz as two masses, {first[1]:.4g} with a mass for each stage and "
-        f"{first[2]:.4g} with one for each gear.",
-        f"Its torsional stiffness on the rotor's side, generator held, is {whole:.4g} N m/rad; "
-        f"gear meshes make {100 * (1 - whole / rigid):.1f} % of the compliance.",
-    )
+    shapes = f"Mode shapes with a mass for each gear, generator {states[0]}, seen from the rotor's "
+    shapes += "shaft"
+    answer(page, first, whole, 1 - whole / rigid, shapes)
+    page.say(f"The table: {table.title}.")
     page.section("Modes")
     page.table("Undamped natural frequencies, and damping ratios of first order", rows)
     gears, last = gear_masses(table, states[0]), found[GEARS, states[0]]
     shown = published.observable(last)[:6]
     show_shapes(
         page,
-        f"Mode shapes with a mass for each gear, generator {states[0]}, seen from the rotor's "
-        "shaft",
+        shapes,
         last,
         gear_speeds(table),
         shown,
@@ -103,6 +100,24 @@ def run(run: Run, page: Page) -> None:
     )
     page.data("static_stiffness", whole)
     page.data("damping_ratios", damped_modes(gears).ratios)
+
+
+def answer(page: Page, first: list[float], whole: float, meshes: float, hero: str) -> None:
+    """State what the drivetrain swings at first [Hz], its stiffness, and the meshes' share."""
+    page.answer(
+        "At which torsional frequency does the drivetrain of the table swing first?",
+        f"With every gear a mass the drivetrain first swings at {value_text(first[2], 'Hz')}, as "
+        f"two masses at {value_text(first[0], 'Hz')}; meshes make {percent_text(meshes)} of its "
+        "compliance.",
+        [
+            page.value("first frequency, every gear a mass [Hz]", first[2]),
+            page.value("first frequency, a mass for each stage [Hz]", first[1]),
+            page.value("first frequency, two masses [Hz]", first[0]),
+            page.value("torsional stiffness on the rotor's side [MN m/rad]", whole / 1e6),
+            page.value("share of gear meshes in the compliance [%]", 100 * meshes),
+        ],
+        hero,
+    )
 
 
 def check_gears_and_stages(page: Page, table: GearTable) -> tuple[float, float]:

@@ -7,7 +7,7 @@ import numpy as np
 from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.comparison import digit
 from fe_drivetrain.dynamics.torsion import Modes
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import chart, trace
 from fe_drivetrain.report.suite import Page, Record, Target
 
 ROUNDING = (
@@ -70,8 +70,11 @@ def show_shapes(
     curves = [
         trace(f"{hz[m]:.4g} Hz", at, seen[:, m], mode="lines+markers", text=text) for m in chosen
     ]
-    x, y = "inertia, from the rotor (0) to the generator", "angle over speed ratio, largest 1"
-    page.chart(caption, curves, x, y)
+    x, y = "inertia, from the rotor to the generator", "angle over speed ratio, largest 1"
+    drawn = chart(caption, curves, x, y)
+    named = {"tickmode": "array", "tickvals": at.tolist(), "ticktext": text, "tickangle": -30}
+    drawn.figure["layout"]["xaxis"] |= {**named, "automargin": True}
+    page.add(drawn)
 
 
 def show_energy(page: Page, caption: str, springs: Sequence[str], modes: Modes, at: Ints) -> None:

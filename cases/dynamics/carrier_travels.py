@@ -39,6 +39,7 @@ RIM = Rim(0.563, 0.08, 0.23, STEEL)
 """Outside the published root circle, 1.047 m, as thick as the published 509 kg of the ring ask for;
 not held by bolts."""
 PIN = "stage 1 pin 1 upwind"
+TURNING = "Radial load of the upwind bearing of planet 1 over a turn of the carrier"
 
 
 @case(
@@ -76,15 +77,44 @@ def run(run: Run, page: Page) -> None:
         source="symmetry: planets in phase excite orders that are three from the mesh",
         measure="order",
     )
-    swing = np.ptp(moving.resultant(PIN)) / mean
-    page.say(
-        f"In time, with planets that travel, the load of an upwind planet bearing swings by "
-        f"{100 * swing:.1f} % of its mean in a turn, as in statics at each azimuth.",
-        "A place of the ring does not feel the mesh frequency of planets in phase in its third "
-        f"harmonic, but the lines {RING - 3} and {RING + 3} times a turn beside it.",
-    )
+    answer(page, moving.resultant(PIN), still.resultant(PIN))
     show_turn(page, moving, still, count)
     show_ring(page, lines, per_mesh)
+
+
+def answer(page: Page, moving: Floats, still: Floats) -> None:
+    """State how the load [N] of a bearing swings in a turn, and what the ring feels."""
+    swing, at_rest = (100.0 * float(np.ptp(one) / one.mean()) for one in (moving, still))
+    line = page.judged(
+        "third harmonic of the ring: line of the mesh over those beside it, of planets passing",
+        "ring: mesh line over the lines beside it",
+        "symmetry: 0",
+        unit="%",
+    )
+    felt = "hardly feels" if line.status == "good" else "feels"
+    page.answer(
+        "How does the load of a planet bearing swing as the carrier turns?",
+        f"An upwind bearing's load swings by {swing:.1f}\u00a0% in a turn; the ring {felt} the "
+        f"mesh frequency, but lines {RING - 3} and {RING + 3} times a turn.",
+        [
+            page.value("swing of the load in a turn [%]", swing, beside=at_rest, by="statics"),
+            page.value("mean load of the bearing [kN]", float(moving.mean()) / 1e3),
+            page.value(
+                "largest load of the bearing [kN]",
+                float(moving.max()) / 1e3,
+                beside=float(still.max()) / 1e3,
+                by="statics",
+            ),
+            page.judged(
+                "load of an upwind bearing in time from that of statics, largest over the mean",
+                "largest difference from statics, over the mean",
+                "equilibria",
+                unit="%",
+            ),
+            line,
+        ],
+        TURNING,
+    )
 
 
 def show_turn(page: Page, moving: Turn, still: Turn, count: int) -> None:
@@ -92,7 +122,7 @@ def show_turn(page: Page, moving: Turn, still: Turn, count: int) -> None:
     page.section("Over a turn")
     angles = np.degrees(azimuths(count))
     page.chart(
-        "Radial load of the upwind bearing of planet 1",
+        TURNING,
         [
             trace("in time", angles, moving.resultant(PIN) / 1e3, True),
             trace("at rest", angles, still.resultant(PIN) / 1e3),

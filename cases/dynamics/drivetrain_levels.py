@@ -1,5 +1,6 @@
 """One drivetrain as torsional, rigid and flexible model: what each level answers, and its cost."""
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
@@ -37,6 +38,7 @@ OPERATIONS = {
     "synthetic_2mw": Operation(1.055e6, 1.0e6),
 }
 TOLERANCE = 0.05
+AGAINST_TIME = "{}: difference from the finest level against the time that a level takes"
 FIRST = "first torsional frequency [Hz]"
 
 
@@ -54,6 +56,7 @@ def run(run: Run, page: Page) -> None:
     """Tables recovered, answers of each level beside its cost, and which level is needed."""
     recover(run, page)
     needed: list[Record] = []
+    ladders: list[tuple[Machine, Sequence[Answer]]] = []
     for name, operation in operations(run).items():
         machine = named_machine(name)
         page.about(machine, name)
@@ -61,6 +64,7 @@ def run(run: Run, page: Page) -> None:
         with run.step(f"ladder of {name}"):
             answers = ladder(machine, operation, rungs)
         show_ladder(page, name, machine, answers)
+        ladders.append((machine, answers))
         for question in (q for q in QUESTIONS if answers[-1].values[q] is not None):
             level = needed_level(answers, question, TOLERANCE)
             needed.append({"drivetrain": name, "question": question, "level": level})
@@ -77,15 +81,50 @@ def run(run: Run, page: Page) -> None:
             stiffness_of_5mw(page)
         assume(page, name, machine)
     show_needed(page, needed)
-    page.say(
-        "All levels are one assembly: the torsional tables come back to round-off from it.",
-        f"{needed[0]['drivetrain']}, within 5 % of the finest level: "
-        + "; ".join(
-            f"{str(row['question']).partition(' [')[0]}: {row['level']}"
-            for row in needed
-            if row["drivetrain"] == needed[0]["drivetrain"]
+    of_first = [row for row in needed if row["drivetrain"] == needed[0]["drivetrain"]]
+    state_needed(page, of_first, *ladders[0])
+    page.say("All levels are one assembly: the torsional tables come back to round-off from it.")
+
+
+def state_needed(
+    page: Page, needed: list[Record], machine: Machine, answers: Sequence[Answer]
+) -> None:
+    """State which level of a machine most questions need, and which need another."""
+    levels = Counter(str(row["level"]) for row in needed)
+    level, count = levels.most_common(1)[0]
+    others = [row for row in needed if str(row["level"]) != level]
+    enough = next(one for one in answers if one.name == level)
+    finest = answers[-1]
+    subject = "torsional masses" if level == "torsional" else level
+    ends = f"{len(others)} need other levels"
+    if len(others) == 1:
+        ends = f"{str(others[0]['question']).partition(' [')[0]} needs {others[0]['level']}"
+    machine_name = machine.title.partition(" (")[0]
+    figures = [
+        page.value(
+            question,
+            float(value),
+            beside=float(other),
+            by=level,
         )
-        + ".",
+        for question, value in finest.values.items()
+        if value is not None and (other := enough.values[question]) is not None
+    ]
+    page.answer(
+        f"Which level of detail do questions on the {machine_name} need?",
+        f"{subject.capitalize()} settle {count} of {len(needed)} questions within "
+        f"{100 * TOLERANCE:g}\u00a0% of the finest level; {ends}.",
+        [
+            *figures[:5],
+            page.value(
+                f"time of the level of {level} [s]",
+                enough.seconds,
+                beside=finest.seconds,
+                by="finest level",
+            ),
+        ],
+        AGAINST_TIME.format(machine.title),
+        [f"The finest level here is {finest.name}; errors are against it."],
     )
 
 
@@ -110,7 +149,7 @@ def show_ladder(page: Page, name: str, machine: Machine, answers: Sequence[Answe
     page.table("Answers, and their differences from the finest level", rows)
     page.data(f"ladder_{name}", rows)
     page.chart(
-        "Difference from the finest level against the time that a level takes",
+        AGAINST_TIME.format(machine.title),
         error_curves(answers),
         "time [s]",
         "difference [%]",

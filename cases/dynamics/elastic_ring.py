@@ -25,6 +25,7 @@ from fe_drivetrain.report.suite import Page, Record, Run
 STEEL = Material(youngs_modulus=210e9, poisson_ratio=0.3, density=7850.0)
 WIDTH = 0.03  # m
 PLANETS = 3
+HERO = "Lowest frequency against that of a rigid ring"
 THICKNESS, LOWEST = "thickness of the rim [mm]", "change of the lowest frequency [%]"
 
 
@@ -64,7 +65,7 @@ def run(run: Run, page: Page) -> None:
         row[LOWEST] = 100 * float(f[1] / rigid[1] - 1)
         rows.append(row)
     check_limits(page, rigid)
-    thick = rows[-1]
+    answer(page, rows)
     page.section("By the thickness of the rim")
     page.sweep(
         "Frequencies of the stage, three planets",
@@ -74,20 +75,49 @@ def run(run: Run, page: Page) -> None:
         log="xy",
         axis="frequency [Hz]",
     )
-    page.sweep(
-        "Lowest frequency against that of a rigid ring", rows, THICKNESS, LOWEST, table=False
-    )
+    page.sweep(HERO, rows, THICKNESS, LOWEST, table=False)
     page.say(
-        f"A rim of {float(str(rows[0][THICKNESS])):.0f} mm takes "
-        f"{-float(str(rows[0][LOWEST])):.0f} % off the lowest frequency of the stage with a rigid "
-        f"ring, one of {float(str(thick[THICKNESS])):.0f} mm {-float(str(thick[LOWEST])):.1f} %; "
-        "and the rim adds modes of its own between those of the stage.",
+        "The rim adds modes of its own between those of the stage.",
         "Harmonics of the rim that are multiples of the number of planets join the rotational "
         "modes, those next to a multiple the translational ones.",
     )
     page.text(
         "The rim is a thin ring, without shear or stretching: 40 mm are a quarter of its radius. "
         "Its rigid motion is on the supports of the source's ring, its bending on nothing else."
+    )
+
+
+def answer(page: Page, rows: list[Record]) -> None:
+    """State what a thin and a thick rim change of the lowest frequency."""
+    thin, thick = rows[0], rows[-1]
+    names = {id(row): f"rim of {row[THICKNESS]:.0f} mm" for row in (thin, thick)}
+    page.answer(
+        "How thin may the rim of a ring gear be for a rigid ring to hold?",
+        f"A rim of {thin[THICKNESS]:.0f}\u00a0mm takes {-thin[LOWEST]:.0f}\u00a0% off the lowest "
+        f"frequency with a rigid ring, one of {thick[THICKNESS]:.0f}\u00a0mm "
+        f"{-thick[LOWEST]:.1f}\u00a0%.",
+        [
+            *(
+                page.value(f"change of the lowest frequency, {names[id(row)]} [%]", row[LOWEST])
+                for row in (thin, thick)
+            ),
+            *(
+                page.value(
+                    f"lowest frequency, {names[id(row)]} [Hz]",
+                    row["f1 [Hz]"],
+                    beside=row["f1 [Hz]"] / (1 + row[LOWEST] / 100),
+                    by="rigid ring",
+                )
+                for row in (thin, thick)
+            ),
+            page.judged(
+                "rim of 10 mm squeezed by 1 kN: change of the diameter",
+                "rim of 10 mm squeezed by 1 kN",
+                "Timoshenko",
+            ),
+        ],
+        HERO,
+        ["The rim is a thin ring without shear or stretching; 40 mm are a quarter of its radius."],
     )
 
 

@@ -5,6 +5,7 @@ from fe_drivetrain.cases.references.published_planetary import helical_system
 from fe_drivetrain.dynamics import System, SystemModes, distinct, planetary_kinds, system_modes
 from fe_drivetrain.report.suite import Page, Record, Run
 
+HERO = "Natural frequencies by the number of planets and the kind of mode"
 CENTRAL = ("carrier", "ring", "sun")
 
 
@@ -15,6 +16,7 @@ CENTRAL = ("carrier", "ring", "sun")
 def run(run: Run, page: Page) -> None:
     """Count the modes of each kind with three to six planets, and show the frequencies."""
     rows: list[Record] = []
+    numbers: dict[int, dict[str, int]] = {}
     for planets in (3, 4, 5, 6):
         with run.step(f"{planets} planets"):
             system = helical_system(planets)
@@ -29,6 +31,7 @@ def run(run: Run, page: Page) -> None:
             source="Eritenel and Parker 2009, section 4",
         )
         rows += rows_of(planets, system, modes, kinds)
+        numbers[planets] = counts
     middle = helical_system(3, offset=0.0)
     kinds = planetary_kinds(middle, system_modes(middle), CENTRAL)
     page.holds(
@@ -37,14 +40,19 @@ def run(run: Run, page: Page) -> None:
         why="planets that tilt in step about their radii push neither sun nor ring",
         source="symmetry of a mesh about the middle of its face",
     )
-    page.say(
-        "Helical planets in three dimensions have twelve rotational-axial modes, twelve pairs of "
-        "translational-tilting ones, and six planet modes N - 3 times each, as proved for equal, "
-        "equally spaced planets.",
-        "With bearings in the middle of the faces one more symmetry leaves the central bodies at "
-        "rest in one of the twelve.",
-    )
+    answer(page, rows, numbers)
     page.section("Modes")
+    moving = [row for row in rows if float(str(row["frequency [Hz]"])) > 1.0]
+    page.sweep(
+        HERO,
+        moving,
+        "planets",
+        "frequency [Hz]",
+        by="kind",
+        log="y",
+        points=True,
+        table=False,
+    )
     page.table("Each frequency of the assumed stage, and where its energy is", rows)
     page.assume(
         "helix, face width, stiffness along the axis and against tilt",
@@ -54,6 +62,47 @@ def run(run: Run, page: Page) -> None:
         "depend on them",
     )
     page.data("frequencies", rows)
+
+
+def answer(page: Page, rows: list[Record], numbers: dict[int, dict[str, int]]) -> None:
+    """State how many modes of each kind there are, beside what is proved."""
+    holds = all(
+        counts == {"rotational": 12, "translational": 24, "planet": 6 * (planets - 3)}
+        for planets, counts in numbers.items()
+    )
+    most = max(numbers)
+    counts = numbers[most]
+    lowest = min(
+        float(str(r["frequency [Hz]"])) for r in rows if float(str(r["frequency [Hz]"])) > 1
+    )
+    by = "Eritenel and Parker"
+    page.answer(
+        "Which kinds of modes do helical planets have in three dimensions, and how many?",
+        f"With {min(numbers)} to {most} planets the stage has {counts['rotational']} "
+        f"rotational-axial modes, {counts['translational'] // 2} translational-tilting pairs, and "
+        f"planet modes N\u00a0-\u00a03 times each, {'as' if holds else 'not as'} proved.",
+        [
+            page.value(
+                f"rotational-axial modes, {most} planets", counts["rotational"], beside=12, by=by
+            ),
+            page.value(
+                f"translational-tilting pairs, {most} planets",
+                counts["translational"] / 2,
+                beside=12,
+                by=by,
+            ),
+            page.value(
+                f"planet modes, {most} planets", counts["planet"], beside=6 * (most - 3), by=by
+            ),
+            page.value("lowest frequency of all [Hz]", lowest),
+        ],
+        HERO,
+        [
+            "With bearings in the middle of the faces one more symmetry leaves the central bodies "
+            "at rest in one of the twelve."
+        ],
+        claim="holds" if holds else "does not hold",
+    )
 
 
 def rows_of(planets: int, system: System, modes: SystemModes, kinds: list[str]) -> list[Record]:

@@ -14,6 +14,7 @@ from fe_drivetrain.common import Floats
 from fe_drivetrain.dynamics import distinct, planetary_kinds, system_modes
 from fe_drivetrain.report.suite import Page, Record, Run, Target
 
+HERO = "Natural frequencies in the plane by the number of planets and the kind of mode"
 CENTRAL = ("carrier", "ring", "sun")
 #: Lines of four planets that are rounded further than their last digit says.
 ROUND = {4: (727.0, 1091.0, 1536.6)}
@@ -61,13 +62,10 @@ def run(run: Run, page: Page) -> None:
                 }
             )
             start += count
-    page.say(
-        f"Of {prints} printed frequencies of three, four and five planets {prints - len(far)} come "
-        f"out within half of their last digit; {', '.join(one for one, _ in far)} Hz of the print "
-        f"are {', '.join(other for _, other in far)} Hz with these inputs.",
-        "Planet modes are the same whatever the number of planets; of six nothing is printed.",
-    )
+    answer(page, prints, far)
     page.section("Frequencies")
+    moving = [row for row in rows if float(str(row[FREQUENCY])) > 1.0]
+    page.sweep(HERO, moving, "planets", FREQUENCY, by="kind", log="y", points=True, table=False)
     page.table("Each frequency, how often it is there, and as printed", rows)
     page.text(
         "The source gives inertias and stiffnesses over radii of base circles; the geometry here "
@@ -76,6 +74,51 @@ def run(run: Run, page: Page) -> None:
         "tests of a public program that follows it."
     )
     page.data("frequencies", rows)
+
+
+def answer(page: Page, prints: int, far: list[tuple[str, str]]) -> None:
+    """State how many printed frequencies are met, and which are not."""
+    shown = ", ".join(one for one, _ in far)
+    page.answer(
+        "Does the assembled planetary stage have the frequencies that Lin and Parker print?",
+        f"{prints - len(far)} of {prints} printed frequencies come out within half of their last "
+        f"digit; {shown}\u00a0Hz are off by at most {max(map(distance, far)):.1f}\u00a0Hz."
+        if far
+        else f"All {prints} printed frequencies come out within half of their last digit.",
+        [
+            page.value(
+                "printed frequencies that are met", prints - len(far), beside=prints, by="printed"
+            ),
+            *(
+                page.judged(
+                    f"{planets} planets: {DIFFERENCE}",
+                    f"largest difference, {planets} planets",
+                    "half of the last digit",
+                )
+                for planets in LIN_PARKER_PRINTED
+            ),
+            *(
+                page.value(
+                    f"frequency printed as {one} [Hz]",
+                    float(own),
+                    beside=float(one),
+                    by="Lin and Parker",
+                    printed=one,
+                )
+                for one, own in far[:2]
+            ),
+        ],
+        HERO,
+        ["The print was not read itself, but the tests of a public program that follows it."],
+        claim="holds in part" if far else "holds",
+    )
+    page.say("Planet modes are the same whatever the number of planets; of six nothing is printed.")
+
+
+def distance(pair: tuple[str, str]) -> float:
+    """How far a printed frequency is from what is found [Hz], rounded up to a tenth."""
+    one, own = map(float, pair)
+    return float(np.ceil(10.0 * abs(one - own)) / 10.0)
 
 
 def beyond_print(planets: int, frequencies: Floats) -> tuple[int, list[tuple[str, str]]]:

@@ -14,6 +14,7 @@ TABLED = {
     "floating": (1.0, 1.0625, 1.1, 1.125, 1.1429),
     "fixed": (1.1667, 1.1875, 1.2, 1.2083, 1.2143),
 }
+HERO = "Load sharing K_gamma by the number of planets, one pin out of place"
 SHARING, MEAN = "load sharing K_gamma", "mean load over K e"
 LINEAR = "linear; the fixed sun is held a million times stiffer than a mesh"
 CLOSED = "a branch of stiffness K a planet: F_1 = T/(N r) + K e (1 - 3/N), or (1 - 1/N) fixed"
@@ -57,20 +58,52 @@ def run(run: Run, page: Page) -> None:
     determinate = "round-off; three branches on three motions are statically determinate"
     page.meets(load_sharing(both), Target(title, 1.0, 1e-8, determinate, "statics"))
     pairs = by_torque(page, 5 if run.quick else 21)
-    last = rows[2]
-    page.say(
-        "The assembled stage shares as the closed form says, to round-off of the solver: three "
-        "planets of a floating sun always equally, four by "
-        f"{last[SHARING]:.4f} where one pin's error is a quarter of the mean load.",
-        "Four planets with teeth that only press carry in pairs of opposite ones: at little torque "
-        "two carry all, K_gamma = 2.",
-    )
+    answer(page, rows)
     page.section("One pin out of place")
-    page.sweep(SHARING, rows, "planets", SHARING, by="sun")
+    page.sweep(HERO, rows, "planets", SHARING, by="sun")
     page.section("Four planets by the torque")
     title = "Load of each planet over the mean, one pin out of place, teeth that only press"
     curves = {f"planet {k}": f"planet {k}" for k in (1, 2, 3, 4)}
     page.sweep(title, pairs, MEAN, curves, axis="load over the mean", log="x")
+
+
+def answer(page: Page, rows: list[Record]) -> None:
+    """State the load sharing of planets, beside the closed form."""
+    at = {(row["planets"], row["sun"]): row for row in rows}
+    worst = max(abs(row[SHARING] / row["closed form"] - 1) for row in rows)
+    same = "as" if all(check.passed for check in page.checks) else "not as"
+    page.answer(
+        "How unevenly do planets share the load when one pin is out of place?",
+        f"K_gamma is {at[3, 'floating'][SHARING]:.4f} with three planets and a floating sun, "
+        f"{at[4, 'floating'][SHARING]:.4f} with four, {at[3, 'fixed'][SHARING]:.4f} with a fixed "
+        f"sun, {same} the closed form has it.",
+        [
+            *(
+                page.value(
+                    f"{SHARING}, {planets} planets, {sun} sun",
+                    at[planets, sun][SHARING],
+                    beside=at[planets, sun]["as tabled"],
+                    by="closed form",
+                )
+                for planets, sun in ((3, "floating"), (4, "floating"), (3, "fixed"), (7, "fixed"))
+            ),
+            page.value(
+                "largest difference of ten from the closed form [%]", 100 * worst, at_most=0.001
+            ),
+            page.judged(
+                "four planets, little torque: load of planet 1 over the mean",
+                "four planets, little torque: planet 1 over the mean",
+                "statics",
+            ),
+        ],
+        HERO,
+        [
+            f"The error of the pin is {SHARE:g} of the mean load over the stiffness of a planet's "
+            "branch.",
+            "Four planets with teeth that only press carry in pairs of opposite ones: at little "
+            "torque two carry all.",
+        ],
+    )
 
 
 def by_torque(page: Page, count: int) -> list[Record]:

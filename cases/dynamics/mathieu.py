@@ -17,6 +17,7 @@ from fe_drivetrain.dynamics import (
     steady,
 )
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import percent_text
 from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
 
 DEPTHS = (0.02, 0.05, 0.1, 0.2)
@@ -25,6 +26,7 @@ STEPS = 128
 
 
 GROWTH = "growth [1/s]"
+TONGUE = "Rate of growth beside twice the natural frequency, depth {}, w = 1 rad/s"
 
 
 def growth_in_time(depth: float, step: float, _: int) -> InTime:
@@ -99,13 +101,34 @@ def run(run: Run, page: Page) -> None:
         why="the edges are that far but for the square of the depth",
         source="averaging, first order in the depth",
     )
-    more = 100.0 * np.expm1(2.0 * np.pi * stepped_growth(depth, 2.0, STEPS))
-    page.say(
-        "A stiffness that varies by 10 % at twice the natural frequency makes motion grow by "
-        f"{more:.0f} % in each natural period; damping of e / 4 = {depth / 4:g} stops that.",
-        "Growth is that of Mathieu's equation to a thousandth, in and beside the resonance.",
-    )
+    answer(page, depth)
     show(page, depth, rows, at, ours, exact)
+
+
+def answer(page: Page, depth: float) -> None:
+    """State how fast motion grows at twice the natural frequency, and what stops it."""
+    growth = stepped_growth(depth, 2.0, STEPS)
+    more = 100.0 * float(np.expm1(2.0 * np.pi * growth))
+    apart = growth / exact_growth(depth, 2.0) - 1.0
+    page.answer(
+        "How fast does motion grow when a mesh stiffness varies at twice the natural frequency?",
+        f"With {100 * depth:g}\u00a0% of variation motion grows by {more:.0f}\u00a0% in each "
+        f"natural period, {percent_text(apart)} from Floquet's rate; damping of {depth / 4:g} "
+        "stops that.",
+        [
+            page.value(f"growth in a natural period, depth {depth} [%]", more),
+            *(
+                page.judged(
+                    f"depth {one}: growth at twice the natural frequency",
+                    f"rate of growth, depth {one}",
+                    "Floquet",
+                )
+                for one in DEPTHS[1:]
+            ),
+            page.judged("growth over e w / 4, least depth", by="averaging"),
+        ],
+        TONGUE.format(depth),
+    )
 
 
 def show(
@@ -117,7 +140,7 @@ def show(
     page.section("Beside it")
     low = np.sqrt(np.maximum(depth**2 / 16.0 - (at / 2.0 - 1.0) ** 2, 0.0))
     page.chart(
-        f"Rate of growth, depth {depth}, w = 1 rad/s",
+        TONGUE.format(depth),
         [
             trace("time integration", at, ours, True),
             trace("Floquet", at, exact),

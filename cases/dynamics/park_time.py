@@ -1,7 +1,6 @@
 """Park et al. 2021 in time: torque step, mesh lines, eccentric bodies, a moving nacelle."""
 
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 
@@ -24,6 +23,17 @@ from fe_drivetrain.cases.dynamics.park_models import (
     static_forces,
     torque,
     varying_model,
+)
+from fe_drivetrain.cases.dynamics.park_words import (
+    FORCES,
+    MAXIMUM,
+    MINIMUM,
+    PERIOD,
+    PUSHED,
+    Range,
+    answer,
+    answer_of_step,
+    show_verdicts,
 )
 from fe_drivetrain.cases.references import park_2021 as park
 from fe_drivetrain.common import Floats
@@ -59,23 +69,11 @@ CHAIN = (
     "stage 3 pinion",
     "generator",
 )
-PUSHED = "none: nacelle 6250 N"
-MINIMUM, MAXIMUM = "least force of a mesh over the static one", "largest force over the static one"
-PERIOD = "period of the mesh force [s]"
 #: Of all meshes at the step, in periods: none is printed.
 PHASES = (0.0, 0.25, 0.5, 0.75)
 SETTLED = 0.05
 """What step and harmonics may leave uncertain of an answer, each, over it."""
 FEW = "a hundredth of the energy is half a hundredth of the forces"
-
-
-class Range(NamedTuple):
-    """A value with its band, and the range that phases which are not printed give it."""
-
-    value: float
-    band: float
-    low: float
-    high: float
 
 
 @case(
@@ -101,19 +99,8 @@ def run(run: Run, page: Page) -> None:
     with run.step("eccentricity and nacelle"):
         seconds, dt = (0.75, 1.25e-4) if run.quick else (8.0, 1.25e-4)
         changes = eccentric(page, space, dt, seconds, run.quick)
-    nacelle = changes[PUSHED]
-    largest = max((name for name in changes if name != PUSHED), key=lambda name: changes[name])
-    page.say(
-        f"The 'constant period of approximately 0.4 s' is the first mode after a torque step: "
-        f"{steps[0][PERIOD]:.3f} s with the meshes as printed and {steps[2][PERIOD]:.3f} s with "
-        f"all of them wound twice; the force goes from {steps[0][MINIMUM]:.3f} to "
-        f"{steps[0][MAXIMUM]:.3f} of the static one, as Figure 7 has it.",
-        answer_of_step(least),
-        f"An eccentric {largest} changes the planetary mesh force most, by {changes[largest]:.2g} "
-        "% of its mean, by the weight of its offset mass; the nacelle's force changes it by "
-        f"{nacelle:.2g} %. The source finds eccentricity small, the planets' largest in one place "
-        "and the rotor's critical in another, and the nacelle's force larger than either.",
-    )
+    answer(page, steps, least, changes)
+    page.say(answer_of_step(least))
     show_verdicts(page, steps, least, lines, changes)
     for name, value, unit in (
         ("contact ratio of all meshes", CONTACT_RATIO, "-"),
@@ -125,29 +112,6 @@ def run(run: Run, page: Page) -> None:
         ("highest frequency of the nacelle's force", HIGHEST, "Hz"),
     ):
         page.assume(name, value, unit, "not printed")
-
-
-def answer_of_step(least: dict[str, Range]) -> str:
-    """What the least forces show of bending and bearings, and what they leave open."""
-    flat, space = least["torsional"], least["three dimensions"]
-    words = (
-        "With varying meshes the least force of a mesh after the step is "
-        f"{space.value:.2f} ± {space.band:.2f} of the static one in three dimensions and "
-        f"{flat.value:.2f} ± {flat.band:.2f} in the torsional model; by the phase of the meshes, "
-        f"which is not printed, {space.low:.2f} to {space.high:.2f} and {flat.low:.2f} to "
-        f"{flat.high:.2f}. "
-    )
-    if flat.high + flat.band < min(0.0, space.low - space.band):
-        return words + (
-            "Forces below zero come of varying meshes that are suddenly loaded, and not of "
-            "bending and bearings, which make them smaller."
-        )
-    if max(flat.high + flat.band, space.high + space.band) < 0.0:
-        return words + (
-            "Forces are below zero in both, so that they need no bending; which model has the "
-            "lower ones is not decided."
-        )
-    return words + "Which model has the lower forces, and whether they pull, is not decided."
 
 
 def torque_step(page: Page) -> list[Record]:
@@ -249,7 +213,7 @@ def step_in_space(
             [[phase, end] for phase, end in zip(PHASES, ends, strict=True)],
             ["phase [periods]", "least"],
         )
-    page.chart("Mesh forces over the static ones", traces, "time [s]", "force over static")
+    page.chart(FORCES, traces, "time [s]", "force over static")
     compare_angles(page, angles["torsional"], angles["three dimensions"])
     return least
 
@@ -432,65 +396,3 @@ def eccentric(
         "of 15 kN m."
     )
     return found
-
-
-def show_verdicts(
-    page: Page,
-    steps: list[Record],
-    least: dict[str, Range],
-    lines: dict[str, list[float]],
-    changes: dict[str, float],
-) -> None:
-    """What the source says, what is found, and whether they agree."""
-    by = {name: change for name, change in changes.items() if name != PUSHED}
-    nacelle = changes[PUSHED]
-    worst = max(by, key=lambda name: by[name])
-    same = lines["torsional"] == lines["three dimensions"]
-    near = min(steps, key=lambda row: abs(row[PERIOD] - 0.4))
-    flat, space = least["torsional"], least["three dimensions"]
-    page.section("Printed, ours, verdict")
-    page.table(
-        "Words of sections 4 and 5",
-        [
-            [
-                "period of the contact force",
-                "about 0.4 s",
-                f"{steps[0][PERIOD]:.3f} s as printed, {near[PERIOD]:.3f} s: {near['meshes']}",
-                "the first mode, not meshing",
-            ],
-            [
-                "least force, torsional",
-                "0",
-                f"{steps[0][MINIMUM]:.3f} of static, constant meshes",
-                "agrees: a torque step" if abs(steps[0][MINIMUM]) < 0.02 else "differs",
-            ],
-            [
-                "least force in 3D",
-                "at times negative, by bending and bearings",
-                f"{space.value:.2f} ± {space.band:.2f} of static; torsional {flat.value:.2f} ± "
-                f"{flat.band:.2f}",
-                "not decided"
-                if max(space.high + space.band, flat.high + flat.band) >= 0.0
-                else "so it is, and without bending, too",
-            ],
-            [
-                "lines 18.30, 63.06, 128.50 Hz",
-                "in both models",
-                "in both models" if same else "differ",
-                "agrees, as these are the frequencies that were given" if same else "differs",
-            ],
-            [
-                "eccentricity",
-                "not significant; planets largest, rotor critical",
-                f"{worst} largest, {by[worst]:.2g} %",
-                "the source contradicts itself",
-            ],
-            [
-                "nacelle's force against eccentricity",
-                "larger",
-                f"{nacelle:.2g} % against {min(by.values()):.2g} to {by[worst]:.2g} %",
-                "agrees" if nacelle > by[worst] else "differs",
-            ],
-        ],
-        ["statement", "printed", "ours", "verdict"],
-    )

@@ -22,11 +22,13 @@ from fe_drivetrain.dynamics import (
     wind_up,
 )
 from fe_drivetrain.dynamics.torsion import two_masses
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import chart, mark_events, trace
+from fe_drivetrain.report.number_text import percent_text
 from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
 
 PER_PERIOD = (20, 40, 80, 160)
 QUICK = (20, 40)
+BRAKED = "Drivetrain D as two masses, stopped by a brake of 1.2 times rated torque"
 BRAKE = 1.2
 """Friction of the brake over rated torque."""
 
@@ -49,17 +51,50 @@ def run(run: Run, page: Page) -> None:
             ]
     last = rows[-1]["steps a period"]
     finest = [row for row in rows if row["steps a period"] == last]
-    page.say(
-        f"With {last} steps a period, torques of two masses are right to "
-        f"{max(row['error of the torque, loss [%]'] for row in finest):.2g} % of rated over three "
-        "periods after a loss of the generator, by either method.",
-        "The brake step winds the shaft up to twice its mean, and where the disc stands it holds "
-        "what the shaft carries and no more than its friction.",
-    )
     page.section("Error over the step")
     page.table("Two masses", rows)
     page.data("transients", rows)
     show(page)
+    answer(page, finest)
+
+
+def answer(page: Page, finest: list[Record]) -> None:
+    """State how exact torques are with the shortest steps, and what the brake does."""
+    key = "error of the torque, loss [%]"
+    worst = max(row[key] for row in finest)
+    wound = page.judged(
+        "drivetrain D, brake of 1.2 rated: largest torque of the shaft over rated",
+        "largest torque of the braked shaft, over rated",
+        "twice the mean",
+    )
+    page.answer(
+        "How exact are transients in time of two masses on a shaft?",
+        f"With {finest[0]['steps a period']} steps a period torques are exact to "
+        f"{percent_text(worst / 100.0)} of rated over three periods; a brake winds the shaft to "
+        f"{wound.value:.2f} of rated.",
+        [
+            *(
+                page.value(
+                    f"largest error after loss of the generator, drivetrain {row['drivetrain']} "
+                    "[% of rated]",
+                    row[key],
+                )
+                for row in finest
+                if row["method"] == AVERAGE.name
+            ),
+            wound,
+            page.judged(
+                "drivetrain D, disc held: frequency of the rotor",
+                "frequency of the rotor, disc held",
+                "closed form",
+            ),
+        ],
+        BRAKED,
+    )
+    page.say(
+        "The brake step winds the shaft up to twice its mean, and where the disc stands it holds "
+        "what the shaft carries and no more than its friction.",
+    )
 
 
 def transients(
@@ -165,9 +200,9 @@ def show(page: Page) -> None:
     )
     motion = braked(2e-3)
     check_brake(page, motion, J, k, one)
-    page.chart(
-        "Drivetrain D as two masses: "
-        + ", ".join(f"{what} at {when:.3f} s" for when, what in motion.braking.events),
+    first, what = motion.braking.events[0]
+    drawn = chart(
+        BRAKED,
         [
             trace("shaft", motion.times, motion.forces[:, 0] / one.torque),
             trace("brake", motion.times, motion.braking.torque[:, 0] / one.torque),
@@ -178,6 +213,7 @@ def show(page: Page) -> None:
         "time [s]",
         "torque over rated; speed",
     )
+    page.add(mark_events(drawn, {f"disc {what}": first}))
 
 
 def check_brake(page: Page, motion: Motion, J: Floats, k: float, one: Rated) -> None:

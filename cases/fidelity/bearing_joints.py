@@ -26,6 +26,7 @@ from fe_drivetrain.drivetrain_file import (
 )
 from fe_drivetrain.elasticity.interfaces import roller_loads
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Run
 from fe_drivetrain.shafts.fidelity import meridian_shaft
 
@@ -39,6 +40,8 @@ KNOWN = {
     5.0e6: "toroidal roller bearing INP-A of a 5 MW drivetrain (Nejad et al. 2016)",
     1.272e9: "double-row tapered rollers, fitted to tables (Stirling 2023)",
 }
+
+NAMES = {5.0e6: "toroidal roller bearing", 1.272e9: "double-row tapered rollers"}
 
 #: The ring of rollers: two rows, radial; all assumed.
 COUNT, STIFFNESS, ROWS = 28, 5e8, (-0.05, 0.05)
@@ -140,11 +143,8 @@ def run(run: Run, page: Page) -> None:
     low, high = (sweep.reached(share) for share in (ENOUGH, 1.0 - ENOUGH))
     known = "; ".join(f"{whose}: {sweep.share(k):.0f} %" for k, whose in KNOWN.items())
     stiffer = limits.all.hub_motions[4, 4] / limits.bonded.hub_motions[4, 4] - 1
+    answer(page, limits, sweep, (low, high))
     page.say(
-        f"From no to full tilt stiffness the bearing's share of a hub moment goes from 0 to "
-        f"{limits.all.tilt_moment:.3f}. Below {low:.2g} N m/rad a spherical joint is within "
-        f"{100 * ENOUGH:g} % of the largest share, above {high:.2g} N m/rad a rigid tie is; only "
-        "between them does the joint's own stiffness have to be known.",
         f"Of the largest share, a bearing as stiff as these takes: {known}.",
         f"Bonding stiffens the hub by another {100 * stiffer:.1f} % in tilt, for it keeps the bore "
         "round as well.",
@@ -157,6 +157,37 @@ def run(run: Run, page: Page) -> None:
     page.data("spherical_below", low)
     page.data("rigid_above", high)
     page.data("bearing", BEARING)
+
+
+HERO = "Tilting moment that the bearing takes for 1 N m at the hub, from spherical to rigid"
+
+
+def answer(page: Page, limits: Limits, sweep: Sweep, ends: tuple[float, float]) -> None:
+    """State between which stiffnesses [N m/rad] the joint's own has to be known."""
+    low, high = ends
+    page.answer(
+        "Does it matter how a main bearing's joint is modelled?",
+        f"Only between {formatted(low / 1e6, 2)} and {formatted(high / 1e6, 2)}\u00a0MN\u00a0m/rad "
+        "of tilt stiffness: below, a spherical joint is good enough, above, a rigid one.",
+        [
+            page.value("spherical is enough up to [MN m/rad]", low / 1e6),
+            page.value("rigid is enough from [MN m/rad]", high / 1e6),
+            page.value(
+                "largest share of a hub moment that the bearing takes", limits.all.tilt_moment
+            ),
+            *(
+                page.value(f"of that share, {NAMES[k]} [%]", sweep.share(k), beside=100.0, by="all")
+                for k in KNOWN
+            ),
+            page.value("share with a bonded joint", limits.bonded.tilt_moment),
+        ],
+        hero=HERO,
+        cautions=[
+            f"Enough is within {100 * ENOUGH:g} % of the largest share; stiffnesses of real "
+            "bearings depend on load and clearance.",
+            "Bonding keeps the bore round as well, which no spring does.",
+        ],
+    )
 
 
 def _swept(run: Run, scene: Scene) -> Sweep:
@@ -257,9 +288,9 @@ def _show_sweep(page: Page, limits: Limits, sweep: Sweep, rollers: Rollers, low:
     fine, curve = sweep.stiffness, sweep.moments
     ends = [fine[0], fine[-1]]
     page.section("From spherical to rigid")
+    page.text(f"The shaded range has less than {100 * ENOUGH:g} % of the largest share.")
     page.chart(
-        "Tilting moment that the bearing takes for 1 N m at the hub, from spherical to rigid; the "
-        f"shaded range has less than {100 * ENOUGH:g} % of the largest share",
+        HERO,
         [
             trace("level 2: shaft, joint and housing as springs", fine, curve),
             trace("assembly of solids", 10.0**sweep.powers, sweep.solid_moments, points=True),

@@ -20,6 +20,7 @@ from fe_drivetrain.export import (
     Superelement,
 )
 from fe_drivetrain.pages import QUICK_BAND
+from fe_drivetrain.plots.figures import error_range, error_traces
 from fe_drivetrain.report import (
     Cell,
     Chart,
@@ -27,7 +28,6 @@ from fe_drivetrain.report import (
     Solid,
     chart,
     picture_of_displacements,
-    trace,
     write_solid_view,
 )
 from fe_drivetrain.report.suite import Page, Run, column
@@ -56,7 +56,6 @@ SOLVED_REASON = (
     "motions that are small beside the largest"
 )
 
-_MINIMUM = 1e-6  # percent: what is exact has a place on a logarithmic axis
 _CHANGE = "change over the diagonal [-]"
 
 
@@ -200,6 +199,14 @@ class Compared:
         enough = [k for k, error in enumerate(self.known_errors) if error <= TOLERANCE]
         return enough[0] if enough else len(self.ladder.models) - 1
 
+    @property
+    def caption(self) -> str:
+        """Caption of the chart of errors against time."""
+        return _capital(
+            f"{self.first.name}: error against time, bars: band of the solid; the chosen "
+            "level is enough"
+        )
+
     def sentence(self) -> str:
         """The level that is enough, and how far it is from the solid."""
         chosen, times = self.chosen, self.ladder.seconds
@@ -217,7 +224,7 @@ class Compared:
         )
 
 
-def show_ladder(run: Run, page: Page, ladder: Ladder, quantities: Sequence[Quantity]) -> None:
+def show_ladder(run: Run, page: Page, ladder: Ladder, quantities: Sequence[Quantity]) -> Compared:
     """Levels compared: value, error against the solid, its band, time, what is neglected.
 
     Parameters
@@ -225,15 +232,19 @@ def show_ladder(run: Run, page: Page, ladder: Ladder, quantities: Sequence[Quant
     run : Run
         Whether the mesh is the component's own, or a quick run's.
     page : Page
-        Takes the answer, the check whether some level is known to be within `TOLERANCE` in the
-        first quantity, and the section.
+        Takes the check whether some level is known to be within `TOLERANCE` in the first quantity,
+        and the section.
     ladder : Ladder
         The levels.
     quantities : sequence of Quantity
         What they are compared by; the first decides.
+
+    Returns
+    -------
+    Compared
+        The levels by all quantities.
     """
     found = Compared.of(ladder, quantities)
-    page.say(f"{_capital(found.sentence())}.")
     if run.quick:
         page.say(QUICK_BAND)
     else:
@@ -248,7 +259,7 @@ def show_ladder(run: Run, page: Page, ladder: Ladder, quantities: Sequence[Quant
         )
     page.section("The ladder")
     page.text(_capital(found.sentence()))
-    page.add(_against_time(ladder, found.first.name, found.errors[0], found.own))
+    page.add(_against_time(found))
     _level_table(page, found)
     _quantity_tables(page, found)
     page.text(
@@ -256,6 +267,7 @@ def show_ladder(run: Run, page: Page, ladder: Ladder, quantities: Sequence[Quant
         "singular at inner edges, energy converges there as h^1.09 at best (Williams 1952), and "
         f"coarse meshes are not there yet: no better order than {MIN_ORDER:g} is relied upon."
     )
+    return found
 
 
 def _level_table(page: Page, found: Compared) -> None:
@@ -315,29 +327,28 @@ def _quantity_tables(page: Page, found: Compared) -> None:
     )
 
 
-def _against_time(ladder: Ladder, name: str, errors: Sequence[float], own: float) -> Chart:
-    """Error of each level over its time; of the solid its own band."""
-    times = ladder.seconds
-    traces = [
-        trace(
-            f"level {model.level}, {model.title}",
-            [seconds],
-            [max(100 * error, _MINIMUM)],
-            points=True,
-            marker={"size": 11},
-        )
-        for model, seconds, error in zip(ladder.models, times, [*errors[:-1], own], strict=True)
-        if np.isfinite(error)
-    ]
-    ends, limit = [min(times), max(times)], 100 * TOLERANCE
-    traces.append(trace("tolerance", ends, [limit, limit], line={"dash": "dash"}))
-    return chart(
-        _capital(f"{name}: error against time; of the solid its own band"),
+def _against_time(found: Compared) -> Chart:
+    """Error of each level over its time, with the band of the solid; of the solid its own band."""
+    below, times = len(found.ladder.models) - 1, found.ladder.seconds
+    traces = error_traces(
+        [f"level {model.level}, {model.title}" for model in found.ladder.models],
+        times,
+        [*found.errors[0][:-1], found.own],
+        TOLERANCE,
+        found.chosen,
+        [found.own] * below + [0.0],
+    )
+    drawn = chart(
+        found.caption,
         traces,
         x="time [s]",
         y="error [%]",
         logarithmic=("x", "y"),
     )
+    drawn.figure["layout"]["yaxis"]["range"] = error_range(
+        [*found.errors[0][:-1], found.own], TOLERANCE, found.own
+    )
+    return drawn
 
 
 def _capital(text: str) -> str:

@@ -10,6 +10,7 @@ from fe_drivetrain.cases.fidelity.component_page import (
     SOLVED,
     SOLVED_REASON,
     TOLERANCE,
+    Compared,
     Ladder,
     Quantity,
     all_levels,
@@ -37,6 +38,7 @@ from fe_drivetrain.elasticity.solve import (
 )
 from fe_drivetrain.export import component_superelement
 from fe_drivetrain.report import Cell, trace
+from fe_drivetrain.report.number_text import certain_value, value_text
 from fe_drivetrain.report.suite import Page, Run, column
 from fe_drivetrain.shafts.beam import rectangle
 from fe_drivetrain.shafts.fidelity import (
@@ -79,7 +81,7 @@ def run(run: Run, page: Page) -> None:
         component = coarser(component, QUICK)
     ladder = all_levels(run, component)
     torsion = ring_stiffness(3)
-    show_ladder(
+    compared = show_ladder(
         run,
         page,
         ladder,
@@ -110,11 +112,8 @@ def run(run: Run, page: Page) -> None:
     page.found(
         "torsion of the suspension about x [MN m/rad]", whole, whole * band.relative_uncertainty
     )
+    answer(page, compared, torsion(ladder.models[0]) / 1e6, softer)
     page.say(
-        f"On the solid the suspension has {torsion(ladder.top):.4g} N m/rad about x "
-        f"(± {100 * band.relative_uncertainty:.2g} %), where rigid arms would have "
-        f"{torsion(ladder.models[0]):.4g}. As the gearbox springs of {SCENE}, whose "
-        f"gearbox is held about x, it takes {softer:.2g} % off the hub's torsional stiffness.",
         "Bushings and housing stand in series, so that rigid arms overstate the stiffness by "
         f"what the bushings have over the housing, here {100 * ratio:.2g} %; in the housing's "
         "own stiffness, which counts with stiff bushings, beams have an error of "
@@ -126,6 +125,55 @@ def run(run: Run, page: Page) -> None:
     page.data("torsion band", band.uncertainty)
     assume_dimensions(page, component)
     _assume_bushings(page, component)
+
+
+def answer(page: Page, compared: Compared, rigid: float, softer: float) -> None:
+    """State which level the suspension needs; torsion of rigid arms [MN m/rad], hub softer [%]."""
+    solid = page.judged("torsion of the suspension about x", "torsion about x, solid")
+    models, errors = compared.ladder.models, compared.errors[0]
+    error, band = 100 * errors[compared.chosen], 100 * compared.own
+    chosen, times = models[compared.chosen], compared.ladder.seconds
+    enough = f"the {chosen.title} is enough, {value_text(error, '%', band, False)} off"
+    if chosen is compared.ladder.top:
+        enough = f"only the solid is within {100 * TOLERANCE:g}\u00a0%"
+    page.answer(
+        "Which model does the suspension of a gearbox on torque arms need?",
+        f"The suspension has {certain_value(solid)} about the shaft's axis; for that {enough}.",
+        [
+            solid,
+            page.value(
+                "torsion about x, rigid arms [MN m/rad]",
+                rigid,
+                beside=solid.value,
+                by="solid",
+            ),
+            *(
+                page.value(
+                    f"error, {model.title} [%]",
+                    100 * one,
+                    band,
+                    beside=100 * TOLERANCE,
+                    by="allowed",
+                )
+                for model, one in zip(models[:-1], errors[:-1], strict=True)
+                if np.isfinite(one)
+            ),
+            page.value(
+                "time of the solid over that of the level that is enough",
+                times[-1] / times[compared.chosen],
+            ),
+            page.value("taken off the hub's torsional stiffness [%]", softer),
+        ][:6],
+        hero=compared.caption,
+        cautions=[
+            "Bushings are softer than the housing here: with stiff bushings the housing's own "
+            "stiffness counts, and beams err by more."
+        ],
+    )
+    page.say(
+        f"As the gearbox springs of {SCENE}, whose gearbox is held about x, the suspension takes "
+        f"{softer:.2g} % off the hub's torsional stiffness."
+    )
 
 
 def _vary_bushings(page: Page, ladder: Ladder, component: HousingComponent) -> tuple[float, float]:

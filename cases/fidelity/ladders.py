@@ -4,6 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 from fe_drivetrain.cases import cases
+from fe_drivetrain.cases.fidelity.ladder_answers import answer
 from fe_drivetrain.cases.fidelity.published_torsion import Published, beside_published
 from fe_drivetrain.cases.fidelity.stiffness_files import stiffness_files
 from fe_drivetrain.drivetrain_file import change_scene, coarser_scene, library_scene
@@ -34,7 +35,9 @@ def run(run: Run, page: Page, row: Record) -> None:
     with run.step("stiffness for other models"):
         stiffness_files(page, run.folder, scene, Quantity(row["quantity"]))
     published: dict[str, Any] | None = row.get("published")
+    torsion = None
     # the source describes the library's shaft, not one that the user changed
     if published and (scene.shaft, scene.materials) == (original.shaft, original.materials):
         with run.step("torsion beside the published figure"):
-            beside_published(page, scene, Published(**published))
+            torsion = beside_published(page, scene, Published(**published))
+    answer(page, result, row, torsion, run.quick)

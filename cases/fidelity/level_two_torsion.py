@@ -8,6 +8,7 @@ from fe_drivetrain.drivetrain_file import MATERIALS
 from fe_drivetrain.elasticity.revolution import meridian, stiffness_between_ends
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run, column, grouped
 
 LARGE, SMALL, LENGTH = 0.6, 0.4, 0.6
@@ -109,11 +110,42 @@ def judge(run: Run, page: Page, name: str, middle: float, width: float, of: list
     )
 
 
+HERO = "Difference of the meridian's stiffness from the bounds' middle"
+
+
+def answer(page: Page, finest: dict[str, Record], width: float) -> None:
+    """State how far the meridian is from two bounds, which are so far apart, relative."""
+    error = max(abs(row[ERROR]) for row in finest.values())
+    stiffness = [
+        page.judged(
+            f"{name}: torsional stiffness, order {row[ORDER]}",
+            f"torsional stiffness, {name} shaft",
+            "two bounds",
+            unit="MN m/rad",
+        )
+        for name, row in finest.items()
+    ]
+    inside = all(figure.status == "good" for figure in stiffness)
+    page.answer(
+        "How accurate is the torsional stiffness of a stepped shaft by its meridian?",
+        f"The meridian is {'within' if inside else 'not within'} two bounds that are "
+        f"{value_text(100 * width, '%')} apart, {value_text(100 * error, '%')} from their middle.",
+        [
+            page.value("largest difference from the middle of the bounds [%]", 100 * error),
+            page.value("distance of the bounds [%]", 100 * width),
+            *stiffness,
+            page.value("unknowns of the meridian", max(row["nodes"] for row in finest.values())),
+        ],
+        hero=HERO,
+        cautions=["Ends are rigid; the shaft and its step are chosen, not those of a turbine."],
+    )
+
+
 def show(page: Page, rows: list[Record], widths: list[Record]) -> None:
     """Distance of the meridian from the bounds' middle, and the bounds."""
     page.section("Torsion")
     page.chart(
-        "Difference of the meridian's stiffness from the bounds' middle",
+        HERO,
         [
             trace(name, column(of, "nodes"), [abs(error) for error in column(of, ERROR)])
             for name, of in grouped(rows, "shaft")
@@ -148,11 +180,7 @@ def run(run: Run, page: Page) -> None:
         rows += own
         widths += bounds
     finest = {name: of[-1] for name, of in grouped(rows, "shaft")}
-    page.say(
-        "The torsional stiffness of a stepped shaft between rigid ends is that of two bounds to "
-        f"{max(abs(row[ERROR]) for row in finest.values()):.1g}; the bounds are "
-        f"{max(of[-1][WIDTH] for _, of in grouped(widths, 'shaft')):.1g} apart."
-    )
+    answer(page, finest, max(of[-1][WIDTH] for _, of in grouped(widths, "shaft")))
     show(page, rows, widths)
     page.data("errors", {name: abs(row[ERROR]) for name, row in finest.items()})
     page.assume("large diameter", LARGE, "m", "chosen")

@@ -3,8 +3,17 @@
 from dataclasses import asdict
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.fidelity.side_by_side import FORCE, QUANTITIES, Compared, compared, show
+from fe_drivetrain.cases.fidelity.side_by_side import (
+    FORCE,
+    QUANTITIES,
+    Compared,
+    compared,
+    hero,
+    show,
+    titled,
+)
 from fe_drivetrain.drivetrain_file import library_scene
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Run
 
 SCENES = (
@@ -59,33 +68,80 @@ def check(page: Page, one: Compared) -> None:
 
 
 def answer(page: Page, found: list[Compared]) -> None:
-    """In how many scenes the beam is enough, and what else counts."""
+    """State for how many shafts the beam is enough, and for which it is not."""
     bending, torsion, _ = QUANTITIES
     enough = {
         key: [one.scene for one in found if one.changes[key].beam <= BEARABLE] for key in QUANTITIES
     }
     poor = [one.scene for one in found if one.scene not in enough[bending]]
-    supports = sum(
+    worst = max(found, key=lambda one: one.changes[torsion].beam)
+    share = f"{100 * BEARABLE:g} %"
+    worst_bending = max(found, key=lambda one: one.changes[bending].beam)
+    page.answer(
+        "For which shafts is a beam enough?",
+        f"Beams are within {100 * BEARABLE:g}\u00a0% in bending for {len(enough[bending])} of "
+        f"{len(found)} shafts, in torsion for {len(enough[torsion])}; at worst "
+        f"{formatted(100 * worst_bending.changes[bending].beam, 2)}\u00a0% off "
+        f"({titled(worst_bending.scene)}).",
+        [
+            *(
+                page.value(
+                    f"shafts within {share} in {words}",
+                    len(enough[key]),
+                    beside=len(found),
+                    by="all",
+                )
+                for key, words in (
+                    (bending, "bending"),
+                    (torsion, "torsion"),
+                    (FORCE, "the first bearing's force"),
+                )
+            ),
+            page.value(
+                f"largest error in bending, {titled(worst_bending.scene)} [%]",
+                100 * worst_bending.changes[bending].beam,
+            ),
+            page.value(
+                f"largest error in torsion, {titled(worst.scene)} [%]",
+                100 * worst.changes[torsion].beam,
+            ),
+            page.value("shafts whose housings do more than beam theory", supported_more(found)),
+        ],
+        hero=hero(bending),
+        cautions=[
+            "Errors are of the shaft's theory alone: supports are the same in both, and may do "
+            "more.",
+            *(
+                [f"In bending a beam is not enough for {', '.join(map(titled, poor))}."]
+                if poor
+                else []
+            ),
+        ],
+    )
+
+
+def supported_more(found: list[Compared]) -> int:
+    """In how many scenes the housings do more to the bending stiffness than beam theory does."""
+    bending = next(iter(QUANTITIES))
+    return sum(
         max(one.changes[bending].housings, one.changes[bending].faces) > one.changes[bending].beam
         for one in found
     )
-    worst = max(found, key=lambda one: one.changes[torsion].beam)
+
+
+def explain(page: Page, found: list[Compared]) -> None:
+    """State what else counts: rings, housings, and how the shaft holds their faces."""
+    bending = next(iter(QUANTITIES))
     uncertain = [one.scene for one in found if one.changes[FORCE].faces > BEARABLE]
     bare = [one.scene for one in found if one.changes[bending].bare > BEARABLE]
     share = f"{100 * BEARABLE:g} %"
     page.say(
-        "A beam in place of the exact shaft changes the hub's bending stiffness by at most "
-        f"{share} in {len(enough[bending])} of {len(found)} scenes"
-        + (f" (not in {', '.join(poor)})" if poor else "")
-        + f", the first bearing's force in {len(enough[FORCE])}, torsion in "
-        f"{len(enough[torsion])}; the most in torsion is "
-        f"{100 * worst.changes[torsion].beam:.2g} %, {worst.scene}.",
         "A beam counts the rings of its bearings as wholly part of the shaft: of the same shafts "
         f"without rings, its bending stiffness has an error of more than {share} in "
         f"{', '.join(bare) or 'no scene'}.",
-        f"In {supports} of {len(found)} scenes the housings do more to the bending stiffness than "
-        "beam theory does: whether they give, or how the shaft holds their faces, which only the "
-        "assembly of solids decides.",
+        f"In {supported_more(found)} of {len(found)} scenes the housings do more to the bending "
+        "stiffness than beam theory does: whether they give, or how the shaft holds their faces, "
+        "which only the assembly of solids decides.",
         f"The force of the first bearing depends on that by more than {share} in "
         f"{', '.join(uncertain) or 'no scene'}.",
     )
@@ -102,6 +158,7 @@ def run(run: Run, page: Page) -> None:
         found.append(compared_scene(run, page, name))
         check(page, found[-1])
     answer(page, found)
+    explain(page, found)
     page.section("What is compared")
     page.text(
         "Changes are relative to the meridian on housings as springs whose faces keep in "

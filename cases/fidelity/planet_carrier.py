@@ -9,6 +9,8 @@ from fe_drivetrain.cases.fidelity.component_page import (
     QUICK,
     SOLVED,
     SOLVED_REASON,
+    TOLERANCE,
+    Compared,
     Ladder,
     Quantity,
     all_levels,
@@ -31,6 +33,7 @@ from fe_drivetrain.elasticity.interfaces import averaged_point
 from fe_drivetrain.elasticity.mesh import MEANS, face_weights, mean_size, turns
 from fe_drivetrain.export import component_superelement
 from fe_drivetrain.report import Cell
+from fe_drivetrain.report.number_text import certain_value
 from fe_drivetrain.report.suite import Page, Run
 from fe_drivetrain.shafts.beam import round_section
 from fe_drivetrain.shafts.fidelity import (
@@ -84,7 +87,7 @@ def run(run: Run, page: Page) -> None:
     def tilt(model: LevelModel) -> float:
         return 1e12 * pin_motions(component, model).tilt if model.points else float("nan")
 
-    show_ladder(
+    compared = show_ladder(
         run,
         page,
         ladder,
@@ -103,15 +106,7 @@ def run(run: Run, page: Page) -> None:
     wound = 1e3 * RATED / top.wind_up
     band = wound * bands[0].relative_uncertainty
     page.found("wind-up of the pins at the rated torque [mrad]", wound, band)
-    page.say(
-        f"The pins wind up by {1e3 * RATED / top.wind_up:.3g} mrad at the rated torque "
-        f"(± {100 * bands[0].relative_uncertainty:.2g} %) and tilt by "
-        f"{1e6 * RATED * top.tilt:.3g} µrad (± {100 * bands[1].relative_uncertainty:.2g} %): "
-        f"{skew:.3g} µm over the planets' face width.",
-        f"Beams between rigid cheeks are {off[wind_up]:.3g} % too stiff in wind-up, and their tilt "
-        f"has an error of {abs(off[tilt]):.3g} %: the cheeks bend where hub, webs and pins stand "
-        "on them, and only the solid knows that.",
-    )
+    answer(page, compared, skew, bands[1].relative_uncertainty, (off[wind_up], off[tilt]))
     _check_beams(page, component)
     _check_solid(page, component, ladder)
     body = component_superelement(component, solids=(ladder.solids[-1], ladder.solids[-2]))
@@ -127,6 +122,55 @@ def run(run: Run, page: Page) -> None:
     page.data("tilt at 1 N m", {m.title: 1e-12 * tilt(m) for m in ladder.models if m.points})
     page.data("wind-up band", bands[0].uncertainty)
     assume_dimensions(page, component)
+
+
+def answer(
+    page: Page, compared: Compared, skew: float, tilt_band: float, off: tuple[float, float]
+) -> None:
+    """State how far the pins wind up and tilt, and how far beams are off.
+
+    Parameters
+    ----------
+    page : Page
+        Takes the answer.
+    compared : Compared
+        All levels.
+    skew, tilt_band : float
+        Tilt of a pin over the face width [µm], and its relative band.
+    off : tuple of float
+        By how much beams are too stiff in wind-up, and wrong in tilt [%].
+    """
+    wound = page.judged(
+        "wind-up of the pins at the rated torque", "wind-up of the pins at rated torque"
+    )
+    solid = compared.chosen == len(compared.ladder.models) - 1
+    beams = f"beams are {abs(off[0]):.2g}\u00a0% {'stiffer' if off[0] > 0.0 else 'softer'}"
+    if compared.own > TOLERANCE:
+        which = f"but the solid is known to {100 * compared.own:.2g}\u00a0% only"
+    else:
+        which = "not enough" if solid else "which is enough"
+    page.answer(
+        "How far does a planet carrier wind up, and are beams enough for it?",
+        f"The pins wind up by {certain_value(wound)} at rated torque; {beams}, {which}.",
+        [
+            wound,
+            page.value("tilt of a pin over the face width [µm]", skew, abs(skew) * tilt_band),
+            page.value(
+                "error of beams in wind-up [%]",
+                abs(off[0]),
+                100 * compared.own * (1 + abs(off[0]) / 100),
+                beside=100 * TOLERANCE,
+                by="allowed",
+            ),
+            page.value("error of beams in tilt [%]", abs(off[1])),
+            page.value("time of the solid [s]", compared.ladder.seconds[-1]),
+        ],
+        hero=compared.caption,
+        cautions=[
+            "The cheeks bend where hub, webs and pins stand on them, and only the solid knows "
+            "that; cheeks and webs are assumed.",
+        ],
+    )
 
 
 def under_torque(component: CarrierComponent, model: LevelModel, torque: float) -> Floats:

@@ -11,6 +11,7 @@ from fe_drivetrain.geometry import (
     Shaft,
 )
 from fe_drivetrain.report import Cell
+from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.suite import Page
 from fe_drivetrain.shafts.beam import Beam, BeamSection, shaft_stiffness
 
@@ -41,8 +42,23 @@ class Published:
     rounding: float = 0.0
 
 
-def beside_published(page: Page, scene: Scene, published: Published) -> None:
-    """The shaft from its front face to a station, ends rigid, beside what the sources say."""
+def beside_published(page: Page, scene: Scene, published: Published) -> KeyFigure:
+    """The shaft from its front face to a station, ends rigid, beside what the sources say.
+
+    Parameters
+    ----------
+    page : Page
+        Takes checks and a section.
+    scene : Scene
+        The scene.
+    published : Published
+        What its sources say.
+
+    Returns
+    -------
+    KeyFigure
+        The stiffness by finite elements, beside the published one.
+    """
     shaft = front_part(scene.shaft, published.to)
     material = scene.material_of("shaft")
     found, coarser = (
@@ -70,10 +86,17 @@ def beside_published(page: Page, scene: Scene, published: Published) -> None:
         source="sections kept plane and round only make it stiffer (least potential energy)",
         measure="identity",
     )
-    less = 100 * (1 - found / published.value)
+    _compare(page, published, (found, band), summed)
+    return _key_figure(page, published, found)
+
+
+def _compare(page: Page, published: Published, found: tuple[float, float], summed: float) -> None:
+    """The published stiffness beside that of the sections in series, and finite elements' (±)."""
+    value, band = found
+    less = 100 * (1 - value / published.value)
     page.say(
         f"{published.name} is published as {published.value:.4g} N m/rad; the shaft of this scene "
-        f"has {found:.4g} ± {band:.1g} by finite elements"
+        f"has {value:.4g} ± {band:.1g} by finite elements"
         + (f", {less:.2g} % less" if abs(less) > 0.01 else "")
         + "."
     )
@@ -81,12 +104,24 @@ def beside_published(page: Page, scene: Scene, published: Published) -> None:
     rows: list[list[Cell]] = [
         [published.name, published.value, published.half_digit, 1.0],
         ["G J / L of the sections in series", summed, None, summed / published.value],
-        ["finite elements, ends rigid", found, band, found / published.value],
+        ["finite elements, ends rigid", value, band, value / published.value],
     ]
     page.table(
-        f"Torsional stiffness from the {where}",
+        f"Torsional stiffness from the front face to x = {published.to:g} m",
         rows,
         ["how", "stiffness [N m/rad]", "half width of the band", "over the published"],
+    )
+
+
+def _key_figure(page: Page, published: Published, found: float) -> KeyFigure:
+    """The stiffness by finite elements [N m/rad], beside the published one."""
+    prefix, size = ("G", 1e9) if published.value >= 1e9 else ("M", 1e6)
+    return page.value(
+        f"torsional stiffness of the shaft, {published.name} [{prefix}N m/rad]",
+        found / size,
+        beside=published.value / size,
+        by=published.source,
+        printed=f"{published.value / size:.4g}",
     )
 
 

@@ -132,16 +132,51 @@ def run(run: Run, page: Page) -> None:
     page.data("tail", free.tail / free.own)
 
 
+HERO = f"Force of each roller over load / {ROLLERS}; the load acts at 0"
+
+
 def _answer(page: Page, free: FreeRing, pressed: dict[str, Pressed], count: int) -> None:
     """Loads of rollers on a ring that deforms, and errors of its influence functions."""
     flat = free.flat
     feet = [one for name, one in pressed.items() if "feet" in name]
+    rigid = pressed["rigid ring"].factor
+    page.answer(
+        "How does a raceway that gives way share a load among its rollers?",
+        f"On a ring on two feet the most loaded roller carries {feet[0].factor:.2f} times "
+        f"the mean, {feet[0].factor / rigid:.2g} times that of a rigid ring.",
+        [
+            page.value(
+                "most loaded roller over the mean, ring on two feet",
+                feet[0].factor,
+                beside=rigid,
+                by="rigid ring",
+            ),
+            page.value(
+                f"the same with {HOUSINGS[-1] - OUTSIDE:.2f} m of housing around it",
+                feet[-1].factor,
+                beside=rigid,
+                by="rigid ring",
+            ),
+            page.value("its load, ring on two feet [kN]", feet[0].forces.max() / 1e3),
+            page.judged(
+                "rigid ring, exponent 1.11: most loaded roller times their number over load",
+                "most loaded roller over the mean, rigid ring, line contact",
+                "Stribeck",
+            ),
+            page.judged(
+                "free ring: radial displacement under two opposite pushes",
+                "compliance under two opposite pushes",
+                "solid",
+            ),
+        ],
+        hero=HERO,
+        cautions=[
+            "Feet are narrow and hold the ring along the radius alone: a real housing is stiffer.",
+            "The shaft is rigid, and there is no clearance; dimensions are chosen.",
+        ],
+    )
     page.say(
-        f"On a ring that stands on two feet at {np.degrees(FEET):.0f} degrees the most loaded "
-        f"roller carries {feet[0].factor:.2f} times the mean of the load over all "
-        f"{ROLLERS} (rigid: {pressed['rigid ring'].factor:.2f}; with {HOUSINGS[-1] - OUTSIDE:.2f} "
-        f"m of housing around it {feet[-1].factor:.2f}): the ring deforms between "
-        "its feet, and the rollers above these take over.",
+        "The ring deforms between its feet, and the rollers above these take over.",
         f"The influence functions agree with a solid within its band "
         f"({100 * abs(flat[0] / free.solids[-1][0] - 1):.2g} % under two opposite pushes, "
         f"{100 * abs(flat[1] / free.solids[-1][1] - 1):.2g} % across them); {count} harmonics "
@@ -309,7 +344,7 @@ def _show_rollers(page: Page, pressed: dict[str, Pressed]) -> None:
     by_angle = np.argsort(shown)
     page.section("Rollers round the ring")
     page.chart(
-        f"Force of each roller over load / {ROLLERS}; the load acts at 0",
+        HERO,
         [
             trace(name, shown[by_angle], (one.forces * ROLLERS / LOAD)[by_angle])
             for name, one in pressed.items()

@@ -164,15 +164,26 @@ _TITLES = {
 }
 
 
+def titled(scene: str) -> str:
+    """A scene's name in words: "IEA 15 MW main shaft"."""
+    words = scene.replace("_15mw_", " 15 MW ").replace("_5mw_", " 5 MW ")
+    words = words.replace("_750kw_", " 750 kW ").replace("_", " ")
+    return words.replace("iea", "IEA").replace("nrel", "NREL")
+
+
+def hero(key: str) -> str:
+    """Caption of the bars of one quantity, by key of `QUANTITIES`."""
+    return f"{QUANTITIES[key]}; beside each scene its length over its largest diameter"
+
+
 def _bars(key: str, found: Sequence[Compared]) -> Chart:
     """Bars of each scene's changes, the stoutest scene at the top."""
     ordered = sorted(found, key=lambda one: one.slenderness)
     groups = {
         title: {
-            f"{one.scene} ({one.slenderness:.1f})": 100 * getattr(one.changes[key], part)
+            f"{titled(one.scene)} ({one.slenderness:.1f})": 100 * getattr(one.changes[key], part)
             for one in ordered
         }
         for part, title in _TITLES.items()
     }
-    caption = f"{QUANTITIES[key]}; beside each scene its length over its largest diameter"
-    return bars(caption, groups, f"change [%]; {_MINIMUM:g} stands for less", least=_MINIMUM)
+    return bars(hero(key), groups, f"change [%]; {_MINIMUM:g} stands for less", least=_MINIMUM)

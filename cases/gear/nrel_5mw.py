@@ -64,12 +64,65 @@ def run(run: Run, page: Page) -> None:
         "teeth."
     )
     phases(page)
-    page.say(
-        "Contact ratios and tangential forces of all five meshes are those printed, to the last "
-        "digit; stiffness by ISO 6336-1 agrees within the rounding of the printed factor of the "
-        "gear blank."
-    )
+    answer(page, list(pairs))
     page.image("Sun and planet of stage 1", run.sketch(*gear_pair(pairs["sun 1"])))
+
+
+HERO = "Mesh stiffness and tangential force: difference from the printed reports"
+
+
+def answer(page: Page, names: list[str]) -> None:
+    """State how far geometry, force and stiffness are from what is printed."""
+    apart = {check.quantity: check for check in page.checks if check.source == REPORTS}
+    largest = {
+        what: max(
+            abs(check.computed - check.reference) / (abs(check.reference) if relative else 1.0)
+            for name, check in apart.items()
+            if any(word in name for word in words)
+        )
+        for what, words, relative in (
+            ("stiffness", ("one pair", "mesh,", "over the face"), True),
+            ("force", ("tangential force",), True),
+            ("ratio", ("ratio",), False),
+        )
+    }
+    mesh = [
+        page.judged(
+            f"{name}: mesh, c_gamma_alpha",
+            f"mesh stiffness, {name}",
+            "KISSsoft",
+            f"{NREL_5MW_PRINTED[name].mesh:.3f}",
+        )
+        for name in names
+    ]
+    forces = [
+        page.judged(f"{name}: tangential force", f"tangential force, {name}", "KISSsoft")
+        for name in names
+        if NREL_5MW_PRINTED[name].torque is not None
+    ]
+    worst = 100.0 * largest["stiffness"]
+    page.answer(
+        "Are geometry and mesh stiffness of the NREL 5 MW gearbox those of the printed reports?",
+        f"All {len(apart)} printed numbers of the five meshes come out: stiffness differs by "
+        f"{worst:.1g} % at most, which is rounding."
+        if all(check.passed for check in apart.values())
+        else f"Not all of {len(apart)} printed numbers come out: stiffness differs by up to "
+        f"{worst:.2g} %.",
+        [
+            page.value("largest difference of a stiffness [%]", worst, at_most=0.06, by="digits"),
+            page.value(
+                "largest difference of a contact ratio", largest["ratio"], at_most=5e-4, by="digits"
+            ),
+            page.value("largest difference of a force [%]", 100.0 * largest["force"]),
+            *(mesh[names.index(name)] for name in ("sun 1", "ring 1", "stage 3")),
+        ],
+        hero=HERO,
+        cautions=[
+            "The factor of the gear blank is taken as printed, with three digits, and limits "
+            "how well stiffness can agree."
+        ],
+    )
+    page.errors(HERO, [*mesh, *forces])
 
 
 def phases(page: Page) -> None:

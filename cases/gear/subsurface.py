@@ -15,6 +15,7 @@ from fe_drivetrain.gear import (
     von_mises,
 )
 from fe_drivetrain.report import gear_pair, trace
+from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 
 STEEL = reduced_modulus()
@@ -114,8 +115,8 @@ def ratio_rows(found: dict[str, LineContact]) -> list[Record]:
             "Al-Hamadani 2018, 2 MW": printed,
         }
         for name, printed in (
-            ("ring and planet", 2.32),
-            ("sun and planet", 1.32),
+            ("ring and planet", PRINTED_RATIOS[0]),
+            ("sun and planet", PRINTED_RATIOS[1]),
             ("intermediate", 1.22),
         )
     ]
@@ -134,19 +135,17 @@ def run(run: Run, page: Page) -> None:
         for name, (mesh, load, _, _) in meshes().items()
     }
     rows = contact_rows(page, found)
-    page.say(
-        "At 325 kN m the flanks see "
-        + ", ".join(f"{r['pressure [MPa]']:.0f} MPa ({r['mesh']})" for r in rows)
-        + ": one pair of teeth, the whole face, no load factors.",
-    )
+    answer(page, rows)
     page.section("Four meshes")
+    show_path(page)
     page.table("Contact at the pitch point", rows)
     page.table(
         "Ratios of pressures, beside those that the thesis prints of its 2 MW gearbox",
         ratio_rows(found),
     )
     page.text(
-        f"The thesis's 2.32 and 1.32 make sun over ring {2.32 / 1.32:.3f}. For its teeth (29, 58, "
+        "The thesis's 2.32 and 1.32 make sun over ring "
+        f"{PRINTED_RATIOS[0] / PRINTED_RATIOS[1]:.3f}. For its teeth (29, 58, "
         "145), equal forces and equal widths Hertz leaves exactly the root of 5, "
         f"{np.sqrt(5.0):.3f}: the printed ratios "
         "contradict each other. Its Eq 5.13, half the sum of curvatures, is 1 over a length; the "
@@ -155,6 +154,65 @@ def run(run: Run, page: Page) -> None:
     )
     show_field(page, unit)
     page.image("Sun and planet", run.sketch(*gear_pair(nrel_750kw()["sun"])))
+
+
+HERO = "Contact pressure along the path of contact, one pair of teeth with the whole load"
+PRINTED_RATIOS = (2.32, 1.32)
+"""High speed over ring and over sun, as the thesis prints them of its 2 MW gearbox."""
+
+
+def answer(page: Page, rows: list[Record]) -> None:
+    """State which flank is pressed most, and that the thesis's ratios contradict each other."""
+    worst = max(rows, key=lambda row: float(row["pressure [MPa]"]))
+    printed, exact = PRINTED_RATIOS[0] / PRINTED_RATIOS[1], float(np.sqrt(5.0))
+    fits = abs(printed / exact - 1.0) < 0.01  # three digits each
+    pressure = value_text(float(worst["pressure [MPa]"]), "MPa")
+    at = f"{TORQUE / 1e3:.0f}\u00a0kN\u00a0m"
+    name = str(worst["mesh"]).replace("high speed", "high-speed")
+    most = f"{name} flanks press most, with {pressure}"
+    page.answer(
+        f"How hard do the flanks of the NREL 750 kW gearbox press on each other at {at}?",
+        f"The {most}; the thesis's ratios of pressures hold for equal forces."
+        if fits
+        else f"The {most}; the thesis's pressure ratios do not hold: sun over ring is "
+        f"{printed:.3g} in them, {exact:.3g} by Hertz.",
+        [
+            *(
+                page.judged(
+                    f"{row['mesh']}: pressure at the pitch point",
+                    f"contact pressure, {row['mesh']}",
+                    "recomputed",
+                )
+                for row in sorted(rows, key=lambda row: -float(row["pressure [MPa]"]))
+            ),
+            page.judged(
+                f"{worst['mesh']}: depth of the largest shear stress",
+                f"depth of the largest shear stress, {worst['mesh']}",
+                "recomputed",
+                "0.28",
+            ),
+            page.value(
+                "pressure of sun over ring, equal forces and widths",
+                exact,
+                beside=printed,
+                by="thesis",
+            ),
+        ],
+        hero=HERO,
+        cautions=["One pair of teeth carries the whole load over the whole face: no load factors."],
+        claim="holds" if fits else "does not hold",
+    )
+
+
+def show_path(page: Page) -> None:
+    """Show the contact pressure of each mesh from the start to the end of its path."""
+    share = np.linspace(0.0, 1.0, 41)
+    curves = []
+    for name, (mesh, load, _, _) in meshes().items():
+        places = mesh.path.start + share * (mesh.path.end - mesh.path.start)
+        pressures = [tooth_contact(mesh, at, load, STEEL).pressure / 1e6 for at in places]
+        curves.append(trace(name, 100.0 * share, pressures))
+    page.chart(HERO, curves, "way along the path of contact [%]", "contact pressure [MPa]")
 
 
 def show_field(page: Page, unit: LineContact) -> None:

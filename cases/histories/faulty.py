@@ -21,6 +21,8 @@ SIX = 6.0 * HERTZ
 STEP = 0.01
 LINES = {3: 1.0, 6: 0.3}  # amplitudes at multiples
 KEPT = 0.01
+SIZE, SPOILT, STEEP = "spike over standard deviation", "DEL over the clean one", "m = 10"
+FOLDED = "A line of 6P at 1.2 Hz, sampled ever more slowly"
 LITTLE = 0.02
 
 
@@ -31,20 +33,45 @@ LITTLE = 0.02
 def run(run: Run, page: Page) -> None:
     """Drive histories into each fault, and show what the program does."""
     with run.step("sampling"):
-        slow(page)
+        sampled = slow(page)
     with run.step("length"):
         change = short(run, page)
     with run.step("spikes"):
-        spikes(page)
+        spoilt = spikes(page)
     with run.step("gaps and constants"):
         refused(page)
+    answer(page, sampled, spoilt, change)
     page.say(
-        "6P needs more than two samples a period; sampled more slowly it appears as a load that is "
-        "not there, or falls on 3P and changes that: the page of `loads` states where.",
-        f"The rule for the residue changes an equivalent load of m = 10 by {change:.2g} % in ten "
-        "minutes of a load that drifts, so that every figure states it, and 'loads' names the "
-        "share of half cycles. A spike decides equivalent loads of steep S-N curves: 'loads' names "
-        "its file, channel and time, and takes nothing out.",
+        "'loads' states where a line appears that is sampled too slowly, the rule for the residue "
+        "of every figure, the share of half cycles, and file, channel and time of a spike; it "
+        "takes nothing out."
+    )
+
+
+def answer(page: Page, sampled: list[Record], spoilt: list[Record], change: float) -> None:
+    """State what the slowest sampling, the largest spike and the residue do to loads."""
+    slowest = min(sampled, key=lambda row: float(row["samples per 6P"]))
+    samples, seen = (
+        float(slowest[key]) for key in ("samples per 6P", "line of 6P appears at [Hz]")
+    )
+    largest = max(float(row[SIZE]) for row in spoilt)
+    shallow, steep = (float(row[SPOILT]) for row in spoilt if row[SIZE] == largest)
+    page.answer(
+        "What do slow sampling, a spike or an open end do to counted loads?",
+        f"With {samples:.3g} samples a period 6P appears at {seen:.2g}\u00a0Hz, not "
+        f"{SIX:.2g}\u00a0Hz; one spike of {largest:.3g} deviations makes an equivalent load "
+        f"{steep:.2g} times too large.",
+        [
+            page.value("6P appears at [Hz]", seen, beside=SIX, by="truth"),
+            page.value(f"equivalent load with a spike over the clean one, {STEEP}", steep),
+            page.value("the same, m = 3", shallow),
+            page.value("closed residue over half cycles, 600 s, m = 10 [%]", change),
+        ],
+        hero=FOLDED,
+        cautions=[
+            "A gap, a value that is no number and time that steps back are refused with their "
+            "place; all else is counted as it stands."
+        ],
     )
 
 
@@ -53,7 +80,7 @@ def wave(time: Floats) -> Floats:
     return np.asarray(sum(a * np.sin(2 * np.pi * n * HERTZ * time) for n, a in LINES.items()))
 
 
-def slow(page: Page) -> None:
+def slow(page: Page) -> list[Record]:
     """One load at ever larger steps: the line of 6P, and where it stands."""
     rows: list[Record] = []
     for rate in (100.0, 20.0, 10.0, 5.0, 3.0, 2.6, 2.2, 1.8, 1.5):
@@ -91,7 +118,7 @@ def slow(page: Page) -> None:
         )
     page.section("Sampling too slow for 6P")
     page.sweep(
-        "A line of 6P at 1.2 Hz, sampled ever more slowly",
+        FOLDED,
         rows,
         "samples per 6P",
         "line of 6P appears at [Hz]",
@@ -109,6 +136,7 @@ def slow(page: Page) -> None:
         program="'loads' leaves the amplitude empty and states where the line appears",
         remedy="write the output more often",
     )
+    return rows
 
 
 def short(run: Run, page: Page) -> float:
@@ -193,7 +221,7 @@ def _apart(histories: list[Floats], seconds: float) -> float:
     return closed / half - 1.0
 
 
-def spikes(page: Page) -> None:
+def spikes(page: Page) -> list[Record]:
     """One wrong sample in ten minutes."""
     load = wave(np.arange(0.0, 600.0, 0.05))
     clean = {m: damage_equivalent_load([rainflow_cycles(load)], 600.0, m) for m in (3.0, 10.0)}
@@ -204,9 +232,9 @@ def spikes(page: Page) -> None:
         places = lone_samples(spoilt).tolist()
         for slope, before in clean.items():
             found = damage_equivalent_load([rainflow_cycles(spoilt)], 600.0, slope)
-            row = {"spike over standard deviation": size, "slope": f"m = {slope:g}"}
+            row = {SIZE: size, "slope": f"m = {slope:g}"}
             row |= {
-                "DEL over the clean one": found / before,
+                SPOILT: found / before,
                 "named by 'loads'": "yes" if places else "no",
             }
             rows.append(row)
@@ -221,22 +249,23 @@ def spikes(page: Page) -> None:
     page.sweep(
         "One spike in 12 000 samples",
         rows,
-        "spike over standard deviation",
-        "DEL over the clean one",
+        SIZE,
+        SPOILT,
         by="slope",
     )
-    safe = [r for r in rows if r["slope"] == "m = 10" and r["DEL over the clean one"] <= 1 + KEPT]
+    safe = [r for r in rows if r["slope"] == STEEP and r[SPOILT] <= 1 + KEPT]
     page.limit(
         "damage-equivalent load of m = 10 with one wrong sample",
-        "spike over standard deviation",
+        SIZE,
         low=None,
-        high=max((r["spike over standard deviation"] for r in safe), default=1.0),
+        high=max((r[SIZE] for r in safe), default=1.0),
         criterion=f"changed by less than {KEPT:.0%}",
         beyond="one range decides the damage of a steep S-N curve",
         program="names file, channel and time of samples that stand alone, shows the largest range "
         "beside the equivalent loads, and removes nothing",
         remedy="look at the sample, and correct it",
     )
+    return rows
 
 
 def refused(page: Page) -> None:

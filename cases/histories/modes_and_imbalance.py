@@ -7,7 +7,9 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
-from fe_drivetrain.report import trace
+from fe_drivetrain.common.typeset import MINUS
+from fe_drivetrain.report import chart, mark_events, trace
+from fe_drivetrain.report.number_text import certain_value
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.turbine_loads.histories import MULTIPLES, Spectrum, multiples, spectrum
 from fe_drivetrain.turbine_loads.hub_loads import (
@@ -67,8 +69,53 @@ def run(run: Run, page: Page) -> None:
             Spectrum(one[0].frequency, mean_of([s.density for s in one]), len(one))
             for one in zip(*parts, strict=True)
         ]
-    show(page, spectra, speed, natural_frequencies(turbine, speed))
+    rows = show(page, spectra, speed, natural_frequencies(turbine, speed))
     check_modes(page, spectra["and blade modes"][1], speed, turbine)
+    answer(page, rows[0], rows[-1], len(grid))
+
+
+def answer(page: Page, rigid: Record, spoilt: Record, seeds: int) -> None:
+    """State what imbalance adds to 1P of the side force, and where the edge mode is seen."""
+    before, after = (float(row["Fy, 1P [kN]"]) for row in (rigid, spoilt))
+    below, above = (
+        page.judged(
+            f"peak of the side force one turn {side} the edge mode",
+            f"edge mode in the side force, one turn {side} it",
+            "closed form",
+        )
+        for side in ("below", "above")
+    )
+    page.answer(
+        "Which lines do imbalance and blade modes put into hub loads?",
+        f"Imbalance and one mispitched blade raise 1P of the side force from {before:.2g} to "
+        f"{after:.2g}\u00a0kN; edge modes appear at {certain_value(below)} and "
+        f"{certain_value(above)}.",
+        [
+            page.value("1P of the side force [kN]", after, beside=before, by="balanced, rigid"),
+            page.judged(
+                f"1P of Fy from a mass imbalance of {GRADE:.0f} kg m",
+                "1P of the side force by mass imbalance alone",
+                "m r w²",
+            ),
+            page.judged(
+                f"1P of Mx from a mass imbalance of {GRADE:.0f} kg m",
+                "1P of the torque by mass imbalance alone",
+                "closed form",
+            ),
+            below,
+            above,
+        ],
+        hero=spectrum_of(1),
+        cautions=[
+            f"One wind of {WIND:g} m/s, {seeds} {'seeds' if seeds > 1 else 'seed'}; a mode shows "
+            "one turn below and above its own frequency, as a frame that stands sees it."
+        ],
+    )
+
+
+def spectrum_of(component: int) -> str:
+    """Caption of the spectrum of a component."""
+    return f"Spectrum of {COMPONENTS[component]}, with what may move added one by one"
 
 
 def mean_of(values: list[Floats]) -> Floats:
@@ -78,8 +125,8 @@ def mean_of(values: list[Floats]) -> Floats:
 
 def show(
     page: Page, spectra: dict[str, list[Spectrum]], speed: float, modes: dict[str, float]
-) -> None:
-    """Spectra of two components, and amplitudes at multiples of the rotor's speed."""
+) -> list[Record]:
+    """Spectra of three components, and amplitudes at multiples of the rotor's speed."""
     rows: list[Record] = []
     for name, own in spectra.items():
         row: Record = {"turbine": name}
@@ -92,10 +139,11 @@ def show(
     page.table(f"Amplitudes at multiples of the rotor's speed, {WIND:g} m/s, mean of seeds", rows)
     page.data("amplitudes", rows)
     turn = speed / (2.0 * np.pi)
+    lines = {"1P": turn, "3P": 3.0 * turn, "flap": modes["flap"]}
+    lines |= {f"edge {MINUS} 1P": modes["edge"] - turn, "edge + 1P": modes["edge"] + turn}
     for k, unit in ((1, "kN^2/Hz"), (4, "(kN m)^2/Hz"), (0, "kN^2/Hz")):
-        page.chart(
-            f"Spectrum of {COMPONENTS[k]}; 1P is {turn:.3f} Hz, blades flap at "
-            f"{modes['flap']:.2f} Hz and bend edgewise at {modes['edge']:.2f} Hz as they turn",
+        drawn = chart(
+            spectrum_of(k),
             [
                 trace(name, own[k].frequency[1:180], own[k].density[1:180] / 1e6)
                 for name, own in spectra.items()
@@ -104,12 +152,8 @@ def show(
             f"density [{unit}]",
             logarithmic=("y",),
         )
-    first, last = rows[0], rows[-1]
-    page.say(
-        f"A balanced rigid rotor has {first['Fy, 1P [kN]']:.2f} kN at 1P in the side force; an "
-        f"imbalance of G16 and a blade 0.3 deg off bring it to {last['Fy, 1P [kN]']:.1f} kN. Edge "
-        "modes stand one turn below and above their own frequency, as a standing frame sees them.",
-    )
+        page.add(mark_events(drawn, lines))
+    return rows
 
 
 def check_imbalance(page: Page, turbine: Turbine, controller: Controller) -> None:

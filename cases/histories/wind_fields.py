@@ -24,6 +24,8 @@ ROTOR = Rotor()
 REACH = 1.1 * ROTOR.radius
 RATE = 10.0  # Hz
 ENOUGH = 0.05
+DAMAGE = "My, error of DEL, m = 4 [%]"
+ERROR_BY_GRID = "Error of the moment My against points of wind over the rotor's diameter"
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,19 +86,20 @@ def run(run: Run, page: Page) -> None:
             {
                 "points over the diameter": (count - 1) * ROTOR.radius / REACH,
                 "My, error of rms [%]": 100.0 * float(error.std() / finest.loads[:, 4].std()),
-                "My, error of DEL, m = 4 [%]": 100.0
-                * abs(equivalent(loads[count]) / equivalent(finest) - 1.0),
+                DAMAGE: 100.0 * abs(equivalent(loads[count]) / equivalent(finest) - 1.0),
             }
         )
     page.section("Points of the grid")
     page.sweep(
-        f"Error of My against {counts[-1]} x {counts[-1]} points",
+        ERROR_BY_GRID,
         rows,
         "points over the diameter",
-        {"My, error of rms [%]": "rms", "My, error of DEL, m = 4 [%]": "DEL"},
+        {"My, error of rms [%]": "rms", DAMAGE: "equivalent load, m = 4"},
         log="xy",
+        reference={"enough": 100.0 * ENOUGH},
+        axis="error of My [%]",
     )
-    enough = [r for r in rows if r["My, error of DEL, m = 4 [%]"] <= 100.0 * ENOUGH]
+    enough = [r for r in rows if r[DAMAGE] <= 100.0 * ENOUGH]
     page.limit(
         "hub loads of a wind field on a grid",
         "points over the diameter",
@@ -117,11 +120,42 @@ def run(run: Run, page: Page) -> None:
         measure=None,
     )
     files(run, page, box_of(wind, time, 17))
-    page.say(
-        f"Between {rows[0]['points over the diameter']:.3g} and "
-        f"{rows[-1]['points over the diameter']:.3g} points over the diameter the error of the "
-        f"moment falls from {coarse:.2g} to {fine:.2g} %; files of TurbSim and HAWC2 add next to "
-        "nothing."
+    answer(page, rows, enough, counts[-1])
+
+
+def answer(page: Page, rows: list[Record], enough: list[Record], finest: int) -> None:
+    """State how many points over the rotor keep the moment's equivalent load."""
+    points, spread, damage = "points over the diameter", "My, error of rms [%]", DAMAGE
+    first, last = rows[0], rows[-1]
+    found = (
+        f"{float(enough[0][points]):.2g} points over the rotor's diameter keep"
+        if enough
+        else f"Not even {float(last[points]):.2g} points over the rotor's diameter keep"
+    )
+    page.answer(
+        "How fine a grid of wind do hub loads need?",
+        f"{found} the equivalent load of My within {100 * ENOUGH:g}\u00a0%; with "
+        f"{float(first[points]):.2g} it is {float(first[damage]):.2g}\u00a0% off.",
+        [
+            page.value(
+                f"equivalent load of My, error with {last[points]:.2g} points [%]",
+                last[damage],
+                at_most=100.0 * ENOUGH,
+            ),
+            *(
+                page.value(f"{what}, error with {row[points]:.2g} points [%]", row[key])
+                for what, key, row in (
+                    ("equivalent load of My", damage, first),
+                    ("My in time, rms", spread, first),
+                    ("My in time, rms", spread, last),
+                )
+            ),
+        ],
+        hero=ERROR_BY_GRID,
+        cautions=[
+            f"Errors are those against {finest} x {finest} points, not against the wind itself.",
+            "Files of TurbSim and HAWC2 add less than a thousandth of the largest load's spread.",
+        ],
     )
 
 

@@ -11,7 +11,9 @@ from fe_drivetrain.bearing_life.life import (
     steps_of,
 )
 from fe_drivetrain.cases import case
+from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import as_printed
+from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run, column
 
 #: Diametral clearance [um], largest roller [kN] and pressure [MPa] of a planet bearing at 178 kN.
@@ -59,6 +61,42 @@ def lives_of(bearing: Bearing, clearance: float) -> Record:
     return row
 
 
+HERO = "Life of the planet bearing over its clearance"
+
+
+def answer(page: Page, lives: Floats) -> None:
+    """State what the standing inner ring and the clearance cost; lives (ring, clearance)."""
+    stands, clear = lives[0, 0] / lives[1, 0], lives[0, -1] / lives[0, 0]
+    largest = PLANET[-1][0]
+    page.answer(
+        "How long does a planet bearing live whose outer ring turns, and what does clearance cost?",
+        f"The planet bearing lives {value_text(lives[0, 0], 'Mrev')} without clearance and "
+        f"{100 * clear:.0f} % of that with {largest:g}\u00a0µm; its standing inner ring costs "
+        f"{100 * (1 - stands):.0f} %.",
+        [
+            page.value("life without clearance [Mrev]", lives[0, 0]),
+            page.value(f"life with {largest:g} µm of clearance [Mrev]", lives[0, -1]),
+            page.value("life if the inner ring turned [Mrev]", lives[1, 0]),
+            *(
+                page.judged(
+                    f"planet bearing, 178 kN, clearance {gap:g} um: {quantity}",
+                    f"{name}, {gap:g} µm",
+                    "stated",
+                    printed,
+                )
+                for gap, of, pressure in (PLANET[0], PLANET[-1])
+                for quantity, name, printed in (
+                    ("largest roller", "peak roller load", of),
+                    ("pressure on the inner race", "contact pressure", pressure),
+                )
+                if gap or quantity != "largest roller"
+            ),
+        ],
+        hero=HERO,
+        cautions=["Number and size of the rollers are assumed; they fill the outline of NJ 2232."],
+    )
+
+
 @case(
     "Life of a planet's cylindrical bearing: which ring turns, and what clearance costs",
     source="Al-Hamadani 2018, chapter 7: size and load of a 2 MW planet; rollers are assumed",
@@ -93,12 +131,10 @@ def run(run: Run, page: Page) -> None:
         why="fewer rollers carry the same load",
         source="the largest rollers and pressures above",
     )
-    page.say(
-        f"With its inner ring standing under the load the bearing has "
-        f"{100 * lives[0][0] / lives[1][0]:.0f} % of the life that it had with its inner ring "
-        f"turning, and a clearance of 200 um leaves {100 * lives[0][-1] / lives[0][0]:.0f} % of "
-        "that without clearance.",
-    )
+    answer(page, np.array(lives))
+    keys = {f"L10r, {ring} ring turns [Mrev]": f"{ring} ring turns" for ring in ("outer", "inner")}
+    page.section("Life over the clearance")
+    page.sweep(HERO, rows, "clearance [um]", keys, axis="reference life L10r [Mrev]", table=False)
     page.assume("elements", 16, "-", "fills the outline NJ 2232")
     page.assume("element diameter", 0.04, "m", "fills the outline NJ 2232")
     page.assume("element length", 0.05, "m", "fits the width of 80 mm")

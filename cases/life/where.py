@@ -108,19 +108,58 @@ def run(run: Run, page: Page) -> None:
     )
     page.data("where", rows)
     state_meaning(page)
-    thesis, own = rows
+    answer(page, *rows)
     more = [100.0 * (row["life by place over life by step"] - 1.0) for row in rows]
     page.say(
-        f"The upwind row does {thesis['upwind row [%]']:.0f} % of the damage with the choices of "
-        f"the thesis, most of it at {thesis['upwind, centre [deg]']:.0f} deg, the downwind row's "
-        f"is at {thesis['downwind, centre [deg]']:.0f} deg (the thesis on mean loads: upwind row "
-        "more, at 270; downwind row at 90). Back to back in a housing in series it is "
-        f"{own['upwind row [%]']:.0f} %, at {own['upwind, centre [deg]']:.0f} and "
-        f"{own['downwind, centre [deg]']:.0f} deg.",
         f"The ring that turns does {min(row['inner rings [%]'] for row in rows):.0f} % of the "
         "damage or more. Because the load zone wanders, places of the standing ring share it: "
         f"damage that is summed place by place gives {more[0]:.1f} and {more[1]:.1f} % more life "
         "than Miner's sum over steps that are rated as one, which is on the safe side.",
+    )
+
+
+def caption(words: str) -> str:
+    """Caption of the picture of the outer rings with some choices."""
+    return f"Damage round the standing outer rings, {words}, site of {MEAN_WIND:g} m/s"
+
+
+def is_where_stated(row: Record) -> bool:
+    """Whether damage is where the thesis states it: upwind row more, below; downwind on top."""
+    below, on_top = (np.sin(np.radians(row[f"{name}, centre [deg]"])) for name in ROWS)
+    return bool(row["upwind row [%]"] > 50.0 and below < -0.5 and on_top > 0.5)
+
+
+def answer(page: Page, thesis: Record, own: Record) -> None:
+    """State which row and place are used up first, with the thesis's choices and with ours."""
+    share, ours = (float(row["upwind row [%]"]) for row in (thesis, own))
+    holds, also = is_where_stated(thesis), is_where_stated(own)
+    upwind, downwind = (f"{name} row, centre of damage [deg]" for name in ROWS)
+    places = [float(thesis[f"{name}, centre [deg]"]) for name in ROWS]
+    stated = "as the thesis says" if holds else "not where the thesis says"
+    other = "there as well" if also else "downwind row not on top"
+    page.answer(
+        "Where is the life of a main bearing used up?",
+        f"The upwind row does {share:.0f}\u00a0% of the damage, at {places[0]:.0f}°, {stated}; "
+        f"with our choices {ours:.0f}\u00a0%, {other}.",
+        [
+            page.value("damage of the upwind row, thesis's choices [%]", share),
+            page.value(upwind, places[0], beside=270.0, by="thesis, bottom"),
+            page.value(downwind, places[1], beside=90.0, by="thesis, top"),
+            page.value("damage of the upwind row, our choices [%]", ours),
+            page.value(
+                "downwind row, centre, our choices [deg]", float(own["downwind, centre [deg]"])
+            ),
+            page.value(
+                "damage of the rings that turn, thesis's choices [%]",
+                float(thesis["inner rings [%]"]),
+            ),
+        ],
+        hero=caption("choices of the thesis"),
+        cautions=[
+            "Angles are seen looking downwind: 0° right, 90° on top, 270° at the bottom.",
+            "Lives rate all places of a step as one, which is on the safe side by a few percent.",
+        ],
+        claim="holds" if holds and also else "holds in part" if holds else "does not hold",
     )
 
 
@@ -242,8 +281,7 @@ def show(page: Page, words: str, used: Used) -> None:
         for at in [np.arange(n + 1) % n]
     ]
     page.chart(
-        f"Damage of each place of the standing outer rings, towards its place, {words}, site of "
-        f"{MEAN_WIND:g} m/s",
+        caption(words),
         traces,
         "to the right, looking downwind [% of both outer rings]",
         "upwards [% of both outer rings]",

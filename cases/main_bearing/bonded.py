@@ -20,6 +20,7 @@ from fe_drivetrain.common import (
 from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
 from fe_drivetrain.report import Image, Solid, Text
+from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.beam import main_bearing_beam
 from fe_drivetrain.studies import Assembly, LinearModel, SeatStiffness
@@ -202,14 +203,38 @@ def answer(page: Page, work: Worked) -> None:
         max(abs(row[against]) for row in work.forces)
         for against in ("torsional-spring against FE [%]", "6x6 against FE [%]")
     )
-    page.found("force on the bearing per N at the hub [N/N]", float(reaction[2, 2]))
-    page.found("error of the torsional-spring beam [%]", spring_error)
+    force, spring = "force on the bearing per N at the hub", "error of the torsional-spring beam"
+    page.found(f"{force} [N/N]", float(reaction[2, 2]), work.forces[0]["± FE"])
+    page.found(f"{spring} [%]", spring_error)
+    up = page.judged(force, "force on the bearing, per force up at the hub")
+    page.answer(
+        "How much of a hub load does a bonded main bearing carry, and does a beam show it?",
+        f"A hub force of 1\u00a0kN up puts {value_text(up.value, 'kN', up.band, False)} on the "
+        f"bearing; a beam on K_R errs by {spring_error:.2g} %, a pinned beam by "
+        f"{100 * abs(work.pinned[2, 2] / up.value - 1):.2g} %.",
+        [
+            up,
+            page.value(
+                "the same by a pinned beam [N/N]",
+                float(work.pinned[2, 2]),
+                beside=up.value,
+                by="solids",
+            ),
+            page.value(
+                "moment on the bearing, per force up at the hub [m]",
+                abs(float(reaction[4, 2])),
+                work.shares[1]["± FE"],
+            ),
+            page.value("error of the beam on K_R [%]", spring_error, at_most=2.0, by="asked"),
+            page.value("error of the beam on the 6x6 stiffness [%]", matrix_error),
+        ],
+        hero=shown.deformed(work.pictures),
+        cautions=[
+            "No planar beam has what thrust does: it bends the bearing, since the housing stands "
+            "on its foot, below the shaft.",
+        ],
+    )
     page.say(
-        f"1 N up at the hub puts {reaction[2, 2]:.4g} N and {reaction[4, 2]:.4g} N m on the "
-        f"bonded bearing; the pinned beam gives {work.pinned[2, 2]:.4g} N and no moment.",
-        f"The torsional-spring beam with K_R from the averaged seat has an error of "
-        f"{spring_error:.2g} % in these forces, a beam on the full 6x6 stiffness one of "
-        f"{matrix_error:.2g} %.",
         f"Thrust bends the bearing: 200 kN give {abs(work.couplings[1]['FE']):.3g} kN of Fz and "
         f"{abs(work.couplings[2]['FE']):.3g} kN m of My, which no planar beam has.",
     )

@@ -44,6 +44,7 @@ PROOF = 250e6
 NAMES = [d.name for d in DIMENSIONS]
 PLANES = ("vertical", "horizontal")
 CENTRE_HEIGHT = "height of the centre [m]"
+HERO = "Width along the shaft of housings that have both values of K_R"
 
 
 def check_family(page: Page, family: Family, series: bands.Series | None) -> None:
@@ -180,18 +181,20 @@ def family_charts(page: Page, scene: Scene, families: list[Family]) -> None:
         ]
 
     page.chart(
-        "Pedestal that gives both values, against the height of the centre: lines solved on the "
-        "samples' mesh with the bias of that mesh taken off, dots from the surface with all five "
-        "dimensions free",
+        HERO,
+        [*clouds(WIDTH), *lines(lambda m: float(m.x[WIDTH]))],
+        CENTRE_HEIGHT,
+        "width [m]",
+    )
+    page.chart(
+        "Pedestal of the same housings, against the height of their centre",
         [*clouds(PEDESTAL), *lines(lambda m: float(m.x[PEDESTAL]))],
         CENTRE_HEIGHT,
         "width of the pedestal [m]",
     )
-    page.chart(
-        "Width along the shaft of the same housings",
-        [*clouds(WIDTH), *lines(lambda m: float(m.x[WIDTH]))],
-        CENTRE_HEIGHT,
-        "width [m]",
+    page.text(
+        "Lines are solved on the samples' mesh with the bias of that mesh taken off; dots are from "
+        "the surface, with all five dimensions free."
     )
     page.chart(
         "Mass of the same housings",
@@ -357,11 +360,43 @@ def answer(page: Page, work: Worked) -> None:
     """Which housings give both values, and that they determine none."""
     scene, one, wide_K = work.scene, work.families[0], work.wide_K
     low, high = np.quantile(one.cloud[:, CENTRE], [0, 1])
+    widths, stresses = one.cloud[:, WIDTH], one.stresses(scene)
+    above = 100.0 * float((stresses > PROOF / 1e6).mean())
+    page.answer(
+        "Which housing would have the torsional stiffness K_R that the thesis gives?",
+        "Only a plate on a fixed underside has 145 and 392\u00a0MN\u00a0m/rad: "
+        f"{widths.min():.3f} to {widths.max():.3f}\u00a0m wide along the shaft; "
+        f"{above:.0f}\u00a0% of such housings yield at 1\u00a0MN\u00a0m.",
+        [
+            page.value("least width along the shaft [m]", float(widths.min())),
+            page.value("largest width along the shaft [m]", float(widths.max())),
+            *(
+                page.value(
+                    f"K_R of an example, {plane} [MN m/rad]",
+                    float(one.middle.K_R[p, 0]) / 1e6,
+                    beside=PUBLISHED[p] / 1e6,
+                    by="thesis",
+                )
+                for p, plane in enumerate(PLANES)
+            ),
+            page.value(
+                "largest nominal stress at the foot under 1 MN m [MPa]",
+                float(stresses.max()),
+                at_most=PROOF / 1e6,
+                by="ductile iron yields",
+            ),
+        ],
+        hero=HERO,
+        cautions=[
+            "Two values cannot determine five dimensions: nothing here shows that the thesis's "
+            "housing was one of these.",
+            "K_R is read from four nodes, as in the thesis; other estimators give other housings.",
+        ],
+    )
     page.say(
-        "A housing whose whole underside is fixed gives 145 and 392 MN m/rad (four nodes, as in "
-        "the thesis) only if it is a plate: over all of the family its width along the shaft is "
-        f"{width_range(one)}, while the height of its centre ({low:.2f} to {high:.2f} m) trades "
-        f"against the width of its pedestal; for example {listed(one.middle.x)} m.",
+        "The height of the centre of such a plate "
+        f"({low:.2f} to {high:.2f} m) trades against the width of its pedestal; for example "
+        f"{listed(one.middle.x)} m.",
         "A tilting moment of 1 MN m, about the largest that the thesis shows, makes a nominal "
         f"stress in its foot of {stress_range(scene, one)}, where ductile iron yields; notches not "
         "counted.",
@@ -380,10 +415,6 @@ def answer(page: Page, work: Worked) -> None:
             "145 would be 290 by the slope of the line, a body of "
             f"{turned.x[WIDTH]:.2f} m on a fixed underside gives both."
         )
-    page.say(
-        "Two values cannot determine five dimensions: nothing here shows that the thesis's housing "
-        "was one of these."
-    )
 
 
 def readings_section(page: Page, work: Worked) -> None:

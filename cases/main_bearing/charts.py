@@ -98,14 +98,40 @@ def group_chart(
     )
 
 
+def series_caption(
+    hub: HubLoadSet, kind: str, plane: str, quantity: str, seconds: float = 60.0
+) -> str:
+    """Caption of one of `series_charts`.
+
+    Parameters
+    ----------
+    hub : HubLoadSet
+        The load histories, of which the one in the middle is shown.
+    kind : str
+        "spherical" or "bonded".
+    plane, quantity : str
+        "horizontal" and "Fy", or "vertical" and "Fz".
+    seconds : float
+        How much of the history is shown, at most.
+
+    Returns
+    -------
+    str
+    """
+    of_history = min(seconds, float(hub.time[-1] - hub.time[0]))
+    return (
+        f"Load on the {kind} main bearing, {plane} plane ({quantity}): first {of_history:.0f} s of "
+        f"{hub.conditions[len(hub) // 2].name}"
+    )
+
+
 def series_charts(
     page: Page, hub: HubLoadSet, fe: Mapping[str, Floats], pairs: Pairs, seconds: float = 60.0
 ) -> None:
     """The beginning of one history, FE and beams, per plane."""
     chosen = len(hub) // 2
-    time, name = hub.time, hub.conditions[chosen].name
+    time = hub.time
     shown = time - time[0] <= seconds
-    shown_seconds = min(seconds, float(time[-1] - time[0]))
     for plane, quantity, component in _PLANES:
         for kind in ("spherical", "bonded"):
             traces = [
@@ -129,8 +155,7 @@ def series_charts(
                 if of == kind
             ]
             page.chart(
-                f"Load on the {kind} main bearing, {plane} plane ({quantity}): first "
-                f"{shown_seconds:.0f} s of {name}",
+                series_caption(hub, kind, plane, quantity, seconds),
                 traces,
                 "time [s]",
                 f"{quantity} [kN]",

@@ -13,6 +13,7 @@ from fe_drivetrain.comparison import GridConvergence, grid_convergence, richards
 from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.elasticity.mesh import mean_size
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Run
 from fe_drivetrain.studies.seat_stiffness import SeatStiffness
 from fe_drivetrain.studies.solved_assembly import Assembly
@@ -20,6 +21,9 @@ from fe_drivetrain.studies.solved_assembly import Assembly
 #: Factors on the scene's mesh sizes, from coarse to fine.
 FACTORS = (2.0, 1.4, 1.0, 0.75)
 QUICK_FACTORS = (2.0, 1.5, 1.2)
+
+
+HERO = "Difference of reactions, deflection and K_R from the finest mesh"
 
 
 def quantities(solved: Assembly, tilt: SeatStiffness) -> dict[str, float]:
@@ -145,10 +149,30 @@ def judge(page: Page, one: Converged) -> None:
         w: max(100 * c.relative_uncertainty for q, c in one.found.items() if w in q) for w in kinds
     }
     page.found(f"error of the reactions with sizes x {one.last:g} [%]", max_error["at the"])
+    shown_first = (
+        ("Fz at the bearing per hub Fz [N/N]", "error of the force on the bearing"),
+        ("My at the bearing per hub Fz [N m/N]", "error of the moment on the bearing"),
+        ("hub deflection per Fz [nm/N]", "error of the hub's deflection"),
+        ("hub twist per Mx [nrad/(N m)]", "error of the hub's twist"),
+        ("K_R vertical, averaged seat [MN m/rad]", "error of K_R, vertical plane"),
+        ("K_R horizontal, averaged seat [MN m/rad]", "error of K_R, horizontal plane"),
+    )
+    page.answer(
+        "How fine a mesh do main-bearing reactions and K_R need?",
+        f"With {formatted(one.unknowns[-2])} unknowns reactions are within "
+        f"{max_error['at the']:.2g} % and K_R within {max_error['K_R']:.2g} % of their limits at "
+        "element size zero.",
+        [
+            page.judged(f"{quantity}: estimated error of sizes x {one.last:g}", name)
+            for quantity, name in shown_first
+        ],
+        hero=HERO,
+        cautions=[
+            "Limits are extrapolated at first order, since stress is singular along the edges of "
+            "ring and housing; bands hold for lower orders, too.",
+        ],
+    )
     page.say(
-        f"With sizes x {one.last:g} ({one.unknowns[-2]:,} unknowns) the reactions are within "
-        f"{max_error['at the']:.2g} % and K_R within {max_error['K_R']:.2g} % of their "
-        "values extrapolated to element size zero, at first order.",
         "The finest mesh's own band, to the limit at the observed order or at order "
         f"{bands.MIN_ORDER:g}, whichever is farther, is at most ± {max_band['at the']:.2g} % "
         f"of the reactions and ± {max_band['K_R']:.2g} % of K_R.",
@@ -160,7 +184,7 @@ def show(page: Page, one: Converged) -> None:
     unknowns = one.unknowns
     page.section("Convergence")
     page.chart(
-        "Difference from the finest mesh",
+        HERO,
         [
             trace(
                 q.partition(" [")[0],

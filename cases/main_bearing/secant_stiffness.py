@@ -17,6 +17,7 @@ from fe_drivetrain.common import (
 from fe_drivetrain.comparison import round_off
 from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import certain_value
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.response import (
     secant_stiffness,
@@ -26,6 +27,7 @@ from fe_drivetrain.shafts.response import (
 FACTORS = {"library": (1.35, 1.0), "tall": (1.8, 1.35)}
 QUICK_FACTORS = {"library": (4.0, 3.0), "tall": (4.0, 3.0)}
 #: Centre of the tall housing over its base [m]; the library's is at 0.42 m.
+HERO = "K_R of each load case against the thrust over the rotation: axis and elastic centre"
 TALL = 0.9
 TITLES = {"library": "the scene's housing", "tall": f"a pedestal of {TALL:g} m"}
 #: Every so many samples of a history at 20 Hz.
@@ -273,14 +275,35 @@ def check_remedy(page: Page, work: Worked) -> None:
 def answer(page: Page, work: Worked, centre: Mapping[str, float]) -> None:
     """Whether one spring is the right form, where it is, and what that does to a beam."""
     library, tall = work.improvement["library"], work.improvement["tall"]
+    lean = "scatter of K_R about y over the load cases, against the lean K_51 / K_11 times the "
+    lean += "thrust"
+    at_centre = "scatter of K_R about y at the elastic centre"
+    scatter = page.judged(f"{TITLES['library']}: {lean}")
+    remaining = page.judged(f"{TITLES['library']}: {at_centre}")
+    wrong = scatter.value > 100.0 * secant_stiffness.SCATTERS
+    page.answer(
+        "Is one torsional stiffness K_R enough to describe a main bearing in its housing?",
+        f"{'A single K_R does not hold' if wrong else 'A single K_R holds'} at the shaft's axis: "
+        f"it scatters by {certain_value(scatter)} over load cases; {-centre['library']:.2f}\u00a0m "
+        f"below, by {certain_value(remaining)}.",
+        [
+            page.judged(f"{TITLES['library']}: {lean}", "scatter of K_R at the axis", "predicted"),
+            page.judged(f"{TITLES['library']}: {at_centre}", "scatter at the elastic centre"),
+            page.judged(f"{TITLES['tall']}: {lean}", "scatter at the axis, tall", "predicted"),
+            page.judged(f"{TITLES['tall']}: {at_centre}", "scatter at the elastic centre, tall"),
+            page.value("error of My by a single spring, tall pedestal [%]", tall[SINGLE]["My"]),
+            page.value("error of My with the coupling, tall pedestal [%]", tall[LEAN]["My"]),
+        ],
+        hero=HERO,
+        cautions=[
+            f"Tall is {TITLES['tall']}; the elastic centre is where thrust does not tilt the "
+            "housing.",
+        ],
+        claim="does not hold" if wrong else "holds",
+    )
     page.say(
         f"{TITLES['library'].capitalize()}: {work.statements['library', 4]}.",
         f"{TITLES['tall'].capitalize()}: {work.statements['tall', 4]}.",
-        f"Taken at the elastic centre, {-centre['library']:.3f} and {-centre['tall']:.3f} m below "
-        "the shaft's axis, the scatter falls to "
-        f"{100 * secants.scatter_at_centre(work.finest['library']):.2g} and "
-        f"{100 * secants.scatter_at_centre(work.finest['tall']):.2g} %: a torsional spring that "
-        "stands there is the right form.",
         f"In the beam model the named coupling takes the error of My from {tall[SINGLE]['My']:.2g} "
         f"to {tall[LEAN]['My']:.2g} % for the tall pedestal, and the full 6x6 to "
         f"{tall[FULL]['My']:.2g} %; for the scene's housing from {library[SINGLE]['My']:.2g} to "
@@ -294,12 +317,14 @@ def secant_section(page: Page, work: Worked) -> None:
     page.section("The secant over load cases")
     page.text(work.cases.statement)
     left_out = float(np.isnan(work.found["library", 4].secants).mean())
+    page.text(
+        "K_R is level at the elastic centre; at the axis it is a line whose slope is the arm of "
+        f"the thrust. Cases that turn the bearing by less than {secant_stiffness.MIN_ROTATION:g} "
+        f"of the root mean square ({100 * left_out:.0f} %) have no secant and are not shown; in "
+        "scatter and stiffness they count."
+    )
     page.chart(
-        "K_R about y of each load case against the thrust on the bearing over its rotation: level "
-        "at the elastic centre; at the axis a line whose slope is the arm of the thrust. Cases "
-        f"that turn the bearing by less than {secant_stiffness.MIN_ROTATION:g} of the root mean "
-        f"square ({100 * left_out:.0f} %) have no secant and are not shown; in scatter and "
-        "stiffness they count",
+        HERO,
         [line for key, unit in work.finest.items() for line in secant_traces(key, unit)],
         "Fx over rotation about y [MN/rad]",
         "My / rotation [MN m/rad]",

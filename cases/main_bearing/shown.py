@@ -33,6 +33,11 @@ _AS = ", as in the thesis"
 _OTHER_HOUSING = "The thesis's values belong to its own housing, whose dimensions it does not give"
 
 
+def deformed(pictures: Sequence[Image | Solid | Text]) -> str:
+    """Caption of the last picture of `pictures_of`, the deformed shape; empty without any."""
+    return next((one.caption for one in reversed(pictures) if not isinstance(one, Text)), "")
+
+
 def check_solution(page: Page, solved: Assembly, label: str) -> None:
     """The two independent checks that every solution carries."""
     with page.of(solved.scene):

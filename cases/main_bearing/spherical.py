@@ -34,6 +34,7 @@ FORMS = ("sliding", "averaged", "rigid")
 
 #: Beams by whether the ring is a section of the shaft.
 BEAMS = {False: "beam, bare shaft", True: "beam, ring as shaft"}
+HERO = "Vertical deflection of the shaft's axis under Fz = 1 kN at the hub"
 SPREAD, BARE_ERROR = "spread of the forms [%]", "bare beam against sliding [%]"
 
 
@@ -250,14 +251,43 @@ def answer(page: Page, work: Worked) -> None:
     rows, series = work.rows, work.series
     along_z = [u[2, 2] / 1e9 for u in work.unit.values()]
     softer = max(abs(row[BARE_ERROR]) for row in rows)
-    page.found("bare beam against FE, worst of deflection and slope [%]", softer)
+    bare = "bare beam against FE, worst of deflection and slope"
+    page.found(f"{bare} [%]", softer)
+    deflection = next(row for row in rows if "deflection" in str(row["quantity"]))
+    quantity, _, unit = str(deflection["quantity"]).partition(" [")
+    under = f"{quantity} under {deflection['hub load']} [{unit}"
+    page.answer(
+        "Which quantities of a shaft on a spherical main bearing need a model of solids?",
+        "Forces need none: statics decide them. In deflection and slope a beam of the bare shaft "
+        f"errs by {softer:.2g} % at most.",
+        [
+            page.judged(bare, "largest error of the bare beam"),
+            page.value(under, deflection[FORMS[0]], deflection["± sliding"]),
+            page.value(
+                under.replace(" under", ", bare beam, under"),
+                deflection[BEAMS[False]],
+                beside=deflection[FORMS[0]],
+                by="solids",
+            ),
+            page.value(
+                under.replace(" under", ", ring as shaft, under"),
+                deflection[BEAMS[True]],
+                beside=deflection[FORMS[0]],
+                by="solids",
+            ),
+            page.value(
+                "largest difference between forms of the joint [%]",
+                max(row[SPREAD] for row in rows),
+            ),
+        ],
+        hero=HERO,
+        cautions=[
+            "A beam has no ring that stiffens the seat; with the ring as a section of the shaft it "
+            "is too stiff.",
+            "That reactions are those of statics says nothing about the model of solids.",
+        ],
+    )
     page.say(
-        "Reactions of the FE model equal statics to solver accuracy, as they must: the "
-        "spherical joint makes the shaft determinate.",
-        f"A Timoshenko beam of the bare shaft, on the FE stiffness of the bearing unit, is up to "
-        f"{softer:.2g} % softer in deflection and slope than "
-        "the solid: it has no ring that stiffens the seat. With the ring as a section of the shaft "
-        "it is stiffer.",
         f"The three forms of the joint differ by at most {max(row[SPREAD] for row in rows):.2g} % "
         f"in deflection and slope; radial stiffness along z lies between {min(along_z):.3g} and "
         f"{max(along_z):.3g} GN/m.",
@@ -318,7 +348,7 @@ def deflections_section(page: Page, work: Worked) -> None:
     )
     x, uz = axis_deflection(work.main, LOADS.index("hub.Fz"), 40)
     page.chart(
-        "Vertical deflection of the shaft's axis under Fz = 1 kN at the hub",
+        HERO,
         [
             *(
                 trace(title, work.stations, 1e6 * work.motion_of_beam[rings][0][:60, 2])

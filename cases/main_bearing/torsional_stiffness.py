@@ -5,10 +5,13 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import bands, bearing_scenes, shown
 from fe_drivetrain.report import bars
+from fe_drivetrain.report.number_text import certain_value
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.response import PLANES
 from fe_drivetrain.studies import Assembly, SeatStiffness
 from fe_drivetrain.studies.solved_assembly import timed_mesh
+
+HERO = "K_R by plane and estimator"
 
 
 def check_energies(page: Page, free: Assembly, series: bands.Series) -> None:
@@ -86,13 +89,9 @@ def answer(page: Page, tilt: SeatStiffness, series: bands.Series) -> None:
     """K_R in both planes, and how far the estimators spread."""
     both = [k / 1e6 for k in tilt.both("averaged seat")]
     page.say(
-        f"K_R of bearing and housing is {both[0]:.0f} MN m/rad in the vertical and "
-        f"{both[1]:.0f} MN m/rad in the horizontal plane (averaged seat).",
-        f"The three estimators spread by {tilt.spread('vertical'):.0f} % and "
-        f"{tilt.spread('horizontal'):.0f} %: K_R is a property of the estimator as much as of the "
-        "housing.",
-        "The thesis gives 145 and 392 MN m/rad for a housing whose dimensions it does not "
-        "state; this housing is another one, and nothing here is fitted to those values.",
+        "K_R is a property of the estimator as much as of the housing. The thesis gives 145 and "
+        "392 MN m/rad for a housing whose dimensions it does not state; this housing is another "
+        "one, and nothing here is fitted to those values."
     )
     percent: list[float | None] = [None, None]
     if series.complete:
@@ -104,6 +103,37 @@ def answer(page: Page, tilt: SeatStiffness, series: bands.Series) -> None:
     for plane, value, share in zip(tilt.by_plane, both, percent, strict=True):
         band = None if share is None else share / 100.0 * value
         page.found(f"K_R, {plane} plane [MN m/rad]", value, band)
+    found = [page.judged(f"K_R, {plane} plane") for plane in tilt.by_plane]
+    vertical, horizontal = (certain_value(one) for one in found)
+    spreads = {plane: tilt.spread(plane) for plane in tilt.by_plane}
+    page.answer(
+        "How stiff against tilting are a main bearing and its housing?",
+        f"K_R is {vertical} in the vertical and {horizontal} in the horizontal plane; estimators "
+        f"differ by {max(spreads.values()):.0f} %.",
+        [
+            *(
+                page.value(
+                    f"{one.name} [{one.unit}]",
+                    one.value,
+                    one.band,
+                    beside=shown.PUBLISHED[plane],
+                    by="thesis's housing",
+                )
+                for plane, one in zip(tilt.by_plane, found, strict=True)
+            ),
+            *(
+                page.value(f"spread of three estimators, {plane} plane [%]", spread)
+                for plane, spread in spreads.items()
+            ),
+        ],
+        hero=HERO,
+        cautions=[
+            "The thesis's 145 and 392 MN m/rad are of another housing, whose dimensions it does "
+            "not state.",
+            "Values are of the averaged seat; which estimator a beam is given decides its "
+            "reactions.",
+        ],
+    )
 
 
 def estimators_section(page: Page, tilt: SeatStiffness, series: bands.Series) -> None:
@@ -114,7 +144,7 @@ def estimators_section(page: Page, tilt: SeatStiffness, series: bands.Series) ->
         plane: {name: K / 1e6 for name, K in values.items()}
         for plane, values in tilt.by_plane.items()
     }
-    page.add(bars("K_R by plane and estimator", by_plane, "K_R [MN m/rad]"))
+    page.add(bars(HERO, by_plane, "K_R [MN m/rad]"))
     page.text(
         "Four nodes: rotation of the line between two housing points, as in the thesis; it misses "
         "the compliance of the ring and of the shell between shaft and housing, so it is usually "

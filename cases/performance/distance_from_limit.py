@@ -17,7 +17,7 @@ from fe_drivetrain.cases.performance.peers import BENCHMARKS, Problem, assembled
 from fe_drivetrain.elasticity.interfaces import eliminate, fixed
 from fe_drivetrain.elasticity.operator import Pattern, kernels, sparsity
 from fe_drivetrain.elasticity.solve import System, multigrid, reduce
-from fe_drivetrain.report import marked
+from fe_drivetrain.report import error_bars, trace
 from fe_drivetrain.report.suite import Page, Record, Run, grouped
 
 PROBLEMS, QUICK_PROBLEMS = ["shaft", "assembly"], ["shaft"]
@@ -26,6 +26,9 @@ REPEATS, QUICK_REPEATS = 5, 2
 
 #: Values of each of the arrays that bandwidth is measured with: far more than caches hold.
 STREAM, QUICK_STREAM = 20_000_000, 2_000_000
+
+OVER_FLOOR = "Time of each phase over its floor; bars: least and most of all runs"
+SPREAD = "least [s]", "median [s]", "most [s]"
 
 #: From here on matrices are larger than caches.
 BEYOND_CACHES = 100_000
@@ -90,15 +93,17 @@ def run(run: Run, page: Page) -> None:
     page.section("Phases")
     page.table("Median times of each phase, what it moves at least, and its floor", rows)
     traces = [
-        marked(
+        trace(
             f"{name}, {phase}" if len(names) > 1 else phase,
             [row["unknowns"] for row in of],
             [row["over its floor"] for row in of],
+            mode="lines+markers",
+            **error_bars("y", *([row[k] / row["floor [s]"] for row in of] for k in SPREAD)),
         )
         for name, mine in grouped(rows, "problem")
         for phase, of in grouped(mine, "phase")
     ]
-    page.chart("Time over the floor", traces, "unknowns", "time over floor", "xy")
+    page.chart(OVER_FLOOR, traces, "unknowns", "time over floor", "xy")
     page.section("What is counted")
     for text in method(found[0]):
         page.text(text)
@@ -274,19 +279,35 @@ def check(page: Page, rows: list[Record]) -> None:
 
 
 def answer(page: Page, goals: list[Record], rates: list[float]) -> None:
-    """The largest size in a sentence."""
-    page.say(
-        f"Memory moves {min(rates) / 1e9:.1f} to {max(rates) / 1e9:.1f} GB/s here (median "
-        f"{median(rates) / 1e9:.1f}). {sum(row['reached'] == 'yes' for row in goals)} of "
-        f"{len(goals)} goals are reached."
+    """State how far the iterations of the largest size are from their floor."""
+    first = goals[0]["problem"]
+    mine = [row for row in goals if row["problem"] == first][-len(GOALS) :]
+    reached = sum(row["reached"] == "yes" for row in goals)
+    over = float(mine[0]["measured"])
+    page.answer(
+        "How far is a solve from the time in which memory moves its bytes?",
+        f"{BENCHMARKS[str(first)]().title}, {mine[0]['unknowns']:,} unknowns: iterations take "
+        f"{over:.2g} times what memory needs for their bytes; {reached} of {len(goals)} goals are "
+        "reached.",
+        [
+            *(
+                page.value(
+                    str(row["goal"]),
+                    float(row["measured"]),
+                    beside=float(row["at most"]),
+                    by="goal",
+                )
+                for row in mine
+            ),
+            page.value(
+                "bandwidth of memory [GB/s]",
+                median(rates) / 1e9,
+                0.5 * (max(rates) - min(rates)) / 1e9,
+            ),
+        ],
+        hero=OVER_FLOOR,
+        cautions=["Small problems fit into caches, and may be faster than their floor."],
     )
-    for name, mine in grouped(goals, "problem"):
-        over, set_up, assembly = (row["measured"] for row in mine[-len(GOALS) :])
-        page.say(
-            f"{BENCHMARKS[name]().title}, {mine[-1]['unknowns']:,} unknowns: the iterations take "
-            f"{over:.1f} times the floor of their bytes, set-up {set_up:.2f} and assembly "
-            f"{assembly:.2f} of their time."
-        )
 
 
 def method(solved: Solved) -> list[str]:

@@ -13,13 +13,14 @@ from fe_drivetrain.common import (
     ExactSum,
     Floats,
     MissingToolError,
+    Times,
     cores,
     exact_sum,
     peak_memory,
     pool,
     timed_runs,
 )
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import bars, trace
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.turbine_loads.histories import (
     Count,
@@ -35,6 +36,8 @@ SAMPLES, QUICK, FARM = 1_000_000_000, 8_000_000, 1e11
 PIECE = 1 << 20
 COUNTING = Counting(-5, (4.0, 10.0))
 STEP = 0.05  # s
+BOTH = "Time to count all samples, in pieces and in one stream; bars: least and most of all runs"
+PIECES, STREAM = "in pieces, with levels", "in one stream, cycles and sums alone"
 #: Workers that all samples of a farm are extrapolated to.
 MANY = (2, 16, 128, 1024)
 
@@ -88,15 +91,7 @@ def run(run: Run, page: Page) -> None:
         (cycles, damage), streamed = timed_runs(lambda: in_one_stream(each), repeats)
     check(page, found, cycles, damage, TURBINES * each)
     rate = TURBINES * each / apart
-    page.say(
-        f"{TURBINES * each:,} samples in {TURBINES * count:,} pieces take {apart:.3g} s, made "
-        f"noise and start of processes included: {rate / 1e6:.3g} million a second"
-        + (
-            "." if run.quick else f", so that {FARM:.0e} take {FARM / rate / 3600:.2g} hours there."
-        ),
-        f"In one stream cycles and sums alone take {streamed.median:.3g} s, and are the same to "
-        "the last digit.",
-    )
+    answer(page, TURBINES * each, times, streamed, workers, memory)
     row: Record = {
         "samples": TURBINES * each,
         "pieces": TURBINES * count,
@@ -115,6 +110,58 @@ def run(run: Run, page: Page) -> None:
     if workers > 1 and not run.quick:
         show_farm(page, rate, own / (TURBINES * each), workers)
     show_counts(page, found)
+
+
+def answer(
+    page: Page,
+    samples: int,
+    pieces: Times,
+    streamed: Times,
+    workers: int,
+    memory: dict[str, float],
+) -> None:
+    """State how long counting takes in pieces, and in one stream."""
+    page.section("Pieces and one stream")
+    page.add(
+        bars(
+            BOTH,
+            {"median": {PIECES: pieces.median, STREAM: streamed.median}},
+            "time [s]",
+            ends={
+                "median": {
+                    PIECES: (pieces.least, pieces.most),
+                    STREAM: (streamed.least, streamed.most),
+                }
+            },
+        )
+    )
+    rate, ratio = samples / pieces.median, streamed.median / pieces.median
+    quicker = (
+        f"{ratio:.2g} times as fast as" if ratio >= 1.0 else f"{1 / ratio:.2g} times slower than"
+    )
+    page.answer(
+        "How fast are years of a wind farm's load histories counted?",
+        f"{samples / 1e6:,.3g}\u00a0million samples take {pieces.median:.3g}\u00a0s in pieces on "
+        f"{workers} {'workers' if workers > 1 else 'worker'}, {quicker} one stream, with the same "
+        "cycles to the last digit.",
+        [
+            page.value("samples a second, in pieces [million]", rate / 1e6),
+            page.value(
+                "time in pieces [s]", pieces.median, beside=streamed.median, by="one stream"
+            ),
+            *(
+                [page.value("time of 10¹¹ samples here [h]", FARM / rate / 3600.0)]
+                if samples > QUICK
+                else []
+            ),
+            *(page.value(f"most memory {name} [MB]", value) for name, value in memory.items()),
+        ],
+        hero=BOTH,
+        cautions=[
+            "Pieces count levels too, and take the start of processes; noise is made in both.",
+            "Reading of files is in neither.",
+        ],
+    )
 
 
 def counted_in_pieces(run: Run, each: int) -> Any:

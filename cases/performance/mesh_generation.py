@@ -25,7 +25,8 @@ from fe_drivetrain.elasticity.mesh import (
     scaled_jacobians,
 )
 from fe_drivetrain.geometry import Housing, build, gmsh_session
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import error_bars, trace
+from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.response import Response, build_model, mesh_scene, unit_load_response
 
@@ -34,6 +35,10 @@ SCENE = "main_bearing_spherical"
 FACTORS, TURN = (2.0, 1.6, 1.3, 1.0, 0.8), 12
 QUICK_FACTORS, QUICK_TURN = (3.0,), 6
 REPEATS = 5
+PER_ELEMENT = "Time for each element of meshing, and of ten unit loads; bars: all runs"
+MESHING = "meshing, least [s]", "median [s]", "most [s]"
+SOLVING = "ten unit loads, least [s]", "ten unit loads, median [s]", "ten unit loads, most [s]"
+AT_BEST = "times as fast, at best"
 
 
 class Option(NamedTuple):
@@ -133,8 +138,8 @@ def ten_unit_loads(scene: Scene, mesh: Mesh, repeats: int) -> tuple[Response, Ti
     return response, Times(tuple(seconds))
 
 
-def beside_solver(run: Run, page: Page, factors: tuple[float, ...], repeats: int) -> None:
-    """Meshing and solving over sizes."""
+def beside_solver(run: Run, page: Page, factors: tuple[float, ...], repeats: int) -> list[Record]:
+    """Meshing and solving over sizes; a row for each."""
     rows: list[Record] = []
     for factor in factors:
         scene = scene_of(run, factor)
@@ -164,12 +169,20 @@ def beside_solver(run: Run, page: Page, factors: tuple[float, ...], repeats: int
     page.section("Over sizes")
     elements = [float(str(row["elements"])) for row in rows]
     page.chart(
-        f"{SCENE}: time for each element, medians of {repeats} runs",
+        PER_ELEMENT,
         [
-            trace(name, elements, [float(str(row[key])) for row in rows], True)
-            for name, key in (
-                ("meshing", "meshing [µs/element]"),
-                ("solve of ten unit loads", "solve [µs/element]"),
+            trace(
+                name,
+                elements,
+                [float(row[key]) for row in rows],
+                mode="lines+markers",
+                **error_bars(
+                    "y", *([1e6 * row[end] / row["elements"] for row in rows] for end in ends)
+                ),
+            )
+            for name, key, ends in (
+                ("meshing", "meshing [µs/element]", MESHING),
+                ("solve of ten unit loads", "solve [µs/element]", SOLVING),
             )
         ],
         "elements",
@@ -178,10 +191,30 @@ def beside_solver(run: Run, page: Page, factors: tuple[float, ...], repeats: int
     )
     page.table("Stages of meshing, and the solve, each on one thread", rows)
     page.data("over_sizes", rows)
-    last = rows[-1]
-    page.say(
-        f"At {last['elements']:,} elements meshing takes {last['median [s]']:.2g} s, ten unit "
-        f"loads {last['ten unit loads, median [s]']:.2g} s."
+    return rows
+
+
+def answer(page: Page, sizes: list[Record], bound: Record) -> None:
+    """State the share that meshing has, and what side by side could save of it."""
+    last = sizes[-1]
+    meshing, solving = float(last[MESHING[1]]), float(last[SOLVING[1]])
+    page.answer(
+        "How long does meshing take beside the solve?",
+        f"At {last['elements']:,} elements meshing takes {value_text(meshing, 's')}, "
+        f"{meshing / solving:.2g} times the solve of ten unit loads.",
+        [
+            page.value(
+                "meshing [s]",
+                meshing,
+                beside=solving,
+                by="solve",
+            ),
+            page.value("meshing [µs/element]", float(last["meshing [µs/element]"])),
+            page.value("solve of ten unit loads [µs/element]", float(last["solve [µs/element]"])),
+            page.value("times as fast with parts side by side, at best", float(bound[AT_BEST])),
+        ],
+        hero=PER_ELEMENT,
+        cautions=["Meshing and solve are on one thread each, as gmsh is here."],
     )
 
 
@@ -221,7 +254,7 @@ def options(run: Run, page: Page, scene: Scene, repeats: int) -> Made:
     return found[0]
 
 
-def parts_apart(page: Page, scene: Scene, whole: Made, repeats: int) -> None:
+def parts_apart(page: Page, scene: Scene, whole: Made, repeats: int) -> Record:
     """What meshing each part in a process of its own could save."""
     rows: list[Record] = []
     for number, part in enumerate(whole.mesh.part_names):
@@ -244,7 +277,7 @@ def parts_apart(page: Page, scene: Scene, whole: Made, repeats: int) -> None:
         "longest volume alone [s]": longest,
         "meshing, as in use [s]": whole.total,
         "meshing, volumes side by side, at best [s]": apart,
-        "times as fast, at best": whole.total / apart,
+        AT_BEST: whole.total / apart,
     }
     page.section("Parts in processes of their own")
     page.table(
@@ -259,11 +292,8 @@ def parts_apart(page: Page, scene: Scene, whole: Made, repeats: int) -> None:
         "Each process would mesh the surfaces again, or wait for them. The start of processes and "
         "the transport of meshes are not in the bound."
     )
-    page.say(
-        f"Parts meshed side by side would make meshing {bound['times as fast, at best']:.2f} times "
-        "as fast at best."
-    )
     page.data("parts", bound)
+    return bound
 
 
 def structured(run: Run, page: Page, quick: bool, repeats: int) -> None:
@@ -330,10 +360,11 @@ def run(run: Run, page: Page) -> None:
     repeats = run.count("repeats", 1 if run.quick else REPEATS)
     scene = scene_of(run, factors[0] if run.quick else 1.0)
     with run.step("over sizes"):
-        beside_solver(run, page, factors, repeats)
+        sizes = beside_solver(run, page, factors, repeats)
     with run.step("options of gmsh"):
         whole = options(run, page, scene, repeats)
     with run.step("parts apart"):
-        parts_apart(page, scene, whole, repeats)
+        bound = parts_apart(page, scene, whole, repeats)
+    answer(page, sizes, bound)
     with run.step("swept hexahedra"):
         structured(run, page, run.quick, repeats)

@@ -2,9 +2,11 @@
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from statistics import median
 from typing import Any
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.performance.peer_answer import answer, time_caption
 from fe_drivetrain.cases.performance.peer_goals import (
     goals,
     meshes_of,
@@ -32,7 +34,7 @@ from fe_drivetrain.cases.performance.peers import (
 )
 from fe_drivetrain.common import Progress, interpreters, scratch_folder
 from fe_drivetrain.comparison import growth_exponent
-from fe_drivetrain.report import Cell, formatted, trace
+from fe_drivetrain.report import Cell, error_bars, formatted, trace
 from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Unknowns of the first solve: enough that ``auto`` takes the solver that large problems take.
@@ -104,6 +106,7 @@ def run(run: Run, page: Page) -> None:
         for benchmark, rows in zip(benchmarks, found, strict=True)
         for row in goals(benchmark, rows, motions)
     ]
+    answer(page, benchmarks, found, compared)
     if compared:
         show_goals(page, compared, motions)
     page.section("Time at equal error")
@@ -300,11 +303,10 @@ def show_time(page: Page, benchmark: Benchmark, rows: Sequence[Row], plan: Plan)
     )
     show_chart(
         page,
-        f"{benchmark.title}: time from the mesh in memory to the stiffness; hollow markers leave "
-        f"more than {small(EQUAL)} of the stiffness",
+        time_caption(benchmark),
         "time [s]",
         rows,
-        lambda row: row.seconds,
+        lambda row: [f["seconds"] for f in row.found],
     )
 
 
@@ -322,7 +324,7 @@ def show_memory(page: Page, benchmark: Benchmark, rows: Sequence[Row]) -> None:
         f"{benchmark.title}: peak memory",
         "peak memory [MiB]",
         rows,
-        lambda row: None if row.bytes is None else row.bytes / 2**20,
+        lambda row: [f["peak_bytes"] / 2**20 for f in row.found],
     )
 
 
@@ -331,15 +333,14 @@ def show_chart(
     caption: str,
     axis: str,
     rows: Sequence[Row],
-    value: Callable[[Row], float | None],
+    values_of: Callable[[Row], list[float]],
 ) -> None:
-    """A quantity against unknowns: a colour for each tool, a dash for each of its solvers."""
+    """A quantity of all runs against unknowns: a colour for each tool, a dash for each solver."""
     traces = []
     counts: dict[str, int] = {}
     for variant in dict.fromkeys(r.variant for r in rows):
         mine = [r for r in rows if r.variant == variant]
-        values = [value(r) for r in mine]
-        shown = [(r, v) for r, v in zip(mine, values, strict=True) if v is not None]
+        shown = [(r, v) for r in mine if (v := values_of(r))]
         if not shown:
             continue
         place = counts.get(variant.tool, 0)
@@ -350,8 +351,9 @@ def show_chart(
             trace(
                 variant.name,
                 [r.unknowns for r, _ in shown],
-                [v for _, v in shown],
+                [median(v) for _, v in shown],
                 mode="lines+markers",
+                **error_bars("y", *([of(v) for _, v in shown] for of in (min, median, max))),
                 line={
                     "color": colour,
                     "dash": DASHES[place % len(DASHES)],

@@ -88,7 +88,7 @@ def show_goals(page: Page, table: list[Record], motions: int) -> None:
     page.data("goals", table)
     reached = sum(row["reached"] == "yes" for row in table)
     goal = table[0]["goal, at least"]
-    page.say(
+    page.text(
         f"This project is at least {goal:g} times as fast as every other tool, the goal, on "
         f"{reached} of {len(table)} meshes of {COMPARED_FROM:,} unknowns or more."
     )

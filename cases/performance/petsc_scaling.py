@@ -16,6 +16,8 @@ from fe_drivetrain.drivetrain_file import MATERIALS
 from fe_drivetrain.elasticity.interfaces import eliminate, fixed
 from fe_drivetrain.elasticity.mesh import brick
 from fe_drivetrain.elasticity.solve import ElementSystem, cut, petsc, solve
+from fe_drivetrain.report import error_bars, trace
+from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Unknowns of the strong series, of a full and a quick run.
@@ -36,6 +38,8 @@ PROCESSES, SIZE, EACH = "processes", "unknowns", "unknowns of a process"
 ASSEMBLY, SET_UP, SOLVE = "assembly [s]", "set-up [s]", "solve [s]"
 TOTAL, ITERATION = "all three [s]", "time of an iteration [ms]"
 MEMORY, PEAK = "memory of a process [MB]", "with interpreter [MB]"
+ENDS = "least [s]", TOTAL, "most [s]"
+STRONG = "Time of one size on more processes; bars: least and most of all runs"
 HANDING = "handing over, by one process [s]"
 FILES = "files handed over [bytes/unknown]"
 ITERATIONS = "iterations"
@@ -139,19 +143,53 @@ def run(run: Run, page: Page) -> None:
         source="this project's solver, chosen by itself, of the matrix that one process assembles",
     )
     last = strong[-1]
-    gain = float(strong[0][TOTAL]) / float(last[TOTAL])
-    page.say(
-        f"{last[SIZE]:,} unknowns: {last[PROCESSES]} processes are {gain:.2f} times as fast as "
-        f"one, with {last[ITERATIONS]} iterations against {strong[0][ITERATIONS]}, and each takes "
-        f"{last[MEMORY]:.0f} MB where one alone takes {strong[0][MEMORY]:.0f}."
-    )
     shown = f"median of {repeats} by time" if repeats > 1 else "one run"
     show(page, strong, weak, halo, shown)
     if run.quick:
-        page.say("A quick run is too small to extrapolate from.")
+        page.note("A quick run is too small to extrapolate from.")
+        answer(page, strong, None)
         return
     model = Model.of([*smaller, last], [*weak[:-1], *strong[:-1]], small)
-    extrapolate(page, model, [*smaller, last], f"{most} processes, {shown}")
+    best = extrapolate(page, model, [*smaller, last], f"{most} processes, {shown}")
+    answer(page, strong, best)
+
+
+def answer(page: Page, strong: list[Record], best: Record | None) -> None:
+    """State what more processes gain, and what a billion unknowns would take."""
+    first, last = strong[0], strong[-1]
+    seconds, gain = float(last[TOTAL]), float(first[TOTAL]) / float(last[TOTAL])
+    pays = (
+        f"{gain:.2g} times as fast as one"
+        if gain >= 1.0
+        else f"{1 / gain:.2g} times slower than one"
+    )
+    far = "" if best is None else f"; by the model 10⁹ take {best['time [s]']:.0f}\u00a0s"
+    figures = [
+        page.value("speed over one process", gain, beside=float(last[PROCESSES]), by="processes"),
+        page.value("assembly, set-up and solve [s]", seconds, beside=float(first[TOTAL]), by="one"),
+        page.value(MEMORY, float(last[MEMORY]), beside=float(first[MEMORY]), by="one"),
+        page.value(ITERATIONS, float(last[ITERATIONS]), beside=float(first[ITERATIONS]), by="one"),
+    ]
+    if best is not None:
+        figures += [
+            page.value(
+                f"10⁹ unknowns on {best[PROCESSES]:,} processes [s]",
+                float(best["time [s]"]),
+                0.5 * (float(best["at most [s]"]) - float(best["at least [s]"])),
+            ),
+            page.value("memory of these [TB]", float(best["memory [TB]"])),
+        ]
+    page.answer(
+        "What do more processes gain for a solid in parts, and where would that end?",
+        f"{last[SIZE]:,} unknowns on {last[PROCESSES]} processes take {value_text(seconds, 's')}, "
+        f"{pays}{far}.",
+        figures,
+        hero=STRONG,
+        cautions=[
+            "Processes share one machine and its memory: a network is slower.",
+            "One process cuts up the mesh and hands it over, which is not in the times.",
+        ],
+    )
 
 
 def one_size(
@@ -167,8 +205,8 @@ def one_size(
     return rows, apart
 
 
-def extrapolate(page: Page, model: Model, fitted: list[Record], measured_on: str) -> None:
-    """Show the cost of 1e9 unknowns by the model, and the points that it is fitted to."""
+def extrapolate(page: Page, model: Model, fitted: list[Record], measured_on: str) -> Record:
+    """Show 1e9 unknowns by the model, and the points of its fit; the row that takes least time."""
     predicted = [model.row(TARGET, count) for count in MANY]
     best = min(predicted, key=lambda row: float(row["time [s]"]))
     page.say(
@@ -188,6 +226,7 @@ def extrapolate(page: Page, model: Model, fitted: list[Record], measured_on: str
     page.text(model.words())
     page.data("predicted", predicted)
     page.data("laws", model.laws())
+    return best
 
 
 def show(
@@ -195,6 +234,27 @@ def show(
 ) -> None:
     """Show both sweeps, memory, and the elements that are integrated twice."""
     page.section("Measured")
+    page.chart(
+        STRONG,
+        [
+            trace(
+                name,
+                [row[PROCESSES] for row in strong],
+                [row[key] for row in strong],
+                mode="lines+markers",
+                **more,
+            )
+            for name, key, more in (
+                ("all three", TOTAL, error_bars("y", *([r[k] for r in strong] for k in ENDS))),
+                ("assembly", ASSEMBLY, {}),
+                ("set-up", SET_UP, {}),
+                ("solve", SOLVE, {}),
+            )
+        ],
+        PROCESSES,
+        "time [s]",
+        "xy",
+    )
     page.table(f"One size (strong), {shown}", strong)
     page.table(f"So many unknowns a process (weak), {shown}", weak)
     page.data("strong", strong)

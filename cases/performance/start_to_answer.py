@@ -16,6 +16,8 @@ from fe_drivetrain.common import (
     run_python,
     scratch_folder,
 )
+from fe_drivetrain.report import bars
+from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 
 _PROGRAM = "import sys; from fe_drivetrain.command_line import main; sys.exit(main())"
@@ -32,6 +34,7 @@ class Wait(NamedTuple):
     goal: float
 
 
+WAITING = "Wait from the command to its report, beside the goal; bars: least and most of all runs"
 _STUDY = ("run", "main_bearing/rmse")
 WAITS = (
     Wait(_STUDY, FIRST, 40.0),
@@ -138,14 +141,8 @@ def run(run: Run, page: Page) -> None:
             why="what is compiled or kept may change the time, not the answer",
             source="the first run",
         )
-    page.say(
-        *(
-            f"{' '.join(wait.command)}, {wait.before}: {row['median [s]']:.3g} s, for a goal of "
-            f"{wait.goal:g} s."
-            for wait, row in zip(waits, rows, strict=True)
-        )
-    )
     page.section("What a user waits for")
+    answer(page, rows)
     page.table(
         f"Wall time of {repeats} run{'s' * (repeats > 1)} each, on this machine, with whatever "
         "else it was doing; time on processors is that of all processes, the median",
@@ -158,6 +155,42 @@ def run(run: Run, page: Page) -> None:
     page.section("Where it goes")
     page.table("The longest steps of the last run of each, in whatever process", steps_of(found))
     page.data("waits", rows)
+
+
+def answer(page: Page, rows: list[Record]) -> None:
+    """State the longest of all waits against its goal."""
+    names = [f"{row['command']}, {row['before']}" for row in rows]
+    medians = {n: float(row["median [s]"]) for n, row in zip(names, rows, strict=True)}
+    ends = {
+        n: (float(row["least [s]"]), float(row["most [s]"]))
+        for n, row in zip(names, rows, strict=True)
+    }
+    goals = {n: float(row["goal [s]"]) for n, row in zip(names, rows, strict=True)}
+    page.add(bars(WAITING, {"median": medians, "goal": goals}, "time [s]", ends={"median": ends}))
+    longest = max(rows, key=lambda row: float(row["median [s]"]) / float(row["goal [s]"]))
+    seconds, goal = float(longest["median [s]"]), float(longest["goal [s]"])
+    within = sum(medians[name] <= goals[name] for name in names)
+    page.answer(
+        "How long does a user wait from the command to its report?",
+        f"'{longest['command']}', {longest['before']}, takes {value_text(seconds, 's')}, "
+        f"{'within' if seconds <= goal else 'beyond'} its goal of {goal:g}\u00a0s; {within} of "
+        f"{len(rows)} waits reach theirs.",
+        [
+            *(
+                page.value(f"{name} [s]", medians[name], beside=goals[name], by="goal")
+                for name in names
+            ),
+            page.value(
+                "time on processors of the longest [s]", float(longest["on processors [s]"])
+            ),
+            page.value(
+                "spread of the longest [s]",
+                float(longest["most [s]"]) - float(longest["least [s]"]),
+            ),
+        ][:6],
+        hero=WAITING,
+        cautions=["Times are those of this machine, with whatever else it was doing."],
+    )
 
 
 def row_of(wait: Wait, took: list[Took]) -> Record:

@@ -17,7 +17,7 @@ from fe_drivetrain.cases.references.stiffness_choices import (
 from fe_drivetrain.common import SafeWriter
 from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.comparison import pareto_front
-from fe_drivetrain.report import Chart, bars, trace
+from fe_drivetrain.report import Chart, bars, error_bars, trace
 from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Errors that an engineer asks for.
@@ -160,6 +160,14 @@ def symbol_of(outcome: Outcome) -> str:
     return SYMBOLS.get(outcome.solve.method, DIRECT_SYMBOL)
 
 
+def errors_caption(study: Study, quantity: int) -> str:
+    """Caption of the chart of errors against time."""
+    return (
+        f"{study.quantities[quantity]}, {study.title}: error against wall time. Circle: auto, "
+        "square: direct, diamond: multigrid, cross: multigrid that fell back on another"
+    )
+
+
 def show_errors(page: Page, study: Study, quantity: int) -> None:
     """Error against time of every choice, the front drawn."""
     error, seconds = study.error(quantity), study.seconds()
@@ -176,6 +184,9 @@ def show_errors(page: Page, study: Study, quantity: int) -> None:
                 seconds[chosen],
                 np.maximum(error[chosen], floor),
                 points=True,
+                **error_bars(
+                    "x", [o.least for o in outcomes], seconds[chosen], [o.most for o in outcomes]
+                ),
                 text=[f"{o.mesh}<br>{o.solver}<br>{o.unknowns:,} unknowns" for o in outcomes],
                 marker={
                     "size": 9,
@@ -192,9 +203,15 @@ def show_errors(page: Page, study: Study, quantity: int) -> None:
     front = front_of(study, quantity)
     line = {"color": "#1f2933", "width": 1.5, "shape": "hv"}
     traces.append(trace("Pareto front", seconds[front], error[front], line=line, hoverinfo="skip"))
+    taken = {bound: best for bound in BOUNDS if (best := study.cheapest(quantity, bound))}
+    places = [study.outcomes.index(best) for best in taken.values()]
+    if places:
+        names = ", ".join(percent(bound) for bound in taken)
+        ring = {"size": 16, "symbol": "circle-open", "color": "#1f2933", "line": {"width": 2}}
+        shown = np.maximum(error[places], floor)
+        traces.append(trace(f"to take for {names}", seconds[places], shown, True, marker=ring))
     page.chart(
-        f"{study.quantities[quantity]}, {study.title}: error against wall time. Circle: auto, "
-        "square: direct, diamond: multigrid, cross: multigrid that fell back on another",
+        errors_caption(study, quantity),
         traces,
         "mesh, assembly, set-up and solve [s]",
         "relative error of the stiffness",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from statistics import median
 
 from fe_drivetrain.cases import case
@@ -21,7 +21,8 @@ from fe_drivetrain.cases.performance.peers import (
 )
 from fe_drivetrain.common import cores, scratch_folder
 from fe_drivetrain.comparison import PowerLaw, power_law
-from fe_drivetrain.report import marked
+from fe_drivetrain.report import error_bars, trace
+from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 
 BODIES, QUICK_BODIES = ["shaft", "assembly", "tube", "slender"], ["shaft"]
@@ -31,6 +32,9 @@ WARM_UP = 10_000
 #: The goal: this many unknowns, but for what the sizes of meshes leave, in so much memory.
 UNKNOWNS, NEAR, MEMORY = 2_000_000, 0.95, 8.0
 GIB = 2**30
+TIME_CHART = "Time from the mesh in memory to the stiffness, median; bars: all runs"
+MEMORY_CHART = "Peak memory of the process, median; bars: all runs"
+ENDS: tuple[Callable[[list[float]], float], ...] = (min, median, max)
 
 
 @case(
@@ -63,7 +67,8 @@ def run(run: Run, page: Page) -> None:
     grown = {name: laws_of(rows) for name, rows in done.items() if rows}
     laws = {name: both for name, both in grown.items() if both is not None}
     goals = [goal(BENCHMARKS[name]().title, rows[-1]) for name, rows in done.items() if rows]
-    answer(page, done, laws)
+    details(page, done, laws)
+    answer(page, {name: rows for name, rows in done.items() if rows}, laws)
     page.section("Goal")
     page.table(f"Goal: {UNKNOWNS:,} unknowns in {MEMORY:g} GiB", goals, list(HEAD_OF_GOALS))
     page.section("Growth")
@@ -205,7 +210,49 @@ def line(body: str, row: Row) -> Record:
 def answer(
     page: Page, done: dict[str, list[Row]], laws: dict[str, tuple[PowerLaw, PowerLaw]]
 ) -> None:
-    """The largest size of each body, and how it grows, in a sentence."""
+    """State the most memory that the largest size takes, beside the goal."""
+    question = "Do two million unknowns fit into 8 GiB, and how long do they take?"
+    if not done:
+        page.answer(question, "0 sizes came to an end within the limits of time and memory.", [])
+        return
+    most = {n: max(f["peak_bytes"] for f in rows[-1].found) / GIB for n, rows in done.items()}
+    worst = max(most, key=lambda name: most[name])
+    last = done[worst][-1]
+    if last.unknowns < NEAR * UNKNOWNS:
+        reached = f"the goal, {UNKNOWNS / 1e6:g}\u00a0million in {MEMORY:g}\u00a0GiB, was not run"
+    else:
+        reached = (
+            f"{'within' if most[worst] <= MEMORY else 'beyond'} the goal of {MEMORY:g}\u00a0GiB"
+        )
+    title = BENCHMARKS[worst]().title
+    exact = [check for check in page.checks if check.check == "equals"]
+    page.answer(
+        question,
+        f"{title}: {last.unknowns:,} unknowns take {value_text(most[worst], 'GiB')} and "
+        f"{value_text(last.seconds or 0.0, 's')}; {reached}.",
+        [
+            page.value("most memory [GiB]", most[worst], beside=MEMORY, by="goal"),
+            page.value(f"time, {title.lower()} [s]", last.seconds or 0.0),
+            *(
+                page.value(f"exponent of {what}, {title.lower()}", law.exponent)
+                for name, both in laws.items()
+                if name == worst
+                for what, law in zip(("time", "memory"), both, strict=True)
+            ),
+            *(
+                page.judged(check.quantity, f"{check.quantity.rpartition(': ')[2]}", "G J / L")
+                for check in exact[:1]
+            ),
+        ],
+        hero=MEMORY_CHART,
+        cautions=["Meshes are made before, and not in the times."],
+    )
+
+
+def details(
+    page: Page, done: dict[str, list[Row]], laws: dict[str, tuple[PowerLaw, PowerLaw]]
+) -> None:
+    """State the largest size of each body, and how it grows, in a sentence."""
     for name, rows in done.items():
         if not rows:
             page.say(f"{BENCHMARKS[name]().title}: nothing came to an end.")
@@ -224,20 +271,30 @@ def answer(
         )
 
 
+def of_runs(row: Row, key: str, scale: float) -> list[float]:
+    """What each run of a size took."""
+    return [float(found[key]) / scale for found in row.found]
+
+
 def show(page: Page, done: dict[str, list[Row]]) -> None:
     """Time and memory over the number of unknowns."""
-    for title, unit, value in (
-        ("Median time from the mesh in memory to the stiffness", "time [s]", "seconds"),
-        ("Median peak memory of the process", "peak memory [GiB]", "bytes"),
+    for title, unit, key in (
+        (TIME_CHART, "time [s]", "seconds"),
+        (MEMORY_CHART, "peak memory [GiB]", "peak_bytes"),
     ):
-        scale = GIB if value == "bytes" else 1.0
+        scale = GIB if key == "peak_bytes" else 1.0
         page.chart(
             title,
             [
-                marked(
+                trace(
                     BENCHMARKS[name]().title,
                     [row.unknowns for row in rows],
-                    [getattr(row, value) / scale for row in rows],
+                    [median(of_runs(row, key, scale)) for row in rows],
+                    mode="lines+markers",
+                    **error_bars(
+                        "y",
+                        *([of(of_runs(row, key, scale)) for row in rows] for of in ENDS),
+                    ),
                 )
                 for name, rows in done.items()
             ],

@@ -9,14 +9,20 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.performance import studies
 from fe_drivetrain.cases.performance.studies import Setting, Study
 from fe_drivetrain.cases.performance.study_page import BOUNDS, percent, show
+from fe_drivetrain.cases.performance.work_precision_answer import answer
 from fe_drivetrain.cases.references.growing_shafts import STEPPED, Grown
 from fe_drivetrain.cases.references.stiffness_choices import CURVED, STEPS, STRAIGHT, Outcome
 from fe_drivetrain.cases.references.tilt_choices import BALANCED, sizes_in_words
 from fe_drivetrain.common import InputError, Times
 from fe_drivetrain.comparison import growth_exponent
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import error_bars, trace
 from fe_drivetrain.report.suite import Page, Record, Run, column, goal
 
+GROWTH = (
+    "Stepped shaft in curved P2, solver auto, each size in a process of its own: wall time [s] and "
+    "peak memory"
+)
+WHOLE = "in all, least [s]", "in all [s]", "in all, most [s]"
 PARTS = ("shaft", "housing", "growth")
 
 #: Goals of this project: wall times [s], exponent of growth, memory [GiB].
@@ -37,15 +43,17 @@ def run(run: Run, page: Page) -> None:
     page.seed = None
     parts = parts_of(run)
     if run.quick:
-        page.say(
+        page.note(
             "A quick run has no meshes that are fine enough: wall times and their growth are not "
             "compared with the goals."
         )
     studies.prepare(run)
     goals: list[Record] = []
+    measured: list[Study] = []
     curved: list[Outcome] = []
     if "shaft" in parts:
         study, uniform = studies.shaft_study(run), studies.uniform_study(run)
+        measured.append(study)
         if not run.quick:
             with run.step("shaft: the chosen settings again"):
                 goals += torsion_goals(study, uniform)
@@ -62,6 +70,7 @@ def run(run: Run, page: Page) -> None:
         show(run, page, study, "shaft", range(len(study.quantities)))
     if "housing" in parts:
         tilt, settings = studies.tilt_study(run), studies.tilt_settings(run)
+        measured.append(tilt)
         if not run.quick:
             goals.append(assembly_goal(run, page, tilt, settings))
         show_settings(page, tilt, settings)
@@ -75,7 +84,8 @@ def run(run: Run, page: Page) -> None:
         page.table("What was measured, and the goal of this project", goals)
         page.data("goals", goals)
         reached = sum(row["reached"] == "yes" for row in goals)
-        page.say(f"Goals that are reached: {reached} of {len(goals)}.")
+        page.text(f"Goals that are reached: {reached} of {len(goals)}.")
+    answer(page, measured, goals, GROWTH)
 
 
 def parts_of(run: Run) -> list[str]:
@@ -253,14 +263,18 @@ def show_growth(page: Page, grown: Sequence[Grown], curved: Sequence[Outcome]) -
     timed = [f"{step} [s]" for step in (*STEPS, "in all")]
     page.section("Growth with the number of unknowns")
     page.chart(
-        "Stepped shaft in curved P2, solver auto, each size in a process of its own: wall time [s] "
-        "and peak memory",
+        GROWTH,
         [
             trace(
                 name,
                 unknowns,
                 column(rows, name),
                 mode="lines+markers",
+                **(
+                    error_bars("y", *(column(rows, end) for end in WHOLE))
+                    if name == WHOLE[1]
+                    else {}
+                ),
                 line={"dash": "dot"}
                 if name.startswith("peak")
                 else {"width": 3 if name.startswith("in all") else 1.5},

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.procedure.errata_answer import AGREES, answer
 from fe_drivetrain.cases.procedure.known_drivetrain import (
     BRAKING,
     BROAD,
@@ -162,7 +163,7 @@ def campaign() -> list[Record]:
         found.append(
             row(
                 of.where,
-                INCONSISTENT if abs(of.turbulence / mean - 1.0) > 0.05 else "agrees",
+                INCONSISTENT if abs(of.turbulence / mean - 1.0) > 0.05 else AGREES,
                 f"mean turbulence {of.turbulence:.2%}",
                 "mean of the printed classes",
                 "mean turbulence [%]",
@@ -482,10 +483,9 @@ def run(run: Run, page: Page) -> None:
         "signals, and all figures. The text at hand is one of extracted characters: what is "
         "garbled in it may stand right in print. The GL guideline's numbers were not read."
     )
-    numbers = [r for r in rows if r["as printed"] is not None]
+    answer(page, rows)
     page.say(
-        f"{len(rows)} places, {len(numbers)} of which change a number. Most: a stiffness by angles "
-        "that are not referred to one side (by the ratio of the gearbox), inertia from the rotor's "
-        f"torque ({FRONT / REDUCED:.1f} times), signs of Eq 5.1 (inertia below zero, friction that "
-        "gives power)."
+        "Stiffness is off by the ratio of the gearbox where angles are not referred to one side, "
+        "inertia where it is found from the rotor's torque; by the signs of Eq 5.1 inertia is "
+        "below zero, and friction gives power."
     )

@@ -43,7 +43,8 @@ from fe_drivetrain.procedure import (
     write_load_csv,
     write_load_json,
 )
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import chart, mark_events, trace
+from fe_drivetrain.report.number_text import formatted, value_text
 from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
 from fe_drivetrain.shafts.beam import Beam, BeamSection, condensed_beam
 from fe_drivetrain.turbine_loads.hub_loads import Condition, hub_loads
@@ -65,6 +66,8 @@ SHAPES = {
 }
 #: Name, station, directions and their shares, stiffness [N/m].
 Support = tuple[str, int, dict[int, float], float]
+LARGEST = "largest torque of all dips, over that before"
+TORQUE = "Torque of the low-speed shaft over that before, dips of 0.15 s"
 MAXIMUM, MINIMUM = "largest torque over that before", "least torque over that before"
 
 
@@ -85,16 +88,41 @@ def run(run: Run, page: Page) -> None:
         ],
     )
     with run.step("resonance"), page.of(TABLE):
-        resonance(page)
+        met = resonance(page)
     with run.step("misalignment"), page.of(None):
-        misalignment(page)
+        support, force = misalignment(page)
     with run.step("voltage dips"), page.of(TABLE):
-        dips(page)
+        least = dips(page)
     with run.step("interfaces"), page.of(None):
         interfaces(run, page)
+    largest = page.judged(LARGEST, "largest torque in a dip over that before", "two steps")
+    page.answer(
+        "What do the standard's design load cases leave out of a drivetrain?",
+        f"A voltage dip brings {formatted(largest.value, 3)} times the torque before; "
+        f"{met} resonances lie in operation; 0.5\u00a0mm of offset loads a bearing by "
+        f"{value_text(force, 'kN')}.",
+        [
+            largest,
+            page.value("least torque in a dip over that before", least),
+            page.value("resonances in operation", met),
+            page.value(f"force of 0.5 mm of offset, {support} [kN]", force),
+            page.value(
+                "design loads without a load case",
+                len(catalogue.uncovered),
+                beside=len(catalogue.design_loads),
+                by="all",
+            ),
+        ],
+        hero=TORQUE,
+        cautions=[
+            f"Damping of drivetrain C is assumed, {100 * RATIO:g} % of critical: its tables have "
+            "none.",
+            "On three points offsets load nothing; the force is that of two main bearings.",
+        ],
+    )
 
 
-def resonance(page: Page) -> None:
+def resonance(page: Page) -> int:
     """Register of excitations against the modes of a gearbox with three stages."""
     system = gear_masses(TABLE, "free")
     modes = natural_modes(system)
@@ -135,10 +163,11 @@ def resonance(page: Page) -> None:
     chart_meetings(page, [m for m in found if m.verdict == "resonance"], by_name)
     page.data("resonances", rows)
     page.assume("frequency of the controller's communication", CONTROLLER, "Hz", "none is given")
-    page.say(
+    page.text(
         f"Excitations of drivetrain C cross a frequency {crossed} times in operation, {met} times "
         "at a part that has 1 % or more of the mode's energy."
     )
+    return met
 
 
 def chart_meetings(page: Page, met: list[Meeting], by_name: dict[str, Excitation]) -> None:
@@ -164,7 +193,7 @@ def chart_meetings(page: Page, met: list[Meeting], by_name: dict[str, Excitation
     )
 
 
-def misalignment(page: Page) -> None:
+def misalignment(page: Page) -> tuple[str, float]:
     """Tolerances at the supports of a drivetrain on three points, and on four."""
     stations = np.array([PLACES.hub, PLACES.bearing, SECOND, PLACES.arms])
     beam = Beam([BeamSection(PLACES.arms - PLACES.hub, 0.6)], [], start=PLACES.hub)
@@ -189,11 +218,7 @@ def misalignment(page: Page) -> None:
     )
     page.data("misalignment", rows)
     worst = max(rows, key=lambda row: float(row["worst force [kN]"]))
-    page.say(
-        f"Offsets of {TOLERANCE * 1e3:g} mm load no support of a drivetrain on three points, and "
-        f"those of one with two main bearings by up to {worst['worst force [kN]']:.0f} kN "
-        f"({worst['support']})."
-    )
+    return str(worst["support"]), float(worst["worst force [kN]"])
 
 
 def supports() -> tuple[list[Support], list[Support]]:
@@ -244,7 +269,7 @@ def check_determinacy(page: Page, name: str, found: Misalignment) -> None:
         )
 
 
-def dips(page: Page) -> None:
+def dips(page: Page) -> float:
     """Torque of the shaft while the generator's dips, over depth and duration."""
     free = two_masses(TABLE, "free")
     front, rear = free.J
@@ -266,32 +291,31 @@ def dips(page: Page) -> None:
         for depth, seconds in DIPS
     ]
     page.at_most(
-        "largest torque of all dips, over that before",
+        LARGEST,
         max(float(row["largest torque / before"]) for row in rows),
         1.0 + 2.0 * max(d for d, _ in DIPS) * float(front / (front + rear)),
         why="without damping two steps leave an amplitude of twice one step at most",
         source="an oscillator: 1 + 2 depth J_r / (J_r + J_g)",
         measure="reaction",
     )
-    page.chart(
-        "Torque of the low-speed shaft over that before, dips of 0.15 s",
+    torques = chart(
+        TORQUE,
         [trace(name, time[::4], torque[::4]) for name, torque in shown.items()],
         "time [s]",
         "torque / torque before",
     )
+    page.add(mark_events(torques, {"voltage dips": 0.2, "voltage is back": 0.35}))
     page.table(f"Dips by depth and duration; first frequency {frequency:.2f} Hz", rows)
     page.data("dips", rows)
-    worst = max(rows, key=lambda row: float(row["largest torque / before"]))
     page.say(
-        "A dip of the generator's whole torque leaves up to "
-        f"{worst['largest torque / before']:.2f} times the torque before in the shaft "
-        f"({worst['duration [s]']:g} s): how its length falls on the period of "
-        f"{1 / frequency:.2f} s matters as much as its depth."
+        f"How the length of a dip falls on the shaft's period of {1 / frequency:.2f} s matters as "
+        "much as its depth."
     )
     tables(page)
     page.assume(
         "damping ratio of the drivetrain", RATIO, "", "the tables of drivetrain C have none"
     )
+    return min(float(row["least torque / before"]) for row in rows)
 
 
 def simulate_dips(

@@ -6,7 +6,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import FORCES, Floats
-from fe_drivetrain.comparison import InTime, converge_in_time, peak_between
+from fe_drivetrain.comparison import ConvergenceInTime, InTime, converge_in_time, peak_between
 from fe_drivetrain.drivetrain_file import Scene, library_scene
 from fe_drivetrain.procedure import (
     LoadTable,
@@ -24,6 +24,7 @@ from fe_drivetrain.procedure import (
     write_load_json,
 )
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
 from fe_drivetrain.shafts.fidelity import shaft_level
 from fe_drivetrain.turbine_loads.hub_loads import Condition, hub_loads
@@ -33,6 +34,15 @@ MASSES = {"shaft": 8e3, "gearbox": 15e3, "generator": 7e3}  # kg
 RATIO, SECONDS = 100.0, 2e-3  # -, damping over stiffness [s]
 SPEED = 1.9  # rad/s, rated
 HIDDEN = ("levels", "seconds", "table", "rms of 600 s", "rank")
+IN_WORDS = {
+    "Fx": "axial force",
+    "Fy": "side force",
+    "Fz": "vertical force",
+    "Mx": "torque",
+    "My": "tilt moment",
+    "Mz": "yaw moment",
+}
+IN_TIME = "The load in which inertia matters most, by model"
 SHOWN = ("main bearing", "gearbox entrance")
 SECONDS_BETWEEN = 30.0  # of the history in which the motion is resolved between samples
 
@@ -59,10 +69,11 @@ def run(run: Run, page: Page) -> None:
     check_equilibrium(page, {"dynamics": moving, "finite elements": elements, "statics": static})
     check_gearing(page, moving)
     check_vertical_forces(page, hub, static, elements, rest)
-    beside(page, hub, static, elements, without, rest)
+    worst = beside(page, hub, static, elements, without, rest)
     motions(page, moving, elements)
     with run.step("between samples"):
-        between_samples(page, places, mounts, time, hub)
+        peaks = between_samples(page, places, mounts, time, hub)
+    answer(page, worst, peaks)
     for table, name in ((moving, "interfaces"), (elements, "interfaces_elements")):
         write_load_csv(table, run.folder / f"{name}.csv")
         write_load_json(table, run.folder / f"{name}.json")
@@ -73,6 +84,42 @@ def run(run: Run, page: Page) -> None:
     page.assume("ratio", RATIO, "", "of such machines, round")
     page.assume("speed of the rotor", SPEED, "rad/s", "of such machines, round")
     page.assume("stiffness, inertia", "see the case", "", "all but the arms, which are the scene's")
+
+
+def answer(page: Page, worst: Record, peaks: ConvergenceInTime) -> None:
+    """State where inertia matters most, and peaks at the interfaces."""
+    component, _, unit = str(worst["component"]).partition(" ")
+    unit = unit.strip("[]")
+    place = f"{IN_WORDS[component]} at the {worst['interface']}"
+    moves, rests = (float(worst[f"{model}: deviation"]) for model in ("dynamics", "statics"))
+    small = rests < 0.1 * moves
+    page.answer(
+        "Do statics suffice for the loads at a drivetrain's interfaces?",
+        f"{place.capitalize()} scatters by {value_text(moves, unit)} in the dynamics and by "
+        f"{value_text(rests, unit)} in statics, which "
+        f"{'does not suffice' if small else 'suffices'} there.",
+        [
+            page.value(
+                f"standard deviation of {place} [{unit}]", moves, beside=rests, by="statics"
+            ),
+            page.value(
+                "the same by finite elements [" + unit + "]",
+                float(worst["finite elements: deviation"]),
+                beside=rests,
+                by="statics",
+            ),
+            *(
+                page.value(f"peak {key}", peaks.value(key), peaks.step_band(key))
+                for key in list(peaks.finest.values)[:1] + list(peaks.finest.values)[3:]
+            ),
+        ][:6],
+        hero=IN_TIME,
+        cautions=[
+            "Masses, stiffnesses and inertias but those of the arms are assumed, of such machines.",
+            "Peaks are those of the history's first "
+            f"{SECONDS_BETWEEN:g} s, resolved between samples.",
+        ],
+    )
 
 
 def check_equilibrium(page: Page, tables: dict[str, LoadTable]) -> None:
@@ -143,7 +190,7 @@ def show_all(page: Page, moving: LoadTable) -> None:
 
 def between_samples(
     page: Page, places: ThreePoints, mounts: Mounts, time: Floats, hub: Floats
-) -> None:
+) -> ConvergenceInTime:
     """Energy of the dynamics, and peaks that fall between samples of the loads."""
     sample = float(time[1] - time[0])
     upto = float(min(SECONDS_BETWEEN, time[-1] - time[0]))
@@ -173,6 +220,7 @@ def between_samples(
         f"larger between samples, {1e3 * sample:g} ms apart, than at any of them; of "
         f"{len(missed)} peaks it is the one that is missed most."
     )
+    return found
 
 
 def peaks_of(moving: LoadTable) -> dict[str, float]:
@@ -301,9 +349,10 @@ def beside(
     elements: LoadTable,
     moving: LoadTable,
     rest: LoadTable,
-) -> None:
-    """Statistics of loads that the hub's bring about, by model."""
+) -> Record:
+    """Statistics of loads that the hub's bring about, by model; where inertia matters most."""
     rows: list[Record] = []
+    found: list[dict[str, Floats]] = []
     for name in SHOWN:
         sign = -1.0 if name == "main bearing" else 1.0  # of the shaft on the bearing, by the levels
         by_model = {
@@ -322,14 +371,15 @@ def beside(
             }
             row |= {f"{m}: deviation": round(d, 3) for m, d in deviations.items()}
             rows.append(row)
+            found.append({m: v[:, c] / size for m, v in by_model.items()})
     page.section("One load in three models")
     worst = max(rows, key=lambda row: row["dynamics: deviation"] - row["statics: deviation"])
-    page.say(
-        "Inertia matters most where statics has next to nothing: the standard deviation of "
-        f"{str(worst['component']).partition(' ')[0]} at the {worst['interface']} is "
-        f"{worst['dynamics: deviation']:.1f} kN m in the dynamics, "
-        f"{worst['statics: deviation']:.1f} in statics and "
-        f"{worst['finite elements: deviation']:.1f} with finite elements."
+    shown = slice(0, min(len(moving.time), 400))
+    page.chart(
+        IN_TIME,
+        [trace(m, moving.time[shown], v[shown]) for m, v in found[rows.index(worst)].items()],
+        "time [s]",
+        f"{worst['interface']}: {worst['component']}",
     )
     page.table("Loads at main bearing and gearbox entrance of those at the hub", rows)
     page.data("models", rows)
@@ -338,6 +388,7 @@ def beside(
         "axial stiffness and what it resists of a turn about z, too; in the dynamics gearbox and "
         "shaft have inertia."
     )
+    return worst
 
 
 def motions(page: Page, moving: LoadTable, elements: LoadTable) -> None:

@@ -36,13 +36,16 @@ from fe_drivetrain.procedure import (
     motions_energy_error,
     resonances,
 )
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import chart, mark_events, trace
+from fe_drivetrain.report.number_text import certain_value, formatted
 from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
 
 DEFAULT = "nrel_750kw"
 RATIO = 0.01  # of critical damping
 RPM = 2.0 * np.pi / 60.0  # rad/s
 DEPTHS, SECONDS = (0.2, 0.5, 0.8, 1.0), (0.1, 0.15, 0.25, 0.5)  # of the torque, s
+START = 0.2  # s
+TORQUE = "Torque of the main shaft in voltage dips of 0.15 s"
 MARGIN = "least margin of an excited frequency"
 FORCE = "largest force of misalignment on a bearing [kN]"
 MAXIMUM, MINIMUM = (
@@ -78,6 +81,40 @@ def run(run: Run, page: Page) -> None:
         misalignment(page, machine, 1e-3 * offset)
     with run.step("voltage dips"):
         dips(page, machine, 1e3 * torque)
+    answer(page, (low, high), torque, offset)
+
+
+def answer(page: Page, speeds: tuple[float, float], torque: float, offset: float) -> None:
+    """State the margin to resonance, and what dips and offsets load."""
+    margin = page.judged(MARGIN, f"least margin to a resonance, {speeds[0]:g} to {speeds[1]:g} rpm")
+    most = page.judged(MAXIMUM, "largest torque of the main shaft in a dip")
+    least = page.judged(MINIMUM, "least torque of the main shaft in a dip")
+    over = page.judged(
+        f"{MAXIMUM}, over that before", "largest torque over that before", "two steps"
+    )
+    force = FORCE.partition(" [")[0]
+    loaded = [
+        page.judged(force, f"force of {offset:g} mm of offset on a bearing")
+        for figure in page.figures
+        if figure.quantity == force
+    ]
+    meets = (
+        f"the nearest resonance is {100 * margin.value:.2g}\u00a0% of speed away"
+        if margin.value
+        else "operation crosses a resonance"
+    )
+    page.answer(
+        "What do a voltage dip, a resonance and misalignment do to this drivetrain?",
+        f"A voltage dip puts {certain_value(least)} to {certain_value(most)} into the main shaft, "
+        f"{formatted(over.value, 3)} times that before; {meets}.",
+        [most, least, over, margin, *loaded],
+        hero=TORQUE,
+        cautions=[
+            f"Damping is assumed, {100 * RATIO:g} % of critical: the machine's table has none.",
+            f"Torque before a dip is {torque:g} kN m; the generator's torque falls by up to all "
+            "of it.",
+        ],
+    )
 
 
 def require_operation(run: Run, name: str) -> None:
@@ -133,7 +170,7 @@ def resonance(page: Page, machine: Machine, speeds: tuple[float, float]) -> None
             for m in met[:12]
         ],
     )
-    page.say(
+    page.text(
         f"From {speeds[0]:g} to {speeds[1]:g} rpm the least margin is {met[0].margin:.3g}: "
         f"{met[0].excitation} at {met[0].frequency:.4g} Hz."
     )
@@ -171,7 +208,7 @@ def misalignment(page: Page, machine: Machine, offset: float) -> None:
     ]
     words = ", ".join(sorted(moved))
     page.table(f"Worst force while {words} is within {1e3 * offset:g} mm of its place", rows)
-    page.say(
+    page.text(
         f"Offsets of {1e3 * offset:g} mm ({words}) load {found.names[most]} by up to "
         f"{sizes[most] / 1e3:.3g} kN."
     )
@@ -232,12 +269,9 @@ def dips(page: Page, machine: Machine, torque: float) -> None:
         trace(name, found.steps[-1] * np.arange(len(q))[::4], torque * q[::4] / 1e3)
         for name, q in shown.items()
     ]
-    page.chart("Torque of the main shaft", curves, "time [s]", "torque [kN m]")
+    torques = chart(TORQUE, curves, "time [s]", "torque [kN m]")
+    page.add(mark_events(torques, {"dip": START, "end of it": START + SECONDS[1]}))
     page.table(f"By depth and duration; first frequency {frequency:.3g} Hz", rows)
-    page.say(
-        f"A dip of the generator's torque leaves {least:.4g} to {most:.4g} kN m in the main shaft, "
-        f"of {torque / 1e3:.4g} kN m before."
-    )
     page.assume("damping ratio of the drivetrain", RATIO, "", "the machine's table has none")
 
 
@@ -258,7 +292,7 @@ def dips_of(system: Torsional, machine: Machine, step: float) -> tuple[InTime, d
     values, lost, shown = {}, 0.0, {}
     for depth in DEPTHS:
         for seconds in SECONDS:
-            found, error = torque_of(system, machine, Dip(0.2, depth, seconds), step)
+            found, error = torque_of(system, machine, Dip(START, depth, seconds), step)
             lost = max(lost, error)
             values[name_of(depth, seconds, "largest")] = peak_between(found)
             values[name_of(depth, seconds, "least")] = -peak_between(-found)

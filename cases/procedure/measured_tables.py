@@ -15,6 +15,8 @@ from fe_drivetrain.procedure import (
     listed_quantities,
     ring_torque,
 )
+from fe_drivetrain.report import chart, mark_events, trace
+from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.turbine_loads.hub_loads import (
     Condition,
@@ -26,6 +28,7 @@ from fe_drivetrain.turbine_loads.hub_loads import (
 
 OVERHANG, HEIGHT = 3.5, 2.0  # m, hub before the tower's axis and above its top
 NACELLE = 80e3 * 9.81, 0.8  # N without the rotor, m behind the tower's axis
+TORQUE = "Torque of the pitch motor at 17 m/s"
 PINION, TORSION = 12.0, 8e3  # turns of the pinion for one of the blade; N m, held
 
 
@@ -69,18 +72,62 @@ def run(run: Run, page: Page) -> None:
         why="tower top loads follow from those of the hub",
         source="PROTEST 2010, Table 6.4",
     )
+    draw_torque(page, made.history.time, channels["motor torque"])
     missing = [str(row["channel"]) for row in rows if not row["given"]]
-    page.say(
-        f"{len(given)} of {len(rows)} channels are given by the models of turbine and drives; the "
-        f"pitch motor's worst root mean square is {by_name['motor torque']['rms of 600 s']:.1f} "
-        f"N m, its peak {motor:.0f} N m."
-    )
-    page.text(
-        "Not given by these models: " + ", ".join(dict.fromkeys(missing)) + ". Loads of the pitch "
-        "bearing are held at constant values, so that only motion and inertia vary."
-    )
+    answer(page, (given, rows), mandatory, float(by_name["motor torque"]["rms of 600 s"]), motor)
+    page.text("Not given by these models: " + ", ".join(dict.fromkeys(missing)) + ".")
     page.assume("nacelle: weight, place behind the tower's axis", "80, 0.8", "t, m", "assumed")
     page.assume("hub: before the tower's axis, above its top", "3.5, 2", "m", "assumed")
+
+
+def draw_torque(page: Page, time: Floats, motor: Floats) -> None:
+    """Torque of the pitch motor, its largest value marked."""
+    page.section("Torque of the pitch motor")
+    largest = float(time[int(np.abs(motor).argmax())])
+    torque = chart(
+        TORQUE,
+        [trace("pitch motor", time, motor)],
+        "time [s]",
+        "torque [N m]",
+    )
+    page.add(mark_events(torque, {"largest": largest}))
+
+
+def answer(
+    page: Page,
+    channels: tuple[list[Record], list[Record]],
+    mandatory: list[Record],
+    thermal: float,
+    motor: float,
+) -> None:
+    """State how many channels are given, and the torque of the pitch motor."""
+    given, rows = channels
+    page.answer(
+        "Which quantities of PROTEST's pitch and yaw tables do simulations give?",
+        f"Simulations give {len(given)} of {len(rows)} channels; the pitch motor has "
+        f"{value_text(thermal, 'N m')} root mean square and {value_text(motor, 'N m')} at its "
+        "peak.",
+        [
+            page.value("channels that are given", len(given), beside=len(rows), by="asked for"),
+            page.value(
+                "mandatory channels of Table 6.4 that are given",
+                sum(bool(row["given"]) for row in mandatory),
+                at_least=len(mandatory),
+                by="PROTEST",
+            ),
+            page.value("root mean square torque of the pitch motor [N m]", thermal),
+            page.value("peak torque of the pitch motor [N m]", motor),
+            page.judged(
+                "tower top: mean axial force",
+                "mean axial force at the tower's top",
+                "hub and weight",
+            ),
+        ],
+        hero=TORQUE,
+        cautions=[
+            "Loads of the pitch bearing are held at constant values: only motion and inertia vary."
+        ],
+    )
 
 
 def show_tables(page: Page, tables: dict[str, list[Record]]) -> None:

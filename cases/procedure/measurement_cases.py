@@ -19,12 +19,15 @@ from fe_drivetrain.procedure import (
     protest_measurement_cases,
     sampling_rates,
 )
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import chart, mark_events, trace
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
 
 STEP = 0.005  # s
 FREE = {"STB": (11.05, 13.95), "STD": (12.2, 13.95)}  # s, from the loss of torque to the braking
 SHOWN = ("NTA", "STB", "STD")
+TORQUE = "Torque of the shaft, high-speed side, while torque is lost and brakes act"
+CLEAN, NOISY = "by the twist", "by the twist with noise of 0.1 mrad, three peaks"
 
 
 @case(
@@ -45,8 +48,8 @@ def run(run: Run, page: Page) -> None:
         momentum(page, of, found[of.code])
     page.section("Cases")
     page.table("Each case by its script; torque of the shaft, and as a strain gauge has it", rows)
-    page.chart(
-        "Torque of the shaft, high-speed side",
+    torque = chart(
+        TORQUE,
         [
             trace(
                 f"{code}, {cases.of(code).title}",
@@ -58,24 +61,49 @@ def run(run: Run, page: Page) -> None:
         "time [s]",
         "torque [N m]",
     )
+    events = {f"{code}: torque is lost": first for code, (first, _) in FREE.items()}
+    page.add(mark_events(torque, events | {"braking": FREE["STB"][1]}))
     page.data("cases", rows)
-    stops(page, found, float(mode.ratios[0]))
+    damping = stops(page, found, float(mode.ratios[0]))
     least, good = sampling_rates(float(mode.frequencies[0]))
     page.text(
         f"The drivetrain's mode at {float(mode.frequencies[0]):.2f} Hz asks for {least:.1f} to "
-        f"{good:.1f} samples a second, and is recorded with {1.0 / STEP:g}. Times, speeds and "
-        "torques of the scripts are assumed: the report has codes and words. The same door takes a "
-        "user's own scripts (read_measurement_cases)."
+        f"{good:.1f} samples a second, and is recorded with {1.0 / STEP:g}. A user's own scripts "
+        "are read likewise (read_measurement_cases)."
     )
+    answer(page, rows, damping)
+    page.assume("rated torque, high-speed side", MEAN, "N m", "the report prints none")
+
+
+def answer(page: Page, rows: list[Record], damping: list[Record]) -> None:
+    """State which case loads and reverses the shaft most, and the damping that stops give."""
     largest = max(rows, key=lambda row: float(row["largest [N m]"]))
     reversed_by = min(rows, key=lambda row: float(row["shaft torque, least [N m]"]))
-    page.say(
-        f"Of {len(rows)} cases {largest['case']} has the largest torque in the shaft "
-        f"({float(largest['largest [N m]']) / MEAN:.2f} of rated), {reversed_by['case']} reverses "
-        f"it most ({float(reversed_by['shaft torque, least [N m]']) / MEAN:.2f}); the stops give "
-        "the damping back."
+    most, least = float(largest["largest [N m]"]), float(reversed_by["shaft torque, least [N m]"])
+    turned = "reversed" if largest is reversed_by else f"{reversed_by['case']} reverses it"
+    page.answer(
+        "Which measurement case loads the shaft most, and what do stops tell of damping?",
+        f"{str(largest['what']).capitalize()} loads the shaft most: {most / MEAN:.2f} times rated "
+        f"torque, {turned} to {formatted(least / MEAN, 2)} times.",
+        [
+            page.value("largest torque of the shaft [N m]", most, beside=MEAN, by="rated"),
+            page.value("least torque of the shaft [N m]", least, beside=MEAN, by="rated"),
+            *(
+                page.value(
+                    f"damping ratio after {row['case']}, {name} [%]",
+                    100.0 * float(row[key]),
+                    beside=100.0 * float(row["true"]),
+                    by="truth",
+                )
+                for row in damping
+                for name, key in (("exact twist", CLEAN), ("noise of 0.1 mrad", NOISY))
+            ),
+        ],
+        hero=TORQUE,
+        cautions=[
+            "Times, speeds and torques of the scripts are assumed: the report has codes and words."
+        ],
     )
-    page.assume("rated torque, high-speed side", MEAN, "N m", "the report prints none")
 
 
 def check_steps(page: Page, cases: Sequence[MeasurementCase]) -> None:
@@ -141,7 +169,7 @@ def momentum(page: Page, of: MeasurementCase, channels: dict[str, Floats]) -> No
     )
 
 
-def stops(page: Page, found: dict[str, dict[str, Floats]], ratio: float) -> None:
+def stops(page: Page, found: dict[str, dict[str, Floats]], ratio: float) -> list[Record]:
     """Damping from the decay of the twist after the torque is lost, true and measured."""
     rows: list[Record] = []
     for code, (first, last) in FREE.items():
@@ -164,9 +192,10 @@ def stops(page: Page, found: dict[str, dict[str, Floats]], ratio: float) -> None
             {
                 "case": code,
                 "true": ratio,
-                "by the twist": exact.ratio,
-                "by the twist with noise of 0.1 mrad, three peaks": twist.ratio,
+                CLEAN: exact.ratio,
+                NOISY: twist.ratio,
             }
         )
     page.section("Stops")
     page.table("Damping ratio by the logarithmic decrement after the loss of torque", rows)
+    return rows

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.procedure.pitch_and_yaw_answer import SHUTDOWN, answer
 from fe_drivetrain.cases.procedure.slewing_drives import (
     AXIAL,
     BRIDGES,
@@ -68,12 +69,14 @@ def run(run: Run, page: Page) -> None:
     with run.step("yawing"):
         yawing(page)
         tower(page)
+    answer(page, counts)
     quarter = int(np.ceil(TEETH / 4))
     page.say(
+        "By Eq 5.1 as printed friction drives the blade.",
         f"In turbulent wind above rated {np.count_nonzero(counts):d} of {TEETH} teeth of a blade's "
         f"ring are used, a quarter of them ({quarter}) has "
         f"{counts[:quarter].sum() / counts.sum():.0%} "
-        f"of all meshes, and one tooth {counts.max() / counts.mean():.1f} times the mean."
+        f"of all meshes, and one tooth {counts.max() / counts.mean():.1f} times the mean.",
     )
 
 
@@ -99,12 +102,6 @@ def shutdown(page: Page) -> None:
         basis="self-consistency",
     )
     show_shutdown(page, stop)
-    right, printed = stop.right, stop.printed
-    page.say(
-        f"A shutdown takes {right.max():.0f} N m of the motor, at its start, and by Eq 5.1 as "
-        f"printed {printed[np.abs(printed).argmax()]:.0f} N m: there friction drives the blade, "
-        "and inertia is negative."
-    )
     page.assume(
         "pitch drive: J_B, J_A, i",
         f"{PITCH.part:g}, {PITCH.drive:g}, {PITCH.ratio:g}",
@@ -164,7 +161,7 @@ def show_shutdown(page: Page, stop: Stop) -> None:
     bare = (stop.load + np.sign(stop.speed) * stop.friction) / PITCH.ratio
     page.section("Shutdown")
     page.chart(
-        "Torque of the pitch motor over a shutdown from 0 to 70 degrees",
+        SHUTDOWN,
         [
             trace("right signs", time, right),
             trace("Eq 5.1 as printed", time, printed, line={"dash": "dash"}),

@@ -38,6 +38,8 @@ DEPTH, LENGTH, STEP = 1.0, 0.15, 4e-3  # of the torque, s, s
 SECONDS = {True: 1.6, False: 6.0}  # quick or not
 DAMPING = 1e-4  # s, damping over stiffness: 0.06 % of critical at 2 Hz
 TOLERANCE = 0.02
+BY_LEVEL = "Error of the torque's peak against the time that a level takes; star: enough"
+WHOLE = "Error of the torque over the whole dip, root mean square"
 SHARE = 0.999  # of the signal's power
 THRESHOLDS = tuple(10.0**exponent for exponent in np.arange(-6.0, 0.1, 0.5))
 
@@ -50,7 +52,7 @@ def run(run: Run, page: Page) -> None:
     """A generator's torque dips by its whole size; what of the model does the main shaft need?"""
     machine = library_machine(MACHINE)
     page.about(machine, MACHINE)
-    levels(run, page, machine)
+    level = levels(run, page, machine)
     system = damped(machine_system(machine, Level.RIGID))
     signal = dip_torque(machine, system, SECONDS[run.quick])
     with run.step("spectrum"):
@@ -73,6 +75,45 @@ def run(run: Run, page: Page) -> None:
     with run.step("one after another"):
         trials = one_after_another(system, found, signal, TOLERANCE)
     after_another(page, found, trials)
+    answer(page, level, found, trials)
+
+
+def answer(page: Page, level: Record, found: list[Influence], trials: list[Trial]) -> None:
+    """State the level that is enough, and how many degrees of freedom of it."""
+    last = [trial for trial in trials if trial.stays][-1]
+    locked = len(found) - sum(not trial.stays for trial in trials)
+    page.answer(
+        "Which model of the gearbox does the main shaft's torque in a voltage dip need?",
+        f"The peak torque within {100 * TOLERANCE:g}\u00a0% needs {level['level']}, of which "
+        f"{last.degrees} of {trials[0].degrees} degrees of freedom are enough.",
+        [
+            page.value(
+                f"error of the peak torque, {level['level']} [%]",
+                float(level["error of its peak [%]"]),
+                at_most=100.0 * TOLERANCE,
+            ),
+            page.value(
+                "degrees of freedom that are enough",
+                last.degrees,
+                beside=trials[0].degrees,
+                by="rigid bodies",
+            ),
+            page.value(
+                "error of the torque with these alone [%]",
+                100.0 * last.signal_error,
+                at_most=100.0 * TOLERANCE,
+            ),
+            page.value("groups of springs that may be locked", locked, beside=len(found), by="all"),
+            page.value("time of a run with these alone [s]", last.seconds),
+        ],
+        hero=BY_LEVEL,
+        cautions=[
+            f"Over the whole dip {level['level']} are "
+            f"{float(level['error of the torque [%]']):.2g} % off in root mean square.",
+            "Errors are those against the finest level of the ladder, not against a measurement.",
+            "Damping is assumed: the table of the machine has none.",
+        ],
+    )
 
 
 def damped(system: System) -> System:
@@ -89,8 +130,8 @@ def dip_torque(machine: Machine, system: System, seconds: float) -> Callable[[Fl
     return torque_signal(system, load, history, STEP, SHAFT, front="rotor")
 
 
-def levels(run: Run, page: Page, machine: Machine) -> None:
-    """The same signal on each level of the ladder, against the time that it takes."""
+def levels(run: Run, page: Page, machine: Machine) -> Record:
+    """The same signal on each level of the ladder; the first that has its peak."""
     signals: dict[str, Floats] = {}
     rows: list[Record] = []
     for rung in [*RUNGS, *more_rungs(run, MACHINE)]:
@@ -109,16 +150,23 @@ def levels(run: Run, page: Page, machine: Machine) -> None:
         row["error of its peak [%]"] = 100.0 * abs(peaks - 1.0)
     page.section("Levels of the ladder")
     page.table("Torque of the main shaft in a dip, against the finest level", rows)
-    page.chart(
-        "Error of the torque against the time that a level takes",
-        [
-            trace(row["level"], [row["time [s]"]], [row["error of the torque [%]"]], mode="markers")
+    enough = next(row for row in rows if row["error of its peak [%]"] <= 100.0 * TOLERANCE)
+    ends = [row["time [s]"] for row in rows[:-1]]
+    for caption, error in ((BY_LEVEL, "error of its peak [%]"), (WHOLE, "error of the torque [%]")):
+        points = [
+            trace(
+                f"{row['level']} (chosen)" if row is enough else row["level"],
+                [row["time [s]"]],
+                [row[error]],
+                mode="markers",
+                marker={"size": 15, "symbol": "star"} if row is enough else {"size": 9},
+            )
             for row in rows[:-1]
-        ],
-        "time [s]",
-        "root mean square error [%]",
-        ("x", "y"),
-    )
+        ]
+        if caption == BY_LEVEL:
+            bound = [100.0 * TOLERANCE] * 2
+            points.append(trace("allowed", [min(ends), max(ends)], bound, line={"dash": "dot"}))
+        page.chart(caption, points, "time [s]", error, ("x", "y"))
     times = np.arange(0.0, SECONDS[run.quick], STEP)
     shown = slice(0, round(2.0 / STEP))
     page.chart(
@@ -128,10 +176,7 @@ def levels(run: Run, page: Page, machine: Machine) -> None:
         "torque [MN m]",
     )
     page.data("levels", rows)
-    enough = next(row for row in rows if row["error of its peak [%]"] <= 100.0 * TOLERANCE)
-    page.say(
-        f"The peak of the torque within {100 * TOLERANCE:g} % needs the level {enough['level']!r}."
-    )
+    return enough
 
 
 def thresholds(page: Page, system: System, found: list[Influence], highest: float) -> None:
@@ -185,7 +230,7 @@ def thresholds(page: Page, system: System, found: list[Influence], highest: floa
     enough = [t for t, error in zip(THRESHOLDS, errors, strict=True) if error <= TOLERANCE]
     if enough:
         locked = sum(one.error < enough[-1] for one in found)
-        page.say(
+        page.text(
             f"Groups that raise no frequency up to {highest:.1f} Hz by {100 * enough[-1]:.2g} % or "
             f"more alone, {locked} of {len(found)}, can all be locked within "
             f"{100 * TOLERANCE:g} % of each frequency."
@@ -238,9 +283,5 @@ def after_another(page: Page, found: list[Influence], trials: list[Trial]) -> No
         basis="self-consistency",
     )
     freed = [trial.group for trial in trials if not trial.stays]
-    page.say(
-        f"One after another, {len(found) - len(freed)} of {len(found)} groups can be locked: "
-        f"{last.degrees} of {trials[0].degrees} degrees of freedom have the torque within "
-        f"{100 * TOLERANCE:g} %. What must move: {', '.join(freed) or 'nothing'}."
-    )
+    page.say(f"What must move: {', '.join(freed) or 'nothing'}.")
     page.assume("damping over stiffness", DAMPING, "s", "the table has none")

@@ -5,7 +5,13 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.procedure.swept_modes import Sweep, run_up_peak, swept_response
 from fe_drivetrain.common import Floats
-from fe_drivetrain.comparison import InTime, converge_in_time, peak_between, round_off
+from fe_drivetrain.comparison import (
+    ConvergenceInTime,
+    InTime,
+    converge_in_time,
+    peak_between,
+    round_off,
+)
 from fe_drivetrain.dynamics import (
     Loads,
     System,
@@ -40,6 +46,11 @@ ERROR = 10e-6  # m, of transmission, once in each mesh
 MESH = "stage 1 sun-planet 1"
 SEGMENT, CLASS = 0.5, 1.0  # s, rpm, of the short-time spectra
 PEAK = "largest motion of the planet [µm]"
+SHARE, LATE = "peak over that at rest", "later than the crossing by [Hz]"
+DIAGRAM = (
+    "Campbell diagram of the planet's motion in a run-up; lines: mesh of stage 1, and natural "
+    "frequencies (dotted); circles: crossings"
+)
 HIGHEST = 90.0  # Hz, of what is drawn
 
 
@@ -82,17 +93,50 @@ def run(run: Run, page: Page) -> None:
     )
     with run.step("Campbell"):
         shown(page, modes, signal, step)
-    peaks(page, modes, orders)
-    met = [m for m in found if m.verdict == "resonance"]
-    page.say(
-        f"From {SPEEDS[0]:g} to {SPEEDS[1]:g} rpm {len(met)} crossings are at a part with 1 % or "
-        f"more of the mode's energy, of {sum(m.margin == 0.0 for m in found)} in all; in a run-up "
-        f"of {SECONDS:g} s they stay below the response at rest, and come later than the crossing."
-    )
+    by_time = peaks(page, modes, orders)
+    answer(page, found, [row for row in by_time if row["run-up [s]"] == SECONDS], series)
     page.assume(
         "damping ratio at 60 Hz, in proportion to frequency", RATIO, "", "none is published"
     )
     page.assume("error of transmission", ERROR * 1e6, "µm", "linear: all motions scale with it")
+
+
+def answer(
+    page: Page, found: list[Meeting], swept: list[Record], series: ConvergenceInTime
+) -> None:
+    """State how many resonances operation meets, and what a run-up makes of them."""
+    met = sum(m.verdict == "resonance" for m in found)
+    highest = max(float(row[SHARE]) for row in swept)
+    page.answer(
+        "Which resonances does the drivetrain pass in operation, and how far are they excited?",
+        f"From {SPEEDS[0]:g} to {SPEEDS[1]:g}\u00a0rpm {met} excitations meet a mode; a run-up in "
+        f"{SECONDS:g}\u00a0s excites the mesh's modes to {100 * highest:.0f}\u00a0% of their "
+        "steady response at most.",
+        [
+            page.value(
+                "crossings at a part with 1 % or more of the energy",
+                met,
+                beside=sum(m.margin == 0.0 for m in found),
+                by="all crossings",
+            ),
+            *(
+                page.value(
+                    f"peak in the run-up over that at rest, mode of {row['mode [Hz]']:.3g} Hz",
+                    float(row[SHARE]),
+                )
+                for row in swept
+            ),
+            page.value(
+                "peak comes later than the crossing by [Hz]",
+                max(float(row[LATE]) for row in swept),
+            ),
+            page.value(PEAK, series.value(PEAK), series.step_band(PEAK)),
+        ],
+        hero=DIAGRAM,
+        cautions=[
+            "Damping and the error of transmission are assumed: all motions scale with the latter."
+        ],
+    )
 
 
 def register(page: Page, system: System, modes: SystemModes) -> list[Meeting]:
@@ -210,8 +254,7 @@ def shown(page: Page, modes: SystemModes, signal: Floats, step: float) -> None:
     ends = np.array([BEGIN, END])
     page.section("Run-up")
     diagram = heat_map(
-        f"Short-time Campbell diagram of the planet's motion in a run-up by {END - BEGIN:g} rpm; "
-        "lines: mesh of stage 1, and natural frequencies (dotted)",
+        DIAGRAM,
         middles,
         found.frequency[kept],
         level,
@@ -226,6 +269,18 @@ def shown(page: Page, modes: SystemModes, signal: Floats, step: float) -> None:
             for f in drawn
         ),
     ]
+    crossed = 60.0 * drawn / order
+    within = (crossed >= BEGIN) & (crossed <= END)
+    diagram.figure["data"].append(
+        trace(
+            "crossings",
+            crossed[within],
+            drawn[within],
+            True,
+            marker={"color": "white", "size": 8, "symbol": "circle-open"},
+            showlegend=False,
+        )
+    )
     page.add(diagram)
     there = found.segments > 0.0
     met = order * middles[there] / 60.0
@@ -248,7 +303,7 @@ def shown(page: Page, modes: SystemModes, signal: Floats, step: float) -> None:
     )
 
 
-def peaks(page: Page, modes: SystemModes, order: float) -> None:
+def peaks(page: Page, modes: SystemModes, order: float) -> list[Record]:
     """Peak of each mode in the run-up over that at rest, by the time that the run-up takes."""
     inside = [f for f in modes.frequencies if order * BEGIN / 60.0 < f < order * END / 60.0]
     rows: list[Record] = []
@@ -260,11 +315,11 @@ def peaks(page: Page, modes: SystemModes, order: float) -> None:
                 {
                     "run-up [s]": seconds,
                     "mode [Hz]": float(f),
-                    "peak over that at rest": peak.share,
-                    "later than the crossing by [Hz]": peak.frequency - float(f),
+                    SHARE: peak.share,
+                    LATE: peak.frequency - float(f),
                 }
             )
-    shares = [float(r["peak over that at rest"]) for r in rows]
+    shares = [float(r[SHARE]) for r in rows]
     page.holds(
         "a slower run-up brings each mode nearer to its response at rest",
         all(a < b for a, b in zip(shares, shares[2:], strict=False)),
@@ -273,3 +328,4 @@ def peaks(page: Page, modes: SystemModes, order: float) -> None:
     )
     page.table("Peaks in run-ups of several durations", rows)
     page.data("peaks", rows)
+    return rows

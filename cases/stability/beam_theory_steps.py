@@ -13,6 +13,7 @@ from fe_drivetrain.comparison import min_safe
 from fe_drivetrain.elasticity.revolution import dofs, harmonic_response, meridian, surface_loads
 from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
 from fe_drivetrain.report import dashed, map_traces
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Run
 
 #: Large over small diameter.
@@ -30,6 +31,10 @@ QUICK_RADII = (1.0,)
 MEASURED = 6.0
 
 OF = {"torsion": shafts.TORSION, "bending": shafts.ROTATION, "tension": shafts.AXIAL}
+WITH_EXTRA = (
+    "{}: beam with the step's extra length, worst error of all steps where both halves are as long "
+    "as they are wide"
+)
 BLUE = "#0072b2"
 DASHES = {"torsion": "solid", "bending": "dash", "tension": "dot"}
 
@@ -53,6 +58,11 @@ class Map:
     error: dict[str, Floats]
     corrected: dict[str, Floats]
     extra: dict[str, Floats]
+
+    @property
+    def shown(self) -> int:
+        """The step that curves and limits are of."""
+        return int(np.argmin(np.abs(self.ratios - FILLETED)))
 
     def least(self, percent: Floats, level: float) -> float | None:
         """Least length from which on errors are below a level [%]."""
@@ -148,9 +158,10 @@ def run(run: Run, page: Page) -> None:
     with_radius = np.vstack([sharp, filleted[FILLETED]])
     error = 100 * (beam(AT, FILLETED) / with_radius - 1)
     show_steps(page, found)
+    answer(page, found, error[:, OF["bending"]])
     page.say(
-        f"A fillet reduces that: at L = {AT:g} d the beam without it has an error in bending "
-        f"by {error[0, OF['bending']]:+.1f} % where the step is sharp and by "
+        f"A fillet reduces the error: at L = {AT:g} d the beam, which has none, is off by "
+        f"{error[0, OF['bending']]:+.1f} % in bending where the step is sharp and by "
         f"{error[-1, OF['bending']]:+.1f} % where the radius is the step's height."
     )
     page.section("Fillets")
@@ -206,8 +217,7 @@ def check(run: Run, page: Page, found: Map, sharp: Floats, band: float) -> None:
     usable = found.lengths >= 2 * found.ratios[:, None]
     for name, percent in found.corrected.items():
         page.at_most(
-            f"{name}: beam with the step's extra length, worst error of all steps where both "
-            "halves are as long as they are wide [%]",
+            f"{WITH_EXTRA.format(name)} [%]",
             np.abs(percent[usable]).max(),
             1.0,
             why="1 % is the first line of a map; Saint-Venant's principle keeps the step's field "
@@ -229,18 +239,58 @@ def check(run: Run, page: Page, found: Map, sharp: Floats, band: float) -> None:
     )
 
 
+def answer(page: Page, found: Map, filleted: Floats) -> None:
+    """State how long a stepped shaft has to be; filleted are errors by a fillet's radius [%]."""
+    shown = found.shown
+    step = found.ratios[shown]
+    least = {name: found.least(found.error[name][shown], 5.0) for name in OF}
+    more = found.extra["bending"][shown]
+    with_more = found.least(found.corrected["bending"][shown], 5.0)
+
+    def length(value: float | None) -> str:
+        return f"over\u00a0{found.lengths[-1]:g}" if value is None else formatted(value, 2)
+
+    page.answer(
+        "How long must a shaft with a sharp step be for beam theory?",
+        f"Bent across a sharp step of {step:g}\u00a0:\u00a01, a beam needs a length of "
+        f"{length(least['bending'])} diameters for 5\u00a0%; lengthened by {more:.3f}, it needs "
+        f"{length(with_more)}.",
+        [
+            *(
+                page.value(f"least length within 5 %, {name} [d]", value)
+                for name, value in sorted(least.items())
+                if value is not None
+            ),
+            page.value("extra length that replaces the step, bending [d]", more),
+            page.judged(WITH_EXTRA.format("bending"), "worst error with the extra length, bending"),
+            page.value(f"error in bending with the largest fillet, L = {AT:g} d [%]", filleted[-1]),
+        ],
+        hero=caption_of_errors(step),
+        cautions=[
+            "Lengths are of both halves together, over the smaller diameter; below them the beam "
+            "is too stiff."
+        ],
+    )
+
+
+def caption_of_errors(step: float) -> str:
+    """Caption of the chart of one step."""
+    return (
+        f"Error of the beam's flexibility over the length, sharp step {step:g}; shaded: bending "
+        "within 5 %"
+    )
+
+
 def show_steps(page: Page, found: Map) -> None:
-    """Answer, charts, table and limits of sharp steps."""
-    shown = int(np.argmin(np.abs(found.ratios - 1.5)))
+    """Charts, table and limits of sharp steps."""
+    shown = found.shown
     step = found.ratios[shown]
     extra = {name: values[shown] for name, values in found.extra.items()}
     safe = found.least(found.error["bending"][shown], 5.0)
-    kept = found.least(found.corrected["bending"][shown], 5.0)
     page.say(
         f"A sharp step from {step:g} d to d adds what {extra['torsion']:.3f} d of the small "
         f"section would in torsion, {extra['bending']:.3f} d in bending and "
-        f"{extra['tension']:.3f} d in tension. Without it the beam is within 5 % in bending from "
-        f"L = {safe or np.nan:.2g} d, with it from {kept or np.nan:.2g} d."
+        f"{extra['tension']:.3f} d in tension."
     )
     for name in OF:
         corrected = found.least(found.corrected[name][shown], 5.0)
@@ -271,7 +321,7 @@ def show_errors(page: Page, found: Map, shown: int, safe: float | None) -> None:
     page.section("Sharp steps")
     along = "length of both halves over small diameter"
     page.chart(
-        f"Error of the beam's flexibility, step {step:g}; shaded is where bending is within 5 %",
+        caption_of_errors(step),
         [
             dashed(name + words, lengths, np.abs(percent[name][shown]), DASHES[name], colour)
             for name in OF

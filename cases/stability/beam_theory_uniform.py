@@ -22,6 +22,7 @@ from fe_drivetrain.elasticity.revolution import (
 )
 from fe_drivetrain.geometry import LENGTH_TOLERANCE
 from fe_drivetrain.report import dashed, map_traces
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Run
 
 #: Bore over outer diameter.
@@ -36,6 +37,11 @@ SHORTEST = 1.0
 
 BENT, TURNED, PULLED = "deflection by a force", "rotation by a moment", "tension"
 OF = {BENT: shafts.DEFLECTION, TURNED: shafts.ROTATION, PULLED: shafts.AXIAL}
+CORRECTED = f"beam corrected by its ends, worst error from L = {SHORTEST:g} D on"
+CURVES = (
+    "Error of the beam over its length, solid shaft; shaded: Timoshenko's deflection within 1 % "
+    "between rigid ends (torsion has no error)"
+)
 
 
 @dataclass(frozen=True)
@@ -208,7 +214,7 @@ def check(run: Run, page: Page, found: Map, band: float) -> None:
     usable = found.lengths >= SHORTEST
     for name, percent in found.corrected.items():
         page.at_most(
-            f"{name}: beam corrected by its ends, worst error from L = {SHORTEST:g} D on [%]",
+            f"{name}: {CORRECTED} [%]",
             np.abs(percent[:, usable]).max(),
             1.0,
             why="1 % is the first line of a map; the ends' fields overlap by e^-2.6 or so at "
@@ -243,21 +249,55 @@ def check_solids(run: Run, page: Page) -> None:
             )
 
 
+def answer(page: Page, found: Map, first: float | None, corrected: float | None) -> None:
+    """State the shortest shafts, in diameters, of Timoshenko's beam and of the corrected one."""
+    error, solid = found.error, 0
+    least = {
+        "Timoshenko between rigid ends, deflection within 1 %": first,
+        "Timoshenko between rigid ends, deflection within 5 %": found.least(
+            error[BENT][solid], 5.0
+        ),
+        "Timoshenko between rigid ends, tension within 1 %": found.least(error[PULLED][solid], 1.0),
+        "Euler-Bernoulli, free ends, within 1 %": found.least(found.shear[solid], 1.0),
+    }
+    nowhere = f"for no length up to {found.lengths[-1]:g}"
+    page.answer(
+        "How short may a shaft be for beam theory?",
+        "Between rigid ends Timoshenko's beam is within 1\u00a0% "
+        + (f"from a length of {formatted(first, 2)}" if first is not None else nowhere)
+        + " diameters; with the ends' flexibility added, "
+        + (f"from {formatted(corrected, 2)}" if corrected is not None else nowhere)
+        + " for every bore.",
+        [
+            *(
+                page.value(f"least length, {name} [D]", value)
+                for name, value in least.items()
+                if value is not None
+            ),
+            page.judged(
+                f"{BENT}: {CORRECTED}",
+                f"worst error of the deflection, ends' flexibility added, from {SHORTEST:g} D on",
+            ),
+        ],
+        hero=CURVES,
+        cautions=[
+            "Ends here are rigid, as between stiff flanges: softer ones disturb a shaft less."
+        ],
+    )
+
+
 def show(page: Page, found: Map) -> None:
     """Answer, charts, tables and limits."""
     shear, error, solid = found.shear, found.error, 0
     first = found.least(error[BENT][solid], 1.0)
     safe_corrected = [found.least(row, 1.0) for row in found.corrected[BENT]]
     end = found.ends[solid]
+    answer(page, found, first, max(safe_corrected, key=lambda v: v or np.inf))
     page.say(
-        "A solid cantilever is within 1 % of elasticity by Euler and Bernoulli from "
-        f"L = {found.least(shear[solid], 1.0):.2g} D and within 5 % from "
-        f"{found.least(shear[solid], 5.0):.2g} D; Timoshenko's beam is exact there. Between rigid "
-        f"ends Timoshenko's deflection is within 1 % from {first or np.nan:.2g} D and within 5 % "
-        f"from {found.least(error[BENT][solid], 5.0) or np.nan:.2g} D.",
+        "Under loads spread over its ends as Saint-Venant has them Timoshenko's beam is exact, and "
+        f"Euler and Bernoulli's within 5 % from L = {found.least(shear[solid], 5.0):.2g} D.",
         f"A rigid end shortens the shaft by a fixed length: a solid one by {end.moment:.3f} D of "
-        f"each end in bending and {end.tension:.3f} D in tension. With that the beam is within 1 % "
-        f"for all bores from L = {max(safe_corrected, key=lambda v: v or np.inf):.2g} D.",
+        f"each end in bending and {end.tension:.3f} D in tension.",
     )
     state_limits(page, found, safe_corrected)
     page.section("How ends are held")
@@ -316,8 +356,7 @@ def show_errors(page: Page, found: Map, first: float | None) -> None:
         "Timoshenko with the ends' flexibility: deflection": ("dashdot", found.corrected[BENT]),
     }
     page.chart(
-        "Error of the beam against its length; shaded is where Timoshenko's deflection is within "
-        "1 % between rigid ends. Torsion has no error",
+        CURVES,
         [dashed(name, lengths, np.abs(of[0]), dash) for name, (dash, of) in curves.items()],
         "length over diameter",
         "error without its sign [%]",

@@ -30,6 +30,7 @@ from fe_drivetrain.comparison import (
     round_off,
     safe_range,
 )
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run
 
 KAPPA = "viscosity ratio kappa"
@@ -37,6 +38,15 @@ OVER = "e_C C_u / P"
 SIZE = "load over the usual"
 AMPLITUDE = "amplitude of an oscillation [deg]"
 MOVING = "life of the moving ring over that of rotation"
+HARDLY_MOVING = "life of the moving ring at an amplitude of 0.5 deg, over that of rotation"
+PROMISED = "formula of the life factor carried on to kappa 100, over the factor"
+LOST = "largest exponent of load in modified life"
+FLOWING = "largest pressure at the first load above C/2"
+SWUNG = "least amplitude with life within 5 % of rotation's"
+FACTORS = (
+    "Life factor of rollers over the viscosity ratio, and its formula carried on; shaded: where "
+    "ISO 281 gives it"
+)
 
 
 @case(
@@ -51,14 +61,37 @@ def run(run: Run, page: Page) -> None:
     with run.step("loads"):
         loads(page, run.quick)
     with run.step("standstill"):
-        still = standstill(page)
+        standstill(page)
+    answer(page)
     page.say(
-        "Life looks like a number where the method ends: kappa below 0.1 or above 4, P above C/2, "
-        "standstill. The program goes on as the standard asks, and counts the time beyond.",
-        "Modified life goes with up to twice the power of load that basic life has, and at the "
-        "fatigue limit no longer knows load or lubricant. A bearing that oscillates loses "
-        f"{100.0 * (1.0 - still):.0f} % of the life of its moving ring at the same turns; what "
-        "ends it is not in the method.",
+        "The program goes on as the standard asks. At the fatigue limit modified life no longer "
+        "knows load or lubricant."
+    )
+
+
+def answer(page: Page) -> None:
+    """State where a rating life ends, and whether the program counts the time beyond."""
+    counts = all(one.passed for one in page.checks if "counted" in one.quantity)
+    still, swung = page.judged(HARDLY_MOVING), page.judged(SWUNG)
+    page.answer(
+        "Beyond which lubricant, load and motion is the rating life of a bearing no longer one?",
+        "A rating life holds for viscosity ratios from 0.1 to 4 and P below C/2; beyond, the "
+        f"program gives a number {'and counts the time' if counts else 'without a sign'}.",
+        [
+            page.judged(PROMISED),
+            page.judged(LOST),
+            page.judged(FLOWING, f"{FLOWING}, where material flows"),
+            page.judged(SWUNG, "least swing to either side for life within 5 % of rotation's"),
+            page.judged(HARDLY_MOVING, "life of a ring that hardly moves, over rotation's"),
+        ],
+        hero=FACTORS,
+        cautions=[
+            f"A bearing that swings by less than {formatted(swung.value, 3)}\u00b0 to either side "
+            f"loses up to {100.0 * (1.0 - still.value):.0f} % of the life of its moving ring at as "
+            "many turns; fretting and false brinelling, which may end it, are not in the method.",
+            "A life at the fatigue limit is 50 times the basic one, whatever the load: read it as "
+            "'more than'.",
+        ],
     )
 
 
@@ -66,7 +99,8 @@ def lubricant(page: Page) -> None:
     """a_ISO over kappa, and the formula carried on beyond its ends."""
     rows = factors(decades(-2, 2, 8))
     check_factor(page)
-    thick = float(life_factor(0.5, 1e2))
+    promised = (carried_on(0.5, 1e2) or np.inf) / float(life_factor(0.5, 1e2))
+    page.found(PROMISED, promised)
     page.limit(
         "life factor a_ISO",
         KAPPA,
@@ -75,13 +109,13 @@ def lubricant(page: Page) -> None:
         criterion="ISO 281 gives a formula",
         beyond="below, surfaces touch, and wear ends a bearing before fatigue: the formula carried "
         f"on gives {carried_on(0.5, 1e-2) or 0.0:.2g} at kappa 0.01; above, it would promise "
-        f"{(carried_on(0.5, 1e2) or np.inf) / thick:.1f} times the life at kappa 100",
+        f"{promised:.1f} times the life at kappa 100",
         program="takes 0.1 below, the factor of 4 above, and counts the time beyond both",
         remedy="another grease or temperature; the counted time is with the result",
     )
     page.section("Viscosity")
     page.sweep(
-        "Life factor of rollers at e_C C_u / P of 0.1 and 0.5, and the formula carried on",
+        FACTORS,
         rows,
         KAPPA,
         {key: key for key in list(rows[0])[1:]},
@@ -166,6 +200,7 @@ def fatigue_limit(page: Page) -> None:
             rows.append({OVER: float(ratio), KAPPA: kappa, "exponent of life": float(exponent)})
     clean = [row for row in rows if row[KAPPA] == 4.0]
     worst = max(row["exponent of life"] for row in rows)
+    page.found(LOST, worst)
     bracket = 1.0 - 500.0 ** (-1.0 / 9.185)
     capped = float((bracket / (1.5859 - 1.2348 / 4.0**0.071739)) ** 2.5)
     page.equals(
@@ -306,6 +341,7 @@ def limit_capacity(page: Page, profiled: Setup, rows: list[Record]) -> None:
     """Check that time above C/2 is counted; state the limit."""
     heavy = [row for row in rows if row["P / C"] > 0.5]
     at = min(heavy, key=lambda row: row["P / C"])
+    page.found(f"{FLOWING} [MPa]", at["largest pressure [MPa]"])
     page.holds(
         "time with P above C/2 is counted, and none below",
         limits_of(profiled, at[SIZE] * LOAD, None).heavy == 10.0
@@ -326,13 +362,13 @@ def limit_capacity(page: Page, profiled: Setup, rows: list[Record]) -> None:
     )
 
 
-def standstill(page: Page) -> float:
-    """Speeds towards zero, and oscillations; life of a ring that stands over that of rotation."""
+def standstill(page: Page) -> None:
+    """Speeds towards zero, and oscillations."""
     check_time(page)
     rows, still = oscillating()
     ratio = np.array([row[MOVING] for row in rows])
     page.equals(
-        "life of the moving ring at an amplitude of 0.5 deg, over that of rotation",
+        HARDLY_MOVING,
         float(ratio[0]),
         still,
         within=1e-3,
@@ -348,6 +384,7 @@ def standstill(page: Page) -> float:
     )
     amplitude = np.array([row[AMPLITUDE] for row in rows])
     enough = amplitude[np.abs(ratio - 1.0) <= ENOUGH].min()
+    page.found(f"{SWUNG} [deg]", float(enough))
     pitch = 360.0 / roller_rows(own_setup().bearing)[0].rollers
     page.limit(
         "rating life of a bearing that oscillates",
@@ -372,7 +409,6 @@ def standstill(page: Page) -> float:
         table=False,
     )
     page.data("peak over mean of the load zone [-]", float(0.5 / sjovall(0.5, 1.1)[0]))
-    return still
 
 
 def oscillating() -> tuple[list[Record], float]:

@@ -9,13 +9,20 @@ from fe_drivetrain.bearing import Bearing, RollerRow, catalogue_bearing, equilib
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability.random_loads import random_loads
 from fe_drivetrain.common import InputError
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.comparison import decades
 from fe_drivetrain.report import rolling_elements
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run, column
 
 UM = 1e-6
 
 SHARE = "clearance over the deflection of all rollers by the load"
+FAILS = "plain Newton fails [%]"
+OVER_SHARE = (
+    "Random loads that Newton's method without damping fails to solve, over the clearance; shaded: "
+    "none fails"
+)
 
 
 @case(
@@ -36,22 +43,62 @@ def run(run: Run, page: Page) -> None:
     with run.step("mechanism"):
         arms = [mechanism(a) for a in decades(-9, -1, 1 if run.quick else 2)]
     check(page, rows, preload)
-    state_limits(page, rows, arms)
+    last_safe = state_limits(page, rows, arms)
     sizes, stiff = (np.log(column(preload, k)) for k in ("preload [µm]", "radial stiffness [N/m]"))
     power = float(np.polyfit(sizes, stiff, 1)[0])
-    worst = max(column(rows, "plain Newton fails [%]"))
+    answer(page, rows, arms, n * len(rows), last_safe)
     page.say(
-        "With preload or without clearance plain Newton converges. Where the clearance is much "
-        "more than what the load deflects, it fails in up to "
-        f"{worst:.0f} % of random load cases; the damped one "
-        "converges in all, down to 1e-8 of nominal loads.",
+        "With preload or without clearance plain Newton converges, too.",
         "There is no least preload: the stiffness of the unloaded bearing falls with its power "
         f"{power:.2g} only.",
     )
-    show(page, rows, preload, arms)
+    show(page, rows, preload, arms, last_safe)
     page.image(
         "The rollers of bearing S", run.sketch(*rolling_elements(catalogue_bearing("bearing_s")))
     )
+
+
+def answer(
+    page: Page, rows: list[Record], arms: list[Record], cases: int, last_safe: float | None
+) -> None:
+    """State whether damped Newton's method always converges, and from where plain steps do not."""
+    lost, worst = sum(column(rows, "not converged")), max(column(rows, FAILS))
+    damped = (
+        f"all {formatted(cases)} random loads"
+        if lost == 0
+        else f"not {formatted(lost)} of {formatted(cases)} random loads"
+    )
+    plain = (
+        f"without damping up to {worst:.0f}\u00a0% fail beyond a clearance of "
+        f"{formatted(rounded([last_safe], 2)[0], unit='')} times the rollers' deflection."
+        if last_safe is not None
+        else "without damping none fails either, 0\u00a0%."
+    )
+    figures = [
+        page.value("random loads that damped Newton leaves unsolved", lost, at_most=0.0),
+        page.value("random loads that fail without damping, worst clearance [%]", worst),
+        page.value("most steps of damped Newton", max(column(rows, "steps, worst"))),
+        page.value("least arm over pitch radius for small tilts", least_arm(arms)),
+    ]
+    if last_safe is not None:
+        name = "clearance over deflection up to which none fails without damping"
+        figures.insert(2, page.value(name, last_safe))
+    page.answer(
+        "Does the equilibrium of a roller bearing converge, whatever its clearance and load?",
+        f"Damped Newton solves {damped}; {plain}",
+        figures,
+        hero=OVER_SHARE,
+        cautions=[
+            "Loads that no roller can carry are refused: a single tapered row pushed open, or a "
+            "moment on contact normals that meet in the bearing's centre."
+        ],
+    )
+
+
+def least_arm(arms: list[Record]) -> float:
+    """Least arm over the pitch radius with a tilt below 10 mrad."""
+    fine = [row for row in arms if (row["tilt [mrad]"] or 1e9) < 10.0]
+    return float(min(column(fine, "arm over pitch radius")))
 
 
 def check(page: Page, rows: list[Record], preload: list[Record]) -> None:
@@ -87,38 +134,63 @@ def check(page: Page, rows: list[Record], preload: list[Record]) -> None:
     )
 
 
-def state_limits(page: Page, rows: list[Record], arms: list[Record]) -> None:
-    """State the loads that plain Newton's method solves, and the arms that carry a moment."""
-    worst = max(rows, key=lambda row: row["plain Newton fails [%]"])
+def state_limits(page: Page, rows: list[Record], arms: list[Record]) -> float | None:
+    """State the loads that plain Newton's method solves, and the arms that carry a moment.
+
+    Returns
+    -------
+    last_safe : float or None
+        Clearance over deflection up to which no load fails; None where none does at any.
+    """
+    worst = max(rows, key=lambda row: row[FAILS])
     tight = [row for row in rows if row["clearance [µm]"] > 0.0]
-    failing = [row[SHARE] for row in tight if row["plain Newton fails [%]"] > 0.0]
+    least = min((row[SHARE] for row in tight if row[FAILS] > 0.0), default=None)
+    safe = [row[SHARE] for row in tight if least is not None and row[SHARE] < least]
+    last_safe = max(safe, default=0.0) if least is not None else None
     page.limit(
         "plain Newton's method on the rollers, in place of a damped one",
         SHARE,
-        high=min(failing) if failing else None,
+        high=last_safe,
         criterion="none of the random loads fails",
         beyond="few rollers carry, as between rigid bodies, and steps jump from one set of them to "
-        f"the next: {worst['plain Newton fails [%]']:.0f} % of the cases fail",
+        f"the next: {worst[FAILS]:.0f} % of the cases fail",
         program="brings the slope of the energy down along each step, and follows loads that just "
         "close a clearance down from larger ones",
         remedy="nothing to do; every case is converged or flagged",
     )
-    fine = [row["arm over pitch radius"] for row in arms if (row["tilt [mrad]"] or 1e9) < 10.0]
     page.limit(
         "moment on contacts whose normals meet near the bearing's centre",
         "arm of the contact normals over the pitch radius",
-        low=min(fine),
+        low=least_arm(arms),
         criterion="tilt of a small moment below 10 mrad",
         beyond="the tilt grows without bound as the arm goes to zero, out of small angles",
         program="answers, and refuses the moment where the arm is below 1e-6 of the radius",
         remedy="a bearing that resists tilt, or no moment",
     )
+    return last_safe
 
 
-def show(page: Page, rows: list[Record], preload: list[Record], arms: list[Record]) -> None:
+def show(
+    page: Page,
+    rows: list[Record],
+    preload: list[Record],
+    arms: list[Record],
+    last_safe: float | None,
+) -> None:
     """Show the three sweeps."""
     page.section("Clearance and load")
-    for y in ("plain Newton fails [%]", "evaluations, mean"):
+    tight = sorted((row for row in rows if row[SHARE] > 0.0), key=lambda row: row[SHARE])
+    page.sweep(
+        OVER_SHARE,
+        tight,
+        SHARE,
+        FAILS,
+        by="clearance [µm]",
+        log="x",
+        safe=(None, last_safe),
+        table=False,
+    )
+    for y in (FAILS, "evaluations, mean"):
         page.sweep(
             f"Random loads on bearing S: {y}" + (", damped" if y.startswith("eval") else ""),
             rows,
@@ -161,7 +233,7 @@ def damping(um: float, factor: float, n: int) -> Record:
         "clearance [µm]": um,
         "load over nominal": factor,
         SHARE: um * UM / deflection,
-        "plain Newton fails [%]": 100.0 * float(1.0 - plain.converged.mean()),
+        FAILS: 100.0 * float(1.0 - plain.converged.mean()),
         "not converged": int((~damped.converged).sum()),
         "steps, worst": int(damped.iterations.max()),
         "evaluations, mean": float(damped.evaluations.mean()),

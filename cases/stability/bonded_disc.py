@@ -33,6 +33,15 @@ SIZE, TURN = 0.07, 16
 COARSER = (0.08, 0.09, 0.1)
 QUICK_COARSER = (0.1,)
 
+REMEDIED = (
+    "disc, curved tetrahedra of 10 nodes, averaged: stiffness over the exact one where it is "
+    "worst, nu = {:g}"
+)
+DISC_ERRORS = (
+    "Error of the bonded disc's stiffness in tetrahedra over bulk by shear modulus; shaded: plain "
+    "ones of 10 nodes within 1 %"
+)
+
 #: Length of the bent shaft over its diameter.
 SLENDERNESS = 2
 
@@ -119,8 +128,7 @@ def check_disc(page: Page, found: DiscSweep) -> None:
     remedied, by_size = errors[AVERAGED], found.by_size
     worst = int(np.abs(remedied).argmax())
     page.equals(
-        "disc, curved tetrahedra of 10 nodes, averaged: stiffness over the exact one where it is "
-        f"worst, nu = {nus[worst]:g}",
+        REMEDIED.format(nus[worst]),
         1.0 + remedied[worst],
         1.0,
         within=CRITERION,
@@ -160,8 +168,7 @@ def show_disc(page: Page, found: DiscSweep) -> None:
     """Show the errors of the disc."""
     nus, errors = found.nus, found.errors
     page.chart(
-        "Error of the bonded disc's stiffness, tetrahedra (shaded: plain ones of 10 nodes within "
-        "1 %)",
+        DISC_ERRORS,
         curves.error_traces(errors, nus),
         AXIS,
         "error [%]",

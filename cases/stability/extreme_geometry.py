@@ -103,13 +103,9 @@ SWEEPS = (
 )
 def run(run: Run, page: Page) -> None:
     """Mesh each value that is not refused, and compare with the exact shape."""
-    number = refused = 0
-    bounds = []
-    for sweep in SWEEPS:
-        found, fine = outcomes(run, sweep)
-        number += len(found) + len(fine)
-        refused += sum(bool(o.sentence) for o in found)
-        bounds.append(show(page, sweep, found, fine))
+    swept = [(sweep, *outcomes(run, sweep)) for sweep in SWEEPS]
+    bounds = [show(page, *one) for one in swept]
+    answer(page, [(found, fine) for _, found, fine in swept])
     page.section("Why details are refused")
     page.text(
         "The CAD kernel takes points nearer than 1e-7 m for one, and before that a detail needs "
@@ -119,10 +115,9 @@ def run(run: Run, page: Page) -> None:
         "before gmsh begins."
     )
     page.say(
-        f"Of {number} shapes at and beyond their limits {refused} are refused in one sentence with "
-        "the allowed range, and all others are meshed without a fault, with volumes and named "
-        "areas exact but for the parabolas that make the circles, and for rims of the shaft's ends "
-        "that are drawn back where an element would fold.",
+        "Volumes and named areas of what is meshed are exact but for the parabolas that make the "
+        "circles, and for rims of the shaft's ends that are drawn back where an element would "
+        "fold.",
         f"Meshed as asked: {'; '.join(bounds)}.",
     )
     collared = extreme_parts.collared(0.05).shaft
@@ -131,6 +126,47 @@ def run(run: Run, page: Page) -> None:
 
 
 Outcomes = list[extreme_parts.Outcome]
+
+
+def answer(page: Page, swept: list[tuple[Outcomes, Outcomes]]) -> None:
+    """State how many shapes are meshed wrong, and how thin a hollow shaft's wall may be."""
+    every = [one for found, fine in swept for one in (*found, *fine)]
+    meshed = [one for one in every if not one.sentence]
+    refused, unclear = len(every) - len(meshed), sum(not one.clear for one in every)
+    wrong = sum(one.allowed > 1.0 or one.folded + one.faults > 0 for one in meshed)
+    bored, finer = swept[0]
+    as_asked, finest = (float(extreme_parts.meshed(some)[-1]) for some in (bored, [*bored, *finer]))
+    page.answer(
+        "What becomes of a shaft or housing with extreme dimensions?",
+        f"Of {len(every)} extreme shapes {'none' if wrong == 0 else wrong} is meshed wrong: "
+        f"{refused} are refused with the allowed range; shafts are meshed up to a bore of "
+        f"{short(finest)} diameters.",
+        [
+            page.value("shapes meshed wrong", wrong, at_most=0.0),
+            page.value("refusals without the allowed range or the fix", unclear, at_most=0.0),
+            page.value("shapes refused", refused),
+            page.value("largest bore over diameter, size as asked", as_asked),
+            page.value("largest bore over diameter, size of two walls", finest),
+            page.value(
+                "worst error of a volume or area, over what the elements' edges allow",
+                max(one.allowed for one in meshed),
+                at_most=1.0,
+            ),
+        ],
+        hero=caption_of_errors(SWEEPS[0].parameter),
+        cautions=[
+            "Limits of bores and walls are those of one mesh size: smaller elements allow thinner "
+            "walls."
+        ],
+    )
+
+
+def caption_of_errors(parameter: str) -> str:
+    """Caption of the chart of one dimension."""
+    return (
+        f"Largest error of a volume or a named area over the {parameter}; shaded: meshed as asked, "
+        "crosses: refused (0 is in the table alone)"
+    )
 
 
 def outcomes(run: Run, sweep: Sweep) -> tuple[Outcomes, Outcomes]:
@@ -222,8 +258,7 @@ def show_outcomes(
         traces.append(curve(f"{sweep.remedy}: meshed", fine))
     positive = [o.value for o in every if o.value > 0]
     page.chart(
-        "Largest relative error of a volume or a named area; refused values are crosses (0 is in "
-        "the table alone)",
+        caption_of_errors(parameter),
         traces,
         parameter,
         "relative error",

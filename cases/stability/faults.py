@@ -24,6 +24,10 @@ EXPECTED = {
     "gmsh fails in one case of three": (2, "old"),
 }
 
+PICTURE = (
+    "What a kill leaves in the result folder over its moment: as the program writes, whole old or "
+    "new results; written in place, half of them (its safe range shaded)"
+)
 MARKED = 'counted; "old" and "new" are distinguished by a mark in every file'
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
@@ -60,7 +64,7 @@ def run(run: Run, page: Page) -> None:
         page.holds(
             f"{fault['fault']}: ends with status {status}, leaves the {whose} results, and nothing "
             "else",
-            (fault["status"], fault["found"], fault["hidden"]) == (status, whose, 0),
+            is_as_expected(fault),
             why="a half-written result could be taken for one",
             source=MARKED,
         )
@@ -134,19 +138,50 @@ def safe_moment(in_place: list[Record]) -> float | None:
     return shares[last + 1] if last + 1 < len(shares) else None
 
 
+def is_as_expected(fault: Record) -> bool:
+    """Whether a fault ends as `EXPECTED`, and leaves nothing hidden."""
+    status, whose = EXPECTED[fault["fault"]]
+    return (fault["status"], fault["found"], fault["hidden"]) == (status, whose, 0)
+
+
+def answer(page: Page, killed: list[Record], half: list[bool], found: Any) -> None:
+    """State what kills, other faults and damages leave; half of results written in place."""
+    tries, wrong = found["damaged"]
+    spoilt = sum(broken(killed))
+    whole = sum(is_as_expected(fault) for fault in found["faults"])
+    page.answer(
+        "What is on disk after a kill, a full disk or a damaged cache?",
+        f"{spoilt or 'None'} of {len(killed)} kills left half a result, and {wrong or 'none'} of "
+        f"{tries} damaged meshes gave other numbers; written in place, {sum(half)} of {len(half)} "
+        "kills did.",
+        [
+            page.value(f"kills that left half a result, of {len(killed)}", spoilt, at_most=0.0),
+            page.value(
+                f"damaged meshes read back as other numbers, of {tries}", wrong, at_most=0.0
+            ),
+            page.value(
+                f"other faults that leave whole results, of {len(EXPECTED)}",
+                whole,
+                at_least=len(EXPECTED),
+            ),
+            page.value("hidden files left after the next run", found["left"], at_most=0.0),
+            page.value(f"half results if written in place, of {len(half)} kills", sum(half)),
+        ],
+        hero=PICTURE,
+        cautions=[
+            "Kills end a process; what a power cut leaves depends on the disk, and was not tried."
+        ],
+    )
+
+
 def show(page: Page, killed: list[Record], in_place: list[Record], found: Any) -> None:
     """Answer, limits, charts, tables."""
     half, safe_from = broken(in_place), safe_moment(in_place)
-    tries, wrong = found["damaged"]
     hidden = sum(kill["hidden beside them, until the next run"] > 0 for kill in killed)
+    answer(page, killed, half, found)
     page.say(
-        f"Of {len(killed)} kills over the run of a small case none left anything but the whole "
-        f"of the old or the new results; written straight into the folder, {sum(half)} of "
-        f"{len(in_place)} left half of them.",
         f"{hidden} kills left unfinished files or folders under hidden names; {found['left']} are "
         "left after the next run.",
-        f"{tries} damages of a kept mesh gave other numbers {wrong} times; a full disk, "
-        "signals, two runs at once and a mesher that fails each leave whole results.",
     )
     state_limits(page, killed, half, found["damaged"], safe_from)
     page.section("Killed")
@@ -193,9 +228,7 @@ def picture(killed: list[Record], in_place: list[Record], safe_from: float | Non
     """Chart of the results that kills leave, over the moment of the kill."""
     heights = {"broken": 0, "old": 1, "new": 2}
     drawn = chart(
-        "What a kill leaves in the result folder, against its moment: as the program writes, "
-        "always the whole of the old or of the new results; written in place, half of them until "
-        "the end (safe range of writing in place shaded)",
+        PICTURE,
         [
             trace(
                 name,

@@ -12,6 +12,7 @@ from fe_drivetrain.bearing import (
     equilibrium,
     equilibrium_on_races,
 )
+from fe_drivetrain.bearing.races import SOFTEST_LEFT_OUT
 from fe_drivetrain.bearing_life.rings import races_of_revolution
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability.random_loads import random_loads
@@ -20,6 +21,7 @@ from fe_drivetrain.drivetrain_file import MATERIALS
 from fe_drivetrain.elasticity.revolution import dofs, meridian
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.report import rolling_elements
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Bore and width of a ring of iron about bearing S, clamped at its rear end [m].
@@ -35,6 +37,8 @@ HARMONICS = (2, 4, 6, 9, 12, 18, 27, 36)
 ALL = 144
 SHARE = "softness left out over that of a contact"
 ERROR = "error, 95th percentile [%]"
+FAILS = "plain Newton fails [%]"
+LEFT_OUT = f"Error of the peak roller over the {SHARE}; shaded: within 1 %"
 
 #: What a choice of shapes or harmonics may change of peak rollers.
 ENOUGH = 0.01
@@ -84,7 +88,6 @@ def run(run: Run, page: Page) -> None:
         why="any start leads to the minimum of a convex function",
         source="convex energy",
     )
-    worst = max(rows, key=lambda row: row["plain Newton fails [%]"])
     share = min(_kept(shapes, SHARE, wall, 1.0) for wall in walls)
     waves = max(-_kept(harmonics, "harmonics", wall, -1.0) for wall in walls)
     page.limit(
@@ -96,21 +99,50 @@ def run(run: Run, page: Page) -> None:
         program="leaves out shapes below a twentieth",
         remedy="nothing to do, or `shapes=` for more",
     )
-    page.say(
-        f"Damped Newton converges in all cases, from {1e3 * walls[0]:.0f} mm of wall to "
-        f"{1e3 * walls[-1]:.0f} mm. Plain Newton fails in up to "
-        f"{worst['plain Newton fails [%]']:.0f} % of them, at a clearance of "
-        f"{worst['clearance [µm]']:.0f} µm, a wall of {worst['wall [mm]']:.0f} mm and "
-        f"{worst['load over nominal']:g} of nominal loads.",
-        f"Shapes that give {share:g} of what a contact does may be left out, and harmonics beyond "
-        f"{waves:.0f}, for {100 * ENOUGH:.0f} % of the peak roller.",
-    )
-    show(page, rows, shapes, harmonics)
+    answer(page, rows, share, waves)
+    show(page, rows, shapes, harmonics, share, waves)
     page.image("The rollers of bearing S", run.sketch(*rolling_elements(bearing())))
 
 
-def show(page: Page, rows: list[Record], shapes: list[Record], harmonics: list[Record]) -> None:
-    """Show random loads, walls, shapes and harmonics."""
+def answer(page: Page, rows: list[Record], share: float, waves: float) -> None:
+    """State the shapes and harmonics that peak rollers need, and whether all cases converge."""
+    lost = sum(row["not converged"] for row in rows)
+    worst = max(rows, key=lambda row: row[FAILS])
+    page.answer(
+        "How finely does a flexible ring have to be described for its rollers?",
+        f"Peak rollers keep {100 * ENOUGH:.0f}\u00a0% without ring shapes below {share:g} of a "
+        f"contact's softness and harmonics above {waves:.0f}; damped Newton "
+        + ("always converges." if lost == 0 else f"fails in {lost} cases."),
+        [
+            page.value(
+                "softness of shapes left out, over a contact's, up to which peaks keep 1 %",
+                share,
+                at_least=SOFTEST_LEFT_OUT,
+                by="program",
+            ),
+            page.value("harmonics that the worst wall needs for 1 %", waves),
+            page.value("load cases that damped Newton leaves unsolved", lost, at_most=0.0),
+            page.value("loads that fail without damping, worst [%]", worst[FAILS]),
+            page.value("most steps of damped Newton", max(row["steps, worst"] for row in rows)),
+        ],
+        hero=LEFT_OUT,
+        cautions=[
+            "Without damping most cases are lost at "
+            f"{formatted(worst['load over nominal'], 2, '')} of nominal loads, a clearance of "
+            f"{worst['clearance [µm]']:.0f}\u00a0µm and a wall of {worst['wall [mm]']:.0f}\u00a0mm."
+        ],
+    )
+
+
+def show(
+    page: Page,
+    rows: list[Record],
+    shapes: list[Record],
+    harmonics: list[Record],
+    share: float,
+    waves: float,
+) -> None:
+    """Show random loads, walls, shapes and harmonics, with the ranges in which peaks are kept."""
     page.section("Wall and clearance")
     page.table("Random loads", rows)
     page.sweep(
@@ -123,15 +155,9 @@ def show(page: Page, rows: list[Record], shapes: list[Record], harmonics: list[R
         table=False,
     )
     page.section("Shapes and harmonics")
-    for of, x in ((shapes, SHARE), (harmonics, "harmonics")):
-        page.sweep(
-            f"Error of the peak roller over {x}",
-            of,
-            x,
-            ERROR,
-            by="wall [mm]",
-            log="xy",
-        )
+    page.sweep(LEFT_OUT, shapes, SHARE, ERROR, by="wall [mm]", log="xy", safe=(None, share))
+    caption = "Error of the peak roller over the number of harmonics; shaded: within 1 %"
+    page.sweep(caption, harmonics, "harmonics", ERROR, by="wall [mm]", log="xy", safe=(waves, None))
 
 
 def damping(wall: float, clearance: float, factor: float, n: int) -> Record:
@@ -144,7 +170,7 @@ def damping(wall: float, clearance: float, factor: float, n: int) -> Record:
         "wall [mm]": 1e3 * wall,
         "clearance [µm]": 1e6 * clearance,
         "load over nominal": factor,
-        "plain Newton fails [%]": 100.0 * float(1.0 - plain.converged.mean()),
+        FAILS: 100.0 * float(1.0 - plain.converged.mean()),
         "not converged": int((~damped.converged).sum()),
         "steps, worst": int(damped.iterations.max()),
         "shapes": damped.shapes.shape[1],

@@ -27,6 +27,10 @@ PHASE = 0.5
 FREE, PLAY = 2.0, 0.3e-3  # m: backlash that no misalignment here uses up, and a real one
 TWO_PERCENT = 0.02
 RATIO = "misalignment times stiffness over the mean line load"
+ERRORS = (
+    "Error of the face load factor over the misalignment, against the closed form; shaded: "
+    f"{SLICES} slices within 2 %"
+)
 SOURCE = "ISO 6336-1: sqrt(2 F c / w) of a triangle over a part of the face"
 
 
@@ -53,13 +57,35 @@ def run(run: Run, page: Page) -> None:
         jam = jamming(page, ratios)
     with run.step("supports"):
         softest = soft_supports(page, 1 if run.quick else 2)
+    answer(page, ends, jam, softest)
     page.say(
-        f"{SLICES} slices have the face load factor to 2 % up to {RATIO} of {ends[SLICES]:.0f}, "
-        "where a slice and a half carry all; the limit grows with the square of the number.",
-        f"With a play of {1e3 * PLAY:.1f} mm both flanks touch from {jam:.0f} on.",
-        f"Equilibrium on supports is flagged as not converged below {softest:.0e} N/m.",
+        "At that misalignment a slice and a half carry all; the limit grows with the square of "
+        "the number of slices.",
     )
     page.image("Sun and planet of stage 1", run.sketch(*gear_pair(PAIR)))
+
+
+def answer(page: Page, ends: dict[int, float], jam: float, softest: float) -> None:
+    """State the misalignments up to which slices have the load, and what ends equilibrium."""
+    page.answer(
+        "How many slices does the load over a misaligned face width need?",
+        f"Face load factors by {SLICES} slices hold 2\u00a0% up to a misalignment of "
+        f"{ends[SLICES]:.0f} mean deflections; with {1e3 * PLAY:.1f}\u00a0mm play both flanks "
+        f"touch from {jam:.0f} on.",
+        [
+            *(
+                page.value(f"misalignment over mean deflection for 2 %, {slices} slices", end)
+                for slices, end in sorted(ends.items(), key=lambda one: one[0] != SLICES)
+            ),
+            page.value(f"misalignment over mean deflection that uses up {1e3 * PLAY:g} mm", jam),
+            page.value("softest supports with an equilibrium [N/m]", softest),
+        ],
+        hero=ERRORS,
+        cautions=[
+            "On softer supports gears turn by more than a radian before these carry: the program "
+            "says that it has not converged."
+        ],
+    )
 
 
 def few_slices(page: Page, ratios: Floats) -> dict[int, float]:
@@ -106,7 +132,7 @@ def few_slices(page: Page, ratios: Floats) -> dict[int, float]:
     )
     page.section("Few slices carry")
     page.sweep(
-        "Error of the face load factor against the closed form",
+        ERRORS,
         rows,
         RATIO,
         "error",

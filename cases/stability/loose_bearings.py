@@ -15,12 +15,20 @@ from fe_drivetrain.dynamics import (
     wind_up,
 )
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run
 
 MASS, STIFFNESS, GRAVITY = 500.0, 2e9, 9.81  # kg, N/m of each bearing, m/s^2
 SPAN, ARM = 1.0, 0.3  # m: between the bearings, and from the first to the centre of mass
 INERTIA = 40.0  # kg m^2 across
 CLEARANCE, DAMPING = 1e-4, 2e5  # m, radial; N s/m
+GAP = "clearance [mm]"
+SETTLED = "settled shaft: distance from equilibrium over the clearance"
+ORDER = "height of a bounce: error over the step, exponent"
+BOUNCES = (
+    "Elastic bounce from the height of the clearance: error over the time step; shaded: height "
+    "within 1 %"
+)
 STEP = "time step over the period of the shaft in contact"
 #: Of the two bearings, [up, turning] about the centre of mass.
 ROWS = np.array([[1.0, -ARM], [1.0, SPAN - ARM]])
@@ -37,13 +45,39 @@ def run(run: Run, page: Page) -> None:
     with run.step("time step"):
         enough = steps(page, run.quick)
     with run.step("statics"):
-        statics(page)
+        rows = statics(page)
+    answer(page, enough, [row for row in rows if row["start"] == "in the middle" and row[GAP]])
     page.say(
-        "A shaft that falls into its bearings comes to rest where equilibrium has it, whatever "
-        f"the step; the height of its bounces needs steps of {enough:.2g} of the period in "
-        "contact.",
-        "Statics finds the same from a start in contact, but has no answer from the middle of the "
-        "clearance where nothing is loaded: the program says that a part is loose.",
+        "A shaft that falls into its bearings comes to rest where equilibrium has it, whatever the "
+        "step.",
+        "Statics finds the same from a start in contact. From the middle of the clearance, where "
+        "nothing touches, it has no answer: the program says that a part is loose.",
+    )
+
+
+def answer(page: Page, enough: float, loose: list[Record]) -> None:
+    """State the longest step, over the period in contact, and what statics makes of no contact."""
+    refused = sum(not row["found"] for row in loose)
+    settled = page.judged(SETTLED).value
+    page.answer(
+        "How short must time steps be for a shaft that lies loose in its bearings?",
+        f"Bounces of a loose shaft need time steps of at most {formatted(enough, 2)} of its "
+        "contact period for 1\u00a0%; statics from mid-clearance is "
+        + ("refused." if refused == len(loose) else f"refused in {refused} cases only."),
+        [
+            page.value("longest time step over the period in contact", enough),
+            page.judged(ORDER, "order of the bounce's error in the step"),
+            page.value("distance from equilibrium once settled, over the clearance", settled),
+            page.value(
+                f"starts in mid-clearance that statics refuses, of {len(loose)}",
+                refused,
+                at_least=len(loose),
+            ),
+        ],
+        hero=BOUNCES,
+        cautions=[
+            "Bounces here are elastic, the worst case: dampers in the bearings make them decay."
+        ],
     )
 
 
@@ -67,7 +101,7 @@ def settling(page: Page) -> None:
     motion = integrate(equations, steady(weight), 0.1, 2e-6, every=50)
     exact = at_rest_by_hand(CLEARANCE)
     page.vanishes(
-        "settled shaft: distance from equilibrium over the clearance",
+        SETTLED,
         float(np.abs(ROWS @ (motion.q[-1] - exact)).max() / CLEARANCE),
         within=1e-6,
         why="bounces decay with the dampers of the bearings in contact",
@@ -122,7 +156,7 @@ def judge_bounces(page: Page, rows: list[Record]) -> float:
     over_steps = [row[STEP] for row in rows]
     slope, spread = fitted_exponent(over_steps[::-1], size[::-1], (1e-6, 0.3))
     page.at_least(
-        "height of a bounce: error over the step, exponent",
+        ORDER,
         slope,
         0.9,
         why="an instant of contact between two steps costs at least the first order",
@@ -149,7 +183,7 @@ def judge_bounces(page: Page, rows: list[Record]) -> float:
     )
     page.section("Time step")
     page.sweep(
-        "Elastic bounce from the height of the clearance",
+        BOUNCES,
         rows,
         STEP,
         {
@@ -163,8 +197,8 @@ def judge_bounces(page: Page, rows: list[Record]) -> float:
     return float(enough)
 
 
-def statics(page: Page) -> None:
-    """From starts in and out of contact, loaded and not."""
+def statics(page: Page) -> list[Record]:
+    """From starts in and out of contact, loaded and not; all of them."""
     weight = np.array([-MASS * GRAVITY, 0.0])
     rows: list[Record] = []
     errors = []
@@ -175,7 +209,7 @@ def statics(page: Page) -> None:
                 if clearance == 0.0 and not loaded:
                     continue
                 row: Record = {
-                    "clearance [mm]": 1e3 * clearance,
+                    GAP: 1e3 * clearance,
                     "start": name,
                     "loaded": loaded,
                 }
@@ -206,3 +240,4 @@ def statics(page: Page) -> None:
         "Newton's method no direction: the program refuses with the sentence that a part is loose. "
         "Settling in time, with dampers, always has an answer."
     )
+    return rows

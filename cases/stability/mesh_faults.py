@@ -26,6 +26,13 @@ QUICK_SCALES = (1.0, 30.0, 1000.0)
 
 DIAMETER = 0.5  # m, of the shaft that is meant
 
+FOUND = "found in its place"
+CRACKED = "bending stiffness lost by a crack of half the height that the mesh has by mistake"
+CRACKS = (
+    "Bending stiffness lost where nodes are doubled from the top of a section downwards: a crack "
+    "that was not intended; shaded: below 1 %"
+)
+
 #: Of a stiffness: the largest effect that an unnoticed fault may have.
 CRITERION = 0.01
 
@@ -45,18 +52,50 @@ def run(run: Run, page: Page) -> None:
     with run.step("cost of the check"):
         cost = share_of_check(scene, mesh)
     page.say(
-        f"All {len(kinds)} kinds of faults are found before the solve, and named with part, "
-        f"element and place; the check takes {100 * cost:.1f} % of the processor time in which "
-        f"the model of {len(mesh.cells):,} elements is assembled."
+        f"The check takes {100 * cost:.1f} % of the processor time in which the model of "
+        f"{len(mesh.cells):,} elements is assembled."
     )
     doubled_nodes(run, page)
-    wrong_units(run, page)
+    accepted = wrong_units(run, page)
+    answer(page, kinds, accepted, cost)
     page.section("Each kind of fault")
     page.table(
         "Faults put into a shaft with bearing and housing, and what the program reports", kinds
     )
     page.image("The library's scene, as meshed here", run.sketch(mesh))
     page.data("cost", cost)
+
+
+def answer(page: Page, kinds: list[Record], accepted: float, cost: float) -> None:
+    """State how many kinds of faults are found, and what one costs that is not."""
+    found = column(kinds, FOUND).count(True)
+    lost = page.judged(CRACKED, "share of bending stiffness lost, half a section doubled", "Tada")
+    page.answer(
+        "Does the program find a faulty mesh before it solves it?",
+        (
+            f"All {found} kinds of faults are"
+            if found == len(kinds)
+            else f"Only {found} of {len(kinds)} kinds of faults are"
+        )
+        + " named with their place before the solve; unnoticed, nodes doubled over half a section "
+        f"cost {100 * lost.value:.0f}\u00a0% of the stiffness.",
+        [
+            page.value(
+                f"kinds of faults named with their place, of {len(kinds)}",
+                found,
+                at_least=len(kinds),
+            ),
+            lost,
+            page.value(f"largest scale of lengths that passes, shaft of {DIAMETER:g} m", accepted),
+            page.value("widest part that passes [m]", WIDEST),
+            page.value("time of the check over that of assembly [%]", 100 * cost),
+        ],
+        hero=CRACKS,
+        cautions=[
+            f"Lengths in a wrong unit pass where parts stay below {WIDEST:g}\u00a0m: inches for "
+            "centimetres cannot be told from a larger machine."
+        ],
+    )
 
 
 def cracked(depth: int, rows: int) -> Record:
@@ -96,9 +135,8 @@ def doubled_nodes(run: Run, page: Page) -> None:
     share, loss = (np.array(column(rows, key)) for key in ("share of the height", "torn mesh"))
     safe = max(share[loss < CRITERION], default=0.0)
     page.say(
-        f"Unnoticed, doubled nodes over half a section cost {100 * fine:.0f} % of the bending "
-        "stiffness and no solver reports it; only when the bar falls in two is it 'singular'. "
-        f"Merging the nodes gives the exact stiffness back to {merged:.0e}."
+        "No solver reports doubled nodes; only when the bar falls in two is it 'singular'. Merging "
+        f"the nodes gives the exact stiffness back to {merged:.0e}."
     )
     page.limit(
         "a mesh with doubled nodes, solved unchecked",
@@ -117,7 +155,7 @@ def doubled_nodes(run: Run, page: Page) -> None:
 def check_crack(page: Page, rows: list[Record], limit: float, fine: float) -> None:
     """Check the stiffness that a crack costs, its report, and that merging its nodes helps."""
     page.equals(
-        "bending stiffness lost by a crack of half the height that the mesh has by mistake",
+        CRACKED,
         limit,
         faulty_meshes.crack_loss(0.5),
         within=0.05,
@@ -158,8 +196,7 @@ def show_crack(page: Page, rows: list[Record], safe: float) -> None:
         traces.append(crosses("'singular'", share[whole]))
     page.section("Doubled nodes")
     page.chart(
-        "Bending stiffness lost where nodes are doubled from the top of a section downwards: a "
-        "crack that was not intended",
+        CRACKS,
         traces,
         "share of the section's height with doubled nodes",
         "stiffness lost, relative",
@@ -168,8 +205,8 @@ def show_crack(page: Page, rows: list[Record], safe: float) -> None:
     page.data("stiffness lost", rows)
 
 
-def wrong_units(run: Run, page: Page) -> None:
-    """A shaft whose lengths are given too large by a factor."""
+def wrong_units(run: Run, page: Page) -> float:
+    """A shaft whose lengths are given too large by a factor; the largest that passes."""
     scale = np.array(QUICK_SCALES if run.quick else SCALES)
     run.report("millimetres for metres")
     with run.step("wrong units"):
@@ -226,6 +263,7 @@ def wrong_units(run: Run, page: Page) -> None:
         "within what is plausible: no check of sizes can find that. A modulus in MPa or GPa is "
         "refused by the range of the material."
     )
+    return accepted
 
 
 def torsion_of_scaled(scales: Floats) -> tuple[Floats, str]:
@@ -262,13 +300,13 @@ def every_kind(run: Run, page: Page) -> list[Record]:
             rows.append(
                 {
                     "fault": fault.label,
-                    "found in its place": bool(hits),
+                    FOUND: bool(hits),
                     "sentence": hits[0].sentence if hits else "",
                 }
             )
     page.vanishes(
         f"faults, of {len(rows)} kinds put in, not named with their part and place",
-        column(rows, "found in its place").count(False),
+        column(rows, FOUND).count(False),
         within=0.0,
         why="a fault can be corrected only where it is, within the element that has it",
         source="where each was put",

@@ -11,6 +11,7 @@ from fe_drivetrain.cases.references.tied_rings import TIES, Tie, Twisted
 from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import fitted_exponent, last_within
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run, column, grouped
 
 #: Elements round the coarser ring, and how many times as many round the finer.
@@ -26,8 +27,13 @@ NODES = {10: "curved tetrahedra", 8: "straight hexahedra"}
 ORDERS = {10: 3.0, 8: 2.0}
 
 LOST = 0.01  # of a torque, that is accepted
+SETTLED = 1e-10  # of a torque, that settled nodes may lose to round-off
 FACTOR = 2.0  # on the error of rings that share their nodes, that is accepted
 
+TORQUE = (
+    "Torque that a tie loses, of the torque, over the elements round; slave twice as fine; shaded: "
+    f"curved facets below {100 * LOST:g} %"
+)
 GAP, FINER, APART = "fail to balance", "finer face", "lie further apart"
 """Words by which the messages of ties are recognised."""
 
@@ -129,14 +135,14 @@ def check_remedy(
     page.vanishes(
         "remedy: torque lost by settled ties, of the torque, worst of all ratios, sides and ties",
         max(column(settled, "torque lost")),
-        within=1e-10,
+        within=SETTLED,
         why="round-off times the condition of the finer ring",
         source="settled nodes fulfil the tie in every rigid motion, so its forces balance",
     )
     page.vanishes(
         "remedy: torque lost by straight facets once settled",
         np.nanmax(column(as_meshed, "once settled")),
-        within=1e-10,
+        within=SETTLED,
         why="round-off times the condition of the finer ring",
         source="settled nodes fulfil the tie in every rigid motion, so its forces balance",
     )
@@ -235,26 +241,46 @@ def check_protection(
 def show(page: Page, settled: list[Record], as_meshed: list[Record]) -> None:
     """The answer."""
     node = series(settled, "node by node", "coarser", "error of the stress")
-    stiffness = {
-        kind: [abs(r["stiffness over the exact one"] - 1) for r in settled if r["tie"] == kind]
-        for kind in TIES
-    }
-    by_node = series(settled, "node by node", "coarser", "stiffness over the exact one")
-    curved = [r["torque lost"] for r in as_meshed if r["elements"] == NODES[10]]
-    octagon = [
-        r["torque lost"]
-        for r in as_meshed
-        if (r["elements"], r["tie"]) == (NODES[8], "node by node")
+    stiffness = [
+        abs(r["stiffness over the exact one"] - 1) for r in settled if r["tie"] == "standard"
     ]
-    page.say(
-        "Tied as meshed, a curved face loses torque, since two meshes of it lie apart: up to "
-        f"{100 * np.nanmax(curved):.2g} % with curved facets and {100 * np.nanmax(octagon):.2g} % "
-        "with straight ones. Settled, ties of every ratio lose nothing.",
-        f"Settled mortar ties hold up to {settled[-1]['ratio']:g} to 1: torsional stiffness within "
-        f"{100 * max(stiffness['standard']):.2g} %. Node by node with a coarser slave stress has "
-        f"errors of {100 * node[1]:.0f} to {100 * node.max():.0f} % and the stiffness of "
-        f"{100 * np.abs(by_node - 1).max():.2g} %.",
+    of = {nodes: [r for r in as_meshed if r["elements"] == name] for nodes, name in NODES.items()}
+    needed = {nodes: round_needed(rows) for nodes, rows in of.items()}
+    worst = 100 * np.nanmax(column(of[8], "torque lost"))
+    lost, ratio = max(column(settled, "torque lost")), settled[-1]["ratio"]
+    page.answer(
+        "How fine must the meshes of a tied cylinder be, and how far apart may they be?",
+        f"A tied cylinder loses under {100 * LOST:g}\u00a0% of its torque from {needed[10]} curved "
+        f"or {needed[8]} straight elements round; settled nodes lose "
+        + ("nothing" if lost < SETTLED else f"{formatted(100 * lost, 2)}\u00a0%")
+        + f" up to {ratio:g}\u00a0:\u00a01.",
+        [
+            page.value(f"curved elements round for {100 * LOST:g} %", needed[10]),
+            page.value(f"straight elements round for {100 * LOST:g} %", needed[8]),
+            page.value("worst torque lost, straight facets as meshed [%]", worst),
+            page.value("worst torque lost, nodes settled [%]", 100 * lost, at_most=100 * SETTLED),
+            page.value("worst error of torsional stiffness, settled [%]", 100 * max(stiffness)),
+            page.value("worst error of the stress, node by node, settled [%]", 100 * node.max()),
+        ],
+        hero=TORQUE,
+        cautions=[
+            "Settling moves nodes of the slave onto the master's mesh; a tie as meshed is only "
+            "warned of.",
+            "Node by node with a coarser slave stress is wrong at every ratio: use mortar ties.",
+        ],
     )
+    page.say(
+        "Tied as meshed, a curved face loses torque, since two meshes of it lie apart.",
+        f"Node by node with a coarser slave stress has errors of {100 * node[1]:.0f} to "
+        f"{100 * node.max():.0f} %.",
+    )
+
+
+def round_needed(rows: list[Record]) -> int:
+    """Elements round a cylinder from which on no tie as meshed loses more than is accepted."""
+    turns: list[int] = sorted(set(column(rows, "elements round")))
+    bad = [r["elements round"] for r in rows if r["torque lost"] > LOST]
+    return min((turn for turn in turns if turn > max(bad, default=0)), default=turns[-1])
 
 
 def show_facets(
@@ -282,8 +308,7 @@ def show_facets(
     traces += [remedied(as_meshed), *refusals(as_meshed)]
     page.section("Gaps between facets")
     page.chart(
-        "Torque that the tie loses, of the torque; slave twice as fine. Shaded where curved facets "
-        f"lose less than {100 * LOST:g} %",
+        TORQUE,
         traces,
         "elements round the coarser ring",
         "torque lost",

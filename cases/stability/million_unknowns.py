@@ -10,8 +10,9 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import thin_bodies as bodies
 from fe_drivetrain.cases.references.solver_trials import compliance, factor_memory
 from fe_drivetrain.common import InputError, peak_memory, timed_runs
-from fe_drivetrain.elasticity.solve import TOLERANCE, multigrid, round_off, schwarz
+from fe_drivetrain.elasticity.solve import MAX_ITERATIONS, TOLERANCE, multigrid, round_off, schwarz
 from fe_drivetrain.report import marked
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run, column, grouped
 
 #: Unknowns, about.
@@ -52,6 +53,12 @@ BODIES: dict[str, tuple[str, Callable[[int], bodies.Problem]]] = {
     "shaft": (f"shaft, L/D = {SLENDERNESS:g}", rod),
 }
 TUBE_NAME, ROD_NAME = (name for name, _ in BODIES.values())
+WORK = f"{TUBE_NAME}: work of the pressure cos 2t at {{:,.0f}} unknowns"
+TURN = f"{ROD_NAME}: turn under a moment of 1 N m at {{:,.0f}} unknowns"
+STEPS = (
+    f"Iterations with patches to an energy error of {formatted(TOLERANCE, 2, '')} over the "
+    "unknowns; shaded: all, none was found where they fail"
+)
 
 
 def solve(run: Run, body: str, unknowns: int, repeats: int) -> Record:
@@ -165,7 +172,7 @@ def check_tube(page: Page, series: list[Record], oval: float, quick: bool) -> No
     """The oval pressure."""
     before, last = series[-2:]
     page.equals(
-        f"{TUBE_NAME}: work of the pressure cos 2t at {last['unknowns']:,.0f} unknowns [J]",
+        f"{WORK.format(last['unknowns'])} [J]",
         last["second compliance"],
         oval,
         within=0.2 if quick else 1e-3,
@@ -184,7 +191,7 @@ def check_rod(page: Page, series: list[Record], quick: bool) -> None:
     before, last = series[-2:]
     second_moment = 0.25 * np.pi / 16.0 * (ROUND**4 - (ROUND - 2.0 * WALL) ** 4)
     page.equals(
-        f"{ROD_NAME}: turn under a moment of 1 N m at {last['unknowns']:,.0f} unknowns [rad/(N m)]",
+        f"{TURN.format(last['unknowns'])} [rad/(N m)]",
         last["second compliance"],
         SLENDERNESS * ROUND / (bodies.STEEL.youngs_modulus * second_moment),
         within=5e-3 if quick else 1e-3,
@@ -201,17 +208,8 @@ def show(page: Page, rows: list[Record], peak: float) -> None:
     """Answer, limit, charts and table."""
     of = dict(grouped(rows, "body"))
     thin, slender = of[TUBE_NAME][-1], of[ROD_NAME][-1]
-    errors = [abs(row["error in torsion"]) for row in (thin, slender)]
-    failed = {r["body"] for r in rows if str(r["iterations of multigrid"]).startswith("gives")}
-    page.say(
-        f"Patches with a spectral coarse space solve {thin['unknowns']:,.0f} unknowns of a thin "
-        f"tube in {thin['iterations of patches']:.0f} iterations, {slender['unknowns']:,.0f} of a "
-        f"slender shaft in {slender['iterations of patches']:.0f}, in "
-        f"{thin['memory of patches [GiB]']:.2g} and {slender['memory of patches [GiB]']:.2g} GiB "
-        f"beside the stiffness, right to {max(errors):.0e} in torsion. Multigrid gives up "
-        f"{'on both' if len(failed) == 2 else 'on some'} at fewer.",
-        memory_of_factors(rows, thin, slender),
-    )
+    answer(page, rows, thin, slender)
+    page.say(memory_of_factors(rows, thin, slender))
     page.limit(
         "patches with a spectral coarse space",
         "unknowns of a thin tube and of a slender shaft",
@@ -224,6 +222,38 @@ def show(page: Page, rows: list[Record], peak: float) -> None:
     show_costs(page, rows, peak)
 
 
+def answer(page: Page, rows: list[Record], thin: Record, slender: Record) -> None:
+    """State the iterations of patches in the largest thin tube and slender shaft, and who fails."""
+    failed = {r["body"] for r in rows if str(r["iterations of multigrid"]).startswith("gives")}
+    tube_size, rod_size = (formatted(int(one["unknowns"])) for one in (thin, slender))
+    steps, memory = "iterations of patches", "memory of patches [GiB]"
+    page.answer(
+        "Which iterative solver holds for large bodies that are thin or slender?",
+        f"Patches solve {tube_size} unknowns of a thin tube in {thin[steps]:.0f} iterations, "
+        f"{rod_size} of a slender shaft in {slender[steps]:.0f}; multigrid "
+        + ("solves both.", "gives up on one.", "gives up on both.")[len(failed)],
+        [
+            page.value("iterations, thin tube", thin[steps], at_most=MAX_ITERATIONS, by="program"),
+            page.value(
+                "iterations, slender shaft", slender[steps], at_most=MAX_ITERATIONS, by="program"
+            ),
+            page.judged(
+                WORK.format(thin["unknowns"]), "work of an oval pressure, tube", "meridian"
+            ),
+            page.judged(
+                TURN.format(slender["unknowns"]), "turn of the shaft by 1 N m", "Euler-Bernoulli"
+            ),
+            page.value("memory beside the stiffness, tube [MiB]", 1024 * thin[memory]),
+            page.value("memory beside the stiffness, shaft [MiB]", 1024 * slender[memory]),
+        ],
+        hero=STEPS,
+        cautions=[
+            f"Multigrid was tried up to some {formatted(TRIED)} unknowns; patches are overlapping "
+            "blocks with a coarse space of their softest motions."
+        ],
+    )
+
+
 def over_unknowns(name: str, series: list[Record], key: str) -> Any:
     """Curve of a quantity over the number of unknowns."""
     return marked(name, column(series, "unknowns"), column(series, key))
@@ -233,8 +263,7 @@ def show_costs(page: Page, rows: list[Record], peak: float) -> None:
     """Show iterations and memory over the number of unknowns, and all numbers."""
     page.section("Iterations and memory")
     page.chart(
-        "Iterations of conjugate gradients with patches, to an energy error of 1e-9. Shaded: all, "
-        "none was found where they fail",
+        STEPS,
         [
             over_unknowns(name, series, "iterations of patches")
             for name, series in grouped(rows, "body")

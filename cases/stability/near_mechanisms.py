@@ -7,10 +7,11 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.soft_springs import Sprung, scene_of, sprung
 from fe_drivetrain.common import Floats
-from fe_drivetrain.comparison import FOUR_DIGITS, decades, in_words, safe_range
+from fe_drivetrain.comparison import FOUR_DIGITS, decades, safe_range
 from fe_drivetrain.elasticity.interfaces import WEAK
 from fe_drivetrain.elasticity.mesh import Mesh
 from fe_drivetrain.report import crosses, marked, trace
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run, column
 from fe_drivetrain.shafts.response import mesh_scene
 
@@ -201,8 +202,7 @@ def show(page: Page, joint: str, found: Softened, low: float) -> None:
     has_warning = found.of("warnings") > 0
     page.section(f"{joint.capitalize()} joint")
     page.chart(
-        "Error of the rotation at the hub under a moment there, against the rotation when held "
-        "plus moment over stiffness. Shaded: four digits. Crosses: refused",
+        caption_of_errors(joint),
         [
             *(
                 marked(motion, targets[answered], np.maximum(error[answered], 1e-16))
@@ -228,7 +228,49 @@ def show(page: Page, joint: str, found: Softened, low: float) -> None:
         (low, None),
     )
     at, warned = found.soft
+    page.text(
+        "The rotation under a moment at the hub, against that when held plus moment over stiffness."
+    )
     page.text(f"At {at:.0e} the program warns: {warned[0] if warned else ''}")
+
+
+def answer(page: Page, rows: list[Record]) -> None:
+    """State how soft the only restraint of a motion may be, and what the program says below."""
+    safe = max(column(rows, "least safe"))
+    errors = (np.array(column(rows, f"error of the {motion}")) for motion in MOTIONS)
+    worst, warned = np.fmax(*errors), np.array(column(rows, "warnings")) > 0
+    silent = int(((worst >= FOUR_DIGITS) & ~warned).sum())
+    solved = min(row["ratio"] for row in rows if not row["refused"])
+    page.answer(
+        "How soft may a spring be that alone holds a motion of a shaft?",
+        "A spring that alone holds a motion leaves four digits down to "
+        f"{formatted(safe, 2, '')} of the body's stiffness; the program "
+        + (
+            f"warns from {formatted(WEAK, 2, '')} down."
+            if silent == 0
+            else f"misses {silent} wrong answers."
+        ),
+        [
+            page.value("least stiffness for four digits, over the body's", safe),
+            page.value("stiffness below which the program warns, over the body's", WEAK),
+            page.value("least stiffness that it answers, over the body's", solved),
+            page.value("answers without four digits and without a warning", silent, at_most=0.0),
+            page.value(
+                "worst error, held rigidly and moment over stiffness added",
+                max(column(rows, "remedy")),
+            ),
+        ],
+        hero=caption_of_errors(JOINTS[0]),
+        cautions=["Digits are lost in the soft motion alone, tenfold for each decade of softness."],
+    )
+
+
+def caption_of_errors(joint: str) -> str:
+    """Caption of the chart of one form of the joint."""
+    return (
+        f"Error of the hub's rotation over the softness of what holds it, {joint} joint; shaded: "
+        "four digits, crosses: refused"
+    )
 
 
 @case(
@@ -253,11 +295,9 @@ def run(run: Run, page: Page) -> None:
             *(key for key in rows[0] if key not in ("joint", "least safe", "warned", "remedy")),
         ],
     )
+    answer(page, rows)
     page.say(
-        "A spring that is the only restraint of a motion leaves four digits of it down to "
-        f"{in_words(max(column(rows, 'least safe')))} of the stiffness of what it holds (Young's "
-        f"modulus times length). The program warns from {WEAK:.0e} down, names the motion and the "
-        "digits that it costs, and refuses where none is left.",
-        "The error is 2e-16 over that ratio, within two digits, for each form of the joint.",
+        "The stiffness of a body is its Young's modulus times its length; the error is 2e-16 over "
+        "the ratio of the two stiffnesses, within two digits, for each form of the joint.",
     )
     page.image("The shaft and its bearing, as meshed here", run.sketch(mesh))

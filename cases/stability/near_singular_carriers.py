@@ -20,6 +20,8 @@ from fe_drivetrain.dynamics import (
     steady_load,
 )
 from fe_drivetrain.report import crosses, marked
+from fe_drivetrain.report.number_text import formatted
+from fe_drivetrain.report.number_text import safe_range as range_text
 from fe_drivetrain.report.suite import Page, Run
 from fe_drivetrain.shafts.fidelity.component_frames import carrier_frame
 
@@ -29,6 +31,12 @@ SUN = 0.5 * 19 * 0.045 * cos(radians(20.0))  # m
 EXACT = TORQUE / (1.0 + 56.0 / 19.0) / SUN  # N, of all meshes of the sun together
 FACTOR = "stiffness of the carrier, over that of the library's"
 WITHIN = 1e-6
+BALANCE = "error of the torque balance at the library's stiffness"
+TO_RIGID = "difference to a rigid carrier over the stiffness, exponent"
+ERRORS = (
+    "Error of the torque balance, and difference to a rigid carrier, over the carrier's stiffness; "
+    f"shaded: balanced within {formatted(WITHIN, 2, '')}, crosses: refused"
+)
 
 
 def loaded(flexible: Flexible | None) -> Static:
@@ -65,17 +73,13 @@ def run(run: Run, page: Page) -> None:
         program="refuses a motion that is free but for round-off, by its name",
         remedy="leave the carrier rigid, or hold what nothing holds",
     )
-    page.say(
-        f"From {low:.0e} to {high:.0e} times its stiffness a carrier hands on its torque within "
-        f"{WITHIN:g}; {len(refused)} of {len(factors)} stiffnesses, all of them smaller, are "
-        "refused with the motion that is free. Ever stiffer, it goes to the rigid carrier as one "
-        "over its stiffness."
-    )
+    answer(page, factors, imbalance, low, high)
+    page.say("Ever stiffer, a carrier goes to the rigid one as one over its stiffness.")
     page.section("Over the carrier's stiffness")
     curves = {"torque balance of the sun": imbalance, "planet 1 against a rigid carrier": apart}
     without = factors[np.isnan(imbalance)]
     page.chart(
-        "Relative errors and differences; shaded: safe; crosses: refused",
+        ERRORS,
         [marked(name, factors, y) for name, y in curves.items()] + [crosses("refused", without)],
         FACTOR,
         "relative",
@@ -83,6 +87,35 @@ def run(run: Run, page: Page) -> None:
         (low, high),
     )
     page.data("sweep", {"factor": factors, **curves})
+
+
+def answer(
+    page: Page, factors: Floats, imbalance: Floats, low: float | None, high: float | None
+) -> None:
+    """State the stiffnesses of a carrier that hand on its torque, and what is refused."""
+    solved = factors[np.isfinite(imbalance)]
+    refused = len(factors) - len(solved)
+    ends = {
+        "softest carrier in balance, over the library's": low,
+        "stiffest carrier in balance": high,
+    }
+    page.answer(
+        "How soft or stiff may a planet carrier be before its torque balance is lost?",
+        f"A carrier hands on its torque within {formatted(WITHIN, 2, '')} at "
+        f"{range_text(page.limits[-1])} times its stiffness; {refused} of {len(factors)} "
+        "stiffnesses, all softer, are refused.",
+        [
+            *(page.value(name, end) for name, end in ends.items() if end is not None),
+            page.value("softest that is solved, over the library's", solved.min()),
+            page.judged(BALANCE, "imbalance of torque at the library's stiffness"),
+            page.judged(TO_RIGID, "exponent of the difference to a rigid carrier", "springs"),
+        ],
+        hero=ERRORS,
+        cautions=[
+            "Just beyond that range it still gets an answer: torque is out of balance by up to "
+            f"{formatted(100 * np.nanmax(imbalance), 2)}\u00a0% in the sweep."
+        ],
+    )
 
 
 def scaled(run: Run, factors: Floats) -> tuple[Floats, Floats, list[str]]:
@@ -110,7 +143,7 @@ def check(
 ) -> None:
     """Balance at the library's stiffness, the rigid limit, and what is refused."""
     page.at_most(
-        "error of the torque balance at the library's stiffness",
+        BALANCE,
         float(imbalance[np.abs(np.log(factors)).argmin()]),
         1e-10,
         why="round-off of springs that are a million times as stiff as the softest",
@@ -118,7 +151,7 @@ def check(
     )
     far = slice(*np.searchsorted(factors, [9.0, 2e4]).tolist())
     page.exponent(
-        "difference to a rigid carrier over the stiffness, exponent",
+        TO_RIGID,
         factors[far],
         apart[far],
         -1.0,

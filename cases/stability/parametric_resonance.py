@@ -5,11 +5,56 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.mathieu import stepped_growth
 from fe_drivetrain.report import marked, trace
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Run
 
 DEPTHS = (0.05, 0.1, 0.2, 0.4)
 DAMPING = "damping ratio over a quarter of the stiffness's variation"
 STEPS = 128
+#: Variation that the answer is of.
+ANSWERED = 0.2
+STOPPED = "variation {}: damping ratio over e / 4 at which growth stops"
+GROWTH = "Rate of growth over the damping, at twice the natural frequency; shaded: no growth"
+
+
+def answer(page: Page, bounds: dict[float, float], undamped: dict[float, float]) -> None:
+    """State the damping that stops growth, by variation; undamped are rates over e w / 4."""
+    others = [e for e in bounds if e != ANSWERED]
+    needed = {e: 100.0 * bounds[e] * e / 4.0 for e in (ANSWERED, *others)}
+    grown = float(np.exp(2.0 * np.pi * undamped[ANSWERED] * ANSWERED / 4.0))
+    page.answer(
+        "How much damping stops a varying mesh stiffness from making motion grow?",
+        f"A mesh stiffness that varies by {100 * ANSWERED:g}\u00a0% at twice a natural frequency "
+        f"needs {formatted(needed[ANSWERED], 3)}\u00a0% of critical damping; with less, motion "
+        "grows until teeth part.",
+        [
+            *(
+                page.value(
+                    f"damping needed, stiffness varying by {100 * e:g} % [%]",
+                    percent,
+                    beside=100.0 * e / 4.0,
+                    by="first order",
+                )
+                for e, percent in needed.items()
+            ),
+            page.judged(
+                STOPPED.format(ANSWERED),
+                f"damping ratio over a quarter of the variation, {100 * ANSWERED:g} %",
+                "first order",
+            ),
+            page.value(
+                f"growth in a natural period, undamped, varying by {100 * ANSWERED:g} %",
+                grown,
+                beside=float(np.exp(np.pi * ANSWERED / 2.0)),
+                by="first order",
+            ),
+        ],
+        hero=GROWTH,
+        cautions=[
+            "Modes and frequency responses with a mean stiffness do not show this growth; only "
+            "integration in time does."
+        ],
+    )
 
 
 @case(
@@ -29,7 +74,7 @@ def run(run: Run, page: Page) -> None:
             bounds[e] = float(np.interp(0.0, -rates[e], over))
     for e, bound in bounds.items():
         page.equals(
-            f"variation {e}: damping ratio over e / 4 at which growth stops",
+            STOPPED.format(e),
             bound,
             1.0,
             within=0.01 + e**2 / 8.0,
@@ -46,13 +91,11 @@ def run(run: Run, page: Page) -> None:
         "see it",
         remedy="damping, or a contact ratio nearer to a whole number",
     )
-    page.say(
-        "A stiffness that varies by e of its mean at twice a natural frequency makes motion grow "
-        "unless the damping ratio exceeds e / 4: with e = 0.2, 5 % of critical damping.",
-    )
+    answer(page, bounds, {e: float(rate[0]) for e, rate in rates.items()})
+    page.say("The bound is a quarter of the variation, in any mesh.")
     page.section("Growth over damping")
     page.chart(
-        "Rate of growth over e w / 4, at twice the natural frequency; shaded: no growth",
+        GROWTH,
         [marked(f"e = {e}", over, rate) for e, rate in rates.items()]
         + [trace("first order", over, 1.0 - over, line={"dash": "dot"})],
         DAMPING,

@@ -14,10 +14,11 @@ from fe_drivetrain.cases.stability.penalised_couplings import (
     work,
 )
 from fe_drivetrain.common import Bools, Floats, InputError
-from fe_drivetrain.comparison import FOUR_DIGITS, decades, in_words, safe_range
+from fe_drivetrain.comparison import FOUR_DIGITS, decades, safe_range
 from fe_drivetrain.drivetrain_file import change_scene, library_scene
 from fe_drivetrain.elasticity.solve import System, solve
 from fe_drivetrain.report import crosses, trace
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run
 
 NAMES = {
@@ -51,20 +52,54 @@ def run(run: Run, page: Page) -> None:
         "it. The reference is the same mesh with the same rows eliminated, so that the error is "
         "the penalty's alone."
     )
-    check_protection(run, page)
-    words = (
-        f"{kind} {in_words(found['safe from'])} to {in_words(found['to'])}"
-        for kind, found in zip(KINDS, ranges, strict=True)
-    )
+    fallback = check_protection(run, page)
+    answer(page, ranges, fallback)
     page.say(
-        "A penalty in place of a constraint keeps four digits of stiffness with a direct "
-        f"solver from and to, in units of the mean diagonal: {'; '.join(words)}.",
         "On either side the error grows tenfold a decade, as theory says: the compliance of "
         "the springs below, their round-off above. Multigrid stops converging decades earlier.",
-        "Elimination, which the program uses throughout, has no such parameter.",
     )
     page.image(
         "The first of the bars, two bodies that are coupled", run.sketch(bar(next(iter(KINDS)), 2))
+    )
+
+
+def answer(page: Page, ranges: list[Record], fallback: float) -> None:
+    """State the penalties that keep four digits of all couplings; fallback is an error."""
+    low = max(found["safe from"] or 0.0 for found in ranges)
+    high = min(found["to"] or np.inf for found in ranges)
+    page.answer(
+        "Which penalty may stand in place of a rigid, averaged or tied coupling?",
+        (
+            f"Penalties keep four digits of all couplings from {formatted(low, 2, '')} to "
+            f"{formatted(high, 2, '')} times the mean stiffness; "
+            if low <= high
+            else "No penalty keeps 4 digits of all couplings; "
+        )
+        + "elimination, which the program uses, needs no such choice.",
+        [
+            page.value("least penalty for four digits, worst coupling", low),
+            page.value("largest penalty for four digits, worst coupling", high),
+            page.value(
+                "error of the best penalty, worst coupling",
+                max(found["least error"] for found in ranges),
+                at_most=FOUR_DIGITS,
+            ),
+            page.value(
+                "error of the program where multigrid fails on a penalty of a million",
+                fallback,
+                at_most=FOUR_DIGITS,
+            ),
+        ],
+        hero=caption_of_errors(next(iter(KINDS))),
+        cautions=["The range depends on mesh and coupling: no penalty is known to be safe before."],
+    )
+
+
+def caption_of_errors(kind: str) -> str:
+    """Caption of the chart of one coupling."""
+    return (
+        f"Error of a bar's compliance over the penalty, {NAMES[kind]}; shaded: four digits by a "
+        "direct solver, which refuses where its curve ends"
     )
 
 
@@ -241,8 +276,7 @@ def show(page: Page, kind: str, found: Penalised, safe: tuple[float | None, floa
     lost = ~np.isfinite(error)
     page.section(NAMES[kind].capitalize())
     page.chart(
-        f"Error of the compliance of a bar, {NAMES[kind]}. Shaded: safe with the direct solver. "
-        "Where a curve ends the solver refuses",
+        caption_of_errors(kind),
         [
             trace("penalty, direct", penalties[~lost], error[~lost]),
             trace("penalty, multigrid, converged", tried[arrived], iterated_error[arrived], True),
@@ -271,8 +305,8 @@ def show(page: Page, kind: str, found: Penalised, safe: tuple[float | None, floa
     )
 
 
-def check_protection(run: Run, page: Page) -> None:
-    """What the program does with a penalty that a user gives in spite of that."""
+def check_protection(run: Run, page: Page) -> float:
+    """What the program does with a penalty that a user gives in spite of that; its error."""
     with run.step("what the program does"):
         body = bar("averaged", 2)
         exact = work(*eliminated(body), "superlu")
@@ -305,6 +339,7 @@ def check_protection(run: Run, page: Page) -> None:
         why="round-off of so stiff a spring would be added to the elastic terms",
         source="such a spring is a penalty: 'rigid' is eliminated",
     )
+    return float(error)
 
 
 def scaled(system: System, factor: float) -> System:

@@ -11,6 +11,7 @@ from fe_drivetrain.cases.stability.other_precisions import BORE, DIAMETER
 from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import FOUR_DIGITS, in_words, safe_range
 from fe_drivetrain.report import crosses, trace
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run, column
 
 LOADS = ("bending", "torsion")
@@ -23,6 +24,7 @@ EXPONENTS = {"bending": 4.0, "torsion": 2.0}
 SHORT, DOUBLE, MIXED, LONG = "32", "64", "32 refined by 64", "64 refined by 80"
 LIMITS = {SHORT: "32 bits", DOUBLE: "64 bits", MIXED: "32 bits, refined with residuals of 64"}
 PROGRAM = "the program"
+SLOPE = "{}, 64 bits: error against L/D, exponent"
 
 
 def key(load: str, precision: str) -> str:
@@ -85,23 +87,19 @@ def run(run: Run, page: Page) -> None:
         [name for name in rows[0] if PROGRAM not in name or "residual" in name],
     )
     page.text(
-        "Assembly, sums and factor are all in the precision named; the nodes have coordinates of "
-        "32 bits in each, so that all solve the same solid. The number of elements does not depend "
-        "on the length from three diameters on: their own error is the same in each precision and "
-        "not in the comparison."
+        "The reference is the solution with residuals of 80 bits on the same mesh; an error above "
+        "1 leaves no digit. Assembly, sums and factor are all in the precision named; the nodes "
+        "have coordinates of 32 bits in each, so that all solve the same solid. The number of "
+        "elements does not depend on the length from three diameters on: their own error is the "
+        "same in each precision and not in the comparison."
     )
     page.data("slenderness and relative errors", rows)
-    in_double = highest["torsion"][DOUBLE]
+    answer(page, rows, highest)
     digits = {
         precision: -np.log10(np.maximum(column(refined, key("bending", precision)), 1e-17))
         for precision in (SHORT, DOUBLE)
     }
     page.say(
-        "Four digits of the bending stiffness of a tube survive up to L/D = "
-        f"{in_words(highest['bending'][SHORT])} in 32 bits and "
-        f"{in_words(highest['bending'][DOUBLE])} in 64; of its torsional stiffness up to "
-        f"{in_words(highest['torsion'][SHORT])} in 32, and "
-        + ("at all lengths tried in 64." if in_double is None else f"{in_words(in_double)} in 64."),
         "Round-off takes the fourth power of L/D in bending and the second in torsion; the mesh "
         f"matters little: {digits[SHORT].min():.1f} to {digits[SHORT].max():.1f} digits of bending "
         f"in 32 bits and {digits[DOUBLE].min():.1f} to {digits[DOUBLE].max():.1f} in 64 on "
@@ -111,6 +109,54 @@ def run(run: Run, page: Page) -> None:
     )
     page.image(
         "A tube of four diameters", run.sketch(straight((0.0, 4.0 * DIAMETER), DIAMETER, BORE))
+    )
+
+
+def answer(page: Page, rows: list[Record], highest: dict[str, dict[str, float | None]]) -> None:
+    """State the longest tubes with four digits in 64 and in 32 bits."""
+    longest = max(column(rows, "L/D"))
+
+    def reach(load: str, precision: str) -> str:
+        high = highest[load][precision]
+        return formatted(longest if high is None else high, 3)
+
+    answers = np.array(column(rows, key("bending", PROGRAM)))
+    page.answer(
+        "How slender may a solid be before its stiffness has lost its digits?",
+        "A tube keeps four digits of its bending stiffness up to L/D\u00a0=\u00a0"
+        f"{reach('bending', DOUBLE)} in the 64 bits of the program; 32 bits would end at "
+        f"{reach('bending', SHORT)}.",
+        [
+            *(
+                page.value(f"largest L/D for four digits, {load}, {LIMITS[precision]}", high)
+                for load, precision in (
+                    ("bending", DOUBLE),
+                    ("bending", SHORT),
+                    ("bending", MIXED),
+                    ("torsion", SHORT),
+                )
+                if (high := highest[load][precision]) is not None
+            ),
+            page.judged(SLOPE.format("bending"), "exponent of L/D in the error, bending", "theory"),
+            page.value(
+                "worst error that the program answers with, bending",
+                float(answers[np.isfinite(answers)].max()),
+                at_most=1e-2,
+                by="program",
+            ),
+        ],
+        hero=caption_of_errors("bending"),
+        cautions=[
+            "The error is that of round-off alone, on one mesh; finer meshes hardly change it."
+        ],
+    )
+
+
+def caption_of_errors(load: str) -> str:
+    """Caption of the chart of one load."""
+    return (
+        f"Error of a tube's stiffness in {load} over its slenderness, by precision; shaded: four "
+        "digits in 64 bits, crosses: the program refuses"
     )
 
 
@@ -133,7 +179,7 @@ def check(
     """Check how the error grows with slenderness, and falls with the number of bits."""
     usable = (of[LONG] < 0.1 * of[DOUBLE]) & (slenderness >= 2.0)
     page.exponent(
-        f"{load}, 64 bits: error against L/D, exponent",
+        SLOPE.format(load),
         slenderness[usable],
         of[DOUBLE][usable],
         EXPONENTS[load],
@@ -202,9 +248,7 @@ def show(
     dashed = {"dash": "dash"}
     page.section(load.capitalize())
     page.chart(
-        "Error of the stiffness of a tube against the solution with residuals of 80 bits on the "
-        f"same mesh, {load}. Shaded: four digits in 64 bits; above 1 there are none. Crosses: the "
-        "program refuses",
+        caption_of_errors(load),
         [
             trace("32 bits", slenderness, clipped(SHORT)),
             trace("64 bits", slenderness, clipped(DOUBLE)),

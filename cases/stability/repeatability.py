@@ -15,8 +15,9 @@ from fe_drivetrain.cases.stability.fingerprints import (
     tube_answers,
 )
 from fe_drivetrain.common import Floats, scratch_folder
-from fe_drivetrain.comparison import FOUR_DIGITS, in_words, safe_range
+from fe_drivetrain.comparison import FOUR_DIGITS, safe_range
 from fe_drivetrain.report import marked, trace
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Lengths over diameters of the tubes that other processes solve.
@@ -25,6 +26,12 @@ QUICK_LENGTHS = (5.0,)
 
 #: The runs that are to agree in every bit.
 FIRST = "one thread / one thread, again"
+
+SLOPE = "nodes in another order: difference of the stiffness against L/D, exponent"
+CHANGES = (
+    "Change of a tube's bending stiffness by another order of nodes or threads, over its "
+    "slenderness; shaded: four digits; curves end where a solver refuses"
+)
 
 #: Lengths over diameters of the tubes whose nodes are numbered in two ways.
 SLENDERNESS = (2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0)
@@ -134,17 +141,43 @@ def run(run: Run, page: Page) -> None:
     changing = dict.fromkeys(
         r["part"] for r in rows if r["runs"] != FIRST and r["differ in any bit"]
     )
+    answer(page, len(runs["one thread"]), changed, reordered)
     page.say(
-        f"Two runs with one thread agree in every bit of {len(runs['one thread'])} arrays, from "
-        f"mesh to stiffness: {changed} differ.",
         "Two threads are not tried in a quick run."
         if run.quick
         else f"With two threads these change in their last bits: {', '.join(changing) or 'none'}; "
         f"these do not: {', '.join(part for part in parts if part not in changing)}.",
-        "What another order of the operations changes grows as the fourth power of L/D: "
-        f"stiffnesses agree to four digits up to L/D = {in_words(high)}.",
+        "What another order of the operations changes grows as the fourth power of L/D.",
     )
     show(page, rows, lengths, reordered)
+
+
+def answer(page: Page, arrays: int, changed: int, reordered: Renumbered) -> None:
+    """State whether a run repeats bit for bit, and what another order of operations leaves."""
+    high, at = reordered.safe, reordered.slenderness
+    worst = np.max(reordered.direct, axis=0)
+    figures = [
+        page.value(f"arrays that differ in any bit, one thread, of {arrays}", changed, at_most=0.0),
+        page.judged(SLOPE, "exponent of L/D in the change by another order", "theory"),
+        page.value(f"change of a stiffness by another order, L/D = {at[0]:g}", worst[0]),
+        page.value("change of a stiffness by another order, L/D = 200", worst[at.index(200.0)]),
+    ]
+    if high is not None:
+        name = "largest L/D at which another order keeps four digits"
+        figures.insert(1, page.value(name, high))
+    page.answer(
+        "Does a run repeat bit for bit, and what does another order of operations change?",
+        (
+            f"Two runs with one thread agree in every bit of {arrays} arrays; "
+            if changed == 0
+            else f"Two runs with one thread differ in {changed} of {arrays} arrays; "
+        )
+        + "another order of nodes keeps four digits up to L/D\u00a0=\u00a0"
+        + f"{formatted(at[-1] if high is None else high)}.",
+        figures,
+        hero=CHANGES,
+        cautions=["Bits repeat on the same machine with the same libraries; others may differ."],
+    )
 
 
 def check(
@@ -161,7 +194,7 @@ def check(
         source="IEEE 754",
     )
     page.exponent(
-        "nodes in another order: difference of the stiffness against L/D, exponent",
+        SLOPE,
         reordered.slenderness,
         reordered.typical,
         4.0,
@@ -212,9 +245,7 @@ def show(page: Page, rows: list[Record], lengths: tuple[float, ...], reordered: 
     repeated = max(r["stiffness by, at most"] for r in rows if r["runs"] == FIRST)
     page.section("Nodes in another order")
     page.chart(
-        "Difference of the bending stiffness of a tube between nodes numbered from the front and "
-        "from the rear, and between one thread and two. Shaded: four digits. Curves end where a "
-        "solver refuses",
+        CHANGES,
         [
             *(
                 marked(

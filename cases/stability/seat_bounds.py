@@ -11,6 +11,7 @@ from fe_drivetrain.cases.stability import seat_couplings as seat
 from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import GridConvergence, grid_convergence, last_within
 from fe_drivetrain.report import marked, trace
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Run
 
 #: Widths of the loaded band [m]; the ring is as long as the last.
@@ -32,6 +33,12 @@ GAP = 0.10  # largest difference of two couplings that still represent one stiff
 MESH_ERROR = 0.01
 
 TILT = "MN m/rad"
+REMEDIED = "remedy: {} coupling, elements of sixth order, {:g} mm"
+STRIP_TILT = f"failure: sliding band {1e3 * STRIP:g} mm wide, tilt stiffness, extrapolated"
+WIDTHS_CHART = (
+    "Tilt stiffness over that of the rigid coupling: averaged falls as the band grows, sliding as "
+    f"it shrinks; shaded: rigid and averaged within {100 * GAP:g} %"
+)
 SAME_MESH = "the first harmonic on the same mesh of the meridian"
 
 Tilts = dict[str, seat.Tilted]
@@ -145,7 +152,7 @@ def run(run: Run, page: Page) -> None:
     check_library(page, found, turn_of(run))
     for c in ("rigid", "averaged"):
         page.equals(
-            f"remedy: {c} coupling, elements of sixth order, {1e3 * found.sizes[-1]:g} mm",
+            REMEDIED.format(c, 1e3 * found.sizes[-1]),
             found.fine[-1][c].stiffness / 1e6,
             limits[c].extrapolated / 1e6,
             within=MESH_ERROR * (2.0 if run.quick else 1.0),
@@ -206,7 +213,7 @@ def check_strip(page: Page, found: Found) -> None:
     share = STRIP / (seat.OUTSIDE - seat.BORE)
     narrow = extrapolated(found.sizes, found.strip)
     page.equals(
-        f"failure: sliding band {1e3 * STRIP:g} mm wide, tilt stiffness, extrapolated",
+        STRIP_TILT,
         narrow.extrapolated / 1e6,
         seat.smooth_strip(STRIP) / 1e6,
         within=share,
@@ -257,21 +264,49 @@ def show_widths(page: Page, found: Found) -> None:
     narrow = last_within(widths, gap, GAP)
     wrong_sign = sum(by_mean(f["sliding"]) < 0 for f in found.swept)
     share = f"{100 * sliding[0]:.2g} to {100 * sliding[-1]:.2g} %"
+    answer(page, found, narrow)
     page.say(
-        "Rigid and averaged coupling bracket the tilt stiffness of a bonded seat: they are "
-        f"{100 * gap[0]:.2g} % apart on a band of {1e3 * widths[0]:g} mm and "
-        f"{100 * gap[-1]:.2g} % where the whole bore is loaded"
-        + (
-            f"; within {100 * GAP:g} % up to {1e3 * narrow:g} mm."
-            if narrow is not None
-            else f"; never within {100 * GAP:g} %."
-        ),
         f"The averaged one is no lower bound for a seat without friction: that has {share} of the "
         f"rigid stiffness, and at {wrong_sign} of {len(widths)} widths its mean rotation points "
         "against the moment.",
     )
     limit_widths(page, found, narrow, share)
     show_tilt(page, found, narrow)
+
+
+def answer(page: Page, found: Found, narrow: float | None) -> None:
+    """State up to which width both couplings give one stiffness, and what slides."""
+    averaged, sliding = (over_rigid(found.swept, c) for c in ("averaged", "sliding"))
+    apart, band = 100.0 * (1.0 - averaged[-1]), 1e3 * PLAIN_WIDTH
+    page.answer(
+        "Do rigid and averaged coupling bracket the tilt stiffness of a bearing's seat?",
+        "Both bracket a bonded seat, "
+        + (
+            f"within {100 * GAP:g}\u00a0% up to a {formatted(1e3 * narrow)}\u00a0mm band and "
+            if narrow is not None
+            else f"never within {100 * GAP:g}\u00a0% and "
+        )
+        + f"{apart:.0f}\u00a0% apart on the whole bore; a frictionless one is "
+        + ("softer." if (sliding < averaged).all() else "not always softer."),
+        [
+            page.judged(
+                REMEDIED.format("rigid", 1e3 * found.sizes[-1]), f"rigid, {band:g} mm band"
+            ),
+            page.judged(
+                REMEDIED.format("averaged", 1e3 * found.sizes[-1]), f"averaged, {band:g} mm band"
+            ),
+            page.value("averaged below rigid, whole bore [%]", apart),
+            page.judged(STRIP_TILT, f"frictionless, {1e3 * STRIP:g} mm band", "smooth strip"),
+            page.value("frictionless over rigid, whole bore [%]", 100.0 * sliding[-1]),
+        ],
+        hero=WIDTHS_CHART,
+        cautions=[
+            "The bracket holds on a converged mesh only: on coarse elements of second order even "
+            "the averaged coupling is too stiff.",
+            "The mean rotation of a frictionless seat may point against its moment: take moment "
+            "squared over twice the energy.",
+        ],
+    )
 
 
 def limit_widths(page: Page, found: Found, narrow: float | None, share: str) -> None:
@@ -310,9 +345,7 @@ def show_tilt(page: Page, found: Found, narrow: float | None) -> None:
     theory = [seat.smooth_strip(w) for w in widths] / rigid
     page.section("Width of the band")
     page.chart(
-        "Tilt stiffness of the band over that of the rigid coupling: averaged falls as the band "
-        "grows, sliding as it shrinks; shaded where rigid and averaged are within "
-        f"{100 * GAP:g} %",
+        WIDTHS_CHART,
         [
             marked("averaged", percent, np.abs(averaged)),
             marked("sliding", percent, np.abs(sliding)),

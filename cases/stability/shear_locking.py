@@ -27,6 +27,7 @@ from fe_drivetrain.comparison import last_within
 from fe_drivetrain.elasticity.operator import elasticity, incompatible, incompressible
 from fe_drivetrain.elasticity.solve import recovery_estimate
 from fe_drivetrain.report import marked
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run
 
 #: Lengths of elements over the depth of the square bar.
@@ -58,6 +59,12 @@ REMEDIES: dict[str, tuple[int, Assembly]] = {
     "27 nodes": (27, PLAIN),
     "tetrahedra of 10 nodes": (10, PLAIN),
 }
+LINEAR = {"8 nodes": "8-node hexahedra", "tetrahedra of 4 nodes": "4-node tetrahedra"}
+WORST = "cantilever, {}, 1 across: stiffness over the exact one where it is worst, L/D = {:g}"
+TIPS = (
+    f"Error of the tip stiffness over length by depth, {ALONG} elements along; dashed: remedies; "
+    "shaded, if anywhere: 8 nodes, {} across, within 1 %"
+)
 OVER_DEPTH = "length of an element over the depth of a square bar [-]"
 SECOND_ORDER = "elements of second order"
 
@@ -111,22 +118,65 @@ def run(run: Run, page: Page) -> None:
     estimates = estimated(run, square.lengths)
     share = check_estimate(page, estimates)
     state_limits(page, square, tip, shafts, slenderness, round_lengths, share)
-    at_200 = tip[f"8 nodes, {square.most} across"][-1]
     left = shafts["8 nodes, incompatible modes, 8 round a turn"][-1]
+    answer(page, square.most, tip, slenderness, left)
     page.say(
-        f"Hexahedra of 8 nodes shear where they should bend: {ALONG} along a bar of L/D = "
-        f"{slenderness[-1]} make it {1 + at_200:.0f} times too stiff with {square.most} across, "
-        "for more across do not help: it is the length of an element that counts, by G A a^2 / 12, "
-        f"as theory has it to {theory_error:.0e}. Tetrahedra of 4 nodes lock worse.",
-        "Elements of second order, and hexahedra with incompatible modes, bend with one across "
-        f"within {100 * max(np.abs(tip[name]).max() for name in REMEDIES):.2g} % at every L/D; "
-        f"incompatible modes only where they are bricks: in a round shaft {100 * left:.0f} % are "
-        "left.",
+        "Hexahedra of 8 nodes shear where they should bend. More of them across do not help: it is "
+        f"the length of an element that counts, by G A a^2 / 12, as theory has it to "
+        f"{theory_error:.0e}. Tetrahedra of 4 nodes lock worse.",
     )
     show_square(page, square)
     show_others(page, square, tip, shafts, slenderness, round_lengths)
     show_tables(page, square, tetrahedra, estimates)
     page.image("The square bar, one brick across", run.sketch(bars.square(27, 1, 8, 1.0)))
+
+
+def answer(page: Page, most: int, tip: Excesses, slenderness: Sequence[int], left: float) -> None:
+    """State how stiff linear elements make a slender bar, and what elements hold."""
+    longest = slenderness[-1]
+    held = 100 * max(np.abs(tip[name]).max() for name in REMEDIES if "modes" not in name)
+    linear = {name: 1 + tip[f"{name}, {most} across"][-1] for name in LINEAR}
+    within = last_within(slenderness, tip[f"8 nodes, {most} across"], CRITERION)
+
+    def where(name: str) -> int:
+        return slenderness[int(np.abs(tip[name]).argmax())]
+
+    figures = [
+        *(
+            page.value(
+                f"stiffness over the true one, {kind}, L/D = {longest:g}",
+                linear[name],
+                beside=1.0,
+                by="exact",
+            )
+            for name, kind in LINEAR.items()
+        ),
+        *(
+            page.judged(
+                WORST.format(name, where(name)),
+                f"worst stiffness over the true one, {kind}",
+                "exact",
+            )
+            for name, kind in (("tetrahedra of 10 nodes", "10-node tetrahedra"),)
+        ),
+        page.value("worst error at any L/D, elements of second order [%]", held, at_most=1.0),
+        page.value("error left by incompatible modes in a round shaft [%]", 100 * left),
+    ]
+    if within is not None:
+        name = f"largest L/D within 1 %, 8-node hexahedra, {ALONG} along"
+        figures.insert(1, page.value(name, within))
+    page.answer(
+        "Which elements may bend a slender bar or shaft?",
+        f"Linear hexahedra, {ALONG} along, make a bar of L/D\u00a0=\u00a0{longest:g} "
+        f"{formatted(linear['8 nodes'], 2)} times too stiff; elements of second order stay within "
+        f"{formatted(held, 2)}\u00a0% at every L/D.",
+        figures,
+        hero=TIPS.format(most),
+        cautions=[
+            "Incompatible modes hold in bricks only: in a round shaft they lock as well.",
+            "Scenes are meshed in curved tetrahedra of 10 nodes, which hold.",
+        ],
+    )
 
 
 def check_held(page: Page, held: Excesses) -> None:
@@ -255,8 +305,7 @@ def cantilevers(run: Run, page: Page, most: int, slenderness: Sequence[int]) -> 
             length = slenderness[worst] * bars.SIDE
             finer = bars.tip_loaded(nodes, 1, 2 * ALONG, length, assembly)
             page.equals(
-                f"cantilever, {name}, 1 across: stiffness over the exact one where it is worst, "
-                f"L/D = {slenderness[worst]:g}",
+                WORST.format(name, slenderness[worst]),
                 1.0 + tip[name][worst],
                 1.0,
                 within=CRITERION,
@@ -415,11 +464,10 @@ def show_others(
 ) -> None:
     """Charts and data of cantilever and round shafts."""
     page.section("Cantilever")
-    title = f"Error of the tip stiffness, {ALONG} elements along (shaded: 8 nodes, {square.most} "
-    title += "across, within 1 %)"
     loaded = {name: (slenderness, values) for name, values in tip.items()}
     safe = shaded(*loaded[f"8 nodes, {square.most} across"])
-    error_chart(page, title, "length over depth [-]", loaded, lambda name: name in REMEDIES, safe)
+    title, x = TIPS.format(square.most), "length over depth [-]"
+    error_chart(page, title, x, loaded, lambda name: name in REMEDIES, safe)
     page.section("Round shafts in pure bending")
     title = "Hexahedra: error of the bending stiffness against E I of the mesh (shaded: "
     title += "incompatible modes, 16 round a turn, within 1 %)"

@@ -26,6 +26,7 @@ from fe_drivetrain.elasticity.operator import assemble
 from fe_drivetrain.elasticity.solve import TOLERANCE, System, multigrid, reduce
 from fe_drivetrain.geometry import MeshSizes
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.response import build_model, mesh_scene
 
@@ -216,7 +217,7 @@ def sweeps(quick: bool) -> dict[str, Sweep]:
             of(UNITS, QUICK_UNITS),
             "keeps double precision where single precision lacks the range",
         ),
-        "radius over wall of a tube": Sweep(
+        THIN_WALLS: Sweep(
             partial(thin, mesh=QUICK_TUBE if quick else TUBE), of(THINNESS, QUICK_THINNESS)
         ),
         "height of slivers over the size of their cubes": Sweep(
@@ -236,6 +237,9 @@ def sweeps(quick: bool) -> dict[str, Sweep]:
 
 
 IN_UNITS = "stiffness in other units, factor"
+THIN_WALLS = "radius over wall of a tube"
+STEPS = "iterations with the single-precision hierarchy over those with the double one, worst"
+STATED = "answers of the program where neither converges: error over what is stated, worst"
 
 
 @case(
@@ -252,11 +256,9 @@ def run(run: Run, page: Page) -> None:
     }
     every = [trial for swept in found.values() for trial in swept]
     check(page, every, found[IN_UNITS])
+    answer(page, every, found[THIN_WALLS])
     page.say(
-        f"On {len(every)} solids the hierarchy in single precision takes at most "
-        f"{max(t.single - t.double for t in every)} iterations more than one in double precision, "
-        "and gives the same answers; where the range of single precision ends, the program keeps "
-        "double precision.",
+        "Where the range of single precision ends, the program keeps double precision.",
         *in_their_place(every),
     )
     sentences = beyond_bounds(found)
@@ -270,6 +272,53 @@ def run(run: Run, page: Page) -> None:
     page.image("A shaft of five diameters", run.sketch(bodies.uniform(0.7, 0.175, 3.5)))
 
 
+def answer(page: Page, every: list[Trial], walls: list[Trial]) -> None:
+    """State what single precision costs, and where neither precision converges."""
+    lost = [t for t in every if t.double >= 0 > t.single]
+    both = [t for t in every if max(t.single, t.double) < 0]
+    more = max(t.single - t.double for t in every if min(t.single, t.double) >= 0)
+    thinnest = safe_values(walls)[1]
+    figures = [
+        page.value("iterations more than in double precision, worst", more),
+        page.judged(STEPS, "iterations over those in double precision, worst"),
+        page.value(
+            f"solids lost by single precision alone, of {len(every)}", len(lost), at_most=0.0
+        ),
+        page.value(f"solids that neither precision solves, of {len(every)}", len(both)),
+    ]
+    if thinnest is not None:
+        figures.append(page.value("largest radius over wall of a tube that converges", thinnest))
+    if any(not np.isnan(t.error) for t in every):
+        figures.append(
+            page.judged(STATED, "error of the program's answers there, over what it states")
+        )
+    page.answer(
+        "May multigrid work in single precision?",
+        (
+            f"Yes: on {len(every)} solids it takes at most {more} iterations more; "
+            if not lost
+            else f"No: on {len(lost)} of {len(every)} solids it alone fails; "
+        )
+        + f"on {len(both)}"
+        + (f", such as walls under 1/{thinnest:g} of the radius," if thinnest else "")
+        + " both precisions fail.",
+        figures,
+        hero=caption_of_iterations(THIN_WALLS),
+        cautions=[
+            "Only the preconditioner is single: the stiffness and the iteration stay in double "
+            "precision."
+        ],
+    )
+
+
+def caption_of_iterations(name: str) -> str:
+    """Caption of the chart of one sweep."""
+    return (
+        f"Iterations to an energy error of {formatted(TOLERANCE, 2, '')} over the {name}; shaded: "
+        "both precisions converge"
+    )
+
+
 def check(page: Page, every: list[Trial], in_units: list[Trial]) -> None:
     """Check that single precision needs as many iterations, to the same answers."""
     page.vanishes(
@@ -280,7 +329,7 @@ def check(page: Page, every: list[Trial], in_units: list[Trial]) -> None:
         source="the same solids, both hierarchies",
     )
     page.at_most(
-        "iterations with the single-precision hierarchy over those with the double one, worst",
+        STEPS,
         max(t.single / t.double for t in every if min(t.single, t.double) > 0),
         1.5,
         why="a third of the time of an iteration is conjugate gradients in double precision; with "
@@ -298,7 +347,7 @@ def check(page: Page, every: list[Trial], in_units: list[Trial]) -> None:
     answers = [t for t in every if not np.isnan(t.error)]
     if answers:
         page.at_most(
-            "answers of the program where neither converges: error over what is stated, worst",
+            STATED,
             max(t.error / (t.round_off + TOLERANCE) for t in answers),
             1.0,
             why="another solver takes over, and says what round-off may have done; beyond that the "
@@ -319,7 +368,7 @@ def show(page: Page, name: str, swept: list[Trial]) -> None:
     page.section(name)
     at = [t.value for t in swept if t.double >= 0], [t.value for t in swept if t.single >= 0]
     page.chart(
-        f"Iterations to an energy error of {TOLERANCE:.0e}",
+        caption_of_iterations(name),
         [
             trace("double precision", at[0], [t.double for t in swept if t.double >= 0]),
             trace("single precision", at[1], [t.single for t in swept if t.single >= 0], True),
@@ -327,6 +376,7 @@ def show(page: Page, name: str, swept: list[Trial]) -> None:
         name,
         "iterations",
         "x",
+        safe_values(swept),
     )
     page.table("Iterations to the same", [row_of(t) for t in swept])
 
@@ -363,11 +413,16 @@ def beyond_bounds(found: dict[str, list[Trial]]) -> list[str]:
     return sentences
 
 
-def limit_of(page: Page, name: str, swept: list[Trial], protects: str) -> None:
-    """Over which values both hierarchies converge; beyond, neither does."""
-    low, high = safe_range(
+def safe_values(swept: list[Trial]) -> tuple[float | None, float | None]:
+    """Range of values over which single precision converges."""
+    return safe_range(
         [t.value for t in swept], [0.0 if t.single >= 0 else np.inf for t in swept], 0.5
     )
+
+
+def limit_of(page: Page, name: str, swept: list[Trial], protects: str) -> None:
+    """Over which values both hierarchies converge; beyond, neither does."""
+    low, high = safe_values(swept)
     page.limit(
         "multigrid in single precision",
         name,

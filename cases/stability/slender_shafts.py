@@ -6,6 +6,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import solver_trials as trials
 from fe_drivetrain.cases.references import thin_bodies as bodies
 from fe_drivetrain.cases.stability import solver_sweep as sweep
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Run
 
 DIAMETER, WALL = 0.7, 0.175  # m
@@ -16,6 +17,12 @@ SLENDERNESS = (5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000)
 QUICK_SLENDERNESS = (5, 100, 500, 5000)
 
 AXIS = "L/D"
+EXPONENT = "condition number over L/D, as many elements from 100 diameters on: exponent"
+PATCHES = "patches: most iterations over least, wherever the program answers"
+ERRORS = (
+    "True error of a shaft's compliance over its slenderness, in bending or torsion, whichever is "
+    "worse; shaded: four digits by direct solvers"
+)
 PARAMETER = f"L/D of a shaft in {ALONG} elements along it"
 
 
@@ -53,8 +60,7 @@ def run(run: Run, page: Page) -> None:
         points,
         AXIS,
         safe,
-        "True error of the compliance, in bending or torsion, whichever is worse. Shaded: direct "
-        "solvers give four digits",
+        ERRORS,
         "The reference of bending is put together from short shafts of the same elements, and "
         "exact to about 1e-6: errors below are its own. That of torsion is exact.",
     )
@@ -71,7 +77,7 @@ def check(page: Page, points: list[sweep.Point], patches: list[int]) -> float:
     """The condition number's growth, which is returned, and what each solver makes of it."""
     long = [p for p in points if 100 <= p.value <= 1000]
     exponent = page.exponent(
-        "condition number over L/D, as many elements from 100 diameters on: exponent",
+        EXPONENT,
         [p.value for p in long],
         [p.condition for p in long],
         4.0,
@@ -88,9 +94,7 @@ def check(page: Page, points: list[sweep.Point], patches: list[int]) -> float:
         why="its condition number is about the square root of that of bending",
         source="L / (G J) of the meshed cross-section, exact in these elements",
     )
-    sweep.check_patches(
-        page, "patches: most iterations over least, wherever the program answers", patches, "six"
-    )
+    sweep.check_patches(page, PATCHES, patches, "six")
     sweep.check_multigrid(
         page, points, "aggregates that move as rigid bodies make a chain of them too stiff"
     )
@@ -103,6 +107,36 @@ def check(page: Page, points: list[sweep.Point], patches: list[int]) -> float:
     return exponent
 
 
+def answer(page: Page, points: list[sweep.Point], patches: list[int], within: float) -> None:
+    """State where digits end, and multigrid; `within` is the worst error over its own bound."""
+    digits, multigrid = sweep.safe_by_factor(points), sweep.safe_by_multigrid(points)
+    refused = min((p.value for p in points if not p.answers["auto"].method), default=None)
+    last = points[-1].value
+    ends = {
+        "largest L/D with four digits in bending, any solver": digits,
+        "largest L/D that multigrid solves": multigrid,
+        "L/D from which the program refuses": refused,
+    }
+    page.answer(
+        "How slender may a shaft of solid elements be?",
+        "No solver keeps four digits of a bent shaft in solid elements beyond L/D\u00a0=\u00a0"
+        f"{formatted(last if digits is None else digits)}; multigrid stops at "
+        f"{formatted(multigrid or 0.0)}, and the program "
+        + ("never refuses." if refused is None else f"refuses from {formatted(refused)}."),
+        [
+            *(page.value(name, value) for name, value in ends.items() if value is not None),
+            page.judged(PATCHES, "most over least iterations of patches", "theorem"),
+            page.judged(EXPONENT, "exponent of L/D in the condition number", "theory"),
+            page.value("worst error over the bound that is stated with it", within, at_most=1.0),
+        ],
+        hero=ERRORS,
+        cautions=[
+            f"Shafts here are {ALONG} elements long; longer elements condition a shaft better, and "
+            "a beam has no such limit."
+        ],
+    )
+
+
 def show(page: Page, points: list[sweep.Point], patches: list[int], exponent: float) -> None:
     """Answer and limits."""
     safe_multigrid, safe_direct = sweep.safe_by_multigrid(points), sweep.safe_by_factor(points)
@@ -113,14 +147,12 @@ def show(page: Page, points: list[sweep.Point], patches: list[int], exponent: fl
         for a in p.answers.values()
         if a.compliance is not None
     )
+    answer(page, points, patches, within)
     page.say(
-        f"Multigrid holds up to L/D = {safe_multigrid or 0:g}; patches with a spectral coarse "
-        f"space need {min(patches)} to {max(patches)} iterations up to L/D = "
-        f"{max(p.value for p in points if p.answers['auto'].method):g}.",
-        f"Beyond L/D = {safe_direct or 0:g} no solver has four digits in bending: the condition "
-        f"number grows as (L/D)^{exponent:.2f}, and rounding has already changed the stiffness. "
-        "The program bounds that, and the error of what it answers is at most "
-        f"{within:.2g} of its bound.",
+        f"Patches with a spectral coarse space need {min(patches)} to {max(patches)} iterations up "
+        f"to L/D = {max(p.value for p in points if p.answers['auto'].method):g}.",
+        f"The condition number grows as (L/D)^{exponent:.2f}: rounding has changed the stiffness "
+        "before any solver begins.",
     )
     page.limit(
         sweep.MULTIGRID,

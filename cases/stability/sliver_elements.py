@@ -8,6 +8,7 @@ from fe_drivetrain.common import Bools, Floats
 from fe_drivetrain.elasticity.mesh import FLATTEST, find_faults, flatness
 from fe_drivetrain.elasticity.solve import MAX_ITERATIONS
 from fe_drivetrain.report import crosses, marked
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run, column
 
 #: Heights of the slivers, in cubes.
@@ -20,6 +21,14 @@ ACROSS, QUICK_ACROSS = 4, 2
 #: Six digits of a stiffness are more than any use of it needs.
 CRITERION = 1e-6
 
+REMEDIED = (
+    "bending stiffness after gmsh has taken the slivers out, worst of all heights, over the exact "
+    "one, less one"
+)
+ERRORS = (
+    "Error of the stiffness of a bar with a layer of slivers over their flatness: round-off grows "
+    "until nothing is left; shaded: six digits"
+)
 FLATNESS = "least height over longest edge of the flattest element [-]"
 EPSILON = float(np.finfo(float).eps)
 
@@ -164,8 +173,7 @@ def check_protection(page: Page, rows: list[Record], beyond: list[Record]) -> No
 def check_remedy(page: Page, rows: list[Record]) -> None:
     """Without the slivers the bar is solved as any other."""
     page.vanishes(
-        "bending stiffness after gmsh has taken the slivers out, worst of all heights, over the "
-        "exact one, less one",
+        REMEDIED,
         np.abs(array(rows, "error, optimised")).max(),
         within=1e-8,
         why="quadratic elements hold the solution; iterations end at an energy error of 1e-9 and "
@@ -183,24 +191,47 @@ def check_remedy(page: Page, rows: list[Record]) -> None:
     )
 
 
+def answer(page: Page, rows: list[Record], inside_out: float) -> None:
+    """State how flat slivers may be, and the worst error of bending with some inside out."""
+    last = float(rows[-1]["flatness"])
+    safe, steps = (safe_to(rows, failed) for failed in (is_wrong(rows), gives_up(rows)))
+    digits, alone = (formatted(last if at is None else at, 1, "") for at in (safe, steps))
+    ends = {
+        "least flatness with six digits of stiffness": safe,
+        "least flatness that multigrid solves alone": steps,
+    }
+    page.answer(
+        "How flat may the elements of a mesh be?",
+        f"Slivers leave six digits of stiffness down to a flatness of {digits}; multigrid alone "
+        f"holds to {alone}, and the program refuses meshes below {formatted(FLATTEST, 2, '')}.",
+        [
+            *(page.value(name, at) for name, at in ends.items() if at is not None),
+            page.value("flatness below which the program refuses a mesh", FLATTEST),
+            page.value(
+                "worst error of bending, slivers inside out, unnoticed [%]", 100 * abs(inside_out)
+            ),
+            page.judged(REMEDIED, "error of bending once slivers are taken out", "exact"),
+        ],
+        hero=ERRORS,
+        cautions=[
+            "Flatness is the least height of an element over its longest edge; elements inside out "
+            "give no sign of themselves, and are refused."
+        ],
+    )
+
+
 def state_limits(page: Page, rows: list[Record], beyond: list[Record], exponent: float) -> None:
     """Answer and limits."""
-
-    def shown(value: float | None) -> str:
-        return "the last of the sweep" if value is None else f"{value:.1g}"
 
     safe, safe_steps = safe_to(rows, is_wrong(rows)), safe_to(rows, gives_up(rows))
     most = max(column(rows, "iterations, optimised"))
     remaining = f"{np.abs(array(rows, 'error, optimised')).max():.1e}"
     worst = beyond[int(np.argmax(np.nan_to_num(np.abs(array(beyond, "error of bending")))))]
+    answer(page, rows, worst["error of bending"])
     page.say(
         "One layer of slivers makes the condition number grow as their flatness to the power "
-        f"{exponent:.2f}. Multigrid alone holds down to a flatness of {shown(safe_steps)}; the "
-        f"stiffness has six digits down to {shown(safe)}; there is no answer at "
-        f"{rows[-1]['flatness']:.1g}.",
-        f"The program refuses a mesh whose flattest element is below {FLATTEST:g}, with element "
-        "and place; all that is solved wrong in this sweep lies beyond. gmsh takes the slivers "
-        f"out: then at most {most} iterations, and {remaining} of error.",
+        f"{exponent:.2f}. gmsh takes the slivers out: then at most {most} iterations, and "
+        f"{remaining} of error.",
         "Elements turned inside out give no sign of themselves: at a height of "
         f"{worst['height / cube']:g} the solver converges and the error of the bending stiffness "
         f"is {worst['error of bending']:.1e}. Only the check of the Jacobian finds them.",
@@ -241,8 +272,7 @@ def show_answer(page: Page, rows: list[Record]) -> None:
     failed = x[~np.isfinite(array(rows, "error of bending, multigrid"))]
     page.section("The answer")
     page.chart(
-        "Error of the stiffness of a bar with a layer of slivers. The elements' own error hardly "
-        "changes; round-off grows until nothing is left",
+        ERRORS,
         [
             *(
                 marked(name, x, np.maximum(np.abs(array(rows, key)), EPSILON))

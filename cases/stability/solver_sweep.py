@@ -12,6 +12,7 @@ from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.comparison import FOUR_DIGITS
 from fe_drivetrain.elasticity.solve import TOLERANCE, solvers
 from fe_drivetrain.report import crosses, marked, trace
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record
 
 #: Residual that is commonly taken for an answer.
@@ -27,6 +28,10 @@ MULTIGRID = "multigrid (smoothed aggregation under quadratic elements)"
 MULTIGRID_FALLBACK = (
     "auto does not choose it; where asked for it, gives up early, takes a direct factor or "
     "patches, and says so"
+)
+ITERATIONS_CHART = (
+    f"Iterations to an energy error of {formatted(TOLERANCE, 2, '')}; shaded: multigrid converges; "
+    f"crosses: after {trials.ITERATIONS} it has not"
 )
 FAILURES = {
     "none": "none",
@@ -185,8 +190,7 @@ def show_iterations(page: Page, points: Sequence[Point], x: str, safe: Range) ->
     multigrid = [p.iterations["multigrid"] for p in points]
     stopped = [k for k, found in enumerate(multigrid) if not found.converged]
     page.chart(
-        f"Iterations to an energy error of {TOLERANCE:.0e}. Shaded: multigrid converges; "
-        f"crosses: after {trials.ITERATIONS} it has not",
+        ITERATIONS_CHART,
         [
             trace("multigrid", values, [i.iterations for i in multigrid]),
             crosses(

@@ -8,9 +8,10 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.solid_shafts import straight
 from fe_drivetrain.cases.stability import solver_steps
 from fe_drivetrain.common import Floats
-from fe_drivetrain.comparison import FOUR_DIGITS, decades, in_words, safe_range
+from fe_drivetrain.comparison import FOUR_DIGITS, decades, safe_range
 from fe_drivetrain.elasticity.solve import TOLERANCE
 from fe_drivetrain.report import marked, trace
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run
 
 TOLERANCES = decades(-12, -1, 2)
@@ -41,12 +42,8 @@ def run(run: Run, page: Page) -> None:
     loosest = {
         f"{row['problem']}, {row['stiffness']}": row[LOOSEST] or TOLERANCES[-1] for row in rows
     }
+    answer(page, rows, loosest)
     page.say(
-        "Four digits of a stiffness need a tolerance of the energy error of "
-        + "; ".join(f"{in_words(value)} ({name})" for name, value in loosest.items())
-        + ".",
-        f"The loosest that suffices for all of them is {min(loosest.values()):.1g}. The program "
-        f"stops at {TOLERANCE:.0e}.",
         "The error of a load's own stiffness is the square of the energy error, as theory says; "
         "that of a motion elsewhere falls as the energy error itself.",
     )
@@ -60,6 +57,49 @@ def run(run: Run, page: Page) -> None:
         "The hollow shaft, first of the problems", run.sketch(straight((0.0, 2.0), 0.7, 0.3))
     )
     page.data("loosest", loosest)
+
+
+def answer(page: Page, rows: list[Record], loosest: dict[str, float]) -> None:
+    """State the loosest tolerance for four digits of each stiffness, beside the program's."""
+    enough, left = min(loosest.values()), max(row[ERROR] for row in rows)
+    hardest = sorted(loosest, key=lambda name: loosest[name])
+    page.answer(
+        "How loose may the tolerance of an iterative solver be?",
+        "Four digits of every stiffness need a tolerance of the energy error of "
+        f"{formatted(enough, 2, '')}; the program stops at {formatted(TOLERANCE, 2, '')}, with "
+        f"errors up to {formatted(left, 2, '')}.",
+        [
+            page.value(
+                "loosest tolerance for four digits, all stiffnesses",
+                enough,
+                at_least=TOLERANCE,
+                by="program",
+            ),
+            *(
+                page.value(f"loosest tolerance, {name}", loosest[name])
+                for name in (*hardest[1:3], hardest[-1])
+            ),
+            page.value(
+                "worst error at the program's tolerance",
+                left,
+                at_most=FOUR_DIGITS,
+                by="four digits",
+            ),
+        ],
+        hero=caption_of_errors(rows[-1]["problem"]),
+        cautions=[
+            "The tolerance is of the energy error: a residual of the same size says little about a "
+            "stiffness."
+        ],
+    )
+
+
+def caption_of_errors(problem: str) -> str:
+    """Caption of the chart of one problem."""
+    return (
+        f"Error of stiffnesses over the energy error of each step, {problem}; shaded: four digits "
+        "of every one of them"
+    )
 
 
 def check(
@@ -140,8 +180,7 @@ def show(page: Page, name: str, problem: solver_steps.Problem, steps: solver_ste
     energy = steps.energy_error
     page.section(name.capitalize())
     page.chart(
-        "Error of stiffnesses over the energy error of each step of conjugate gradients, "
-        f"{problem.unknowns:,} unknowns. Shaded: four digits of every one of them",
+        caption_of_errors(name),
         [
             *(
                 marked(figure, energy, np.maximum(error, 1e-16))
@@ -159,8 +198,9 @@ def show(page: Page, name: str, problem: solver_steps.Problem, steps: solver_ste
         (None, float(energy[first_safe(steps.error.values())])),
     )
     page.text(
-        f"The residual is {steps.residual[first_safe([steps.error[problem.own]])]:.1e} where "
-        f"{problem.own} has four digits: it says little about a stiffness."
+        f"Conjugate gradients in {problem.unknowns:,} unknowns. The residual is "
+        f"{steps.residual[first_safe([steps.error[problem.own]])]:.1e} where {problem.own} has "
+        "four digits: it says little about a stiffness."
     )
 
 

@@ -10,6 +10,7 @@ from fe_drivetrain.common import Bools, Floats, InputError
 from fe_drivetrain.comparison import FOUR_DIGITS, decades, in_words, safe_range
 from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.report import crosses, marked, trace
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Run
 from fe_drivetrain.shafts.beam import Support, beam_of_scene, unit_load_response
 from fe_drivetrain.shafts.response import mesh_scene
@@ -19,6 +20,10 @@ OTHER = 1e8
 #: The stiffest spring that a scene may have [N/m].
 STIFFEST = 1e16
 
+ERRORS = (
+    "Error of the hub's motion by a force there over the radial gearbox spring, spherical bearing; "
+    "shaded: four digits, crosses: refused"
+)
 RADIAL = "radial gearbox stiffness [N/m]"
 SCATTER = (
     "round-off scatters by about a decade from point to point: over the decades of the fit by 0.2 "
@@ -78,6 +83,11 @@ class Errors:
     def worst(self) -> Floats:
         """The larger of both errors of the solid."""
         return np.asarray(np.fmax(self.hub, self.reaction))
+
+    @property
+    def safe(self) -> tuple[float | None, float | None]:
+        """Range of springs with four digits [N/m]."""
+        return safe_range(self.of.stiffness, self.worst, FOUR_DIGITS)
 
 
 @dataclass(frozen=True)
@@ -151,14 +161,56 @@ def beam_errors(scene: Scene, held: Scene, stiffness: Floats, lever: float) -> F
 )
 def run(run: Run, page: Page) -> None:
     """Sweep the radial gearbox stiffness of a spherical and of a bonded main bearing."""
-    spherical(run, page)
-    bonded(run, page)
+    found = spherical(run, page)
+    answer(page, found, bonded(run, page))
     page.image(
         "The shaft and its bearing, coarsened", run.sketch(mesh_scene(scene_of("spherical")))
     )
 
 
-def spherical(run: Run, page: Page) -> None:
+def answer(page: Page, errors: Errors, bonded_high: float | None) -> None:
+    """State the springs with four digits; `bonded_high` is the stiffest on a bonded bearing."""
+    found = errors.of
+    low, high = errors.safe
+    stiff = min(STIFFEST, high or STIFFEST)
+    silent = found.answered & ~found.warned & ~(errors.worst < FOUR_DIGITS)
+    missed = int(silent[found.stiffness <= STIFFEST].sum())
+    softest = "softest spring with four digits, spherical bearing [N/m]"
+    figures = [] if low is None else [page.value(softest, low)]
+    figures += [
+        page.value(
+            f"stiffest spring with four digits, {name} bearing [N/m]", end, at_least=STIFFEST
+        )
+        for name, end in (("spherical", high), ("bonded", bonded_high))
+        if end is not None
+    ]
+    page.answer(
+        "How soft or stiff may the springs of a gearbox be?",
+        f"Gearbox springs from {newtons(low or found.stiffness[0])} to {newtons(stiff)}, "
+        + ("the stiffest that" if stiff == STIFFEST else "less than")
+        + " a scene may have, keep four digits; softer ones are "
+        + ("warned of or refused." if missed == 0 else f"wrong without a sign in {missed} cases."),
+        [
+            *figures,
+            page.value(
+                "softest spring that is answered [N/m]", found.stiffness[found.answered].min()
+            ),
+            page.value("answers without four digits and without a warning", missed, at_most=0.0),
+        ],
+        hero=ERRORS,
+        cautions=[
+            "The bound of soft springs is that of this shaft: a motion that nothing else holds "
+            "loses digits as its spring gets softer."
+        ],
+    )
+
+
+def newtons(stiffness: float) -> str:
+    """A stiffness in a sentence."""
+    return f"{formatted(stiffness, 2, '')}\u00a0N/m"
+
+
+def spherical(run: Run, page: Page) -> Errors:
     """A shaft that turns about its bearing unless the gearbox holds it."""
     with run.step("spherical: mesh and assembly"):
         scene, held_scene = scene_of("spherical"), scene_of("spherical", rigid=(2, 3))
@@ -179,7 +231,7 @@ def spherical(run: Run, page: Page) -> None:
     # statics: the gearbox carries the load times the lever, whatever its spring
     reaction_error = np.abs(found.reaction / -lever - 1.0)
     errors = Errors(found, error, reaction_error, beam_error)
-    low, high = safe_range(stiffness, errors.worst, FOUR_DIGITS)
+    low, high = errors.safe
     check_spherical(page, errors, at_zero, low, 0.4 if run.quick else 0.2)
     answered, warned = found.answered, found.warned
     first_warned = stiffness[warned].max() if warned.any() else None
@@ -198,13 +250,11 @@ def spherical(run: Run, page: Page) -> None:
     )
     limit_stiff(page, "spherical", high)
     page.say(
-        "On a spherical bearing the hub's motion and the gearbox's reaction keep four digits "
-        f"from {in_words(low)} to {in_words(high)} N/m of radial gearbox stiffness. No spring at "
-        f"all is refused as a mechanism; up to {in_words(first_warned)} N/m the program names the "
-        f"motion that is hardly held, and below {stiffness[answered].min():.1g} N/m it refuses "
-        "to answer."
+        "On a spherical bearing no spring at all is refused as a mechanism; up to "
+        f"{in_words(first_warned)} N/m the program names the motion that is hardly held."
     )
     show_spherical(page, errors, at_zero, (low, high))
+    return errors
 
 
 def check_spherical(
@@ -260,10 +310,12 @@ def show_spherical(
     stiffness, answered, warned = found.stiffness, found.answered, found.warned
     by_beam = np.isfinite(beam_error)
     page.section("Spherical bearing: from a mechanism to a held shaft")
+    page.text(
+        "The reference is the motion with the gearbox held, plus the lever squared over stiffness."
+    )
     quiet, loud = answered & ~warned, answered & warned
     page.chart(
-        "Error of the hub's motion under a force there, against the motion held plus lever squared "
-        "over stiffness. Shaded: four digits",
+        ERRORS,
         [
             marked("solid, no warning", stiffness[quiet], np.maximum(error[quiet], 1e-16)),
             marked("solid, warned of", stiffness[loud], error[loud]),
@@ -295,8 +347,8 @@ def show_spherical(
     page.data("spherical", rows)
 
 
-def bonded(run: Run, page: Page) -> None:
-    """A shaft that its bearing holds, with one spring more."""
+def bonded(run: Run, page: Page) -> float | None:
+    """A shaft that its bearing holds, with one spring more; the stiffest with four digits."""
     with run.step("bonded: springs"):
         found = one_spring(run, decades(0, 32, 0.25 if run.quick else 0.5))
     errors = np.fmax(found.error, found.reaction_error)
@@ -306,10 +358,10 @@ def bonded(run: Run, page: Page) -> None:
     limit_stiff(page, "bonded", high)
     page.say(
         "On a bonded bearing the free and the held shaft are recovered, first order in the "
-        "spring and in its compliance; the reaction of the spring keeps four digits up to "
-        f"{in_words(high)} N/m, and a scene may have 1e16."
+        "spring and in its compliance."
     )
     show_bonded(page, found, high)
+    return high
 
 
 def one_spring(run: Run, k: Floats) -> OneSpring:

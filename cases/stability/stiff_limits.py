@@ -8,10 +8,15 @@ from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import decades, safe_range
 from fe_drivetrain.dynamics import Level, System, library_machine, machine_system
 from fe_drivetrain.report import marked
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Run
 
 FACTOR = "stiffness of bearings, shafts in bending and pins, over the tabled one"
 WITHIN = 1e-4
+SLOPE, LEAST = (
+    "{}: error over the stiffness, exponent",
+    "{}: least error of all torsional frequencies",
+)
 BY_ROWS, BY_MATRIX = "singular values of rows", "eigenvalues of the matrix"
 MACHINES = ("nrel_750kw", "park_2021")
 
@@ -26,11 +31,56 @@ def run(run: Run, page: Page) -> None:
     for name in MACHINES[:1] if run.quick else MACHINES:
         with run.step(name):
             sweep(page, name, factors)
+    answer(page)
     page.say(
-        "Stiffening everything but torsion, the frequencies of rigid bodies go to those of the "
-        "torsional model as one over the stiffness, down to round-off of what is far below the "
-        "stiffest springs: that of singular values of the springs' rows, or of the eigenvalues of "
-        "the stiffness matrix, which has only half of their digits."
+        "Errors fall as one over the stiffness, down to round-off of what is far below the "
+        "stiffest springs. The eigenvalues of the stiffness matrix have only half of the digits "
+        "that singular values of the springs' rows have."
+    )
+
+
+def answer(page: Page) -> None:
+    """State how stiff bearings bring back the torsional table, for the first machine."""
+    name = MACHINES[0]
+    by_rows, by_matrix = page.limits[:2]
+    low = formatted(by_rows.low or 1.0, 3, "")
+    reach = (
+        f"{low} times and more,"
+        if by_rows.high is None
+        else f"{low} to {formatted(by_rows.high, 3, '')} times,"
+    )
+    ends = {"least stiffening": by_rows.low, "largest stiffening, eigenvalues": by_matrix.high}
+    page.answer(
+        "Do stiff bearings in six degrees of freedom bring back the torsional model?",
+        f"Stiffened {reach} bearings bring the torsional frequencies back within "
+        f"{formatted(WITHIN, 2, '')}; eigenvalues of the matrix "
+        + (
+            "keep them, too."
+            if by_matrix.high is None
+            else f"lose them again beyond {formatted(by_matrix.high, 3, '')} times."
+        ),
+        [
+            *(
+                page.value(f"{what}, over the tabled stiffness", end)
+                for what, end in ends.items()
+                if end is not None
+            ),
+            page.judged(LEAST.format(name), "least error of all torsional frequencies", "program"),
+            page.judged(SLOPE.format(name), "exponent of the stiffness in the error", "theory"),
+        ],
+        hero=caption_of_errors(name),
+        cautions=[
+            "Hold or leave out degrees of freedom instead of stiffening them: beyond the range "
+            "frequencies are round-off."
+        ],
+    )
+
+
+def caption_of_errors(name: str) -> str:
+    """Caption of the chart of one machine."""
+    return (
+        "Largest error of a torsional frequency over the stiffening, "
+        f"{library_machine(name).title}; shaded: safe by singular values"
     )
 
 
@@ -49,7 +99,7 @@ def sweep(page: Page, name: str, factors: Floats) -> None:
     # before, the nearest frequency may be that of another motion; behind, round-off
     far = slice(*np.searchsorted(factors, [9e4, 2e9]).tolist())
     page.exponent(
-        f"{name}: error over the stiffness, exponent",
+        SLOPE.format(name),
         factors[far],
         error[far],
         -1.0,
@@ -59,7 +109,7 @@ def sweep(page: Page, name: str, factors: Floats) -> None:
         source="springs in series",
     )
     page.at_most(
-        f"{name}: least error of all torsional frequencies",
+        LEAST.format(name),
         float(error[best]),
         1e-8,
         why="compliance of the stiff springs and round-off meet there",
@@ -81,7 +131,7 @@ def sweep(page: Page, name: str, factors: Floats) -> None:
         )
     page.section(machine.title)
     page.chart(
-        "Largest error of a torsional frequency; shaded: safe by singular values",
+        caption_of_errors(name),
         [marked(way, factors, np.maximum(found, 1e-17)) for way, found in errors.items()],
         FACTOR,
         "relative error",

@@ -11,9 +11,11 @@ from pydantic import ValidationError
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import layers
 from fe_drivetrain.common import Bools, Floats
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.comparison import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
 from fe_drivetrain.drivetrain_file import Material
 from fe_drivetrain.report import crosses, trace
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Run
 
 #: Bodies of the chain; every other one is stiff.
@@ -22,6 +24,10 @@ STIFF = range(1, COUNT, 2)
 #: Chains of random stiffness at each spread.
 SAMPLES = 4
 
+CHAINS = (
+    f"Error of the compliance of {COUNT} bodies in a row over the ratio of their moduli; shaded: "
+    "four digits by a direct solver, every other body stiff"
+)
 RING = "modulus of the ring over that of the shaft"
 CHAIN = "modulus of the stiff bodies over that of the soft ones"
 
@@ -281,6 +287,53 @@ def check_protection(page: Page, of_ring: Swept, of_chain: Swept, allowed: float
     )
 
 
+def answer(
+    page: Page, of_ring: Swept, of_chain: Swept, many_high: float | None, allowed: float
+) -> None:
+    """State the ratios of moduli that a direct solver and multigrid keep digits at."""
+
+    def inverse(low: float | None) -> float | None:
+        return None if low is None else 1.0 / low
+
+    direct = {
+        f"{COUNT} bodies of random stiffness": many_high,
+        "chain of soft and stiff bodies": of_chain.safe[1],
+        "soft ring about a shaft": inverse(of_ring.safe[0]),
+    }
+    iterated = {
+        "chain": of_chain.safe_iterated[1],
+        "ring": inverse(of_ring.safe_iterated[0]),
+    }
+
+    def least(ends: dict[str, float | None]) -> float:
+        known = [end for end in ends.values() if end is not None]
+        return rounded([min(known)], 2)[0] if known else math.inf
+
+    page.answer(
+        "How different may the moduli of bodies that share a load be?",
+        "A direct solver keeps four digits up to a ratio of moduli of "
+        f"{formatted(least(direct), 2, '')}, multigrid up to {formatted(least(iterated), 2, '')}; "
+        f"scenes may have {formatted(allowed, 2, '')}.",
+        [
+            *(
+                page.value(f"largest ratio, direct, {name}", end, at_least=allowed, by="scenes")
+                for name, end in direct.items()
+                if end is not None
+            ),
+            page.value("largest ratio, multigrid, worst", least(iterated)),
+            page.value(
+                "worst error, the better of elastic and rigid stiff bodies",
+                float(np.nanmax(of_chain.better)),
+                at_most=FOUR_DIGITS,
+            ),
+        ],
+        hero=CHAINS,
+        cautions=[
+            "Multigrid says where it has not converged, and a direct factor answers in its place."
+        ],
+    )
+
+
 def state_limits(
     page: Page, of_ring: Swept, of_chain: Swept, many_high: float | None, allowed: float
 ) -> None:
@@ -288,12 +341,8 @@ def state_limits(
     low, high = of_ring.safe
     _, chain_high = of_chain.safe
     rigid_low, _ = safe_range(of_chain.contrast, of_chain.rigid, FOUR_DIGITS)
+    answer(page, of_ring, of_chain, many_high, allowed)
     page.say(
-        f"Four digits of stiffness survive a ring down to {in_words(low)} of the shaft's modulus "
-        f"with a direct factor and {in_words(of_ring.safe_iterated[0])} with multigrid, stiff "
-        f"bodies up to {in_words(chain_high)} and {in_words(of_chain.safe_iterated[1])} times that "
-        "of soft ones between "
-        f"them, and {COUNT} bodies of random stiffness a ratio of {in_words(many_high)}.",
         "Beyond, round-off of the stiff bodies exceeds the stiffness of the soft ones: the error "
         "grows tenfold a decade. A ring stiffer than the shaft does no harm, however stiff.",
         "Made rigid by elimination, the stiff bodies leave the soft ones right: an error of one "
@@ -387,9 +436,7 @@ def show(page: Page, of_ring: Swept, of_chain: Swept, ratios: Floats, many: Floa
     )
     page.section("A chain of soft and stiff bodies")
     page.chart(
-        f"Error of the compliance of {COUNT} bodies in a row, every other one stiff, and of as "
-        "many of random stiffness. Shaded: safe with the direct solver and elastic bodies, every "
-        "other one stiff",
+        CHAINS,
         [
             *curves(of_chain, "direct, stiff bodies rigid"),
             trace(

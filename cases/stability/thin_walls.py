@@ -7,7 +7,9 @@ from fe_drivetrain.cases.references import solver_trials as trials
 from fe_drivetrain.cases.references import thin_bodies as bodies
 from fe_drivetrain.cases.stability import solver_sweep as sweep
 from fe_drivetrain.common import Floats
+from fe_drivetrain.comparison import FOUR_DIGITS
 from fe_drivetrain.elasticity.solve import TOLERANCE, multigrid, schwarz
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run
 
 DIAMETER, LENGTH = 3.0, 3.0  # m
@@ -21,6 +23,8 @@ MESH, QUICK_MESH = (14, 4), (8, 3)
 OPTIONS = ((100, 0.03), (100, 0.1), (100, 0.3), (60, 0.1), (200, 0.1))
 
 AXIS = "radius over wall"
+EXPONENT = "condition number over radius / wall, from 40 on: exponent"
+PATCHES = "patches: most iterations over least"
 
 
 def tube(thinness: float, turn: int, along: int) -> bodies.Problem:
@@ -100,7 +104,7 @@ def check(page: Page, points: list[sweep.Point]) -> float:
     """The condition number's growth, which is returned, and the errors of each solver."""
     thin = [p for p in points if p.value >= 40]
     exponent = page.exponent(
-        "condition number over radius / wall, from 40 on: exponent",
+        EXPONENT,
         [p.value for p in thin],
         [p.condition for p in thin],
         2.0,
@@ -125,11 +129,34 @@ def check(page: Page, points: list[sweep.Point]) -> float:
         source="torsion exact; oval by direct solvers",
     )
     patches = [p.iterations["schwarz"].iterations for p in points]
-    sweep.check_patches(page, "patches: most iterations over least", patches, "seven")
+    sweep.check_patches(page, PATCHES, patches, "seven")
     sweep.check_multigrid(
         page, points, "aggregates that move as rigid bodies cannot bend as a wall does"
     )
     return exponent
+
+
+def answer(page: Page, points: list[sweep.Point], patches: list[int], patch_error: float) -> None:
+    """State the thinnest wall that multigrid solves, and what holds beyond."""
+    safe, thinnest = sweep.safe_by_multigrid(points), points[-1].value
+    wrong = max(p.iterations_error("multigrid") for p in points)
+    within = patch_error <= FOUR_DIGITS
+    page.answer(
+        "How thin may the wall of a tube be for each solver?",
+        f"Multigrid converges down to a wall of 1/{formatted(safe or 0.0)} of the radius only; "
+        f"patches take {min(patches)} to {max(patches)} iterations down to 1/{thinnest:g}, "
+        + ("right to" if within else "but wrong by")
+        + f" {formatted(patch_error, 2, '')}.",
+        [
+            *([] if safe is None else [page.value("largest radius over wall, multigrid", safe)]),
+            page.judged(PATCHES, "most over least iterations of patches", "theorem"),
+            page.value("worst error of patches", patch_error, at_most=FOUR_DIGITS),
+            page.value("worst error of multigrid, not converged [%]", 100 * wrong),
+            page.judged(EXPONENT, "exponent of radius over wall in the condition number", "theory"),
+        ],
+        hero=sweep.ITERATIONS_CHART,
+        cautions=["Direct solvers hold at every wall, as long as their factor fits in memory."],
+    )
 
 
 def show(page: Page, points: list[sweep.Point], turn: int, exponent: float) -> None:
@@ -140,12 +167,9 @@ def show(page: Page, points: list[sweep.Point], turn: int, exponent: float) -> N
     torsion = max(error for p in points for error in p.torsion_errors)
     worst = max(points, key=lambda p: p.iterations_error("multigrid"))
     wrong = f"{worst.iterations_error('multigrid'):.1%} at {worst.value:g}"
+    answer(page, points, patches, patch_error)
     page.say(
-        f"Multigrid holds up to a radius of {safe_multigrid or 0:g} walls and has an error of "
-        f"{wrong}. Patches with a spectral coarse space take {min(patches)} to {max(patches)} "
-        f"iterations down to a wall of 1/{points[-1].value:g} of the radius, and are right to "
-        f"{patch_error:.0e}.",
-        f"Direct solvers are right to {torsion:.0e} in torsion at all of them: the condition "
+        f"Direct solvers are right to {torsion:.0e} in torsion at every wall: the condition "
         f"number grows as (R/t)^{exponent:.2f} only.",
     )
     parameter = f"radius over wall of a tube, {turn} elements round it"

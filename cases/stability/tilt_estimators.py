@@ -31,6 +31,14 @@ NODES, SEAT, ENERGY = "four nodes", "averaged seat", "energy"
 MISLEADS = 0.05
 USEFUL = "the criterion of the sweep: an estimator is of use within it"
 RATIO = "over the averaged seat"
+SEAT_AGAINST_SHAFT = (
+    "remedy: {} plane, K_R by the averaged seat against the motion of the unloaded shaft behind "
+    "the bearing"
+)
+RADII_CHART = (
+    "K_R by four nodes over that of the averaged seat, over their radius: the further out, the "
+    f"stiffer; shaded: both planes within {100 * MISLEADS:g} %"
+)
 
 Stiffness = dict[str, float]
 """K_R by plane [N m/rad]."""
@@ -159,8 +167,7 @@ def check_estimators(page: Page, meshes: list[housing.Tilted], chosen: Choices) 
             source="the compliance of ring and shell between seat and outside is not in them",
         )
         page.equals(
-            f"remedy: {p} plane, K_R by the averaged seat against the motion of the unloaded shaft "
-            "behind the bearing [MN m/rad]",
+            f"{SEAT_AGAINST_SHAFT.format(p)} [MN m/rad]",
             seat[p] / 1e6,
             finest.condensed[p] / 1e6,
             within=MISLEADS,
@@ -214,6 +221,41 @@ def check_loads(page: Page, finest: housing.Tilted) -> None:
     )
 
 
+def answer(page: Page, meshes: list[housing.Tilted], high: dict[str, float], thrust: float) -> None:
+    """State whether the thesis's four nodes give the K_R of the seat; thrust that misleads."""
+    above = {p: 100 * float(excess_of_nodes(meshes, p, SEAT)[-1]) for p in NAMES}
+    misleads = max(abs(value) for value in above.values()) > 100 * MISLEADS
+    both = " and ".join(f"{above[p]:.0f}\u00a0% ({p})" for p in NAMES)
+    page.answer(
+        "Do the thesis's four nodes of the housing give the tilt stiffness K_R of its bearing?",
+        (
+            f"The thesis's four nodes do not give the seat's K_R: theirs is {both} above it, on "
+            "every mesh."
+            if misleads
+            else f"The thesis's four nodes give the seat's K_R within {both}."
+        ),
+        [
+            *(page.value(f"four nodes above the seat, {p} [%]", above[p]) for p in NAMES),
+            *(
+                page.judged(SEAT_AGAINST_SHAFT.format(p), f"K_R of the seat, {p}", "shaft behind")
+                for p in NAMES
+            ),
+            page.value(
+                f"largest radius of nodes within {100 * MISLEADS:g} % [m]", min(high.values())
+            ),
+            page.value(
+                f"hub thrust over moment that moves a secant by {100 * MISLEADS:g} % [1/m]", thrust
+            ),
+        ],
+        hero=RADII_CHART,
+        cautions=[
+            "Take K_R from the averaged seat under a unit moment: a thrust beside it leans the "
+            "housing.",
+        ],
+        claim="does not hold" if misleads else "holds",
+    )
+
+
 def state_limits(
     page: Page,
     meshes: list[housing.Tilted],
@@ -225,11 +267,8 @@ def state_limits(
     finest, percent = meshes[-1], f"{100 * MISLEADS:g} %"
     above, ranges = [], []
     for p in NAMES:
-        of_seat, of_energy = (excess_of_nodes(meshes, p, kind)[-1] for kind in (SEAT, ENERGY))
-        above.append(
-            f"{100 * of_seat:.0f} % above the averaged seat's ({100 * of_energy:.0f} % above that "
-            f"by energy) in the {p} plane"
-        )
+        of_energy = excess_of_nodes(meshes, p, ENERGY)[-1]
+        above.append(f"{100 * of_energy:.0f} % in the {p} plane")
         everywhere = np.concatenate(
             [excess(finest, p, v) for v in (*chosen.turned.values(), *chosen.moved.values())]
         )
@@ -237,15 +276,15 @@ def state_limits(
             f"{100 * everywhere.min():.0f} to {100 * everywhere.max():.0f} % in the {p} plane"
         )
     safe_thrust = {kind: thrust_within(values) for kind, values in secant.items()}
+    answer(page, meshes, high, safe_thrust[SEAT])
     page.say(
-        f"The thesis's four nodes give a K_R that is {' and '.join(above)}, nearly the same on "
-        "every mesh: they do not see the compliance between the seat and their own place.",
+        "The four nodes do not see the compliance between the seat and their own place; they are "
+        f"above K_R by energy, too: by {' and '.join(above)}.",
         f"Over all places on bore and outside of the housing the excess is {', '.join(ranges)}; "
         f"below {percent} only up to a radius of "
         + " and ".join(f"{high[p]:.2f} m" for p in NAMES)
         + " (vertical, horizontal), inside the bearing's ring.",
-        f"A hub thrust of {safe_thrust[SEAT]:.2g} times the moment (per metre) already moves the "
-        f"secant of the seat by {percent}, for it leans the housing; unit loads keep the two "
+        "A hub thrust leans the housing, which a secant takes for tilt; unit loads keep the two "
         "apart.",
     )
     for p in NAMES:
@@ -286,8 +325,7 @@ def show_nodes(page: Page, finest: housing.Tilted, chosen: Choices, safe: float)
 
     page.section("Where the nodes are")
     page.chart(
-        "K_R by four nodes upright about the shaft, over that of the averaged seat: the further "
-        f"out, the stiffer; shaded where both planes are within {100 * MISLEADS:g} %",
+        RADII_CHART,
         [
             *(excess_of(f"{p}, {NODES}", chosen.radii, p, chosen.upright) for p in NAMES),
             *(

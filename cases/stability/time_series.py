@@ -10,6 +10,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.common import FORCES, Floats, InputError, scratch_folder
 from fe_drivetrain.comparison import fitted_exponent, statistics
 from fe_drivetrain.report import marked, trace
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.turbine_loads.hub_loads import UNITS, read_hub_loads
 
@@ -24,6 +25,10 @@ CUTS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 #: Safe is what keeps to this much of its value where nothing is near zero, or no outlier is there.
 KEPT = 1.25
 
+PERCENTAGES = (
+    "Mean percentage error and relative error over the mean of the load; shaded: the percentage "
+    f"within {100 * (KEPT - 1):.0f} % of what is expected"
+)
 EXPECTED = "E|d| / E|r| of normal samples"
 
 
@@ -289,17 +294,53 @@ def check_refusals(page: Page, wave: Floats, refused: list[Record]) -> None:
     )
 
 
+def answer(page: Page, found: Crossing, spoilt: Outlier) -> None:
+    """State where the thesis's percentage, and the root mean square, stop to be trustworthy."""
+    least, worst = found.means[-1], 100 * float(np.abs(found.relative_excess - 1).max())
+    figures = [
+        page.value(
+            f"mean percentage error over the expected one, mean of {least:g} standard deviations",
+            found.excess[-1],
+            beside=1.0,
+            by="theory",
+        ),
+        page.value("relative error: worst difference from the expected one [%]", worst),
+        page.value(
+            "largest change of the median error by one outlier [%]", 100 * spoilt.median_excess
+        ),
+    ]
+    ends = {
+        "least mean over standard deviation, mean percentage error": found.safe,
+        "largest outlier over standard deviation, root mean square error": spoilt.safe,
+    }
+    figures[:0] = [page.value(name, end) for name, end in ends.items() if end is not None]
+    page.answer(
+        "Which error measures may be trusted for loads that pass zero?",
+        "The thesis's mean percentage error may be trusted "
+        + (
+            f"only where the mean load exceeds {formatted(found.safe, 2)} standard deviations"
+            if found.safe is not None
+            else f"down to a mean load of {least:g} standard deviations"
+        )
+        + "; the relative error holds everywhere.",
+        figures,
+        hero=PERCENTAGES,
+        cautions=[
+            "The bound is that of normal samples and an error of constant size; about a mean of "
+            "zero the percentage depends on what is left out near zero."
+        ],
+    )
+
+
 def state_limits(page: Page, found: Crossing, spoilt: Outlier) -> None:
     """Answer and limits."""
     within = f"{100 * (KEPT - 1):.0f} %"
     least, last = found.means[-1], found.percent[-1]
+    answer(page, found, spoilt)
     page.say(
-        f"The thesis's mean percentage error is within {within} of mean |difference| over mean "
-        f"|reference| only where the reference's mean is {found.safe or float('nan'):.2g} standard "
-        f"deviations or more; at {least:g} it is {found.excess[-1]:.1f} times that, from "
+        f"At a mean of {least:g} standard deviations the mean percentage error is from "
         f"{last.min():.0f} to {last.max():.0f} % by chance alone, and at a mean of zero each "
-        f"decade less left out near zero adds {found.slope * np.log(10):.1f} %: it has no limit. "
-        "The relative error stays.",
+        f"decade less left out near zero adds {found.slope * np.log(10):.1f} %: it has no limit.",
         f"One sample of {SAMPLES:,} with an error of {spoilt.safe or float('nan'):.2g} standard "
         f"deviations spoils the RMSE by {within}; the median error does not change.",
     )
@@ -338,22 +379,8 @@ def show_crossing(page: Page, found: Crossing, theory: float) -> None:
         "error, mean |model - reference| over mean |reference|, counts every newton equally and "
         "needs no cut."
     )
+    show_percentages(page, found)
     means = found.means
-    page.chart(
-        f"Median of {found.cut.shape[1]} histories: normal samples about a mean, the model with "
-        f"an error of {100 * NOISE:g} % of their standard deviation; shaded is where the "
-        "percentage is safe",
-        [
-            marked("mean percentage error", means, np.median(found.percent, axis=1)),
-            trace("its largest of all histories", means, found.percent.max(axis=1)),
-            marked("relative error", means, np.median(found.relative, axis=1)),
-            trace("its largest of all histories ", means, found.relative.max(axis=1)),
-        ],
-        "mean of the reference over its standard deviation",
-        "error [%]",
-        "xy",
-        (found.safe, None),
-    )
     by_theory = found.cut.mean() - theory * (np.log(CUTS) - np.mean(np.log(CUTS)))
     page.chart(
         "At a mean of zero: the mean percentage error against the cut below which samples are left "
@@ -384,6 +411,28 @@ def show_crossing(page: Page, found: Crossing, theory: float) -> None:
             "largest over least of the histories",
             "relative error over expected",
         ],
+    )
+
+
+def show_percentages(page: Page, found: Crossing) -> None:
+    """Chart of both errors over the mean of the reference."""
+    page.text(
+        f"The curves are medians of {found.cut.shape[1]} histories: normal samples about a mean, "
+        f"the model with an error of {100 * NOISE:g} % of their standard deviation."
+    )
+    means = found.means
+    page.chart(
+        PERCENTAGES,
+        [
+            marked("mean percentage error", means, np.median(found.percent, axis=1)),
+            trace("its largest of all histories", means, found.percent.max(axis=1)),
+            marked("relative error", means, np.median(found.relative, axis=1)),
+            trace("its largest of all histories ", means, found.relative.max(axis=1)),
+        ],
+        "mean of the reference over its standard deviation",
+        "error [%]",
+        "xy",
+        (found.safe, None),
     )
 
 

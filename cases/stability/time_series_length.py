@@ -7,8 +7,10 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability import streamed_series as series
 from fe_drivetrain.common import Floats
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.comparison import moments
 from fe_drivetrain.report import marked, trace
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run, column
 
 #: Samples of the histories whose variance is taken, and how many of these.
@@ -30,6 +32,10 @@ SAFE = 1e-4
 
 MIB = 1024**2
 
+MEMORY = (
+    "Most memory beside the program's own over the samples, each in a process of its own; shaded: "
+    "a whole history below 2 GiB"
+)
 NAIVE, TWO_PASSES, MERGED = "sums of squares", "two passes", "merged chunks"
 
 
@@ -171,6 +177,34 @@ def check_chunks(page: Page, streamed: list[Record], differences: dict[str, floa
     )
 
 
+def answer(page: Page, errors: dict[str, Floats], longest: Record, each: float) -> None:
+    """State how long a history may be, and how far from zero; bytes that each sample takes."""
+    safe, merged = first_beyond(RATIOS, errors[NAIVE], SAFE), float(errors[MERGED].max())
+    seconds, memory, samples = longest["time [s]"], longest["memory [MiB]"], longest["samples"]
+    figures = [
+        page.value("memory beside the program's own, in chunks [MiB]", memory),
+        page.value("time, in chunks [s]", seconds),
+        page.value("samples that fit whole into 2 GiB", ALLOWED / each),
+        page.value("worst error of the variance, merged chunks", merged, at_most=SAFE),
+    ]
+    if safe is not None:
+        name = "largest mean over deviation, variance from sums of squares"
+        figures.append(page.value(name, safe))
+    page.answer(
+        "How long may a load history be, and how far from zero?",
+        f"In chunks {formatted(samples)} samples take {memory:.0f}\u00a0MiB; sums of squares lose "
+        "four digits beyond a mean of "
+        f"{formatted(rounded([safe or RATIOS[-1]], 2)[0], unit='')} deviations, chunks "
+        + ("never." if merged <= SAFE else "as well."),
+        figures,
+        hero=MEMORY,
+        cautions=[
+            "Times and memory are of this machine; a history that is compared whole takes "
+            f"{each:.0f}\u00a0bytes a sample."
+        ],
+    )
+
+
 def state_limits(
     page: Page, errors: dict[str, Floats], streamed: list[Record], different: float, each: float
 ) -> None:
@@ -178,14 +212,10 @@ def state_limits(
     lost, kept = errors[NAIVE], f"{errors[MERGED].max():.0e}"
     safe, longest, most = first_beyond(RATIOS, lost, SAFE), streamed[-1], ALLOWED / each
     seconds, memory = longest["time [s]"], longest["memory [MiB]"]
+    answer(page, errors, longest, each)
     page.say(
-        f"A history of {longest['samples']:,} samples is compared in {seconds:.1f} s and "
-        f"{memory:.0f} MiB beside the program's own memory; in memory a sample takes {each:.0f} "
-        f"bytes, so that 2 GiB end at {most:.1e} samples. Chunked and whole agree to "
-        f"{different:.0e}.",
-        f"The naive variance has four digits up to a mean of {safe or float('nan'):.1e} standard "
-        "deviations, and loses twice as many digits as the mean gains; merged chunks keep "
-        f"{kept} at {RATIOS[-1]:.0e}.",
+        f"Chunked and whole agree to {different:.0e}.",
+        "The variance from sums of squares loses twice as many digits as the mean gains.",
     )
     page.limit(
         "variance from sums and sums of squares, in one pass",
@@ -230,8 +260,7 @@ def show(
     page.section("Length")
     last = whole[-1]
     page.chart(
-        "Most memory beside the program's own, each in a process of its own; shaded is where a "
-        "whole history takes less than 2 GiB",
+        MEMORY,
         [
             *(
                 marked(rows[0]["way"], column(rows, "samples"), column(rows, "memory [MiB]"))

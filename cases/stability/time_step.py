@@ -26,12 +26,20 @@ from fe_drivetrain.dynamics import (
     wind_up,
 )
 from fe_drivetrain.report import marked
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Run
 
 FREQUENCY = 128.5  # Hz, of the third stage's mesh at 6 rpm
 STEPS = "steps in a period of the mesh"
 OVER = "step over the shortest period"
 ENOUGH = 0.05
+SLOPE = "average acceleration: error of a mesh force over the steps in its period, exponent"
+STABLE = "linear acceleration: longest stable step over the period"
+GROWN = "growth in a step of linear acceleration, longest step tried"
+ERRORS = (
+    "Largest error of the mesh force, of its swing, over the steps in a mesh period; shaded: "
+    f"within {100 * ENOUGH:g} %"
+)
 #: 0.551 of the period: sqrt(3) / pi.
 CRITICAL = float(np.sqrt(3.0) / np.pi)
 DURATION, QUICK_DURATION = 0.5, 0.1
@@ -47,12 +55,29 @@ def run(run: Run, page: Page) -> None:
         enough = accuracy(page, QUICK_DURATION if run.quick else DURATION)
     with run.step("stability"):
         stability(page)
-    page.say(
-        f"Forces of a mesh whose stiffness has a single harmonic need some {enough:.0f} steps in "
-        f"its period for {100 * ENOUGH:g} %; each harmonic that counts needs as many in "
-        "its own.",
-        f"Linear acceleration blows up above {CRITICAL:.3f} of the shortest period of the whole "
-        "drivetrain; average acceleration and generalised alpha never do.",
+    answer(page, enough)
+    page.say("Each harmonic of the stiffness that counts needs as many steps in its own period.")
+
+
+def answer(page: Page, enough: float) -> None:
+    """State how many steps a mesh period needs, and where linear acceleration is unstable."""
+    stable = all(one.passed for one in page.checks if "largest growth" in one.quantity)
+    page.answer(
+        "How short must the time steps of a drivetrain with a varying mesh be?",
+        f"A varying mesh needs {enough:.0f} steps in its period for {100 * ENOUGH:g}\u00a0% of its "
+        f"force's swing; linear acceleration blows up beyond {formatted(CRITICAL, 3)} periods, "
+        + ("the default never." if stable else "the default as well."),
+        [
+            page.value(f"least steps in a mesh period for {100 * ENOUGH:g} %", enough),
+            page.judged(SLOPE, "exponent of the steps in the error", "second order"),
+            page.judged(STABLE, "longest stable step over the period", "Bathe"),
+            page.judged(GROWN, "growth in the longest step, linear acceleration"),
+        ],
+        hero=ERRORS,
+        cautions=[
+            "One harmonic of the mesh's stiffness; the period that limits linear acceleration is "
+            "the shortest of the whole drivetrain."
+        ],
     )
 
 
@@ -92,7 +117,7 @@ def accuracy(page: Page, duration: float) -> float:
 def judge_accuracy(page: Page, counts: Ints, found: Mapping[str, Floats]) -> float:
     """Check the order of the errors, show them; return the minimum number of steps."""
     page.exponent(
-        "average acceleration: error of a mesh force over the steps in its period, exponent",
+        SLOPE,
         counts,
         found[AVERAGE.name],
         -2.0,
@@ -115,7 +140,7 @@ def judge_accuracy(page: Page, counts: Ints, found: Mapping[str, Floats]) -> flo
     )
     page.section("Steps in a period of the mesh")
     page.chart(
-        "Largest error of the mesh force over its swing; shaded: enough",
+        ERRORS,
         [marked(name, counts, error) for name, error in found.items()],
         STEPS,
         "error",
@@ -142,7 +167,7 @@ def stability(page: Page) -> None:
     stable = growth[LINEAR.name] < 1.01
     last = float(steps[stable].max())
     page.between(
-        "linear acceleration: longest stable step over the period",
+        STABLE,
         last,
         0.97 * CRITICAL,
         CRITICAL,
@@ -158,6 +183,7 @@ def stability(page: Page) -> None:
             source="unconditionally stable",
             measure="identity",
         )
+    page.found(GROWN, float(growth[LINEAR.name].max()))
     page.limit(
         "linear acceleration",
         OVER,

@@ -25,6 +25,7 @@ from fe_drivetrain.report.suite import Page, Run, check_in_time
 #: Variation of the stiffness, damping ratio, half backlash over the static deflection.
 VARIATION, RATIO, HALF = 0.2, 0.03, 2.0
 STEPS, PERIODS, SETTLE = 96, 10, 70
+LARGEST = "Largest force of the mesh over its frequency; shaded: teeth always in contact"
 OVER = "mesh frequency over the natural frequency"
 EXTRA = HALF + 1.0
 """Deflection under the mean load, of 1, from the middle of the backlash."""
@@ -67,7 +68,6 @@ def run(run: Run, page: Page) -> None:
     check_steps(page)
     up, down, linear = found.up, found.down, found.linear
     pulls = linear[:, 0] < 0.0
-    jump = float(np.abs(up[:, 1] - down[:, 1]).max())
     low, high = float(at[pulls].min()), float(at[pulls].max())
     parted = at[(np.minimum(up[:, 0], down[:, 0]) < 1e-6) | pulls]
     past = float(parted.min())
@@ -84,14 +84,44 @@ def run(run: Run, page: Page) -> None:
         program="has a dead zone with both flanks (backlash), met by Newton's method in each step",
         remedy="give the backlash; start from both sides: motion may depend on where it comes from",
     )
+    answer(page, found, (low, high, past, safe))
     page.say(
-        f"With a stiffness that varies by {100 * VARIATION:.0f} % and {100 * RATIO:.0f} % of "
-        f"critical damping teeth part from {low:.2f} to {high:.2f} of the natural frequency, and "
-        f"stay parted down to {past:.2f} if they come from above; a spring that pulls is wrong.",
-        f"Parting softens the mesh: sweeps up and down differ by up to {jump:.2f} of the mean "
-        "force, where the motion depends on its past.",
+        f"The stiffness varies by {100 * VARIATION:.0f} %, with {100 * RATIO:.0f} % of critical "
+        "damping. Parting softens the mesh: where sweeps up and down differ, the motion depends on "
+        "its past.",
     )
     show(page, found, safe)
+
+
+def answer(page: Page, found: Sweeps, at: tuple[float, float, float, float]) -> None:
+    """State where teeth part (from, to, down to, and never from), and what a spring makes of it."""
+    low, high, past, safe = at
+    up, down, linear = found.up, found.down, found.linear
+    parting = float(max(up[:, 1].max(), down[:, 1].max()))
+    page.answer(
+        "Where do the teeth of a mesh part, and what does a model without backlash miss?",
+        f"Teeth part from {low:.2f} ({past:.2f} coming down) to {high:.2f} of the natural "
+        f"frequency; without backlash a mesh peaks at {linear[:, 1].max():.2f} mean forces, not "
+        f"{parting:.2f}.",
+        [
+            page.value("mesh over natural frequency from which teeth part", low),
+            page.value("the same, coming from higher frequencies", past),
+            page.value("mesh over natural frequency from which teeth stay in contact", safe),
+            page.value("peak force over the mean, with backlash", parting),
+            page.value(
+                "peak force over the mean, spring that pulls",
+                linear[:, 1].max(),
+                beside=parting,
+                by="backlash",
+            ),
+            page.value("largest pull over the mean force, spring that pulls", -linear[:, 0].min()),
+        ],
+        hero=LARGEST,
+        cautions=[
+            "Between contact and parting the motion depends on where it comes from: start from "
+            "both sides."
+        ],
+    )
 
 
 def check_contact(page: Page, found: Sweeps) -> None:
@@ -131,8 +161,8 @@ def show(page: Page, found: Sweeps, safe: float) -> None:
     at, up, down, linear = found.at, found.up, found.down, found.linear
     page.section("Sweeps")
     for caption, y, k in (
-        ("Largest force over the mean", "largest force over the mean", 1),
-        ("Least force over the mean: 0 where teeth part", "least force over the mean", 0),
+        (LARGEST, "largest force over the mean", 1),
+        ("Least force of the mesh: 0 where teeth part", "least force over the mean", 0),
     ):
         traces = [
             marked("with backlash, up", at, up[:, k]),

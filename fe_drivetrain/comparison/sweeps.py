@@ -149,4 +149,4 @@ def fitted_exponent(
 
 def in_words(value: float | None) -> str:
     """A bound of a safe range, or that there is none."""
-    return "no bound" if value is None else f"{value:.2g}"
+    return "no bound" if value is None else f"{float(f'{value:.2g}'):g}"

@@ -16,6 +16,7 @@ MINIMUM = 1e-8
 """Relative errors that are smaller are drawn here: a logarithmic axis has no zero."""
 
 _NOTHING = 1e-9  # share of the diagonal: round-off, of what symmetry makes zero
+_CHOSEN = {"mode": "markers+text", "text": ["chosen"], "textposition": "bottom right"}
 _READABLE = 6  # rows of a matrix whose cells have room for a number
 
 
@@ -188,12 +189,36 @@ def _written(stiffness: Floats, coupling: Floats) -> list[list[str]]:
     ]
 
 
+def error_range(errors: Sequence[float], tolerance: float, band: float = 0.0) -> list[float]:
+    """Ends of a logarithmic axis of errors in percent: all points, and bars but for those to zero.
+
+    Parameters
+    ----------
+    errors : sequence of float
+        Relative errors; what is not known is left out.
+    tolerance : float
+        Allowed relative error.
+    band : float
+        Half width of the largest uncertainty of an error, relative as that.
+
+    Returns
+    -------
+    list of float
+        Powers of ten of both ends.
+    """
+    known = [max(error, MINIMUM) for error in errors if np.isfinite(error)]
+    high = max([*known, tolerance]) + (band if np.isfinite(band) else 0.0)
+    ends = 100.0 * np.array([0.3 * min([*known, tolerance]), 2.0 * high])
+    return [float(power) for power in np.log10(ends)]
+
+
 def error_traces(
     names: Sequence[str],
     seconds: Sequence[float],
     errors: Sequence[float],
     tolerance: float,
     chosen: int | None = None,
+    bands: Sequence[float] | None = None,
 ) -> list[dict[str, Any]]:
     """Traces of `error_against_time`, for a figure of one's own; the arguments are its.
 
@@ -211,6 +236,8 @@ def error_traces(
             "x": rounded([seconds[k]]),
             "y": rounded([100.0 * max(errors[k], MINIMUM)]),
             "marker": {"size": 14 if k == chosen else 9},
+            **(_CHOSEN if k == chosen else {}),
+            **({} if bands is None else _bars(errors[k], bands[k])),
         }
         for k in known
     ]
@@ -230,6 +257,7 @@ def error_against_time(
     tolerance: float,
     chosen: int | None = None,
     title: str = "",
+    bands: Sequence[float] | None = None,
 ) -> Any:
     """Plot the error of models against their time, the error relative to the best of them.
 
@@ -245,21 +273,32 @@ def error_against_time(
     tolerance : float
         Allowed relative error.
     chosen : int, optional
-        Index of the model that is good enough, drawn larger.
+        Index of the model that is good enough, drawn larger, with that word.
     title : str
         Title: the quantity that the error is of.
+    bands : sequence of float, optional
+        Half width of the uncertainty of each error, relative as that; drawn as bars.
 
     Returns
     -------
     plotly.graph_objects.Figure
         Figure with both axes logarithmic, the tolerance as a line.
     """
-    traces = error_traces(names, seconds, errors, tolerance, chosen)
+    traces = error_traces(names, seconds, errors, tolerance, chosen, bands)
     axes = {
         "xaxis": {"title": {"text": "time [s]"}, "type": "log"},
         "yaxis": {"title": {"text": "error [%]"}, "type": "log"},
     }
     return figure(traces, {**_titled(title), **axes})
+
+
+def _bars(error: float, band: float) -> dict[str, Any]:
+    """The band of an error; a logarithmic axis has no zero, so down to the least that is drawn."""
+    if not np.isfinite(band) or band <= 0.0:
+        return {}
+    at = max(error, MINIMUM)
+    ends = {"array": [100.0 * band], "arrayminus": [100.0 * min(band, at - MINIMUM)]}
+    return {"error_y": {"type": "data", "symmetric": False, **ends, "thickness": 1.5}}
 
 
 def _titled(title: str) -> dict[str, Any]:

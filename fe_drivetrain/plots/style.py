@@ -193,9 +193,14 @@ def _coloured(traces: list[dict[str, Any]]) -> list[dict[str, Any]]:
     left = iter([colour for colour in PALETTE if colour not in taken])
     again = cycle([(colour, dash) for dash in _DASHES[1:] for colour in PALETTE])
     found = []
+    looks_of: dict[object, dict[str, Any]] = {}
     for trace in traces:
         if not any(trace is other for other in plain):
             found.append(trace)
+            continue
+        if trace.get("showlegend") is False and trace.get("name") in looks_of:
+            # the same curve in another panel
+            found.append({**trace, **looks_of[trace.get("name")]})
             continue
         dash = None
         colour = chosen.get(id(trace)) or next(left, "")
@@ -205,6 +210,7 @@ def _coloured(traces: list[dict[str, Any]]) -> list[dict[str, Any]]:
         if trace.get("type") != "bar":
             looks["line"] = {"color": colour, **({"dash": dash} if dash else {})}
             looks["line"] |= trace.get("line", {})
+        looks_of[trace.get("name")] = looks
         found.append({**trace, **looks})
     return found
 

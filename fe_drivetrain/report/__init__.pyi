@@ -2,7 +2,9 @@ from .charts import bars as bars
 from .charts import chart as chart
 from .charts import crosses as crosses
 from .charts import density_chart as density_chart
+from .charts import error_bars as error_bars
 from .charts import heat_map as heat_map
+from .charts import mark_events as mark_events
 from .charts import marked as marked
 from .charts import trace as trace
 from .environment import environment as environment
@@ -41,6 +43,8 @@ from .results import Verdict as Verdict
 from .results import judge as judge
 from .results import read_results as read_results
 from .results import results_below as results_below
+from .results import verdict_sentence as verdict_sentence
+from .roller_chart import roller_chart as roller_chart
 from .solid_view import Parts as Parts
 from .solid_view import deformed_shape as deformed_shape
 from .solid_view import model_pictures as model_pictures

@@ -8,12 +8,13 @@ from typing import Any
 from markupsafe import Markup
 
 from fe_drivetrain.plots.style import is_number, styled
-from fe_drivetrain.report.results import Chart
+from fe_drivetrain.report.results import Chart, Image, Solid
 
 
-def chart_height(item: Chart) -> int:
-    """Pixels, so that the page does not jump when the chart appears."""
-    height = item.figure.get("layout", {}).get("height")
+def chart_height(item: Chart | Image | Solid) -> int:
+    """Pixels, so that the page does not jump when the chart appears; of a picture 460, unused."""
+    figure = item.figure if isinstance(item, Chart) else {}
+    height = figure.get("layout", {}).get("height")
     return int(height) if is_number(height) and 100 <= height <= 4000 else 460
 
 

@@ -1,13 +1,14 @@
 """Charts of lines, bars and colours, as Plotly's JSON."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats, rounded
 from fe_drivetrain.common.components import MOTIONS
+from fe_drivetrain.report.chart_parts import ChartParts, add_parts, draw_events
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.results import Chart
 
@@ -29,6 +30,28 @@ def marked(name: str, x: ArrayLike, y: ArrayLike) -> Any:
     return trace(name, x, y, mode="lines+markers")
 
 
+def error_bars(axis: str, least: ArrayLike, at: ArrayLike, most: ArrayLike) -> dict[str, Any]:
+    """What `trace` takes to show how far each point may lie to either side.
+
+    Parameters
+    ----------
+    axis : str
+        Along which the points spread: "x" or "y".
+    least, at, most : array_like
+        (n,) ends of the spread, and where the points are.
+    """
+    low, middle, high = (np.ravel(np.asarray(v, dtype=float)) for v in (least, at, most))
+    spread = {
+        "type": "data",
+        "symmetric": False,
+        "array": rounded(np.maximum(high - middle, 0.0)),
+        "arrayminus": rounded(np.maximum(middle - low, 0.0)),
+        "thickness": 1.5,
+        "width": 4,
+    }
+    return {f"error_{axis}": spread}
+
+
 def crosses(name: str, x: ArrayLike, y: ArrayLike | None = None) -> Any:
     """Points without an answer, at 1 where there is not even a wrong one."""
     at = np.asarray(x, dtype=float)
@@ -43,6 +66,7 @@ def chart(
     y: str,
     logarithmic: Iterable[str] = (),
     safe: tuple[float | None, float | None] | None = None,
+    **parts: Unpack[ChartParts],
 ) -> Chart:
     """A chart of traces.
 
@@ -58,6 +82,8 @@ def chart(
         "x", "y" or both.
     safe : tuple[float or None, float or None] or None
         Range of x that is shaded as safe; None for an end without a bound.
+    **parts : object
+        Events, differences below, and ranges of the axes; see `ChartParts`.
     """
     axes: dict[str, Any] = {
         "xaxis": {"title": {"text": x}},
@@ -69,7 +95,9 @@ def chart(
         axes[f"{axis}axis"]["exponentformat"] = "power"
     if safe is not None:
         axes["shapes"] = [_shaded(traces, safe)]
-    return Chart(caption=caption, figure={"data": list(traces), "layout": axes})
+    figure = {"data": list(traces), "layout": axes}
+    add_parts(figure, parts)
+    return Chart(caption=caption, figure=figure)
 
 
 def instead_of_chart(caption: str, traces: Sequence[Any], x: str, y: str) -> str:
@@ -81,6 +109,21 @@ def instead_of_chart(caption: str, traces: Sequence[Any], x: str, y: str) -> str
         return f"{caption}: there is nothing to show in this run."
     at, value = (formatted(v, 4) for v in points[0])
     return f"{caption}: {y} {value} at {x} {at}, the only point of this run."
+
+
+def mark_events(item: Chart, events: Mapping[str, float]) -> Chart:
+    """A chart with a named vertical line at each event.
+
+    Parameters
+    ----------
+    item : Chart
+        To which they are added.
+    events : dict of str to float
+        What happens, and where on the horizontal axis.
+    """
+    layout = dict(item.figure["layout"])
+    draw_events(layout, events)
+    return item.model_copy(update={"figure": {**item.figure, "layout": layout}})
 
 
 def density_chart(
@@ -193,6 +236,7 @@ def bars(
     x: str,
     least: float | None = None,
     stacked: bool = False,
+    ends: Mapping[str, Mapping[str, tuple[float, float]]] | None = None,
 ) -> Chart:
     """Horizontal bars, labels down the side in their order.
 
@@ -208,6 +252,8 @@ def bars(
         The axis is logarithmic, and this stands for all that is smaller.
     stacked : bool
         Bars of one label stand on one another, not side by side.
+    ends : dict or None
+        Least and most of values, by colour and label: how far they spread.
     """
     data = [
         {
@@ -216,6 +262,7 @@ def bars(
             "name": name,
             "y": list(values),
             "x": rounded([v if least is None else max(v, least) for v in values.values()]),
+            **_spread(values, (ends or {}).get(name, {})),
         }
         for name, values in groups.items()
     ]
@@ -228,6 +275,15 @@ def bars(
         "yaxis": {"autorange": "reversed", "automargin": True},
     }
     return figure
+
+
+def _spread(values: Mapping[str, float], ends: Mapping[str, tuple[float, float]]) -> dict[str, Any]:
+    """Error bars of horizontal bars; none where nothing is said to spread."""
+    if not ends:
+        return {}
+    pairs = [ends.get(label, (value, value)) for label, value in values.items()]
+    low, high = zip(*pairs, strict=True)
+    return error_bars("x", low, list(values.values()), high)
 
 
 def _places(values: ArrayLike | Sequence[str]) -> list[Any]:

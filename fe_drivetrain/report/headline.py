@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
+from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import (
     error_text,
     expected_text,
@@ -14,12 +13,42 @@ from fe_drivetrain.report.number_text import (
 from fe_drivetrain.report.results import Figure, Results, Verdict
 
 
-def headline(results: Results) -> Figure | Verdict | None:
-    """The value that answers what was asked.
+def values_found(results: Results) -> list[Figure | Verdict]:
+    """All values of results in the order of their page: key figures, other values, checks.
 
-    It is the first of the case's answers; or else the check that the case names, the first value
-    with a band against an independent reference, the first without a band, the first number, or
-    the first check of all.
+    Parameters
+    ----------
+    results : Results
+        Of a case or command.
+
+    Returns
+    -------
+    list of Figure or Verdict
+        A key figure that is a check or value of the results is that one, and stands once. Of a file
+        of an older program its values stand first, and before them the check that it names.
+    """
+    every: list[Figure | Verdict] = [*results.answers, *results.verdicts]
+    first: list[Figure | Verdict] = []
+    if results.answer is not None:
+        first = [_record_of(figure, every) for figure in results.answer.figures]
+    else:
+        named = (one for one in results.verdicts if one.quantity == results.headline)
+        numbers = (one for one in every if isinstance(one, Figure) or one.check != "holds")
+        first = [*named, *numbers][:1]
+    return [*first, *(one for one in every if not any(one is other for other in first))]
+
+
+def _record_of(figure: KeyFigure, every: list[Figure | Verdict]) -> Figure | Verdict:
+    """The check or value that a key figure is, in its own unit, or a value of its own."""
+    same = [one for one in every if figure.quantity and one.quantity == figure.quantity]
+    same = [one for one in same if one.unit == figure.unit] or same
+    if same:
+        return same[0]
+    return Figure(quantity=figure.name, unit=figure.unit, computed=figure.value, band=figure.band)
+
+
+def headline(results: Results) -> Figure | Verdict | None:
+    """The value that answers what was asked: the first of all; None of a case without any.
 
     Parameters
     ----------
@@ -29,29 +58,8 @@ def headline(results: Results) -> Figure | Verdict | None:
     Returns
     -------
     found : Figure, Verdict or None
-        None of a case without either.
     """
-    if results.answer is not None and results.answer.figures:
-        first = results.answer.figures[0]
-        every: list[Figure | Verdict] = [*results.answers, *results.verdicts]
-        same = (one for one in every if one.quantity == first.quantity and one.unit == first.unit)
-        alone = Figure(quantity=first.name, unit=first.unit, computed=first.value, band=first.band)
-        return next(same, alone)
-    if results.answers:
-        return results.answers[0]
-
-    def is_value(verdict: Verdict) -> bool:
-        is_equal = verdict.check == "equals" and verdict.reference != 0.0
-        return is_equal and verdict.basis == "independent" and verdict.measure != "identity"
-
-    ways: tuple[Callable[[Verdict], bool], ...] = (
-        lambda verdict: verdict.quantity == results.headline,
-        lambda verdict: is_value(verdict) and verdict.band is not None,
-        is_value,
-        lambda verdict: verdict.check != "holds",
-        lambda verdict: True,
-    )
-    return next((v for is_answer in ways for v in results.verdicts if is_answer(v)), None)
+    return next(iter(values_found(results)), None)
 
 
 def answer_sentence(verdict: Figure | Verdict) -> str:

@@ -1,7 +1,7 @@
 """The history of a folder of reports: every run with its checks, in one SQLite file.
 
 The file is read with any SQLite, too: table ``runs`` has a row for each run of a case, ``checks``
-one for each of its answers and checks, in the order of the page.
+one for each of its key figures, other values and checks, in the order of the page.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from typing import Any, NamedTuple
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import file_to_write
-from fe_drivetrain.report.headline import headline
-from fe_drivetrain.report.results import Environment, Figure, Results, Verdict
+from fe_drivetrain.report.headline import values_found
+from fe_drivetrain.report.results import Environment, Figure, Results, Verdict, verdict_sentence
 
 FILE = "history.sqlite"
 """Its name, beside the pages that share it."""
@@ -35,7 +35,9 @@ CREATE TABLE IF NOT EXISTS runs (
     headline INTEGER,
     checks INTEGER NOT NULL,
     failed INTEGER NOT NULL,
-    seconds REAL NOT NULL
+    seconds REAL NOT NULL,
+    verdict TEXT NOT NULL DEFAULT '',
+    status TEXT NOT NULL DEFAULT ''
 );
 CREATE TABLE IF NOT EXISTS checks (
     run INTEGER NOT NULL REFERENCES runs,
@@ -50,6 +52,9 @@ CREATE TABLE IF NOT EXISTS checks (
 ) WITHOUT ROWID;
 CREATE INDEX IF NOT EXISTS runs_of_a_case ON runs (name, quick, settings);
 """
+
+_ADDED = ("verdict", "status")
+"""Columns of runs, with words, that files of older programs do not have."""
 
 
 class Point(NamedTuple):
@@ -103,6 +108,8 @@ class PastRun(NamedTuple):
         Its value, and half width of the numerical uncertainty.
     allowed : float
         As in `Point`.
+    verdict, status : str
+        Of the answer; empty of a run without one.
     """
 
     date: str
@@ -119,6 +126,8 @@ class PastRun(NamedTuple):
     computed: float | None
     band: float | None
     allowed: float
+    verdict: str = ""
+    status: str = ""
 
 
 def check_history(folder: Path) -> None:
@@ -191,14 +200,11 @@ def record_run(folder: Path, results: Results) -> None:
     InputError
         As in `check_history`.
     """
-    environment, answer = results.environment, headline(results)
-    found: list[Figure | Verdict] = [*results.answers, *results.verdicts]
-    if answer is not None and answer not in found:
-        found.append(answer)  # a key figure that is neither a value nor a check
+    environment, found = results.environment, values_found(results)
     with _opened(folder) as database:
         cursor = database.execute(
             "INSERT INTO runs (date, name, code, version, quick, settings, headline, checks, "
-            "failed, seconds) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+            "failed, seconds, verdict, status) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
             (
                 environment.date,
                 results.case,
@@ -206,10 +212,12 @@ def record_run(folder: Path, results: Results) -> None:
                 environment.versions.get("fe-drivetrain", ""),
                 environment.quick,
                 _settings(environment),
-                None if answer is None else found.index(answer),
+                0 if found else None,
                 len(results.verdicts),
                 sum(not verdict.passed for verdict in results.verdicts),
                 sum(results.times.values()),
+                verdict_sentence(results),
+                results.answer.status if results.answer else "",
             ),
         )
         database.executemany(
@@ -303,7 +311,8 @@ def past_runs(folder: Path, name: str = "") -> list[PastRun]:
     with _opened(folder) as database:
         rows = database.execute(
             "SELECT date, name, code, version, quick, settings, runs.checks, failed, seconds, "
-            "coalesce(quantity, ''), coalesce(unit, ''), computed, band, coalesce(allowed, 0.0) "
+            "coalesce(quantity, ''), coalesce(unit, ''), computed, band, coalesce(allowed, 0.0), "
+            "verdict, status "
             "FROM runs LEFT JOIN checks ON checks.run = runs.run AND checks.place = runs.headline "
             "WHERE ? IN ('', name) ORDER BY runs.run",
             (name,),
@@ -343,6 +352,7 @@ def _opened(folder: Path) -> Iterator[sqlite3.Connection]:
         with closing(sqlite3.connect(file, timeout=_WAIT)) as database, database:
             _refuse_of_others(file, database)
             database.executescript(_TABLES)
+            _add_columns(database)
             yield database
     except sqlite3.DatabaseError as error:
         # the extended codes of SQLite have the kind in their last byte
@@ -355,6 +365,21 @@ def _opened(folder: Path) -> Iterator[sqlite3.Connection]:
             f"{file} cannot be used as history of the runs ({error}): move it away, and the next "
             "run begins another"
         ) from error
+
+
+def _add_columns(database: sqlite3.Connection) -> None:
+    """Give a file of an older program the columns that it does not have."""
+
+    def missing() -> list[str]:
+        known = {row[1] for row in database.execute("PRAGMA table_info(runs)")}
+        return [name for name in _ADDED if name not in known]
+
+    if not missing():
+        return
+    database.execute("BEGIN IMMEDIATE")  # another run may be at the same
+    for name in missing():
+        database.execute(f"ALTER TABLE runs ADD COLUMN {name} TEXT NOT NULL DEFAULT ''")
+    database.execute("COMMIT")
 
 
 def _refuse_of_others(file: Path, database: sqlite3.Connection) -> None:

@@ -42,9 +42,18 @@ WORDS = {
     "planned": "planned",
     "skipped": "skipped",
     "unsettled": "open",
+    "refuted": "refuted",
+    "in part": "in part",
+    "beyond": "beyond",
+    "near": "near",
     "pass": "pass",
 }
-"""Verdicts of cases, worst first, as the page prints them."""
+"""Verdicts of cases, worst first, as the page prints them. After "open" all checks pass, but a
+statement of the source does not hold, or not wholly, or a key figure is beyond a limit or near."""
+
+_PASSING = ("refuted", "in part", "beyond", "near", "pass")
+_KEY_FIGURES = 3  # of a case, in its row
+_OPEN = ("not run", "running", "planned")
 
 PROBLEMS = "problems.json"
 """Beside the pages: why cases have no results, for who writes the pages next."""
@@ -171,14 +180,38 @@ def _write_list(
         missing=sorted(missing),
         words=WORDS,
         states={state: states[state] for state in WORDS if states[state]},
-        groups=Counter(sorted(row.group for row in rows)),
+        groups=_by_group(rows),
         quick=sum(row.quick for row in rows),
-        unfinished=sum(states[state] for state in ("not run", "running", "planned")),
+        unfinished=sum(states[state] for state in _OPEN),
+        passed=sum(states[state] for state in _PASSING),
+        standing=_standing_of_all(states),
         total=len(rows) - states["skipped"],
         verdicts=verdicts,
         statistics=bias_and_scatter(verdicts),
         has_atlas=has_atlas,
+        most_figures=_KEY_FIGURES,
     )
+
+
+def _by_group(rows: Iterable[Row]) -> dict[str, Counter[str]]:
+    """How many cases of each group are in each state, worst first."""
+    rows = list(rows)
+    groups = {name: Counter[str]() for name in sorted({row.group for row in rows})}
+    for state in WORDS:
+        for row in rows:
+            if row.state == state:
+                groups[row.group][state] += 1
+    return groups
+
+
+def _standing_of_all(states: Mapping[str, int]) -> str:
+    """The colour of all cases together: that a run goes on is no failure."""
+    found = {state for state in states if states[state]}
+    if found & {"fail", "failed", "not run"}:
+        return "fail"
+    if found & {"running", "planned"}:
+        return "running"
+    return "pass" if found <= {"pass", "skipped"} else "unsettled"
 
 
 def problems_before(folder: Path) -> dict[str, Problem]:
@@ -226,11 +259,24 @@ def _rows(folder: Path, problems: Mapping[str, Problem]) -> Sequence[Row]:
             rows.append(Row(name, "failed", problem=problem))
             continue
         worst = max(results.verdicts, key=share_of_tolerance, default=None)
-        state = "pass" if results.settled else "unsettled" if results.passed else "fail"
+        state = _state(results)
         answer = headline(results)
         points = points_over_runs(folder, results, answer) if answer else []
         rows.append(Row(name, state, "", results, worst, answer, points, checks))
     return rows
+
+
+def _state(results: Results) -> str:
+    """Key of `WORDS` of results."""
+    if not results.passed:
+        return "fail"
+    if results.unsettled:
+        return "unsettled"
+    if results.answer is None:
+        return "pass"
+    claims = {"does not hold": "refuted", "holds in part": "in part"}
+    statuses = {"bad": "beyond", "watch": "near"}
+    return claims.get(results.answer.claim) or statuses.get(results.answer.status, "pass")
 
 
 @lru_cache(maxsize=1024)

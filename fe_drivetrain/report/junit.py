@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path, check_writable
-from fe_drivetrain.report.results import expectation
+from fe_drivetrain.report.results import expectation, verdict_sentence
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.results import Problem, Results
@@ -48,6 +48,18 @@ def _is_ours(path: Path) -> bool:
         return False
 
 
+def _properties(results: Results) -> dict[str, str]:
+    """What is to be known of results beside their checks."""
+    said = {"quick": "true"} if results.environment.quick else {}
+    if results.answer is not None:
+        said |= {
+            "question": results.answer.question,
+            "verdict": verdict_sentence(results),
+            "status": results.answer.status,
+        }
+    return said
+
+
 def write_junit(
     path: Path,
     names: Sequence[str],
@@ -56,7 +68,8 @@ def write_junit(
 ) -> None:
     """Write a test suite for each case, and in it a test for each verdict.
 
-    A suite of a quick run has the property "quick".
+    A suite of a quick run has the property "quick", one with an answer its question, verdict and
+    status.
 
     Parameters
     ----------
@@ -77,9 +90,11 @@ def write_junit(
             outcome = "skipped" if problem.state == "skipped" else "error"
             ElementTree.SubElement(test, outcome, message=problem.message)
         else:
-            if found.environment.quick:
+            said = _properties(found)
+            if said:
                 properties = ElementTree.SubElement(suite, "properties")
-                ElementTree.SubElement(properties, "property", name="quick", value="true")
+            for key, value in said.items():
+                ElementTree.SubElement(properties, "property", name=key, value=value)
             suite.set("time", f"{sum(found.times.values()):.3f}")
             for verdict in found.verdicts:
                 test = ElementTree.SubElement(

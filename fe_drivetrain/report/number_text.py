@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 
 from fe_drivetrain.common.typeset import MINUS, THIN_SPACE, superscript
-from fe_drivetrain.report.answer import KeyFigure
+from fe_drivetrain.report.answer import Answer, KeyFigure, Status
 from fe_drivetrain.report.results import Figure, Limit, Verdict
 
-DIGITS = 5
-"""Significant digits of a number on the page; results.json keeps all of them."""
+DIGITS = 4
+"""Significant digits of a number without a band; results.json keeps all of them."""
 
-_DIGITS_WITHOUT_BAND = 4
 _MAX_DIGITS = 7  # of a value with a band
+_PRINTED_DIGITS = 7  # of a number that somebody has given; what was computed has more
+_ROUND_OFF = 1e-13  # of one that was converted to another unit
+_COMPARED_DIGITS = 6  # at most, of a value without a band beside a reference that has as many
 
 
 def formatted(
@@ -20,8 +22,9 @@ def formatted(
 ) -> str:
     """A value as an engineer reads it.
 
-    Numbers have at most `digits` significant digits and thin spaces between thousands; very
-    large and very small ones a power of ten. It is a multiple of three, as units have prefixes,
+    Numbers have at most `digits` significant digits and thin spaces between thousands; whole ones
+    are given or counted, and have all of theirs. Very large and very small ones have a power of
+    ten. It is a multiple of three, as units have prefixes,
     but for percentages and pure numbers (`unit` "%", "" or "-").
     """
     if value is None:
@@ -41,7 +44,8 @@ def formatted(
     exponent = int(exponent_text)
     power = _shown_power(exponent, unit)
     decimals = max(digits - 1 - exponent + power, 0)
-    shown = float(rounded) * 10 ** (exponent - power) if power else value
+    exact = not power and float(value).is_integer()
+    shown = value if exact else float(f"{rounded}e{exponent - power}")
     number = f"{shown:,.{decimals}f}"
     if decimals:
         number = number.rstrip("0").rstrip(".")
@@ -104,7 +108,7 @@ def value_text(
 def _digits_of(value: float, unit: str, band: float | None, with_band: bool) -> str:
     """The number of `value_text`, without its unit."""
     if not band or not math.isfinite(value) or not math.isfinite(band):
-        return formatted(value, _DIGITS_WITHOUT_BAND, unit)
+        return formatted(value, unit=unit)
     if abs(value) < band:
         around = f" ± {formatted(band, 2, unit)}" if with_band else ""
         return f"~0{around}"
@@ -145,6 +149,9 @@ def value_with_band(found: Figure | Verdict | KeyFigure) -> str:
     if isinstance(found, KeyFigure):
         if found.bound == "holds":
             return "yes" if found.value == 1.0 else "no"
+        if not found.band and found.bound in ("equals", "beside") and found.limit is not None:
+            digits = _digits_beside(found.printed or given_text(found.limit, found.unit))
+            return with_unit(formatted(found.value, digits, found.unit), found.unit)
         return value_text(found.value, found.unit, found.band)
     if isinstance(found, Verdict) and found.check == "holds":
         return "yes" if found.computed == 1.0 else "no"
@@ -224,12 +231,81 @@ def limit_text(figure: KeyFigure) -> str:
     """
     if not figure.bound or figure.bound == "holds":
         return f"({figure.by})" if figure.by else ""
-    low = figure.printed or formatted(figure.limit, _DIGITS_WITHOUT_BAND, figure.unit)
+    low = figure.printed or given_text(figure.limit, figure.unit)
     if figure.bound == "between":
-        low = f"{low} to {formatted(figure.upper, _DIGITS_WITHOUT_BAND, figure.unit)}"
+        low = f"{low} to {given_text(figure.upper, figure.unit)}"
     words = {"at most": "at most ", "at least": "at least ", "equals": "expected "}
     by = f" ({figure.by})" if figure.by else ""
     return f"{words.get(figure.bound, '')}{with_unit(low, figure.unit)}{by}"
+
+
+def standing_text(figure: KeyFigure) -> str:
+    """How a key figure stands to its limit, in words, so that no colour is needed to see it.
+
+    Parameters
+    ----------
+    figure : KeyFigure
+        The value.
+
+    Returns
+    -------
+    str
+        Empty where nothing is asked of it.
+    """
+    if figure.status == "none" or figure.bound in ("", "beside"):
+        return ""
+    if figure.bound == "holds":
+        return "✓ holds" if figure.status == "good" else "✗ does not hold"
+    if figure.bound == "equals":
+        return "✓ agrees" if figure.status == "good" else "✗ differs"
+    words = {"good": "✓ within", "watch": "! within, but not with its band", "bad": "✗ beyond"}
+    return words[figure.status]
+
+
+def standing_of_answer(answer: Answer) -> tuple[Status, str] | None:
+    """How an answer as a whole stands, as status and in words.
+
+    Parameters
+    ----------
+    answer : Answer
+        With a status of its figures, or with a claim.
+
+    Returns
+    -------
+    tuple or None
+        None where nothing was asked of any figure.
+    """
+    if answer.claim:
+        alone: Status = "good" if answer.claim == "holds" else "watch"
+        status = alone if answer.status == "none" else answer.status
+        return status, f"The statement {answer.claim}"
+    words: dict[Status, str] = {
+        "good": "✓ within all limits",
+        "watch": "! near a limit",
+        "bad": "✗ beyond a limit",
+    }
+    return (answer.status, words[answer.status]) if answer.status in words else None
+
+
+def given_text(value: float | int | str | bool | None, unit: str | None = None) -> str:
+    """A number that somebody has given, with all its digits; a computed one has too many.
+
+    Parameters
+    ----------
+    value : float, int, str, bool or None
+        A reference, a limit, or an assumption.
+    unit : str or None
+        As in `formatted`.
+
+    Returns
+    -------
+    str
+        In four digits where it has more than a source prints.
+    """
+    few = isinstance(value, float) and math.isclose(
+        float(f"{value:.{_PRINTED_DIGITS - 1}e}"), value, rel_tol=_ROUND_OFF
+    )
+    return formatted(value, _PRINTED_DIGITS if few else DIGITS, unit)
 
 
 def computed_text(verdict: Verdict) -> str:
@@ -238,29 +314,56 @@ def computed_text(verdict: Verdict) -> str:
         return "yes" if verdict.computed == 1.0 else "no"
     if verdict.band:
         return _digits_of(verdict.computed, verdict.unit, verdict.band, with_band=False)
-    return formatted(verdict.computed, unit=verdict.unit)
+    given = given_text(verdict.reference, verdict.unit) if verdict.check == "equals" else ""
+    return formatted(verdict.computed, _digits_beside(given), verdict.unit)
 
 
-def expected_text(verdict: Verdict) -> str:
-    """What a check asks for: a reference, zero, a bound, a range, or that a statement holds."""
-    reference = formatted(verdict.reference, unit=verdict.unit)
+def _digits_beside(reference: str) -> int:
+    """Digits of a value without a band that stands beside a reference: as many as that has."""
+    mantissa = reference.partition("\u00a0×")[0]
+    digits = "".join(letter for letter in mantissa if letter.isdigit()).lstrip("0")
+    return max(DIGITS, min(len(digits), _COMPARED_DIGITS))
+
+
+def expected_text(verdict: Verdict, printed: str = "") -> str:
+    """What a check asks for: a reference, zero, a bound, a range, or that a statement holds.
+
+    Parameters
+    ----------
+    verdict : Verdict
+        The check.
+    printed : str
+        The reference as its source prints it, where that is known.
+
+    Returns
+    -------
+    str
+    """
+    reference = printed or given_text(verdict.reference, verdict.unit)
     if verdict.check == "at most":
         return f"≤\u00a0{reference}"
     if verdict.check == "at least":
         return f"≥\u00a0{reference}"
     if verdict.check == "between":
-        return f"{reference} to {formatted(verdict.upper, unit=verdict.unit)}"
+        return f"{reference} to {given_text(verdict.upper, verdict.unit)}"
     return {"vanishes": "0", "holds": "yes"}.get(verdict.check, reference)
 
 
 def error_text(verdict: Verdict) -> str:
-    """The error of a verdict: in percent of the reference, or in the unit; none of a bound."""
+    """The error of a verdict: in percent of the reference, or in the unit; none of a bound.
+
+    It has no digit beyond the band of the computed value.
+    """
     if verdict.check not in ("equals", "vanishes"):
         return "–"
-    error = verdict.computed - verdict.reference
+    error, unit, size = verdict.computed - verdict.reference, verdict.unit, 1.0
     if verdict.relative and verdict.reference != 0:
-        return _signed(100 * error / abs(verdict.reference), "%")
-    return _signed(error, verdict.unit)
+        unit, size = "%", 100.0 / abs(verdict.reference)
+    if verdict.band and math.isfinite(error):
+        number = _digits_of(error * size, unit, verdict.band * size, with_band=False)
+        if not number.startswith("~") or verdict.passed:
+            return with_unit(("+" if error > 0 and number[0] != "~" else "") + number, unit)
+    return _signed(error * size, unit)
 
 
 def band_text(verdict: Verdict) -> str:
@@ -274,7 +377,10 @@ def band_text(verdict: Verdict) -> str:
 
 def safe_range(limit: Limit) -> str:
     """The safe range of a limit, as a table shows it."""
-    low, high = (None if end is None else formatted(end, 3) for end in (limit.low, limit.high))
+    unit = None if limit.parameter.endswith("]") else ""
+    low, high = (
+        None if end is None else formatted(end, 3, unit) for end in (limit.low, limit.high)
+    )
     if low is None:
         return "the whole sweep" if high is None else f"up to {high}"
     return f"from {low}" if high is None else f"{low} to {high}"

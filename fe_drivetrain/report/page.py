@@ -10,6 +10,8 @@ import hashlib
 import json
 import os
 import re
+from collections import Counter
+from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 from urllib.parse import quote, unquote
@@ -20,19 +22,25 @@ from markupsafe import Markup, escape
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.manifest import MANIFEST
 from fe_drivetrain.plots.style import is_number
-from fe_drivetrain.report.answer import MAX_CAUTIONS
+from fe_drivetrain.report.answer import MAX_CAUTIONS, KeyFigure
 from fe_drivetrain.report.bundle import place_plotly, plotly_file
 from fe_drivetrain.report.chart_style import chart_height, figure_as_json, script_json
-from fe_drivetrain.report.headline import answer_sentence, headline
+from fe_drivetrain.report.headline import answer_sentence, headline, values_found
 from fe_drivetrain.report.history import FILE, Point, points_over_runs, tolerated
-from fe_drivetrain.report.number_text import formatted, limit_text, value_with_band
+from fe_drivetrain.report.number_text import (
+    formatted,
+    limit_text,
+    standing_of_answer,
+    standing_text,
+    value_with_band,
+)
 from fe_drivetrain.report.rendering import policy_hash, read_template, templates
 from fe_drivetrain.report.results import (
-    Cell,
     Chart,
     Figure,
     Image,
     Results,
+    Section,
     Solid,
     Table,
     Text,
@@ -40,14 +48,18 @@ from fe_drivetrain.report.results import (
     read_results,
     verdict_sentence,
 )
+from fe_drivetrain.report.table_text import cell_texts, numeric_columns
 from fe_drivetrain.report.trend import change_text, sparkline
 
+Item = Text | Table | Chart | Image | Solid
+"""What stands in a section."""
+
 _PNG = b"\x89PNG\r\n\x1a\n"
-_CONTENTS_FROM = 5  # sections from which on a page has a table of contents
+_MOST_ROWS = 12  # of a table that is not scrolled inside
+_HERO_HEIGHT = 400  # pixels, so that the first screen holds all that answers
+_MAY_SHRINK = 560  # charts that are higher than this need their height
 _QUANTITIES = 6  # of a case that are shown over its runs
 _FILES = 60  # to which a page links at most
-STANDING = {"good": "within", "watch": "within, but not with its band", "bad": "beyond"}
-"""How a value stands to its limit, in words."""
 _KINDS = {
     ".3d.json": "what the page shows in three dimensions",
     ".csv": "table, for any spreadsheet",
@@ -100,26 +112,25 @@ def render(results: Results, folder: Path, shared: Path) -> str:
     names = ("page.js", *(("charts.js",) * has_charts), *(("solid.js",) * has_solids))
     scripts = [read_template(name) for name in names]
     above = Markup(quote(os.path.relpath(shared, folder)))
-    answer = headline(results)
-    asked = results.answer.hero if results.answer else ""
-    hero = next((i for i in items if not isinstance(i, Table | Text) and i.caption == asked), None)
-    pictures = [item for item in items if isinstance(item, Image)]
     template = _pages().get_template("report.html")
     return template.render(
         results=results,
         data_url=lambda file: _as_data_url(file, folder),
         solid_json=lambda solid: _as_script_data(solid, folder),
         passed=sum(verdict.passed for verdict in results.verdicts),
-        answer=answer,
+        figures=_key_figures(results),
+        standing=standing_of_answer(results.answer) if results.answer else None,
+        printed=_printed_references(results),
         verdict=verdict_sentence(results),
         cautions=_cautions(results),
         most_cautions=MAX_CAUTIONS,
-        standing=STANDING,
-        hero=hero or (pictures[0] if pictures and not results.answer else None),
+        most_rows=_MOST_ROWS,
+        most_pixels=_MAY_SHRINK,
+        hero=_hero(results, items),
+        explained=bool(results.answer and results.details),
         runs=runs_of_page(results, shared),
         files=_files(folder),
         index=above + "/index.html" if (shared / "index.html").is_file() else "",
-        contents=len(results.sections) + 4 >= _CONTENTS_FROM,
         plotly=above + f"/{plotly_file()}" if has_charts else "",
         # no string of the results can hold the hash of them all: so no other script is allowed
         nonce=hashlib.sha256(results.model_dump_json().encode()).hexdigest(),
@@ -128,11 +139,73 @@ def render(results: Results, folder: Path, shared: Path) -> str:
     )
 
 
-def _cautions(results: Results) -> list[str]:
-    """What limits the answer, most severe first; notes of an older file stand above all."""
+def _hero(results: Results, items: Sequence[Item]) -> Item | None:
+    """What the first screen shows: what the answer names, or of an older file its first picture."""
     if results.answer is None:
-        return results.unsettled
-    return [*results.unsettled, *results.answer.cautions, *results.notes]
+        return next((item for item in items if isinstance(item, Image)), None)
+    asked = results.answer.hero
+    return next((i for i in items if not isinstance(i, Table | Text) and i.caption == asked), None)
+
+
+def _key_figures(results: Results) -> list[KeyFigure]:
+    """The values that answer; of an older file its values, or the check that it names."""
+    if results.answer is not None:
+        return results.answer.figures
+    named = headline(results)
+    found: list[Figure | Verdict] = list(results.answers)
+    if not found and named is not None:
+        found.append(named)
+    return [
+        KeyFigure(
+            name=one.quantity,
+            value=one.computed,
+            unit=one.unit,
+            band=one.band,
+            bound="holds" if isinstance(one, Verdict) and one.check == "holds" else "",
+            status="none",
+        )
+        for one in found
+    ]
+
+
+def _printed_references(results: Results) -> list[str]:
+    """The reference of each check as its source prints it; empty where that is not known."""
+    figures = results.answer.figures if results.answer else []
+    known = {(f.quantity, f.unit): f.printed for f in figures if f.bound != "between"}
+    return [known.get((check.quantity, check.unit), "") for check in results.verdicts]
+
+
+def _cautions(results: Results) -> list[tuple[str, str]]:
+    """What limits the answer, most severe first, each with its kind for the style."""
+    fails = [f"Fails: {answer_sentence(check)}" for check in results.verdicts if not check.passed]
+    said = results.answer.cautions if results.answer else []
+    return [
+        *(("failing", sentence) for sentence in fails),
+        *(("unsettled", sentence) for sentence in results.unsettled),
+        *(("", sentence) for sentence in (*said, *_notes(results))),
+    ]
+
+
+def _notes(results: Results) -> list[str]:
+    """What must be known, without what the badge of a quick run says."""
+    badge = "Quick run: " if results.environment.quick else "\0"
+    return [note for note in results.notes if not note.startswith(badge)]
+
+
+def _contents(section: Section) -> str:
+    """What a section holds beside text, in words."""
+    kinds = Counter("figure" if i.kind in ("image", "solid") else i.kind for i in section.items)
+    return ", ".join(
+        f"{kinds[kind]} {kind}{'s' * (kinds[kind] > 1)}"
+        for kind in ("chart", "figure", "table")
+        if kinds[kind]
+    )
+
+
+def _hero_height(item: Chart | Image | Solid) -> int:
+    """Pixels of the chart of the first screen; a long list of bars is scrolled inside."""
+    height = chart_height(item)
+    return min(height, _HERO_HEIGHT) if height <= _MAY_SHRINK else height
 
 
 @lru_cache(maxsize=1)
@@ -143,13 +216,16 @@ def _pages() -> jinja2.Environment:
         "number": is_number,
         "figure": figure_as_json,
         "unit_unbroken": _unit_unbroken,
-        "numeric_columns": _numeric_columns,
-        "in_column": _in_column,
+        "numeric_columns": numeric_columns,
+        "cell_texts": cell_texts,
+        "contents": _contents,
+        "items_of": lambda of: of.items(),
         "height": chart_height,
+        "hero_height": _hero_height,
         "as_given": lambda settings: [(k, escape(_as_given(v))) for k, v in settings.items()],
-        "answer": answer_sentence,
         "with_band": value_with_band,
         "limit_of": limit_text,
+        "standing": standing_text,
         "sparkline": sparkline,
         "change": change_text,
         "unquoted": lambda address: escape(unquote(address)),
@@ -172,10 +248,9 @@ def runs_of_page(results: Results, shared: Path) -> list[tuple[Figure | Verdict,
     list of tuple
         Answers and checks, and what each run found; empty where this is the first.
     """
-    environment, answer = results.environment, headline(results)
-    found: list[Figure | Verdict] = [answer] if answer else []
-    found += [figure for figure in results.answers if figure is not answer]
-    found += [v for v in results.verdicts if v.check == "equals" and v is not answer]
+    environment, every = results.environment, values_found(results)
+    found = every[:1]
+    found += [v for v in every[1:] if isinstance(v, Figure) or v.check == "equals"]
     runs = []
     for value in found[:_QUANTITIES]:
         before = points_over_runs(shared, results, value)
@@ -207,22 +282,6 @@ def _as_given(value: object) -> str:
 def _unit_unbroken(heading: str) -> str:
     """A heading whose unit, in brackets, stays on one line."""
     return re.sub(r"\[[^\]]*\]", lambda unit: unit.group().replace(" ", "\u00a0"), heading)
-
-
-def _numeric_columns(table: Table) -> set[int]:
-    """Which columns hold numbers, and perhaps gaps, but nothing else."""
-    columns = list(zip(*table.rows, strict=False))
-    return {
-        number
-        for number, cells in enumerate(columns)
-        if any(map(is_number, cells)) and all(c is None or is_number(c) for c in cells)
-    }
-
-
-def _in_column(value: Cell, heading: str) -> str:
-    """A cell: of percentages and pure numbers, which the heading says, with any power of ten."""
-    unit = next((unit for unit in ("%", "-") if heading.endswith(f"[{unit}]")), None)
-    return formatted(value, unit=unit)
 
 
 def _as_data_url(name: str, folder: Path) -> Markup:

@@ -23,6 +23,7 @@ from fe_drivetrain.report.number_text import (
     error_text,
     expected_text,
     formatted,
+    given_text,
     safe_range,
     tolerance_text,
 )
@@ -44,7 +45,7 @@ def templates() -> jinja2.Environment:
     shared: dict[str, Callable[..., str]] = {
         "seconds": _seconds,
         "percent": lambda share: formatted(100 * share, 3),
-        "cell": formatted,
+        "given": given_text,
         "band": band_text,
         "computed": computed_text,
         "expected": expected_text,

@@ -12,6 +12,7 @@ from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.plots import figures
 from fe_drivetrain.plots.figures import MINIMUM, error_traces
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.charts import chart
@@ -244,12 +245,19 @@ def _level(result: LevelResult, unit: str) -> Record:
 
 
 def _against_time(advice: Advice) -> Chart:
-    traces = error_traces(*advice.ladder, advice.tolerance, advice.chosen)
-    return chart(
-        "Error over time; for the last level its estimated own error. The largest marker is the "
-        f"level that is accurate enough. Errors of zero are drawn at {100 * MINIMUM:g} %",
+    # errors are differences from the last level: its own error is the band of each
+    bands = [advice.top.estimate] * (len(advice.results) - 1) + [0.0]
+    traces = error_traces(*advice.ladder, advice.tolerance, advice.chosen, bands)
+    found = chart(
+        "Error of each level against its time, bars: own error of the last. The chosen one is "
+        f"accurate enough; errors of zero are drawn at {100 * MINIMUM:g} %",
         traces,
         x="time [s]",
         y="error [%]",
         logarithmic=("x", "y"),
     )
+    errors = advice.ladder[2]
+    found.figure["layout"]["yaxis"]["range"] = figures.error_range(
+        errors, advice.tolerance, advice.top.estimate
+    )
+    return found

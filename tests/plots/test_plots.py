@@ -6,7 +6,14 @@ import pytest
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.elasticity.solve.solvers import Diagnostics
 from fe_drivetrain.export.superelement import Superelement
-from fe_drivetrain.plots.figures import MINIMUM, figure, load_lines, stiffness_map
+from fe_drivetrain.plots.figures import (
+    MINIMUM,
+    error_range,
+    error_traces,
+    figure,
+    load_lines,
+    stiffness_map,
+)
 from fe_drivetrain.plots.style import PALETTE
 from fe_drivetrain.shafts.fidelity.adviser import Advice, LevelResult
 from fe_drivetrain.shafts.fidelity.ladder import Cost, LevelModel
@@ -74,6 +81,20 @@ def test_the_ladder_is_drawn_with_its_tolerance_and_what_is_enough() -> None:
     assert shown.data[1].marker.size > shown.data[0].marker.size
     exact = Advice(Quantity("gearbox.Fz"), 0.05, [result(0, 1e-3, 0.0, 0.0)], 0).plot()
     assert exact.data[0].y[0] == 100 * MINIMUM
+
+
+def test_bands_of_errors_are_bars_and_the_axis_is_not_stretched_to_zero_by_them() -> None:
+    times, errors, bands = [1.0, 2.0, 3.0], [0.5, 0.01, 0.03], [0.03, 0.03, 0.0]
+    first, second, last, _ = error_traces(["a", "b", "c"], times, errors, 0.05, 1, bands)
+    assert first["error_y"]["array"] == first["error_y"]["arrayminus"] == pytest.approx([3.0])
+    # a band larger than the error itself reaches to zero, which has no place
+    assert second["error_y"]["array"] == pytest.approx([3.0])
+    assert 0.0 < second["error_y"]["arrayminus"][0] < 1.0
+    assert "error_y" not in last
+    assert "error_y" not in error_traces(["a"], [1.0], [0.5], 0.05)[0]
+    low, high = error_range([*errors, float("nan")], 0.05, 0.03)
+    assert 0.1 < 10.0**low < 1.0
+    assert 53.0 < 10.0**high < 200.0
 
 
 def test_own_traces_take_the_colours_of_the_pages() -> None:

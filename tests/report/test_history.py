@@ -11,6 +11,8 @@ from test_report import results, verdict
 from tiny_case import Result, check_one
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.report.answer import Answer, KeyFigure
+from fe_drivetrain.report.headline import values_found
 from fe_drivetrain.report.history import (
     FILE,
     Point,
@@ -46,6 +48,46 @@ def test_a_recorded_run_is_read_as_it_was(tmp_path: Path) -> None:
     assert second.quick
     assert second.computed is None
     assert past_runs(tmp_path, "g/other") == []
+
+
+def test_a_run_is_recorded_with_its_answer(tmp_path: Path) -> None:
+    figures = [
+        {"name": "peak roller load", "value": 412.3, "unit": "kN", "band": 3.1, "status": "none"},
+        {"name": "the force", "value": 1.02, "unit": "N", "status": "bad", "quantity": "force"},
+    ]
+    answer = {"question": "Which?", "verdict": "It is 412 kN.", "figures": figures, "status": "bad"}
+    content = Results.model_validate({**found(1.02).model_dump(), "answer": answer})
+    record_run(tmp_path, content)
+    (run,) = past_runs(tmp_path)
+    assert (run.quantity, run.unit, run.computed, run.band) == (
+        "peak roller load",
+        "kN",
+        412.3,
+        3.1,
+    )
+    assert run.verdict == "Not to be relied on, 1 of 2 checks fail: It is 412 kN."
+    assert run.status == "bad"
+    # a key figure that is a check stands once
+    quantities = [one.quantity for one in values_found(content)]
+    assert quantities == ["peak roller load", "force", "force"]
+    assert values_found(content)[1] is content.verdicts[0]
+
+
+def test_a_history_of_an_older_program_takes_the_next_run(tmp_path: Path) -> None:
+    record_run(tmp_path, found(1.0))
+    with sqlite3.connect(tmp_path / FILE) as database:
+        database.execute("ALTER TABLE runs DROP COLUMN verdict")
+        database.execute("ALTER TABLE runs DROP COLUMN status")
+    record_run(tmp_path, found(1.0))
+    assert [(run.verdict, run.computed) for run in past_runs(tmp_path)] == [("", 1.0)] * 2
+
+
+def test_a_key_figure_that_is_no_check_is_what_a_run_is_told_by(tmp_path: Path) -> None:
+    figure = KeyFigure(name="peers that are beaten", value=7.0, unit="", status="none")
+    answer = Answer(question="q?", verdict="v.", figures=[figure], status="none")
+    record_run(tmp_path, found(1.02).model_copy(update={"answer": answer}))
+    (one,) = past_runs(tmp_path)
+    assert (one.quantity, one.computed, one.checks) == ("peers that are beaten", 7.0, 2)
 
 
 def test_only_runs_of_the_same_mode_and_settings_are_compared(tmp_path: Path) -> None:

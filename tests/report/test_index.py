@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from test_report import HOSTILE, Page, results, verdict
 
+from fe_drivetrain.report.answer import Answer, Claim, Status
 from fe_drivetrain.report.headline import answer_sentence, headline
 from fe_drivetrain.report.index import WORDS, write_index
 from fe_drivetrain.report.number_text import value_with_band
@@ -17,6 +18,12 @@ def put(folder: Path, name: str, *verdicts: Verdict, **changes: object) -> None:
     (folder / name).mkdir(parents=True)
     content = results(name, verdicts=list(verdicts), **changes)
     (folder / name / "results.json").write_text(content.model_dump_json(), "utf-8")
+
+
+def answer(status: Status, claim: Claim = "") -> Answer:
+    """An answer without a figure."""
+    verdict = "The force is 1 N."
+    return Answer(question="Which force?", verdict=verdict, figures=[], claim=claim, status=status)
 
 
 def listed(page: Path) -> list[tuple[str, str]]:
@@ -30,7 +37,11 @@ def test_cases_stand_worst_first_and_every_state_is_told_apart(tmp_path: Path) -
     put(tmp_path, "a/easy", verdict(1.001))
     put(tmp_path, "a/tight", verdict(1.0), verdict(1.009))
     put(tmp_path, "a/open", verdict(1.0), unsettled=["Not converged: the peak."])
-    put(tmp_path, "b/wrong", verdict(1.02))
+    put(tmp_path, "a/claim", verdict(1.0), answer=answer("watch", "does not hold"))
+    put(tmp_path, "a/partly", verdict(1.0), answer=answer("watch", "holds in part"))
+    put(tmp_path, "a/above", verdict(1.0), answer=answer("bad"))
+    put(tmp_path, "a/close", verdict(1.0), answer=answer("watch"))
+    put(tmp_path, "b/wrong", verdict(1.02), answer=answer("good", "holds"))
     put(tmp_path, "b/worse", verdict(2.0), verdict(1.0))
     problems = {
         "c/later": Problem("waits", "planned"),
@@ -49,15 +60,41 @@ def test_cases_stand_worst_first_and_every_state_is_told_apart(tmp_path: Path) -
         ("planned", "c/later"),
         ("skipped", "c/tool"),
         ("unsettled", "a/open"),
+        ("refuted", "a/claim"),
+        ("in part", "a/partly"),
+        ("beyond", "a/above"),
+        ("near", "a/close"),
         ("pass", "a/tight"),
         ("pass", "a/easy"),
     ]
     words = re.findall(r'<span class="badge [^"]*">([^<]*)', page.read_text("utf-8"))
     assert set(words) == set(WORDS.values())
     text = " ".join(Page(page.read_text("utf-8")).text().split())
-    assert "2 of 9 cases pass, 1 not run, 1 running, 1 planned, 1 skipped, 1 open" in text
+    assert (
+        "6 of 13 cases pass, 1 not run, 1 running, 1 planned, 1 skipped, 1 open, 1 refuted" in text
+    )
+    assert 'class="said bad">Not to be relied on, 1 of 1 checks fail' in page.read_text("utf-8")
     assert "Not converged: the peak." in text
     assert "Incomplete: of the cases that were asked for 3 did not come to their end" in text
+
+
+@pytest.mark.parametrize(
+    ("claim", "problem", "colour"),
+    [
+        ("", None, "pass"),
+        ("holds", None, "pass"),
+        ("does not hold", None, "unsettled"),
+        ("", Problem("at work", "running"), "running"),
+        ("", Problem("ccx is not installed", "skipped"), "pass"),
+        ("", Problem("ended by an error"), "fail"),
+    ],
+)
+def test_all_cases_together_are_red_only_where_something_failed(
+    tmp_path: Path, claim: Claim, problem: Problem | None, colour: str
+) -> None:
+    put(tmp_path, "a/one", verdict(1.0), answer=answer("good", claim))
+    page = write_index(tmp_path, {"a/two": problem} if problem else {})
+    assert f'<p class="outcome {colour}">' in page.read_text("utf-8")
 
 
 def test_the_checks_of_all_cases_stand_worst_first(tmp_path: Path) -> None:
@@ -155,7 +192,7 @@ def test_the_answer_is_the_named_check_or_the_first_that_is_a_number() -> None:
     assert headline(results(verdicts=[statement])) == statement
     assert headline(results(verdicts=[])) is None
     plain = answer_sentence(verdict(1.004, band=0.001)).replace("\u00a0", " ")
-    assert plain == "Force: 1.0040 ± 0.0010 N; expected 1 N (error +0.4 %, tolerance ±1 %)."
+    assert plain == "Force: 1.0040 ± 0.0010 N; expected 1 N (error +0.40 %, tolerance ±1 %)."
     named = check("holds", 1.0, 1.0).model_copy(update={"quantity": "main_bearing.My: one sign"})
     assert answer_sentence(named) == "main_bearing.My: one sign: yes."
 

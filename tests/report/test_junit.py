@@ -3,6 +3,7 @@
 from pathlib import Path
 from xml.etree import ElementTree
 
+from fe_drivetrain.report.answer import Answer
 from fe_drivetrain.report.junit import write_junit
 from fe_drivetrain.report.results import Environment, Problem, Results, judge
 
@@ -48,3 +49,15 @@ def test_every_verdict_is_a_test(tmp_path: Path) -> None:
     assert failure is not None
     assert "computed 2, reference 1 N" in str(failure.get("message"))
     assert [p.name for p in tmp_path.iterdir()] == ["out.xml"]
+
+
+def test_a_suite_has_the_answer_of_its_case(tmp_path: Path) -> None:
+    verdict = "The force is 1 N."
+    answer = Answer(question="Which force?", verdict=verdict, figures=[], status="good")
+    plain = results_of("a/one", 1.0)
+    results = {"a/one": plain.model_copy(update={"answer": answer}), "a/two": plain}
+    write_junit(tmp_path / "out.xml", ["a/one", "a/two"], results, {})
+    one, two = ElementTree.parse(tmp_path / "out.xml").getroot()
+    said = {p.get("name"): p.get("value") for p in one.iter("property")}
+    assert said == {"question": "Which force?", "verdict": verdict, "status": "good"}
+    assert two.find("properties") is None

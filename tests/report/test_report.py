@@ -148,10 +148,11 @@ def page_of(folder: Path, content: Results) -> str:
         (0.2, "0.2"),
         (1.54, "1.54"),
         (392280.0, "392\u202f280"),
-        (12345.678, "12\u202f346"),
-        (0.0012345678, "0.0012346"),
+        (12345.678, "12\u202f350"),
+        (0.0012345678, "0.001235"),
         (80e6, "80\u00a0×\u00a010⁶"),
-        (392.04e6, "392.04\u00a0×\u00a010⁶"),
+        (392.04e6, "392\u00a0×\u00a010⁶"),
+        (392.16e6, "392.2\u00a0×\u00a010⁶"),
         (999999.9, "1\u00a0×\u00a010⁶"),
         (-1.5e-7, "\u2212150\u00a0×\u00a010⁻⁹"),
         (1728000, "1\u202f728\u202f000"),
@@ -207,7 +208,7 @@ def test_failed_checks_are_marked(tmp_path: Path) -> None:
     passing = Page(page_of(tmp_path, results(verdicts=[verdict()])))
     assert "1 of 1 check passes" in passing.text()
     assert "FAIL" not in passing.text()
-    assert "outcome pass" in [p.get("class") for p in passing.all("p")]
+    assert "outcome pass" in [p.get("class") for p in passing.all("span")]
 
 
 def test_an_answer_that_has_not_converged_is_no_green_page(tmp_path: Path) -> None:
@@ -218,7 +219,7 @@ def test_an_answer_that_has_not_converged_is_no_green_page(tmp_path: Path) -> No
     assert "1 of 1 check passes" in page.text()
     assert ", but not every answer has converged" in page.text()
     assert "Not converged: the peak." in page.text()
-    classes = [p.get("class") for p in page.all("p")]
+    classes = [p.get("class") for p in page.all("span")]
     assert "outcome unsettled" in classes
     assert "outcome pass" not in classes
 
@@ -226,7 +227,7 @@ def test_an_answer_that_has_not_converged_is_no_green_page(tmp_path: Path) -> No
 def test_a_page_without_checks_claims_none(tmp_path: Path) -> None:
     page = Page(page_of(tmp_path, results(verdicts=[])))
     assert "No checks" in page.text()
-    assert "outcome pass" not in [p.get("class") for p in page.all("p")]
+    assert "outcome pass" not in [p.get("class") for p in page.all("span")]
 
 
 def test_hostile_strings_stay_strings(tmp_path: Path) -> None:
@@ -473,9 +474,21 @@ def test_contents_lead_to_every_section(tmp_path: Path) -> None:
     page = Page(text)
     nav = text.partition("<nav")[2].partition("</nav>")[0]
     links = re.findall('href="#([^"]*)"', nav)
-    ids = [s["id"] for s in page.all("section")]
-    assert links == [i for i in ids if i != "summary"]
+    assert links == [s["id"] for s in page.all("section")]
     assert len(links) > 4
+
+
+def test_a_page_of_a_dossier_leads_to_the_others(tmp_path: Path) -> None:
+    links = [
+        {"title": "Overview", "address": ""},
+        {"title": "Loads", "address": "loads/report.html"},
+        {"title": "Own", "address": "javascript:alert(1)"},
+    ]
+    page = Page(page_of(tmp_path, results(links=links)))
+    first, second, third = [a for a in page.all("a") if a.get("href")][:3]
+    assert first == {"href": "#summary", "aria-current": "page"}
+    assert second == {"href": "loads/report.html"}
+    assert third == {"href": "javascript%3Aalert%281%29"}
 
 
 def test_tables_have_headers_and_the_page_a_language(tmp_path: Path) -> None:
@@ -503,7 +516,8 @@ def test_a_browser_draws_the_chart_and_runs_nothing_hostile(tmp_path: Path) -> N
             f"--user-data-dir={tmp_path / 'profile'}",
             "--virtual-time-budget=5000",
             "--dump-dom",
-            (folder / "report.html").as_uri(),
+            # a chart is drawn when the fold that it stands in is opened, as its link does
+            (folder / "report.html").as_uri() + "#section-1",
         ],
         capture_output=True,
         text=True,
@@ -540,6 +554,11 @@ def limit(**changes: object) -> Limit:
 )
 def test_safe_ranges_are_written_in_words(low: float | None, high: float | None, text: str) -> None:
     assert safe_range(limit(low=low, high=high)).replace("\N{THIN SPACE}", " ") == text
+
+
+def test_only_ends_with_a_unit_are_written_in_steps_of_three_powers() -> None:
+    assert safe_range(limit(parameter="ratio", low=1e-10)) == "from 1\u00a0×\u00a010⁻¹⁰"
+    assert safe_range(limit(parameter="spring [N/m]", low=1e-10)) == "from 100\u00a0×\u00a010⁻¹²"
 
 
 def test_limits_are_on_the_page_and_on_the_atlas(tmp_path: Path) -> None:

@@ -286,8 +286,8 @@ def test_what_a_kill_would_leave_looks_incomplete(tmp_path: Path) -> None:
     cases = [a_case("a/one", count, alone=True), a_case("a/two", read_the_index, alone=True)]
     run_cases(cases, tmp_path)
     before, meanwhile = read_results(tmp_path / "a/two/results.json").details
-    assert '<p class="outcome fail">1 of 2 cases pass, 1 planned</p>' in before
-    assert '<p class="outcome fail">1 of 2 cases pass, 1 running</p>' in meanwhile
+    assert '<p class="outcome running">1 of 2 cases pass, 1 planned</p>' in before
+    assert '<p class="outcome running">1 of 2 cases pass, 1 running</p>' in meanwhile
     after = (tmp_path / "index.html").read_text()
     assert '<p class="outcome pass">2 of 2 cases pass</p>' in after
     assert "not run" not in after
@@ -300,7 +300,7 @@ def test_quick_runs_are_seen_to_be_quick(tmp_path: Path, quick: bool) -> None:
     results = read_results(tmp_path / "a/one/results.json")
     assert results.environment.quick == quick
     for page in (tmp_path / "a/one/report.html", tmp_path / "index.html"):
-        assert ('class="caution"' in page.read_text()) == quick
+        assert ('class="badge quick"' in page.read_text()) == quick
     assert ("2 cases were run quickly" in (tmp_path / "index.html").read_text()) == quick
     write_junit(tmp_path / "all.xml", ["a/one"], {"a/one": results}, {})
     (suite,) = ElementTree.parse(tmp_path / "all.xml").getroot()

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, TypedDict, Unpack
+from typing import Any, Unpack, cast
 
 import numpy as np
 
 from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.report.answer import KeyFigure
+from fe_drivetrain.report.chart_parts import ChartParts
 from fe_drivetrain.report.charts import chart, instead_of_chart, trace
 from fe_drivetrain.report.error_chart import error_chart
 from fe_drivetrain.report.results import (
@@ -28,12 +29,13 @@ from fe_drivetrain.report.suite.records import (
     counted,
     curves,
     plain_cells,
+    ring,
 )
 from fe_drivetrain.report.suite.targets import Target
 
 
-class Look(TypedDict, total=False):
-    """How the chart of a sweep looks.
+class Look(ChartParts, total=False):
+    """How the chart of a sweep looks; beside what every chart may show, see `ChartParts`.
 
     Attributes
     ----------
@@ -47,6 +49,12 @@ class Look(TypedDict, total=False):
         Points without lines.
     axis : str
         Title of the vertical axis, with its unit; the key of the first curve where left out.
+    bands : dict
+        Key of a curve, and that of its band, which is drawn as error bars.
+    chosen : int
+        Number of the record that is good enough: its points are marked.
+    chosen_curve : str
+        Name of the curve that was chosen: its points are drawn as large stars.
     """
 
     log: str
@@ -54,6 +62,9 @@ class Look(TypedDict, total=False):
     safe: tuple[float | None, float | None] | None
     points: bool
     axis: str
+    bands: Mapping[str, str]
+    chosen: int
+    chosen_curve: str
 
 
 class Page(Findings):
@@ -175,10 +186,13 @@ class Page(Findings):
         y: str,
         logarithmic: Iterable[str] = (),
         safe: tuple[float | None, float | None] | None = None,
+        **parts: Unpack[ChartParts],
     ) -> None:
         """Add a chart of traces, or a sentence if they have but one point; see `report.chart`."""
-        words = instead_of_chart(caption, traces, x, y)
-        self.add(Text(text=words) if words else chart(caption, traces, x, y, logarithmic, safe))
+        if words := instead_of_chart(caption, traces, x, y):
+            self.add(Text(text=words))
+        else:
+            self.add(chart(caption, traces, x, y, logarithmic, safe, **parts))
 
     def targets(
         self,
@@ -253,14 +267,23 @@ class Page(Findings):
         """
         mode = "markers" if look.get("points") else "lines+markers"
         keys = {y: ""} if isinstance(y, str) else y
-        traces = curves(rows, x, keys, by, mode)
+        traces = curves(rows, x, keys, by, mode, look.get("bands"))
+        if "chosen" in look:
+            traces.append(ring(rows[look["chosen"]], x, keys))
+        for one in traces:
+            if one["name"] == look.get("chosen_curve"):
+                one["marker"] = {"size": 16, "symbol": "star"}
         ends = rounded([min(column(rows, x)), max(column(rows, x))])
         traces += [
             trace(name, ends, [value, value], line={"dash": "dot"})
             for name, value in (look.get("reference") or {}).items()
         ]
         axis = look.get("axis") or next(iter(keys))
-        self.chart(caption, traces, x, axis, tuple(look.get("log", "")), look.get("safe"))
+        parts = cast(
+            "ChartParts", {k: v for k, v in look.items() if k in ChartParts.__annotations__}
+        )
+        log, safe = tuple(look.get("log", "")), look.get("safe")
+        self.chart(caption, traces, x, axis, log, safe, **parts)
         plain = [key for key, value in rows[0].items() if np.ndim(value) == 0]
         if table is not False:
             self.table("The same in numbers", rows, plain if table is True else table)

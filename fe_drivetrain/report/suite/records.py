@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.report.charts import trace
 from fe_drivetrain.report.results import Cell
 from fe_drivetrain.report.suite.targets import split_unit
@@ -132,7 +133,12 @@ class MeshSeries(NamedTuple):
 
 
 def curves(
-    rows: Sequence[Record], x: str, keys: Mapping[str, str], by: str | None, mode: str
+    rows: Sequence[Record],
+    x: str,
+    keys: Mapping[str, str],
+    by: str | None,
+    mode: str,
+    bands: Mapping[str, str] | None = None,
 ) -> list[Any]:
     """Traces of a sweep; see `fe_drivetrain.report.suite.Page.sweep`.
 
@@ -148,6 +154,8 @@ def curves(
         Key that tells the curves apart.
     mode : str
         Of the drawing, as Plotly has it.
+    bands : mapping or None
+        Key of a curve, and that of its band, which is drawn as error bars.
 
     Returns
     -------
@@ -161,8 +169,44 @@ def curves(
             at = [row for row in of if row[key] is not None]
             parts = (group_name(by, group) if by else "", name)
             title = ", ".join(part for part in parts if part) or key
-            traces.append(trace(title, column(at, x), column(at, key), mode=mode))
+            found = trace(title, column(at, x), column(at, key), mode=mode)
+            if bands and key in bands:
+                array = rounded([row[bands[key]] or 0.0 for row in at])
+                found["error_y"] = {"type": "data", "array": array, "thickness": 1.5}
+            traces.append(found)
     return traces
+
+
+def ring(row: Record, x: str, keys: Iterable[str]) -> Any:
+    """Circles round the points of a record that is chosen, with that word.
+
+    Parameters
+    ----------
+    row : dict
+        The record.
+    x : str
+        Key of the horizontal axis.
+    keys : iterable of str
+        Keys of the curves.
+
+    Returns
+    -------
+    dict
+        A trace.
+    """
+    values = [row[key] for key in keys if row[key] is not None]
+    look = {"symbol": "circle-open", "size": 16, "color": "#1f2933", "line": {"width": 2}}
+    return trace(
+        "chosen",
+        [row[x]] * len(values),
+        values,
+        True,
+        marker=look,
+        mode="markers+text",
+        text=["chosen"] * len(values),
+        textposition="top right",
+        showlegend=False,
+    )
 
 
 def plain_cells(cells: Sequence[Any]) -> list[Cell]:

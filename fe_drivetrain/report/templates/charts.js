@@ -8,8 +8,11 @@
     // no button that sends the data anywhere
     showSendToCloud: false,
     plotlyServerURL: "",
-    modeBarButtonsToRemove: ["lasso2d", "select2d", "sendChartToCloud"],
+    modeBarButtonsToRemove: ["lasso2d", "select2d", "sendChartToCloud", "toImage"],
   };
+  if (typeof Plotly !== "undefined") {
+    config.modeBarButtonsToAdd = [{ name: "save as PNG", icon: Plotly.Icons.camera, click: savePicture }];
+  }
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const inks = new Set(["black", "#000", "#000000", "#1f2933"]);
   const axis = { linecolor: "#a9b4c0", tickcolor: "#a9b4c0", gridcolor: "#39424d", zerolinecolor: "#6b7785" };
@@ -43,7 +46,7 @@
       place.style.height = "auto";
       continue;
     }
-    charts.push({ place, text: data.textContent, height: place.clientHeight });
+    charts.push({ place, text: data.textContent, height: parseFloat(place.style.height), drawn: false });
   }
 
   // heights of a line, and of a name beside its symbol [px]
@@ -100,8 +103,8 @@
       titles.push(line * (linesOf(of.title.text) - 1));
     }
     more += Math.max(...titles);
-    const named = data.filter((one) => one.name && one.showlegend !== false);
-    if (layout.showlegend !== false && named.length > 1) {
+    const named = inLegend(data, layout);
+    if (named.length > 1) {
       for (const one of named) one.name = wrapped(String(one.name), width - 30 - around.entry, sizes.legend);
       const lines = named.map((one) => one.name.split("<br>"));
       const longest = Math.max(...lines.flat().map((text) => breadth(text, sizes.legend)));
@@ -114,6 +117,69 @@
       layout.legend = { ...layout.legend, maxheight: entry * (lines.flat().length + 2) };
     }
     return height + more;
+  }
+
+  function inLegend(data, layout) {
+    return layout.showlegend === false ? [] : data.filter((one) => one.name && one.showlegend !== false);
+  }
+
+  const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
+  const axisOf = (full, name, kind) => full[name ? name.replace(kind, `${kind}axis`) : `${kind}axis`];
+
+  // curves that are few are named beside their ends, not in a legend: what each says, or null where
+  // that has no room, or where points have no end
+  function namesOfEnds(data, layout, width) {
+    const named = inLegend(data, layout);
+    const sides = Object.entries(layout).some(([key, axis]) => /^yaxis/.test(key) && axis.side === "right");
+    if (width < 560 || named.length < 2 || named.length > 4 || sides || layout.polar) return null;
+    const isCurve = ({ type = "scatter", mode = "lines", x, y }) =>
+      type === "scatter" && mode.includes("lines") && Array.isArray(x) && Array.isArray(y) && y.some((value, k) => isNumber(value) && isNumber(x[k]));
+    if (!named.every(isCurve)) return null;
+    const texts = named.map((one) => wrapped(String(one.name), 0.24 * width, sizes.legend));
+    if (texts.some((text) => linesOf(text) > 3)) return null;
+    const room = Math.max(...texts.flatMap((text) => text.split("<br>")).map((text) => breadth(text, sizes.legend)));
+    return room > 0.3 * width ? null : { named, texts, room: room + 36 };
+  }
+
+  // where two would overprint they are pushed apart
+  function labelsOfEnds(place, { named, texts }) {
+    const full = place._fullLayout;
+    const { t: top, h: high } = full._size;
+    const labels = named.map((one, k) => {
+      const [across, up] = [axisOf(full, one.xaxis, "x"), axisOf(full, one.yaxis, "y")];
+      const points = one.x.map((x, n) => [across.d2p(x), up.d2p(one.y[n])]).filter((point) => point.every(isNumber));
+      const within = points.filter(([x]) => x <= across._length + 1);
+      const [, y] = (within.length ? within : points).reduce((last, point) => (point[0] >= last[0] ? point : last), [-Infinity, 0]);
+      const at = up._offset + Math.max(0, Math.min(up._length, y));
+      return { at, text: texts[k], height: 18 * linesOf(texts[k]), colour: one.line?.color, dashed: one.line?.dash && one.line.dash !== "solid" };
+    });
+    labels.sort((a, b) => a.at - b.at);
+    const apart = (a, b) => (a.height + b.height) / 2;
+    labels.forEach((label, k) => { if (k) label.at = Math.max(label.at, labels[k - 1].at + apart(label, labels[k - 1])); });
+    for (let k = labels.length - 1, limit = top + high; k >= 0; k--) {
+      labels[k].at = Math.min(labels[k].at, limit - labels[k].height / 2);
+      limit = labels[k].at - labels[k].height / 2;
+    }
+    return labels.map(({ at, text, colour, dashed }) => ({
+      xref: "paper", x: 1, xanchor: "left", xshift: 4, yref: "paper", y: 1 - (at - top) / high, yanchor: "middle", align: "left", showarrow: false,
+      font: { size: sizes.legend }, text: `<span style="color:${colour}">${dashed ? "┅" : "━"}</span> ${text.replaceAll("<br>", "<br>\u2003 ")}`,
+    }));
+  }
+
+  // a picture that leaves the page takes its title and its source along
+  function savePicture(plot) {
+    const { width, height, _size: size } = plot._fullLayout;
+    const title = wrapped(plot.closest("figure").querySelector("figcaption").textContent, width - 40, sizes.title);
+    const source = wrapped(document.title, width - 40, 12);
+    const [above, below] = [22 * linesOf(title) + 14, 18 * linesOf(source) + 8];
+    const layout = structuredClone(plot.layout);
+    layout.title = { text: title, font: { size: sizes.title }, x: 0.02, xanchor: "left", yref: "container", y: 1, yanchor: "top", pad: { t: 10 } };
+    layout.margin = { l: size.l, r: size.r, t: size.t + above, b: size.b + below };
+    const note = { xref: "paper", x: 0, xanchor: "left", yref: "paper", y: 0, yanchor: "bottom", yshift: 4 - size.b - below, text: source, align: "left", showarrow: false, font: { size: 12 } };
+    layout.annotations = [...(layout.annotations ?? []), note];
+    const sizeOfPicture = { width, height: height + above + below };
+    Object.assign(layout, sizeOfPicture, { autosize: false });
+    Plotly.downloadImage({ data: plot.data, layout }, { format: "png", scale: 2, filename: plot.id, ...sizeOfPicture });
   }
 
   // what Plotly has drawn is measured: a title is centred on the plot, which names beside it may
@@ -184,32 +250,49 @@
     return Number(digits) >= 9.9995 ? 1 : Number(digits);
   }
 
-  function draw(paper) {
-    for (const { place, text, height } of charts) {
-      const plain = JSON.parse(text);
-      const { data, layout } = dark.matches && !paper ? onDark(plain) : plain;
-      const width = paper ? 680 : place.clientWidth;
-      const tall = fit(data, layout, width, height);
-      for (const [key, axis] of Object.entries(layout)) {
-        // fewer are easier to read than turned ones
-        if (/^xaxis/.test(key) && axis.type === "log") axis.tickangle ??= 0;
-      }
-      place.style.height = `${tall}px`;
-      // without this a chart keeps the width of the screen on paper
-      if (paper) Object.assign(layout, { width, autosize: false });
-      Plotly.react(place, data, layout, config).then(() => {
-        if (!place.thinned) place.on("plotly_afterplot", () => thin(place));
-        place.thinned = true;
-        const more = shortenTitles(place, layout);
-        if (!more) return thin(place);
-        place.style.height = `${tall + more}px`;
-        return Plotly.react(place, data, structuredClone(layout), config);
-      });
+  function drawOne({ place, text, height }, paper) {
+    const plain = JSON.parse(text);
+    const { data, layout } = dark.matches && !paper ? onDark(plain) : plain;
+    const width = paper ? 680 : place.clientWidth;
+    const ends = namesOfEnds(data, layout, width);
+    if (inLegend(data, layout).length === 1) layout.showlegend = false; // the axis says what it is
+    if (ends) {
+      Object.assign(layout, { showlegend: false, modebar: { orientation: "h" } });
+      layout.margin = { ...layout.template.layout.margin, ...layout.margin, r: ends.room };
+    }
+    const tall = fit(data, layout, width, height);
+    for (const [key, axis] of Object.entries(layout)) {
+      // fewer are easier to read than turned ones
+      if (/^xaxis/.test(key) && axis.type === "log") axis.tickangle ??= 0;
+    }
+    place.style.height = `${tall}px`;
+    // without this a chart keeps the width of the screen on paper
+    if (paper) Object.assign(layout, { width, autosize: false });
+    Plotly.react(place, data, layout, config).then(() => {
+      if (!place.thinned) place.on("plotly_afterplot", () => thin(place));
+      place.thinned = true;
+      const more = shortenTitles(place, layout);
+      if (ends) layout.annotations = [...(layout.annotations ?? []), ...labelsOfEnds(place, ends)];
+      if (!more && !ends) return thin(place);
+      place.style.height = `${tall + more}px`;
+      return Plotly.react(place, data, structuredClone(layout), config);
+    });
+  }
+
+  // one in a fold is drawn when that is opened: there it has a width
+  function draw(paper, again) {
+    for (const one of charts) {
+      const folded = one.place.closest("details:not([open])");
+      if (again) one.drawn = false;
+      if (one.drawn || (folded && !paper)) continue;
+      one.drawn = true;
+      drawOne(one, paper);
     }
   }
 
-  draw(false);
-  dark.addEventListener("change", () => draw(false));
-  window.addEventListener("beforeprint", () => draw(true));
-  window.addEventListener("afterprint", () => draw(false));
+  draw(false, true);
+  document.addEventListener("toggle", () => draw(false, false), true);
+  dark.addEventListener("change", () => draw(false, true));
+  window.addEventListener("beforeprint", () => draw(true, true));
+  window.addEventListener("afterprint", () => draw(false, true));
 })();

@@ -1,5 +1,5 @@
 "use strict";
-// buttons that copy a command, and that save a table with all its digits
+// buttons that copy and save; links and paper that unfold what is folded
 (function () {
   document.documentElement.classList.add("scripted");
 
@@ -49,4 +49,40 @@
   for (const button of document.querySelectorAll("button[data-saves]")) {
     button.addEventListener("click", () => save(button));
   }
+
+  function unfold(hash) {
+    const at = document.getElementById(decodeURIComponent(hash.slice(1)));
+    if (!at) return;
+    const own = at.querySelector(":scope > details");
+    if (own) own.open = true;
+    for (let of = at; of; of = of.parentElement) if (of.tagName === "DETAILS") of.open = true;
+    at.scrollIntoView();
+  }
+
+  // also of a link to where the page is already, which its reader has folded since
+  document.addEventListener("click", function (event) {
+    const link = event.target.closest("a[href^='#']");
+    if (link) setTimeout(() => unfold(link.hash));
+  });
+  window.addEventListener("hashchange", () => unfold(location.hash));
+  if (location.hash) unfold(location.hash);
+
+  for (const button of document.querySelectorAll("button[data-unfolds]")) {
+    button.addEventListener("click", function () {
+      const folds = Array.from(document.querySelectorAll(".fold > details"));
+      const open = folds.some((of) => !of.open);
+      for (const of of folds) of.open = open;
+      button.textContent = open ? "fold all" : "unfold all";
+    });
+  }
+
+  let folded = [];
+  window.addEventListener("beforeprint", function () {
+    folded = Array.from(document.querySelectorAll("details:not([open])"));
+    for (const of of folded) of.open = true;
+  });
+  window.addEventListener("afterprint", function () {
+    for (const of of folded) of.open = false;
+    folded = [];
+  });
 })();

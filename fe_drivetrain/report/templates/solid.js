@@ -315,7 +315,7 @@
       draw();
     });
 
-    if (still) still.classList.add("for-paper");
+    if (still) still.closest(".picture").classList.add("for-paper");
     place.hidden = false;
     scaled();
     showRange();
@@ -327,7 +327,14 @@
     });
   }
 
-  for (const data of document.querySelectorAll("script[data-solid]")) {
-    start(document.getElementById(data.dataset.solid), data.textContent);
+  // a browser has only a few contexts of WebGL: one in a fold is taken when that is opened
+  let waiting = Array.from(document.querySelectorAll("script[data-solid]"));
+  function startThose() {
+    const [ready, later] = [[], []];
+    for (const data of waiting) (data.closest("details:not([open])") ? later : ready).push(data);
+    waiting = later;
+    for (const data of ready) start(document.getElementById(data.dataset.solid), data.textContent);
   }
+  startThose();
+  document.addEventListener("toggle", startThose, true);
 })();

@@ -136,7 +136,13 @@ class Advice:
         plotly.graph_objects.Figure
             See `fe_drivetrain.plots.error_against_time`; of the last level its estimated own error.
         """
-        return error_against_time(*self.ladder, self.tolerance, self.chosen, self.quantity.name)
+        name = self.quantity.name
+        return error_against_time(*self.ladder, self.tolerance, self.chosen, name, self.bands)
+
+    @property
+    def bands(self) -> list[float]:
+        """Estimated own error of each level but the last, whose error that is already."""
+        return [*(result.estimate for result in self.results[:-1]), 0.0]
 
     @property
     def ladder(self) -> tuple[list[str], list[float], list[float]]:

@@ -1,0 +1,135 @@
+"""The answer of a scene's ladder of model levels: which of them is enough."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+from fe_drivetrain.report.answer import KeyFigure
+from fe_drivetrain.report.number_text import formatted
+from fe_drivetrain.report.suite import Page, Record
+from fe_drivetrain.shafts.fidelity.adviser import LevelResult
+from fe_drivetrain.studies import AdviseResult
+
+MOST_OTHERS = 2
+"""Levels that are shown beside the one that is enough."""
+
+_ROUND_OFF = 1e-9  # relative: what solvers leave of a quantity that statics decides
+
+
+def answer(
+    page: Page, result: AdviseResult, row: Record, torsion: KeyFigure | None, quick: bool
+) -> None:
+    """State which level is enough, how far it and its neighbours are off, and their times.
+
+    Parameters
+    ----------
+    page : Page
+        Takes the answer.
+    result : AdviseResult
+        All levels.
+    row : Record
+        Of the table of cases: ``question``, and ``asked``, the quantity in words.
+    torsion : KeyFigure or None
+        Torsional stiffness beside a published one.
+    quick : bool
+        Whether the mesh is coarser than asked for, so that no error is judged.
+    """
+    advice = result.advice
+    chosen, top = result.chosen, advice.top
+    known = top if chosen is None else chosen
+    own = [] if torsion is None else [torsion]
+    page.answer(
+        row["question"],
+        _verdict(result, row["asked"]),
+        [
+            _error(page, known, top, None if quick else advice.tolerance),
+            *own,
+            *_value(page, result),
+            *(_error(page, one, top) for one in _others(result, known)),
+            page.value(f"time of {_name(known)} [s]", known.seconds),
+            *([] if known is top else [page.value(f"time of {_name(top)} [s]", top.seconds)]),
+        ][:6],
+        hero=result.chart().caption,
+        cautions=_cautions(result, known),
+    )
+
+
+def _name(one: LevelResult) -> str:
+    """Title of a level in a sentence: "the solid shaft with housings as springs", "statics"."""
+    title = one.model.title.replace(", ", " with ")
+    return title if one.model.level == 0 else f"the {title}"
+
+
+def _verdict(result: AdviseResult, asked: str) -> str:
+    """Which level is enough for what is asked."""
+    advice, chosen = result.advice, result.chosen
+    top, share = advice.top, f"{100 * advice.tolerance:g}\u00a0%"
+    own = f"{formatted(100 * top.estimate, 2)}\u00a0%"
+    if chosen is None:
+        return f"No model is known to give {asked} within {share}: {_name(top)} may err by {own}."
+    if chosen is top:
+        nearest = min(_below(result), key=lambda one: one.error, default=None)
+        verdict = f"Only {_name(top)} gives {asked} within {share}"
+        if nearest is None:
+            return f"{verdict}, to {own}."
+        return f"{verdict}; {_name(nearest)} may be {_most(nearest, top)} off."
+    name = _name(chosen)
+    if chosen.error < _ROUND_OFF:
+        off = "the best model agrees to round-off"
+    else:
+        off = f"at most {_most(chosen, top)} off"
+    return f"{name[0].upper()}{name[1:]} is enough for {asked}: {off}, {share} allowed."
+
+
+def _most(one: LevelResult, top: LevelResult) -> str:
+    """The largest error that a level may have: its difference from the last, and the last's own."""
+    own = 0.0 if one.estimate == 0.0 else top.estimate  # where statics decides, a level is exact
+    return f"{formatted(100 * (one.error + own), 2)}\u00a0%"
+
+
+def _below(result: AdviseResult) -> list[LevelResult]:
+    """Levels below the last whose error is known: statics tells only some quantities."""
+    return [one for one in result.advice.results[:-1] if isfinite(one.error)]
+
+
+def _error(
+    page: Page, one: LevelResult, top: LevelResult, tolerance: float | None = None
+) -> KeyFigure:
+    """Error of a level in percent, of the last one its own; judged where a tolerance is given."""
+    name = f"error of {_name(one)} [%]"
+    value = 100.0 * (top.estimate if one is top else one.error)
+    band = None if one is top else 100.0 * top.estimate
+    if tolerance is None:
+        return page.value(name, value, band)
+    return page.value(name, value, band, at_most=100.0 * tolerance)
+
+
+def _others(result: AdviseResult, known: LevelResult) -> list[LevelResult]:
+    """Levels beside the one that is enough: the next cheaper ones, or those above it."""
+    results = [one for one in _below(result) if one is not known]
+    place = result.advice.results.index(known)
+    below = [one for one in reversed(results) if result.advice.results.index(one) < place]
+    above = [one for one in results if result.advice.results.index(one) > place]
+    return [*below, *above][:MOST_OTHERS]
+
+
+def _value(page: Page, result: AdviseResult) -> list[KeyFigure]:
+    """The stiffness of the last level with its band; none of reactions, of which there are six."""
+    advice = result.advice
+    if len(advice.top.values) != 1:
+        return []
+    value = float(advice.top.values[0])
+    prefix, size = ("G", 1e9) if abs(value) >= 1e9 else ("M", 1e6)
+    name = f"stiffness by {_name(advice.top)} [{prefix}{advice.quantity.unit}]"
+    return [page.value(name, value / size, abs(value) / size * advice.top.estimate)]
+
+
+def _cautions(result: AdviseResult, known: LevelResult) -> list[str]:
+    """What the level neglects, and what the band of the last one rests on."""
+    cautions = []
+    if known.model.neglects and known is not result.advice.top:
+        cautions.append(f"It neglects {', '.join(known.model.neglects)}.")
+    band = result.advice.top.band
+    if band is not None:
+        cautions.append(f"On the error of the last level: {band.sentence()}.")
+    return cautions

@@ -1,0 +1,48 @@
+"""The answer of pitch and yaw drives: torque of the motors, printed and put right."""
+
+from fe_drivetrain.cases.procedure.slewing_drives import TEETH
+from fe_drivetrain.common import Floats
+from fe_drivetrain.common.typeset import MINUS
+from fe_drivetrain.report.suite import Page
+
+SHUTDOWN = "Torque of the pitch motor over a shutdown from 0 to 70 degrees"
+
+
+def answer(page: Page, counts: Floats) -> None:
+    """State the torque of a shutdown, by Eq 5.1 as printed and with its signs put right."""
+    right, printed = (float(row["largest torque [N m]"]) for row in page.tables["shutdown"])
+    hottest = max(float(row["thermal torque of 600 s [N m]"]) for row in page.tables["pitching"])
+    (yawing,) = page.tables["yawing"]
+    page.answer(
+        "What torque do pitch and yaw motors need, and does Eq 5.1 of PROTEST give it?",
+        "Eq 5.1 as printed does not hold: in a shutdown the pitch motor needs "
+        f"{right:.0f}\u00a0N\u00a0m, not {printed:.0f}\u00a0N\u00a0m, as its inertia is "
+        "negative.".replace("-", MINUS),
+        [
+            page.value(
+                "largest torque of the pitch motor in a shutdown [N m]",
+                right,
+                beside=printed,
+                by="Eq 5.1",
+            ),
+            page.judged("stop: work of the motor", "work of a shutdown", "load and friction"),
+            page.value("thermal torque of the pitch motor, worst wind [N m]", hottest),
+            page.value(
+                "thermal torque of the yaw motors [N m]",
+                float(yawing["thermal torque of 600 s [N m]"]),
+            ),
+            page.value(
+                "meshes of the tooth used most, over the mean",
+                float(counts.max() / counts.mean()),
+            ),
+            page.value(
+                "teeth of a blade's ring that are used",
+                float((counts > 0.0).sum()),
+                beside=TEETH,
+                by="all",
+            ),
+        ],
+        hero=SHUTDOWN,
+        cautions=["Inertias, ratios and loads of the drives are assumed, of a machine of 2 MW."],
+        claim="does not hold",
+    )
