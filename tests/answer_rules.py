@@ -1,15 +1,15 @@
 """What an answer has to be, so that its reader sees at once what was found."""
 
 import sys
+from collections.abc import Collection
 
-from fe_drivetrain.report.answer import MAX_WORDS, words
-from fe_drivetrain.report.results import Chart, Image, Results, Solid, read_results
+from fe_drivetrain.report.answer import MAX_WORDS, Answer, words
+from fe_drivetrain.report.results import Chart, Image, Results, Solid, Verdict, read_results
 
 
 def broken_rules(results: Results) -> list[str]:
     """What is wrong with the answer of results, in words; empty where nothing is."""
-    answer = results.answer
-    if answer is None:
+    if results.answer is None:
         return ["there is no answer"]
     pictures = [
         item.caption
@@ -17,9 +17,14 @@ def broken_rules(results: Results) -> list[str]:
         for item in section.items
         if isinstance(item, Chart | Image | Solid)
     ]
+    return broken_by(results.answer, pictures, results.verdicts)
+
+
+def broken_by(answer: Answer, pictures: Collection[str], checks: Collection[Verdict]) -> list[str]:
+    """What is wrong with an answer that stands beside pictures of these captions, and checks."""
     of_itself = [
         check.quantity
-        for check in results.verdicts
+        for check in checks
         if check.measure == "identity" or check.basis == "self-consistency"
     ]
     rules = {

@@ -18,11 +18,13 @@ from typer.main import get_command
 
 from fe_drivetrain.command_line.compare_runs import compare_runs_command
 from fe_drivetrain.command_line.designs import compare_command
+from fe_drivetrain.command_line.examples import examples_text, unfolded
 from fe_drivetrain.command_line.export import export_command
 from fe_drivetrain.command_line.history import history_command
 from fe_drivetrain.command_line.life import life_command
 from fe_drivetrain.command_line.loads import loads_command
 from fe_drivetrain.command_line.new_scene import new_command
+from fe_drivetrain.command_line.output_options import LOOK, with_shared_options
 from fe_drivetrain.command_line.part import part_command
 from fe_drivetrain.command_line.report import report_command
 from fe_drivetrain.command_line.run import (
@@ -40,36 +42,45 @@ from fe_drivetrain.command_line.terminal import ended, prepare_streams, write
 from fe_drivetrain.command_line.uncertainty import uncertainty_command
 from fe_drivetrain.command_line.validate import validate_command
 from fe_drivetrain.common.memory import collect_lasting_seldom
-from fe_drivetrain.common.remarks import show_remarks, show_remarks_if_asked
+from fe_drivetrain.common.remarks import show_remarks_if_asked
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.suite.case import Case
 
-_LOOK: dict[str, Any] = {
-    "add_completion": False,
-    "pretty_exceptions_enable": False,
-    "context_settings": {"help_option_names": ["-h", "--help"]},
-}
-
-app = typer.Typer(no_args_is_help=True, **_LOOK)
+app = typer.Typer(no_args_is_help=True, **LOOK)
 """The commands of ``fe-drivetrain``."""
 
-app.command("new")(new_command)
-app.command("part")(part_command)
-app.command("check")(check_command)
-app.command("study")(study_command)
-app.command("loads")(loads_command)
-app.command("life")(life_command)
-app.command("report")(report_command)
-app.command("list")(list_command)
-app.command("run", cls=HelpOfCases)(run_command)
-app.command("history")(history_command)
-app.command("compare-runs")(compare_runs_command)
-app.command("export")(export_command)
-app.command("advise")(advise_command)
-app.command("compare")(compare_command)
-app.command("uncertainty")(uncertainty_command)
-app.command("validate")(validate_command)
+_DESCRIBE, _STUDY = "Describe a drivetrain", "Study it"
+_PROVE, _HAND_OVER = "Prove it", "Hand it over"
+
+_COMMANDS: tuple[tuple[str, str, Callable[..., None]], ...] = (
+    (_DESCRIBE, "new", new_command),
+    (_DESCRIBE, "check", check_command),
+    (_STUDY, "study", study_command),
+    (_STUDY, "advise", advise_command),
+    (_STUDY, "loads", loads_command),
+    (_STUDY, "life", life_command),
+    (_STUDY, "compare", compare_command),
+    (_STUDY, "uncertainty", uncertainty_command),
+    (_STUDY, "report", report_command),
+    (_PROVE, "run", run_command),
+    (_PROVE, "list", list_command),
+    (_PROVE, "validate", validate_command),
+    (_PROVE, "history", history_command),
+    (_PROVE, "compare-runs", compare_runs_command),
+    (_HAND_OVER, "export", export_command),
+    (_HAND_OVER, "part", part_command),
+)
+_WITHOUT_PAGE = ("new", "list", "history", "compare-runs", "export", "part")
+
+for _panel, _name, _function in _COMMANDS:
+    app.command(
+        _name,
+        cls=HelpOfCases if _name == "run" else None,
+        help=unfolded(_function.__doc__ or ""),
+        epilog=examples_text(_name),
+        rich_help_panel=_panel,
+    )(_function)
 
 
 def _show_version(wanted: bool) -> None:
@@ -89,7 +100,7 @@ def _options(
         ),
     ] = False,
 ) -> None:
-    """Finite-element validation cases for wind-turbine drivetrains."""
+    """Main bearings, shafts and gears of wind turbines: loads, lives, stiffness, and proofs."""
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -111,41 +122,12 @@ def _typed(command: Callable[[], object]) -> None:
     ended(command)
 
 
-def _ask_for_remarks(verbose: bool) -> None:
-    if verbose:
-        show_remarks()
-
-
-_Verbose = Annotated[
-    bool,
-    typer.Option(
-        "--verbose",
-        "-v",
-        callback=_ask_for_remarks,
-        expose_value=False,
-        help="Say what is otherwise done without a word, as to make a damaged kept file again.",
-    ),
-]
-
-
-def _with_verbose(command: Any) -> Any:
-    """A command with the option that every one has, as typer makes it of one with no other."""
-    sample = typer.Typer(**_LOOK)
-
-    @sample.command()
-    def nothing(verbose: _Verbose = False) -> None:
-        pass
-
-    command.params += get_command(sample).params
-    return command
-
-
 @cache
 def _command() -> Callable[..., Any]:
     """All commands with their options, built once where a program calls several."""
     group: Any = get_command(app)
-    for command in group.commands.values():
-        _with_verbose(command)
+    for name, command in group.commands.items():
+        with_shared_options(command, has_page=name not in _WITHOUT_PAGE)
     return group  # type: ignore[no-any-return]
 
 
@@ -165,7 +147,7 @@ def main_of_case(case: Case) -> None:
 
     from fe_drivetrain.report.suite.settings import settings_in_words
 
-    script = typer.Typer(**_LOOK)
+    script = typer.Typer(add_completion=False, **LOOK)
     taken = settings_in_words(case) or "nothing"
 
     words = f"{case.title}\n\nSource: {case.source}\n\n--set changes: {taken}"
@@ -175,4 +157,4 @@ def main_of_case(case: Case) -> None:
         typed = replace(case, command=shlex.join(["python", *sys.argv]))
         raise typer.Exit(run_and_print(lambda: [typed], out, set_ or (), quick))
 
-    _typed(_with_verbose(get_command(script)))
+    _typed(with_shared_options(get_command(script)))

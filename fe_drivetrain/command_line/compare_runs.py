@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 import sys
 from collections import Counter
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fe_drivetrain.command_line.answer_text import write_json
+from fe_drivetrain.command_line.output_options import wants_json
 from fe_drivetrain.command_line.terminal import FAILED, PASSED, guarded, write
 
 if TYPE_CHECKING:
@@ -35,7 +38,10 @@ def compare_runs_command(
         from fe_drivetrain.report.suite.run_comparison import compare_runs
 
         found = compare_runs(before, after)
-        write(sys.stdout, _text(found))
+        if wants_json():
+            write_json(asdict(found))
+        else:
+            write(sys.stdout, _text(found))
         lost = any(c.kind in _LOSSES and c.after != "pass" for c in found.changes)
         return FAILED if lost else PASSED
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fe_drivetrain.command_line.names import complete_scene
 from fe_drivetrain.command_line.options import Scheduler, with_options
 from fe_drivetrain.command_line.settings import (
     Loads,
@@ -18,7 +19,7 @@ from fe_drivetrain.command_line.settings import (
     parse_settings,
     parse_tolerance,
 )
-from fe_drivetrain.command_line.showing import shown
+from fe_drivetrain.command_line.showing import Shown
 from fe_drivetrain.command_line.studies import OutFolder, run_on_scene
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import hold_threads
@@ -41,6 +42,7 @@ class CompareRequest:
         list[str],
         typer.Argument(
             metavar="SCENE...",
+            autocompletion=complete_scene,
             help="Scene files, or names of the library: the others are compared with the first.",
         ),
     ]
@@ -99,7 +101,7 @@ def compare_command(context: typer.Context, asked: CompareRequest) -> int:
         scenes,
         title,
         asked.out,
-        shown(
+        Shown(
             lambda run: compare(designs, quantities, share, load, varied, report=run.report),
             show_compare,
         ),

@@ -10,7 +10,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fe_drivetrain.command_line.answer_text import answer_text, write_json
+from fe_drivetrain.command_line.names import complete_scene
+from fe_drivetrain.command_line.option_names import result_with_options
 from fe_drivetrain.command_line.options import with_options
+from fe_drivetrain.command_line.output_options import wants_json
 from fe_drivetrain.command_line.progress import show_steps
 from fe_drivetrain.command_line.settings import SceneSettings, parse_settings
 from fe_drivetrain.command_line.terminal import PASSED, write
@@ -36,6 +40,7 @@ class ExportRequest:
         str | None,
         typer.Argument(
             metavar="SCENE",
+            autocompletion=complete_scene,
             help="A scene or component: a file, or a name of the library, such as "
             "main_bearing_bonded, main_bearing_spherical, gearbox_housing, planet_carrier.",
         ),
@@ -109,7 +114,10 @@ class ExportRequest:
 def export_command(context: typer.Context, asked: ExportRequest) -> int:
     """Write a scene for other programs: condensed matrices, a model for CalculiX, or its mesh."""
     if asked.formats:
-        write(sys.stdout, formats_table())
+        if wants_json():
+            write_json(format_rows())
+        else:
+            write(sys.stdout, formats_table())
         return PASSED
     hold_threads()
     changes = parse_settings(asked.set_ or ())
@@ -126,7 +134,13 @@ def export_command(context: typer.Context, asked: ExportRequest) -> int:
         raise InputError(f"--out {out} exists: give another file, or add --overwrite")
     if out.exists() and Path(scene).exists() and out.samefile(scene):
         raise InputError(f"--out {out} is the scene itself: give another file")
-    write(sys.stdout, f"{out}: {_written(found, wanted)}\n")
+    result = _written(found, wanted)
+    if wants_json():
+        write_json(result.to_dict())
+    else:
+        write(
+            sys.stdout, f"{answer_text(result.answer, result.notes)}\n{result.details[0]}\n{out}\n"
+        )
     return PASSED
 
 
@@ -225,7 +239,7 @@ class Export:
         return "summary" if self.what == _SUMMARY else "superelement"
 
 
-def _written(found: Scene | Component, wanted: Export) -> str:
+def _written(found: Scene | Component, wanted: Export) -> ExportResult:
     """Write the file; returns what is in it."""
     from fe_drivetrain.drivetrain_file.scene import Scene
     from fe_drivetrain.studies.export_content import prepare_export
@@ -249,11 +263,9 @@ def _written(found: Scene | Component, wanted: Export) -> str:
             wanted.modes or 0,
             report=report,
         )
-        for warning in result.notes:
-            report(f"warning: {warning}")
         report("write")
         _write(result, wanted)
-    return result.details[0]
+    return result_with_options(result)
 
 
 def _check_format(wanted: Export, kind: Kind) -> None:
@@ -289,6 +301,21 @@ def _write(result: ExportResult, wanted: Export) -> None:
         export.write_inp(content, wanted.out)
 
 
+def format_rows() -> list[dict[str, str]]:
+    """Formats as records: name, usual ending, programs that read it, and what it needs."""
+    from fe_drivetrain.export.files import FORMATS
+
+    return [
+        {
+            "format": one.name,
+            "ending": one.suffix,
+            "read by": one.reader,
+            "needs": f"fe-drivetrain[{one.extra}]" if one.extra else "",
+        }
+        for one in FORMATS.values()
+    ]
+
+
 def formats_table() -> str:
     """Formats: name, usual ending, programs that read it, and the extra that it needs.
 
@@ -297,13 +324,8 @@ def formats_table() -> str:
     str
         A heading, and a line for each format.
     """
-    from fe_drivetrain.export.files import FORMATS
-
-    head = ("format", "ending", "read by", "needs")
-    rows = [head] + [
-        (f.name, f.suffix, f.reader, f"fe-drivetrain[{f.extra}]" if f.extra else "")
-        for f in FORMATS.values()
-    ]
+    found = format_rows()
+    rows = [list(found[0]), *(list(one.values()) for one in found)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = [
         "  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip()

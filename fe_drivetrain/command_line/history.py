@@ -5,14 +5,17 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Sequence
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fe_drivetrain.command_line.answer_text import write_json
+from fe_drivetrain.command_line.names import complete_case
+from fe_drivetrain.command_line.output_options import wants_json
 from fe_drivetrain.command_line.terminal import PASSED, guarded, write
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.near_words import did_you_mean
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.history import PastRun
@@ -22,7 +25,12 @@ _COLUMNS = ("when", "case", "program", "mode", "verdict", "answer", "change", "t
 
 def history_command(
     case: Annotated[
-        str, typer.Argument(metavar="CASE", help="GROUP/NAME, or NAME if it is unique.")
+        str,
+        typer.Argument(
+            metavar="CASE",
+            autocompletion=complete_case,
+            help="GROUP/NAME, or NAME if it is unique.",
+        ),
     ] = "",
     out: Annotated[
         Path, typer.Option("--out", metavar="DIR", help="Folder of reports, as of `run`.")
@@ -39,7 +47,11 @@ def history_command(
         from fe_drivetrain.report.history import past_runs
 
         runs = past_runs(out)
-        write(sys.stdout, history_text(_of_case(runs, case) if case else runs))
+        shown = _of_case(runs, case) if case else runs
+        if wants_json():
+            write_json([run._asdict() for run in shown])
+            return PASSED
+        write(sys.stdout, history_text(shown))
         return PASSED
 
     raise typer.Exit(guarded(work))
@@ -97,12 +109,9 @@ def _cells(run: PastRun, before: PastRun | None) -> list[str]:
 def _of_case(runs: Sequence[PastRun], case: str) -> list[PastRun]:
     names = sorted({run.name for run in runs})
     found = [name for name in names if case in (name, name.rpartition("/")[2])]
-    if len(found) != 1:
-        by_word = {word: name for name in names for word in (name, name.rpartition("/")[2])}
-        close = get_close_matches(case, by_word, n=1)
-        hint = f" (did you mean {by_word[close[0]]!r}?)" if close and not found else ""
-        raise InputError(
-            f"case {case!r} is {'ambiguous' if found else 'not in this history'}{hint}: "
-            f"use one of {', '.join(found or names)}"
-        )
+    if len(found) > 1:
+        raise InputError(f"case {case!r} is ambiguous: use one of {', '.join(found)}")
+    if not found:
+        near = did_you_mean(case, names) or "none is like it;"
+        raise InputError(f"case {case!r} is not in this history: {near} without CASE all are shown")
     return [run for run in runs if run.name == found[0]]

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import typer
 
+from fe_drivetrain.command_line.answer_text import show_outcome
 from fe_drivetrain.command_line.life_request import LifeRequest
 from fe_drivetrain.command_line.options import with_options
 from fe_drivetrain.command_line.progress import show_steps
-from fe_drivetrain.command_line.run import say_outcome
 from fe_drivetrain.command_line.settings import parse_settings
-from fe_drivetrain.command_line.showing import shown
+from fe_drivetrain.command_line.showing import Shown
 from fe_drivetrain.command_line.terminal import as_typed
 from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
@@ -46,18 +46,19 @@ def life_command(context: typer.Context, asked: LifeRequest) -> int:
         # before the run: a mistake leaves no trace in a folder of reports
         report("bearings")
         drivetrain = DrivetrainBearings(scene, options)
+        work = Shown(
+            lambda run: lives_under(
+                drivetrain, files, place, resume=asked.resume, report=run.report
+            ),
+            show_life,
+            write_life,
+        )
         case = Case(
             f"life/{Path(asked.scene).stem}",
             f"{drivetrain.scene.title}: rating life of its bearings",
             "the user's scene and files",
-            shown(
-                lambda run: lives_under(
-                    drivetrain, files, place, resume=asked.resume, report=run.report
-                ),
-                show_life,
-                write_life,
-            ),
+            work,
             command=as_typed(),
         )
         results = run_case(case, asked.folder.resolve(), report=report)
-    return say_outcome(results, asked.folder / "report.html")
+    return show_outcome(results, asked.folder / "report.html", work.result)

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from fe_drivetrain.command_line.answer_text import show_outcome
 from fe_drivetrain.command_line.loads_request import LoadsRequest
 from fe_drivetrain.command_line.options import with_options
 from fe_drivetrain.command_line.progress import show_steps
-from fe_drivetrain.command_line.run import say_outcome
-from fe_drivetrain.command_line.showing import shown
+from fe_drivetrain.command_line.showing import Shown
 from fe_drivetrain.command_line.terminal import as_typed
 from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
@@ -43,16 +43,17 @@ def loads_command(context: typer.Context, asked: LoadsRequest) -> int:
     check_result_folder(asked.out)
     count, study = _study(context, asked)
     writer = parquet_writer() if asked.parquet else None
+    work = Shown(study, show_loads, lambda run, page, of: write_loads(run, page, of, writer))
     case = Case(
         "loads/histories",
         f"Load histories of {count} file{'s' * (count > 1)}",
         "the user's files",
-        shown(study, show_loads, lambda run, page, result: write_loads(run, page, result, writer)),
+        work,
         command=as_typed(),
     )
     with show_steps() as report, scheduled_by(asked.scheduler):
         results = run_case(case, asked.out.resolve(), report=report)
-    return say_outcome(results, asked.out / "report.html")
+    return show_outcome(results, asked.out / "report.html", work.result)
 
 
 def _study(context: typer.Context, asked: LoadsRequest) -> tuple[int, Callable[[Run], LoadsResult]]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from fe_drivetrain.command_line.names import complete_scene
 from fe_drivetrain.command_line.options import (
     Channels,
     Mapping,
@@ -146,6 +147,7 @@ class LoadsRequest:
         typer.Option(
             "--scene",
             metavar="SCENE",
+            autocompletion=complete_scene,
             help="A scene whose bearing reactions to these loads are shown and compared, too.",
         ),
     ] = None

@@ -9,6 +9,8 @@ from typing import Annotated
 
 import typer
 
+from fe_drivetrain.command_line.answer_text import write_json
+from fe_drivetrain.command_line.output_options import wants_json
 from fe_drivetrain.command_line.terminal import PASSED, guarded, write
 from fe_drivetrain.common.errors import InputError
 
@@ -43,6 +45,9 @@ def new_command(
         )
 
         if list_:
+            if wants_json():
+                write_json({name: found.title for name, found in ARRANGEMENTS.items()})
+                return PASSED
             width = max(map(len, ARRANGEMENTS))
             lines = [f"{name:<{width}}  {found.title}\n" for name, found in ARRANGEMENTS.items()]
             write(sys.stdout, "".join(lines))
@@ -56,6 +61,9 @@ def new_command(
             file.with_name(SCHEMA_FILE): scene_schema(),
         }
         write_all(texts, overwrite)
+        if wants_json():
+            write_json({"file": str(file), "title": ARRANGEMENTS[arrangement].title})
+            return PASSED
         write(
             sys.stdout,
             f"{file}: {ARRANGEMENTS[arrangement].title}\n"

@@ -100,10 +100,8 @@ def result_with_options(result: _R) -> _R:
     )
 
 
-def _answer_with_options(answer: Answer | None) -> Answer | None:
+def _answer_with_options(answer: Answer) -> Answer:
     """An answer with options in its verdict and cautions."""
-    if answer is None:
-        return None
     return answer.model_copy(
         update={
             "verdict": with_options(answer.verdict),

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_type_hints
 
 import typer
 
+from fe_drivetrain.command_line.names import complete_scene
 from fe_drivetrain.command_line.terminal import KEPT, guarded
 from fe_drivetrain.common.errors import InputError
 
@@ -22,7 +23,9 @@ if TYPE_CHECKING:
 SceneName = Annotated[
     str,
     typer.Argument(
-        metavar="SCENE", help="A scene file, or a name of the library, as in two_bearings."
+        metavar="SCENE",
+        autocompletion=complete_scene,
+        help="A scene file, or a name of the library, as in two_bearings.",
     ),
 ]
 Channels = Annotated[

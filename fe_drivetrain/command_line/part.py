@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fe_drivetrain.command_line.answer_text import answer_text, write_json
+from fe_drivetrain.command_line.option_names import result_with_options
+from fe_drivetrain.command_line.output_options import wants_json
 from fe_drivetrain.command_line.terminal import PASSED, guarded, write
 from fe_drivetrain.common.errors import InputError
 
@@ -60,12 +63,17 @@ def part_command(
         if picture is not None:
             _check_picture(picture, overwrite)
         result = part(file, bore, [point for point in held.split(",") if point])
+        drawn = result.survey is not None and picture is not None and _draw(result.survey, picture)
+        if wants_json():
+            write_json(result_with_options(result).to_dict())
+            return PASSED
+        write(sys.stdout, f"{answer_text(result.answer, result.notes)}\n")
         if result.survey is not None:
             write(sys.stdout, result.survey.text)
-            if picture is not None and len(result.survey.triangles):
-                _draw(result.survey, picture)
         elif result.element is not None and result.housing is not None:
             write(sys.stdout, _stiffness_text(file, result.element, result.housing))
+        if drawn:
+            write(sys.stdout, f"\npicture: {picture}\n")
         return PASSED
 
     raise typer.Exit(guarded(work, "nothing is changed"))
@@ -82,8 +90,10 @@ def _check_picture(picture: Path, overwrite: bool) -> None:
         raise InputError(f"--picture {picture} exists: give another file, or add --overwrite")
 
 
-def _draw(found: Survey, picture: Path) -> None:
-    """Draw what was found; the file appears whole or not at all."""
+def _draw(found: Survey, picture: Path) -> bool:
+    """Draw what was found; the file appears whole or not at all. Whether it did."""
+    if not len(found.triangles):
+        return False
     from fe_drivetrain.common.files import atomic_path, scratch_folder
     from fe_drivetrain.report.pictures import NoPictureError
     from fe_drivetrain.report.pictures.part import picture_of_part
@@ -94,10 +104,10 @@ def _draw(found: Survey, picture: Path) -> None:
             picture_of_part(found.points, found.triangles, found.marks, drawn)
         except NoPictureError as error:
             write(sys.stderr, f"fe-drivetrain: no picture: {error}\n")
-            return
+            return False
         with atomic_path(picture) as unfinished:
             unfinished.write_bytes(drawn.read_bytes())
-    write(sys.stdout, f"\npicture: {picture}\n")
+    return True
 
 
 def _stiffness_text(file: Path, element: Superelement, housing: CondensedHousing) -> str:

@@ -1,13 +1,12 @@
 """Progress of a command on standard error: each step as it begins, and the time that it took.
 
 On a terminal, steps that run are live lines, one for each parallel process (lane); a step that has
-ended stays above them as a line of its own. In a log file there is a line at the beginning and one
-at the end of each step.
+ended stays above them as a line of its own. In a log file there is one line of each step, at its
+beginning: what runs, or hangs, is the last one.
 """
 
 from __future__ import annotations
 
-import io
 import re
 import sys
 import threading
@@ -17,7 +16,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import IO, TYPE_CHECKING, cast
 
-from fe_drivetrain.command_line.terminal import write
+from fe_drivetrain.command_line.terminal import Stream
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -59,23 +58,6 @@ def _duration(seconds: float) -> str:
     return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60} min"
 
 
-class _Stream(io.TextIOBase):
-    """Standard error as it is now, for rich; it is no error when its reader has gone away."""
-
-    def __init__(self) -> None:
-        self._stream = sys.stderr
-
-    def write(self, text: str) -> int:
-        write(self._stream, text)
-        return len(text)
-
-    def isatty(self) -> bool:
-        return self._stream.isatty()
-
-    def fileno(self) -> int:
-        return self._stream.fileno()
-
-
 @contextmanager
 def show_steps() -> Iterator[Progress]:
     """Show steps, each from its report until the next one of its lane.
@@ -91,7 +73,7 @@ def show_steps() -> Iterator[Progress]:
     from rich.progress import Progress as Display
     from rich.progress import SpinnerColumn, TextColumn, TimeElapsedColumn
 
-    console = Console(file=cast(IO[str], _Stream()), highlight=False)
+    console = Console(file=cast(IO[str], Stream(sys.stderr)), highlight=False)
     display = Display(
         SpinnerColumn(),
         TextColumn("{task.description}", markup=False),
@@ -151,7 +133,9 @@ class _Lanes:
         if lane in self._running:
             step = self._running.pop(lane)
             self._display.remove_task(step.task)
-            self._show(f"{step.name} ... {outcome or f'{time.perf_counter() - step.began:.1f} s'}")
+            if outcome or self._console.is_terminal:
+                seconds = time.perf_counter() - step.began
+                self._show(f"{step.name} ... {outcome or f'{seconds:.1f} s'}")
 
     def _show(self, line: str) -> None:
         self._console.print(line, markup=False, soft_wrap=True)

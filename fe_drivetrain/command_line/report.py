@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from fe_drivetrain.command_line.answer_text import show_outcome
 from fe_drivetrain.command_line.options import (
     Catalogues,
     RotorSpeed,
@@ -19,10 +19,10 @@ from fe_drivetrain.command_line.options import (
 )
 from fe_drivetrain.command_line.options import Mapping as ChannelMapping
 from fe_drivetrain.command_line.progress import show_steps
-from fe_drivetrain.command_line.run import Quick, results_text
+from fe_drivetrain.command_line.run import Quick
 from fe_drivetrain.command_line.settings import SceneSettings, parse_settings
-from fe_drivetrain.command_line.showing import shown
-from fe_drivetrain.command_line.terminal import FAILED, PASSED, as_typed, write
+from fe_drivetrain.command_line.showing import Shown
+from fe_drivetrain.command_line.terminal import as_typed
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.common.threads import hold_threads
 from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
@@ -97,7 +97,7 @@ class ReportRequest:
     ] = False
     out: Annotated[
         Path | None,
-        typer.Option("--out", metavar="DIR", help="Folder. Default: reports/dossier/SCENE."),
+        typer.Option("--out", metavar="DIR", help="Folder. Default: reports/dossiers/SCENE."),
     ] = None
     set_: SceneSettings = None
 
@@ -149,8 +149,7 @@ def report_command(context: typer.Context, asked: ReportRequest) -> int:
             report("pictures")
             write_pictures(needs_browser, results, folder / "pictures")
     shown_page = asked.folder / GROUP / OVERVIEW / "report.html"
-    write(sys.stdout, results_text(results, shown_page))
-    return PASSED if results.passed else FAILED
+    return show_outcome(results, shown_page)
 
 
 def _dossier(
@@ -168,7 +167,7 @@ def _dossier(
         for name, work in works.items()
     }
     of_parts = {**content, "parts": {name: part.digest for name, part in parts.items()}}
-    overview = shown(lambda run: dossier(scene, parts), show_dossier)
+    overview = Shown(lambda run: dossier(scene, parts), show_dossier)
     return _made(folder, OVERVIEW, names, scene, overview, of_parts, asked.quick, report)
 
 
@@ -231,7 +230,7 @@ def _works(asked: ReportRequest, scene: Scene, own: StudyLoads) -> dict[str, Wor
         write_study(run, page, result, own.histories)
 
     works: dict[str, Work] = {
-        "loads": shown(
+        "loads": Shown(
             lambda run: loads(
                 asked.loads,
                 LoadOptions(skip=asked.skip, channels=channels, rotor_speed_rpm=rpm),
@@ -240,12 +239,12 @@ def _works(asked: ReportRequest, scene: Scene, own: StudyLoads) -> dict[str, Wor
             show_loads,
             write_loads,
         ),
-        "reactions": shown(
+        "reactions": Shown(
             lambda run: study(scene, own, quick=run.quick, report=run.report),
             show_study,
             write_reactions,
         ),
-        "life": shown(
+        "life": Shown(
             lambda run: life(
                 scene,
                 asked.loads,
@@ -258,8 +257,8 @@ def _works(asked: ReportRequest, scene: Scene, own: StudyLoads) -> dict[str, Wor
             show_life,
             write_life,
         ),
-        "model": shown(lambda run: advise(scene, first, TOLERANCE, report=run.report), show_advise),
-        "check": shown(lambda run: check(scene, catalogues, report=run.report), show_check),
+        "model": Shown(lambda run: advise(scene, first, TOLERANCE, report=run.report), show_advise),
+        "check": Shown(lambda run: check(scene, catalogues, report=run.report), show_check),
     }
     if not any(unit.catalogue for unit in scene.bearing_units):
         del works["life"]

@@ -11,7 +11,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.core import TyperCommand
 
+from fe_drivetrain.command_line.answer_text import several_results_text, show_outcome, write_json
+from fe_drivetrain.command_line.names import complete_case
 from fe_drivetrain.command_line.options import Scheduler
+from fe_drivetrain.command_line.output_options import open_if_asked, wants_json
 from fe_drivetrain.command_line.progress import show_steps
 from fe_drivetrain.command_line.settings import CaseSettings, parse_settings
 from fe_drivetrain.command_line.terminal import FAILED, KEPT, MISTAKE, PASSED, guarded, write
@@ -20,10 +23,8 @@ from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
 
 if TYPE_CHECKING:
-    from fe_drivetrain.report.results import Problem, Results, Verdict
+    from fe_drivetrain.report.results import Problem, Results
     from fe_drivetrain.report.suite.case import Case
-
-_SUMMARY_SENTENCES = 3
 
 OutFolder = Annotated[
     Path | None,
@@ -40,25 +41,66 @@ Quick = Annotated[bool, typer.Option("--quick", help="Coarser and smaller, for a
 
 
 def list_command(
+    words: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="WORD",
+            help="Cases whose group, name or title has this in it; of several, all of them.",
+        ),
+    ] = None,
     settings: Annotated[
         bool, typer.Option("--settings", help="Show what --set changes of each case, too.")
     ] = False,
 ) -> None:
-    """List the validation cases."""
+    """List the validation cases, or those with a word in group, name or title."""
 
     def work() -> int:
         from fe_drivetrain.report.suite.case import all_cases
 
-        cases = all_cases()
+        cases = _with_words(all_cases(), words or ())
         taken = {}
         if settings:
             from fe_drivetrain.report.suite.settings import settings_in_words
 
             taken = {name: settings_in_words(case) for name, case in cases.items()}
+        if wants_json():
+            write_json(
+                [
+                    {"name": name, "title": one.title, "source": one.source}
+                    | ({"settings": taken[name]} if settings else {})
+                    for name, one in cases.items()
+                ]
+            )
+            return PASSED
         write(sys.stdout, cases_text({name: case.title for name, case in cases.items()}, taken))
         return PASSED
 
     raise typer.Exit(guarded(work))
+
+
+def _with_words(cases: Mapping[str, Case], words: Sequence[str]) -> dict[str, Case]:
+    """Cases whose name or title has each of the words in it; those of a group by its name alone.
+
+    Raises
+    ------
+    InputError
+        There is none.
+    """
+    if len(words) == 1:
+        group = {name: one for name, one in cases.items() if name.startswith(f"{words[0]}/")}
+        if group:
+            return group
+    found = {
+        name: one
+        for name, one in cases.items()
+        if all(word.lower() in f"{name} {one.title}".lower() for word in words)
+    }
+    if not found:
+        raise InputError(
+            f"no case has {' and '.join(map(repr, words))} in group, name or title: leave it out "
+            "to list all"
+        )
+    return found
 
 
 def run_command(
@@ -66,6 +108,7 @@ def run_command(
         list[str] | None,
         typer.Argument(
             metavar="CASE",
+            autocompletion=complete_case,
             help="GROUP/NAME, NAME if it is unique, or GROUP for all its cases. CASE --help shows "
             "what --set changes of it.",
         ),
@@ -277,7 +320,7 @@ def _run_one(case: Case, out: Path | None, settings: Mapping[str, Any], quick: b
     with show_steps() as report:
         # a link or "." is resolved, so that the folder it leads to is replaced, not the link
         results = run_case(case, folder.resolve(), settings, quick, report)
-    write(sys.stdout, results_text(results, folder / "report.html"))
+    show_outcome(results, folder / "report.html")
     return results
 
 
@@ -304,9 +347,21 @@ def _run_several(
         for case in cases
         if case.name not in problems
     }
-    names = [case.name for case in cases]
-    write(sys.stdout, several_results_text(names, results, problems, folder / "index.html"))
+    names, page = [case.name for case in cases], folder / "index.html"
+    if wants_json():
+        write_json({name: _as_json(results.get(name), problems.get(name)) for name in names})
+    else:
+        write(sys.stdout, several_results_text(names, results, problems, page))
+    open_if_asked(page)
     return results, problems
+
+
+def _as_json(results: Results | None, problem: Problem | None) -> Any:
+    """The answer of a case; or why there is none."""
+    if problem is not None:
+        return {"state": problem.state, "message": problem.message}
+    answer = None if results is None else results.answer
+    return None if answer is None else answer.model_dump(mode="json")
 
 
 def cases_text(titles: Mapping[str, str], settings: Mapping[str, str]) -> str:
@@ -333,142 +388,3 @@ def cases_text(titles: Mapping[str, str], settings: Mapping[str, str]) -> str:
                 lines.append(f"  {'':<{width}}  --set: {settings[name]}")
         groups.append("\n".join([*lines, ""]))
     return "\n".join(groups)
-
-
-def results_text(results: Results, page: Path) -> str:
-    """Outcome of one case: its notes, each check, the first sentences, and where its report is.
-
-    Parameters
-    ----------
-    results : Results
-        Of the case.
-    page : Path
-        Its report.
-
-    Returns
-    -------
-    str
-    """
-    from fe_drivetrain.report.results import verdict_sentence
-
-    before = [*results.notes, *results.unsettled]
-    lines = [*before, *([""] if before else [])]
-    lines += [verdict_line(verdict) for verdict in results.verdicts]
-    answered = [verdict_sentence(results)] if results.answer else results.details
-    lines += ["", *answered[:_SUMMARY_SENTENCES], ""]
-    lines += [f"{_count(results)}: {page}"]
-    return "".join(f"{line}\n" for line in lines)
-
-
-def say_outcome(results: Results, page: Path) -> int:
-    """Print the outcome of one case; its exit status.
-
-    Parameters
-    ----------
-    results : Results
-        Results of the case.
-    page : Path
-        Its report.
-    """
-    write(sys.stdout, results_text(results, page))
-    return PASSED if results.passed else FAILED
-
-
-def tables_text(results: Results, page: Path) -> str:
-    """Summary and tables of a case in plain text, and where its report is.
-
-    Parameters
-    ----------
-    results : Results
-        Of the case.
-    page : Path
-        Its report.
-
-    Returns
-    -------
-    str
-    """
-    from fe_drivetrain.report.number_text import formatted
-    from fe_drivetrain.report.results import Table, verdict_sentence
-
-    lines = [*([verdict_sentence(results)] if results.answer else []), *results.details]
-    for section in results.sections:
-        for table in (item for item in section.items if isinstance(item, Table)):
-            rows = [table.columns, *([formatted(cell) for cell in row] for row in table.rows)]
-            widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-            lines += ["", table.caption]
-            lines += [
-                "  " + "  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip()
-                for row in rows
-            ]
-    lines += ["", f"Report: {page}"]
-    return "".join(f"{line}\n" for line in lines)
-
-
-def several_results_text(
-    names: Sequence[str],
-    results: Mapping[str, Results],
-    problems: Mapping[str, Problem],
-    page: Path,
-) -> str:
-    """Outcome of several cases: a line for each, its failed checks, and where the list is.
-
-    Parameters
-    ----------
-    names : sequence of str
-        Of the cases, in order.
-    results : mapping
-        Results by name.
-    problems : mapping
-        Why there are no results, by name.
-    page : Path
-        The page that lists the cases.
-
-    Returns
-    -------
-    str
-    """
-    lines = []
-    for name in names:
-        if name in problems:
-            problem = problems[name]
-            kind = "skip" if problem.state == "skipped" else "none"
-            lines.append(f"{kind}  {name}: {problem.message}")
-            continue
-        found = results[name]
-        outcome = "pass" if found.settled else "open" if found.passed else "FAIL"
-        lines.append(f"{outcome}  {name}: {_count(found)}, {sum(found.times.values()):.1f} s")
-        lines += [f"      {note}" for note in found.notes if not found.environment.quick]
-        lines += [f"      {sentence}" for sentence in found.unsettled]
-        lines += [f"      {verdict_line(v)}" for v in found.verdicts if not v.passed]
-    passed = sum(found.settled for found in results.values())
-    left = sum(found.passed and not found.settled for found in results.values())
-    still = f", {left} open" if left else ""
-    lines += ["", f"{passed} of {len(names)} cases pass{still}: {page}"]
-    return "".join(f"{line}\n" for line in lines)
-
-
-def _count(results: Results) -> str:
-    passed = sum(verdict.passed for verdict in results.verdicts)
-    return f"{passed} of {len(results.verdicts)} checks pass"
-
-
-def verdict_line(verdict: Verdict) -> str:
-    """One check: outcome, quantity, computed value, reference and tolerance.
-
-    Parameters
-    ----------
-    verdict : Verdict
-        The check.
-
-    Returns
-    -------
-    str
-    """
-    from fe_drivetrain.report.results import expectation
-
-    unit = f" {verdict.unit}" if verdict.unit not in ("", "-") else ""
-    return (
-        f"{'pass' if verdict.passed else 'FAIL'}  {verdict.quantity}: "
-        f"computed {verdict.computed:.5g}{unit}, {expectation(verdict)}"
-    )

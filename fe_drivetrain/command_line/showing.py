@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from fe_drivetrain.command_line.option_names import result_with_options, sections_with_options
 
@@ -12,14 +12,10 @@ if TYPE_CHECKING:
     from fe_drivetrain.report.suite.run import Run
     from fe_drivetrain.studies.result import Result
 
-    _R = TypeVar("_R", bound=Result)
+_R = TypeVar("_R", bound="Result")
 
 
-def shown(
-    study: Callable[[Run], _R],
-    show: Callable[[Run, Page, _R], None],
-    write: Callable[[Run, Page, _R], None] | None = None,
-) -> Callable[[Run, Page], None]:
+class Shown(Generic[_R]):
     """The work of a case that makes a study, shows its result, and writes its files.
 
     Parameters
@@ -31,15 +27,29 @@ def shown(
         already; pictures go to the folder of the run.
     write : callable, optional
         Writes files to the folder of the run, and lists them in the last section.
+
+    Attributes
+    ----------
+    result : Result or None
+        What was found, with options in place of arguments; None until it is.
     """
 
-    def work(run: Run, page: Page) -> None:
-        result = study(run)
-        run.take(result)
-        page.take(result_with_options(result))
-        show(run, page, result)
-        page.sections = sections_with_options(page.sections)
-        if write is not None:
-            write(run, page, result)
+    def __init__(
+        self,
+        study: Callable[[Run], _R],
+        show: Callable[[Run, Page, _R], None],
+        write: Callable[[Run, Page, _R], None] | None = None,
+    ) -> None:
+        self._study, self._show, self._write = study, show, write
+        self.result: _R | None = None
 
-    return work
+    def __call__(self, run: Run, page: Page) -> None:
+        """Make the study, and fill the page."""
+        result = self._study(run)
+        run.take(result)
+        self.result = result_with_options(result)
+        page.take(self.result)
+        self._show(run, page, result)
+        page.sections = sections_with_options(page.sections)
+        if self._write is not None:
+            self._write(run, page, result)

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from fe_drivetrain.command_line.options import (
-    Catalogues,
-    SceneName,
-)
+from fe_drivetrain.command_line.answer_text import show_outcome
+from fe_drivetrain.command_line.options import Catalogues, SceneName
 from fe_drivetrain.command_line.progress import show_steps
-from fe_drivetrain.command_line.run import results_text, tables_text
 from fe_drivetrain.command_line.settings import (
     Loads,
     SceneSettings,
@@ -23,16 +19,14 @@ from fe_drivetrain.command_line.settings import (
     parse_settings,
     parse_tolerance,
 )
-from fe_drivetrain.command_line.showing import shown
-from fe_drivetrain.command_line.terminal import FAILED, PASSED, as_typed, guarded, write
+from fe_drivetrain.command_line.showing import Shown
+from fe_drivetrain.command_line.terminal import as_typed, guarded
 from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
 from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.results import Results
-    from fe_drivetrain.report.suite.page import Page
-    from fe_drivetrain.report.suite.run import Run
 
 OutFolder = Annotated[
     Path | None,
@@ -48,8 +42,8 @@ def check_command(
 ) -> None:
     """Check a scene, describe and draw it, and predict what each level of the ladder costs.
 
-    Prints parts, bearings, supports, masses and costs; the report has the picture, too. Entries
-    that the scene names under 'catalogue' must be in the program's bearing catalogue, or in yours.
+    The page has its picture, parts, bearings, supports, masses and costs. Entries that the scene
+    names under 'catalogue' must be in the program's bearing catalogue, or in yours.
 
     The exit status is 0 if the scene can be solved, 2 if it cannot.
     """
@@ -61,15 +55,13 @@ def check_command(
         from fe_drivetrain.studies.scene_check import check
 
         title = f"{found.title}: what the scene is, and what it costs"
-        results, page = _results_of_scene(
+        return run_on_scene(
             "check",
             [scene],
             title,
             out,
-            shown(lambda run: check(found, tuple(catalogue or ()), report=run.report), show_check),
+            Shown(lambda run: check(found, tuple(catalogue or ()), report=run.report), show_check),
         )
-        write(sys.stdout, tables_text(results, page))
-        return PASSED
 
     raise typer.Exit(guarded(work))
 
@@ -123,7 +115,7 @@ def advise_command(
             [scene],
             f"{found.title}: the model level that {name} needs",
             out,
-            shown(
+            Shown(
                 lambda run: advise(found, name, share, loads, to_the_top, report=run.report),
                 show_advise,
             ),
@@ -137,7 +129,7 @@ def run_on_scene(
     scenes: Sequence[str],
     title: str,
     out: Path | None,
-    study: Callable[[Run, Page], None],
+    study: Shown[Any],
     quick: bool = False,
     scheduler: str | None = None,
 ) -> int:
@@ -153,8 +145,8 @@ def run_on_scene(
         Title of the page.
     out : Path or None
         The folder, where the user named one.
-    study : callable
-        Fills the page.
+    study : Shown
+        Makes the study, and fills the page.
     quick : bool
         Whether it is a quick run.
     scheduler : str or None
@@ -167,8 +159,7 @@ def run_on_scene(
     """
     with scheduled_by(scheduler):
         results, page = _results_of_scene(command, scenes, title, out, study, quick)
-    write(sys.stdout, results_text(results, page))
-    return PASSED if results.passed else FAILED
+    return show_outcome(results, page, study.result)
 
 
 def _results_of_scene(
@@ -176,7 +167,7 @@ def _results_of_scene(
     scenes: Sequence[str],
     title: str,
     out: Path | None,
-    study: Callable[[Run, Page], None],
+    study: Shown[Any],
     quick: bool = False,
 ) -> tuple[Results, Path]:
     """Run a study as a case of its own; its results, and its report."""

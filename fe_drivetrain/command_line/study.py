@@ -18,7 +18,7 @@ from fe_drivetrain.command_line.options import (
 )
 from fe_drivetrain.command_line.run import Quick
 from fe_drivetrain.command_line.settings import SceneSettings, parse_settings
-from fe_drivetrain.command_line.showing import shown
+from fe_drivetrain.command_line.showing import Shown
 from fe_drivetrain.command_line.studies import OutFolder, run_on_scene
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import hold_threads
@@ -128,7 +128,7 @@ def study_command(context: typer.Context, asked: StudyRequest) -> int:
         [asked.scene],
         f"{scene.title}: stiffness, reactions, and beams against FE",
         asked.out,
-        shown(
+        Shown(
             lambda run: study(scene, own, slopes, asked.weight, run.quick, report=run.report),
             show_study,
             lambda run, page, result: write_study(run, page, result, histories),

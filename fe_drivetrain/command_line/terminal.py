@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import shlex
 import signal
@@ -169,6 +170,32 @@ def write(stream: TextIO, text: str) -> None:
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, stream.fileno())
         os.close(nowhere)
+
+
+class Stream(io.TextIOBase):
+    """A stream for rich; it is no error when its reader has gone away.
+
+    Parameters
+    ----------
+    stream : TextIO
+        Standard output or standard error, as it is now.
+    """
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+
+    def write(self, text: str) -> int:
+        """Write and flush; number of characters."""
+        write(self._stream, text)
+        return len(text)
+
+    def isatty(self) -> bool:
+        """Whether it is a terminal."""
+        return self._stream.isatty()
+
+    def fileno(self) -> int:
+        """Number of its file."""
+        return self._stream.fileno()
 
 
 def prepare_streams() -> None:

@@ -16,7 +16,7 @@ from fe_drivetrain.command_line.settings import (
     parse_settings,
     parse_tolerance,
 )
-from fe_drivetrain.command_line.showing import shown
+from fe_drivetrain.command_line.showing import Shown
 from fe_drivetrain.command_line.studies import OutFolder, run_on_scene
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import hold_threads
@@ -122,6 +122,6 @@ def uncertainty_command(context: typer.Context, asked: UncertaintyRequest) -> in
         [asked.scene],
         f"{scene.title}: uncertainty of the results",
         asked.out,
-        shown(study, show_uncertainty),
+        Shown(study, show_uncertainty),
         scheduler=asked.scheduler,
     )

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fe_drivetrain.command_line.answer_text import show_outcome, write_json
 from fe_drivetrain.command_line.new_scene import SUFFIXES, write_all
+from fe_drivetrain.command_line.output_options import wants_json
 from fe_drivetrain.command_line.progress import show_steps
-from fe_drivetrain.command_line.terminal import FAILED, PASSED, as_typed, guarded, write
+from fe_drivetrain.command_line.terminal import PASSED, as_typed, guarded, write
 from fe_drivetrain.common.errors import InputError
 
 if TYPE_CHECKING:
@@ -67,7 +69,10 @@ def validate_command(
                 project.with_name(PROJECT_SCHEMA_FILE): project_schema(),
             }
             write_all(texts, overwrite)
-            write(sys.stdout, _begun(project))
+            if wants_json():
+                write_json({"file": str(project)})
+            else:
+                write(sys.stdout, _begun(project))
             return PASSED
         return _validated(project, out)
 
@@ -91,16 +96,15 @@ def _begun(path: Path) -> str:
 
 
 def _validated(path: Path, out: Path | None) -> int:
-    from fe_drivetrain.command_line.showing import shown
+    from fe_drivetrain.command_line.showing import Shown
     from fe_drivetrain.command_line.validate_commands import ready_commands
     from fe_drivetrain.pages.validate import show_validate
     from fe_drivetrain.procedure.iteration_log import log_file
     from fe_drivetrain.procedure.project import read_project
-    from fe_drivetrain.procedure.steps import STEPS
     from fe_drivetrain.report.suite.case import Case
     from fe_drivetrain.report.suite.ownership import check_result_folder
     from fe_drivetrain.report.suite.result_folders import run_case
-    from fe_drivetrain.studies.project_validation import reasons, validate
+    from fe_drivetrain.studies.project_validation import validate
 
     project = read_project(path)
     reports = path.parent / project.reports
@@ -112,30 +116,32 @@ def _validated(path: Path, out: Path | None) -> int:
         log=_logged(found, log_file(path)),
         commands=tuple(ready_commands(found, path)),
     )
+    work = Shown(lambda run: result, show_validate)
     case = Case(
         f"validate/{path.stem}",
         f"{project.subject}: from failure modes to comparison",
         "PROTEST 2010, ECN-E--10-100: six steps; Tables 4.1 to 4.10",
-        shown(lambda run: result, show_validate),
+        work,
         command=as_typed(),
     )
     with show_steps() as report:
         results = run_case(case, folder, report=report)
-    lines = [
-        *results.notes,
-        *([""] if results.notes else []),
-        results.answer.verdict if results.answer else results.details[0],
-    ]
+    return show_outcome(results, folder / "report.html", work.result, _what_is_open(result))
+
+
+def _what_is_open(result: ValidateResult) -> list[str]:
+    """Why each step is open, and what to type next."""
+    from fe_drivetrain.procedure.steps import STEPS
+    from fe_drivetrain.studies.project_validation import reasons
+
+    lines = []
     for state in result.states:
         if not state.complete:
             lines += ["", f"Step {state.number}, {STEPS[state.number - 1]}:"]
             lines += [f"  {text}." for text in reasons(state)]
-    lines.append("")
     if result.commands:
-        lines += ["Run next:", *(f"  {command}" for command in result.commands), ""]
-    lines += [f"Report: {folder / 'report.html'}"]
-    write(sys.stdout, "".join(f"{line}\n" for line in lines))
-    return PASSED if results.passed else FAILED
+        lines += ["", "Run next:", *(f"  {command}" for command in result.commands)]
+    return [*lines, ""] if lines else []
 
 
 def _logged(result: ValidateResult, file: Path) -> tuple[Entry, ...]:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.near_words import did_you_mean
 from fe_drivetrain.common.reading import (
     changed,
     parse_mapping,
@@ -146,7 +147,8 @@ def library_text(name: str) -> str:
     """The text of a file of the library, by its name without ending."""
     known = _library()
     if name not in known:
-        raise InputError(f"no scene {name!r} in the library: use one of {', '.join(known)}")
+        near = did_you_mean(name, known) or f"use one of {', '.join(known)};"
+        raise InputError(f"no scene {name!r} in the library: {near} a file of yours ends in .yaml")
     return known[name].read_text("utf-8")
 
 

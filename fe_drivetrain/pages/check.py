@@ -32,6 +32,7 @@ def show_check(run: Run, page: Page, result: CheckResult) -> None:
         "What each level costs: unknowns of its largest system, time, memory",
         result.tables["levels"],
     )
+    page.add(result.chart())
     page.text(
         "Predicted times are those of the solver, fitted on two cores. Times of meshing and "
         "assembly are not in them: they stand below, and the next time a mesh comes from the "
@@ -65,7 +66,9 @@ def _picture(run: Run, page: Page, model: Model) -> None:
         except NoPictureError as reason:
             page.text(f"No picture: {reason}")
             return
-    page.image(f"{model.scene.title}: parts, loads and supports", "model.png")
+    caption = f"{model.scene.title}: parts, loads and supports"
+    page.image(caption, "model.png")
+    page.hero(caption)
 
 
 def describe(page: Page, described: Mapping[str, Sequence[Record]]) -> None:

@@ -9,10 +9,12 @@ import numpy as np
 from fe_drivetrain.bearing_life.life.roller_damage import KINDS
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.pages.life_bearings import laminae, places, winds
+from fe_drivetrain.pages.life_charts import load_zone
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.report.suite.run import Run
 from fe_drivetrain.studies.bearing_lives import LifeResult
+from fe_drivetrain.studies.life_answer import hardest_loaded
 from fe_drivetrain.studies.life_sums import BearingLife
 from fe_drivetrain.studies.life_tables import ring_rows
 
@@ -40,6 +42,18 @@ def show_life(run: Run, page: Page, result: LifeResult) -> None:
         winds(page, life)
         places(page, life, ring_rows(life))
         laminae(page, life)
+    _hero(page, result)
+
+
+def _hero(page: Page, result: LifeResult) -> None:
+    """Show the load of the rollers first where lives are none to be drawn, or none to be used."""
+    lives = result.lives
+    weakest = hardest_loaded(lives)
+    ends = any(np.isfinite(list(life.years.values())).any() for life in lives)
+    if weakest.limits.static_safety < 1.0 or not ends:
+        page.hero(
+            load_zone(weakest.name, weakest.rows, weakest.mean_load, weakest.peak_load).caption
+        )
 
 
 def _lives(page: Page, result: LifeResult) -> None:

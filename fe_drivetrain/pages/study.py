@@ -147,9 +147,15 @@ def _over_time(page: Page, result: StudyResult) -> None:
     """The beginning of the middle history: radial force of each bearing, FE and beams."""
     shown = result.beginning
     with_weights = " with all weights" if result.loads.gravity else ""
+    captions = {
+        name: f"Radial force on {name}{with_weights}: the beginning of {shown.name}"
+        for name in shown.radial_forces
+    }
+    if len(shown.time) > 1:
+        page.hero(captions[max(captions, key=result.peak_across)])
     for name, forces in shown.radial_forces.items():
         page.chart(
-            f"Radial force on {name}{with_weights}: the beginning of {shown.name}",
+            captions[name],
             [
                 trace(model, shown.time, force / 1e3, line={"dash": dash})
                 for (model, force), dash in zip(forces.items(), _DASHES, strict=False)

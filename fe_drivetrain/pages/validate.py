@@ -67,6 +67,7 @@ def _show_states(page: Page, result: ValidateResult) -> None:
             for state in states
         ],
     )
+    page.add(result.chart())
 
 
 def _show_signatures(page: Page, result: ValidateResult) -> None:

@@ -446,10 +446,13 @@ def verdict_sentence(results: Results) -> str:
     Returns
     -------
     str
-        Empty where there is no answer.
+        Empty where there is no answer. A verdict that begins with "Not", as "Not complete",
+        takes its own ground away.
     """
     if results.answer is None:
         return ""
+    if results.answer.verdict.startswith("Not "):
+        return results.answer.verdict
     failed = sum(not verdict.passed for verdict in results.verdicts)
     number = len(results.verdicts)
     before = f"Not to be relied on, {failed} of {number} checks fail: " if failed else ""

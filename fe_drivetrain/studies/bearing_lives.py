@@ -24,6 +24,7 @@ from fe_drivetrain.drivetrain_file.without_weight import weightless
 from fe_drivetrain.report.charts import bars
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.studies.life_answer import state_answer
 from fe_drivetrain.studies.life_digest import kept_digest
 from fe_drivetrain.studies.life_findings import answers, assumptions, cautions, checks
 from fe_drivetrain.studies.life_options import LifeOptions
@@ -56,7 +57,7 @@ class LifeResult(Result):
     """
 
     STUDY: ClassVar[str] = "life"
-    SCHEMA_VERSION: ClassVar[int] = 2
+    SCHEMA_VERSION: ClassVar[int] = 3
 
     bearings: Mapping[str, BearingLife]
     site: Site | None
@@ -199,6 +200,7 @@ def lives_under(
     cautions(found, drivetrain.scene, lives, asked, limit_rows(lives))
     assumptions(found, lives, asked)
     checks(found, lives)
+    state_answer(found, lives, site)
     for name, table in result_tables(lives).items():
         found.data(name, table)
     return LifeResult(

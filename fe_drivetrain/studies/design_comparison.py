@@ -12,7 +12,9 @@ from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.drivetrain_file.units import unit_of_key
+from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.charts import bars, chart
+from fe_drivetrain.report.number_text import certain_value, value_text
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record, curves
@@ -20,6 +22,7 @@ from fe_drivetrain.shafts.fidelity.designs import Difference, compare_designs, s
 from fe_drivetrain.shafts.fidelity.ladder import TITLES
 from fe_drivetrain.shafts.fidelity.quantity import Quantity
 from fe_drivetrain.studies.result import Result
+from fe_drivetrain.studies.shown_units import in_large_unit, quantity_in_words
 
 #: Changes that the answer names, and that have a curve of their own.
 _NAMED, _CURVES = 3, 6
@@ -27,6 +30,7 @@ _NAMED, _CURVES = 3, 6
 _FROM_ZERO = 0.9
 #: Share of the largest value that is round-off.
 _NOTHING = 1e-6
+_WIDEST = "largest band of a change, relative to the larger value"
 #: The level of the assembly of solids.
 _ASSEMBLY = 4
 
@@ -94,7 +98,7 @@ class CompareResult(Result):
     """
 
     STUDY: ClassVar[str] = "compare"
-    SCHEMA_VERSION: ClassVar[int] = 2
+    SCHEMA_VERSION: ClassVar[int] = 3
 
     designs: Mapping[str, Scene]
     differences: Sequence[Difference]
@@ -176,8 +180,9 @@ def compare(
         differences = compare_designs(designs, quantities, tolerance, load, report)
     for name, scene in designs.items():
         found.concerns(scene, name)
-    _answer(found, differences, list(designs))
+    _explain(found, differences, list(designs))
     _judge(found, differences, tolerance)
+    _answer(found, differences, list(designs), varied)
     found.data("changes", [_change(one) for one in differences])
     options = {
         "quantities": None if quantities is None else [one.name for one in quantities],
@@ -194,22 +199,75 @@ def compare(
     )
 
 
-def _answer(found: Findings, differences: Sequence[Difference], names: Sequence[str]) -> None:
-    """The largest changes, and those that are smaller than their bands."""
+def _explain(found: Findings, differences: Sequence[Difference], names: Sequence[str]) -> None:
+    """The largest changes after the first, and those that are smaller than their bands."""
     known = [one for one in differences if one.is_known]
     for one in known[:_NAMED]:
         found.say(_sentence(one, names))
-    if not known:
-        found.say(f"No change from {names[0]} is larger than its band.")
-    elif unknown := [one.quantity.name for one in differences if not one.is_known]:
+    unknown = [one.quantity.name for one in differences if not one.is_known]
+    if known and unknown:
         found.say(_within_bands(unknown))
     _found(found, known, names)
+
+
+def _answer(
+    found: Findings, differences: Sequence[Difference], names: Sequence[str], varied: Varied | None
+) -> None:
+    """State the largest change that is known, and how many are."""
+    known = [one for one in differences if one.is_known]
+    first = names[0] if varied is None else f"{varied.key} = {names[0]}"
+    figures = [_key_figure(found, one, names) for one in known[:_NAMED]]
+    widest = found.judged(_WIDEST)
+    figures += [
+        found.value(f"changes beyond their bands, of {len(differences)} quantities", len(known)),
+        widest.model_copy(update={"name": "widest band of a change"}),
+    ]
+    if len(figures) < _NAMED:
+        figures.append(found.value("designs", len(names)))
+    if known:
+        one, other = known[0], names[int(np.argmax(known[0].ranks)) + 1]
+        at = other if varied is None else f"{varied.key} = {other}"
+        verdict = f"{quantity_in_words(one.quantity.name)} changes most: {_change_text(one)} "
+        verdict += f"at {at} against {names[0]}."
+    else:
+        verdict = f"Nothing changes from {first} by more than its band; the widest band is "
+        verdict += f"{certain_value(widest)}."
+    others = " and ".join(names[1:]) if len(names) < _NAMED + 1 else "the other designs"
+    what = f"from {names[0]} to {others}" if varied is None else f"with {varied.key}"
+    found.answer(f"What changes {what}?", verdict[:1].upper() + verdict[1:], figures)
+
+
+def _key_figure(found: Findings, one: Difference, names: Sequence[str]) -> KeyFigure:
+    """The largest change of a quantity with its band; from next to nothing its value."""
+    k = int(np.argmax(one.ranks))
+    words, other = quantity_in_words(one.quantity.name), names[k + 1]
+    if one.ranks[k] > _FROM_ZERO:
+        both = sizes(one)
+        unit = one.quantity.unit if len(one.values[0].values) == 1 else "-"
+        (value, large), (first, _) = (in_large_unit(both[at], unit) for at in (k + 1, 0))
+        return found.value(f"{words}, {other} [{large}]", value, beside=first, by=names[0])
+    return found.value(
+        f"change of {words}, {other} [%]", 100 * float(one.changes[k]), 100 * float(one.bands[k])
+    )
+
+
+def _change_text(one: Difference) -> str:
+    """The largest change of a quantity in words."""
+    k = int(np.argmax(one.ranks))
+    if one.ranks[k] > _FROM_ZERO:
+        both = sizes(one)
+        unit = one.quantity.unit if len(one.values[0].values) == 1 else ""
+        first, last = (value_text(*in_large_unit(both[at], unit)) for at in (0, k + 1))
+        return f"from {first} to {last}"
+    change, band = 100 * float(one.changes[k]), 100 * float(one.bands[k])
+    sign = "+" if change > 0.0 and len(one.values[0].values) == 1 else ""
+    return f"{sign}{value_text(change, '%', band, with_band=False)}"
 
 
 def _judge(found: Findings, differences: Sequence[Difference], tolerance: float) -> None:
     """Check the widest band against the tolerance."""
     found.at_most(
-        "largest band of a change, relative to the larger value [%]",
+        f"{_WIDEST} [%]",
         100 * float(max(one.rank_bands.max() for one in differences)),
         100 * tolerance,
         why="the tolerance that was requested, relative to the larger of the two values",

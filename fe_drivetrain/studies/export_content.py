@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal, get_args
@@ -19,7 +20,9 @@ from fe_drivetrain.export.formats.summary import SummaryFile, summary
 from fe_drivetrain.export.from_component import BODY, component_superelement
 from fe_drivetrain.export.scene_export import AUTO, SHAFT, superelement_of
 from fe_drivetrain.export.superelement import Superelement
+from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.charts import bars, stiffness_chart
+from fe_drivetrain.report.number_text import certain_value, formatted
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.shafts.fidelity.component_solid import component_mesh
@@ -135,6 +138,7 @@ def prepare_export(
         content = _condensed(steps, drivetrain, kind, what, at, level, modes)
     found.say(_description(content))
     _data(found, content)
+    _answer(found, drivetrain, kind, content)
     return ExportResult(
         drivetrain=drivetrain,
         kind=kind,
@@ -273,6 +277,67 @@ def _description(content: Content) -> str:
         )
     mesh = _mesh_of(content)
     return f"{len(mesh.cells):,} elements, {len(mesh.points):,} nodes"
+
+
+def _answer(found: Findings, drivetrain: Scene | Component, kind: Kind, content: Content) -> None:
+    """State what is ready to be written, and how certain it is."""
+    if isinstance(content, CraigBampton):
+        verdict, figures = _of_modes(found, content)
+    elif isinstance(content, Superelement):
+        verdict, figures = _of_superelement(found, content)
+    elif isinstance(content, SummaryFile):
+        mass = found.value(
+            "mass of all parts [t]", sum(p.mass for p in content.parts.values()) / 1e3
+        )
+        count = len(content.parts)
+        verdict = f"The summary has {count} part{'s' * (count > 1)} of {certain_value(mass)} in "
+        verdict += f"all, and reactions of level {content.reactions.level}."
+        figures = [mass, found.value("parts", len(content.parts))]
+        figures.append(found.value("bearing units", len(content.bearing_units)))
+    else:
+        mesh = _mesh_of(content)
+        cells, points = (
+            found.value("elements", len(mesh.cells)),
+            found.value("nodes", len(mesh.points)),
+        )
+        verdict = (
+            f"The {kind} has {certain_value(cells)} elements on {certain_value(points)} nodes."
+        )
+        figures = [cells, points, found.value("parts", len(mesh.part_names))]
+    found.answer(f"What does the {kind} of {drivetrain.title} hold?", verdict, figures)
+
+
+def _of_modes(found: Findings, content: CraigBampton) -> tuple[str, list[KeyFigure]]:
+    """Verdict and key figures of a free shaft with modes."""
+    n, m = len(content.points), len(content.omega)
+    figures = [
+        found.value("points", n),
+        found.value("modes", m),
+        found.value("size of its matrices", 6 * n + m),
+    ]
+    lowest = ""
+    if m:
+        first = found.value("lowest frequency, points fixed [Hz]", content.omega[0] / math.tau)
+        figures.insert(0, first)
+        lowest = f", the lowest at {certain_value(first)} with its points fixed"
+    return f"The free shaft has {n} points and {m} modes{lowest}.", figures
+
+
+def _of_superelement(found: Findings, content: Superelement) -> tuple[str, list[KeyFigure]]:
+    """Verdict and key figures of a part that is condensed to points."""
+    n = len(content.points)
+    bands = [found.judged(f.quantity) for f in found.figures if f.quantity.startswith("band of")]
+    mass = [found.judged("mass")] if content.mass is not None else []
+    figures = [*bands, *mass, found.value("points", n), found.value("size of its matrices", 6 * n)]
+    if not (bands and mass):
+        level = float(content.origin.level.partition(" ")[0])
+        figures.append(found.value("level of its model", level))
+    known = "the band of its stiffness is not known"
+    if bands:
+        widest = max(bands, key=lambda one: one.value)
+        known = f"its stiffness is known within {formatted(widest.value, 2)}\u00a0%"
+    state = "on its supports" if content.supported else "free"
+    return f"{content.name} is condensed to {n} points, {state}; {known}.", figures
 
 
 def _data(found: Findings, content: Content) -> None:

@@ -11,7 +11,9 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.charts import chart
+from fe_drivetrain.report.number_text import certain_value, formatted, value_text
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
@@ -25,8 +27,9 @@ from fe_drivetrain.shafts.uncertainty.input_study import (
 )
 from fe_drivetrain.shafts.uncertainty.numbers import figures
 from fe_drivetrain.shafts.uncertainty.sampling import SHARE, Band, Shares
-from fe_drivetrain.studies.input_effects import InputEffects, input_effects
+from fe_drivetrain.studies.input_effects import InputEffects, QuantityEffects, input_effects
 from fe_drivetrain.studies.result import Result
+from fe_drivetrain.studies.shown_units import in_large_unit, quantity_in_words
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -40,7 +43,7 @@ class UncertaintyResult(Result):
     """
 
     STUDY: ClassVar[str] = "uncertainty"
-    SCHEMA_VERSION: ClassVar[int] = 2
+    SCHEMA_VERSION: ClassVar[int] = 3
 
     effects: InputEffects = field(repr=False)
 
@@ -175,7 +178,58 @@ def _digested(found: Findings, known: Study, tolerance: float) -> InputEffects:
     _judge(found, known, tolerance)
     for name, value in figures(known).items():
         found.data(name, value)
+    _answer(found, effects, tolerance)
     return effects
+
+
+def _answer(found: Findings, effects: InputEffects, tolerance: float) -> None:
+    """State by how much a quantity may be off, by its inputs and by the model."""
+    by_load = [one for one in effects.charted if " of hub." in one.name]
+    # of a reaction to each hub load by itself the largest
+    first = max(by_load or effects.charted[:1], key=lambda one: abs(one.nominal))
+    others = [one for one in effects.charted if one is not first]
+    name = quantity_in_words(first.name)
+    ends = [100.0 * (end / first.nominal - 1.0) for end in (first.band.low, first.band.high)]
+    error = 200.0 * first.half_error
+    low, high = (value_text(end, "%", error, False) for end in (min(ends), max(ends)))
+    value = found.value(*_nominal(first))
+    model = f"{formatted(100.0 * first.error.share, 2)}\u00a0%"
+    figures = [value, *_uncertainties(found, first, effects, tolerance)]
+    if first.changes:
+        key = list(first.changes)[-1]
+        figures.append(
+            found.value(f"change by a deviation of {key} [%]", 100.0 * first.changes[key])
+        )
+    for other in others[:1]:
+        figures += _uncertainties(found, other, effects, tolerance)
+    found.answer(
+        f"How uncertain is {name}, by its inputs and by the model?",
+        f"{name[:1].upper()}{name[1:]} is {certain_value(value)}, {low} to {high} by its inputs "
+        f"and ±\u00a0{model} by the model.",
+        figures,
+    )
+
+
+def _nominal(one: QuantityEffects) -> tuple[str, float, float]:
+    """A quantity with its unit, its nominal value, and the error of the model in it."""
+    value, unit = in_large_unit(one.nominal, one.unit)
+    return f"{quantity_in_words(one.name)} [{unit}]", value, abs(value) * one.error.share
+
+
+def _uncertainties(
+    found: Findings, one: QuantityEffects, effects: InputEffects, tolerance: float
+) -> list[KeyFigure]:
+    """What inputs and model leave open of a quantity."""
+    name, error = quantity_in_words(one.name), 100.0 * one.error.share
+    inputs = found.value(
+        f"half the {100 * SHARE:g}\u00a0% range of {name} by the inputs [%]",
+        100.0 * one.half,
+        200.0 * one.half_error,
+    )
+    what = f"error of level {effects.level} in {name} [%]"
+    if not effects.advices:  # the level was given: nothing was asked of it
+        return [inputs, found.value(what, error)]
+    return [inputs, found.value(what, error, at_most=100.0 * tolerance)]
 
 
 def _require_samples(samples: int) -> None:

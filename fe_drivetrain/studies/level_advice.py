@@ -14,7 +14,9 @@ from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.plots import figures
 from fe_drivetrain.plots.figures import MINIMUM, error_traces
+from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.charts import chart
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
@@ -28,6 +30,7 @@ from fe_drivetrain.shafts.fidelity.quantity import (
     named_load,
 )
 from fe_drivetrain.studies.result import Result
+from fe_drivetrain.studies.shown_units import in_large_unit, quantity_in_words
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -48,7 +51,7 @@ class AdviseResult(Result):
     """
 
     STUDY: ClassVar[str] = "advise"
-    SCHEMA_VERSION: ClassVar[int] = 2
+    SCHEMA_VERSION: ClassVar[int] = 3
 
     drivetrain: Scene
     advice: Advice = field(repr=False)
@@ -149,6 +152,7 @@ def advise(
         found.say(f"It neglects {', '.join(chosen.model.neglects)}.")
     _judge(found, advice, advice.top if chosen is None else chosen)
     _data(found, advice)
+    _answer(found, advice, ranked)
     return AdviseResult(
         drivetrain=scene,
         advice=advice,
@@ -178,6 +182,47 @@ def _judge(found: Findings, advice: Advice, known: LevelResult) -> None:
         why="the tolerance that was requested",
         source=f"level {advice.top.model.level}, {advice.top.model.title}, and its own error band",
     )
+
+
+def _answer(found: Findings, advice: Advice, ranked: list[Effect]) -> None:
+    """State the level that is enough, with its error, time and value."""
+    name, top = quantity_in_words(advice.quantity.name), advice.top
+    known = top if advice.chosen is None else advice.results[advice.chosen]
+    model, share = known.model, f"{100 * advice.tolerance:g}\u00a0%"
+    error = top.estimate if known is top else known.error
+    band = None if known is top else 100.0 * top.estimate
+    size = formatted(100.0 * error, 2)
+    if advice.chosen is None:
+        verdict = f"Not known within {share}: the finest model, {model.title}, may err by "
+        verdict += f"{size}\u00a0% in {name}."
+    elif known is top:
+        verdict = f"Level\u00a0{model.level} ({model.title}) is needed to have {name} within "
+        verdict += f"{share}; it may err by {size}\u00a0%."
+    else:
+        verdict = f"Level\u00a0{model.level} ({model.title}) is enough for {name}: {size}\u00a0% "
+        verdict += f"from the {top.model.title}, within {share}."
+    level = f"level {model.level}"
+    figures = [
+        found.value(f"error of {level} [%]", 100.0 * error, band, at_most=100.0 * advice.tolerance),
+        *_value_of(found, known, advice.quantity, error + (band or 0.0) / 100.0),
+        found.value(f"time of {level} [s]", known.seconds),
+        found.value("time of the last level [s]", top.seconds),
+    ]
+    if ranked:
+        detail = f"change where {ranked[0].detail} is left out [%]"
+        figures.append(found.value(detail, 100.0 * ranked[0].change))
+    found.answer(f"Which model is enough for {name} within {share}?", verdict, figures)
+
+
+def _value_of(
+    found: Findings, known: LevelResult, quantity: Quantity, share: float
+) -> list[KeyFigure]:
+    """The quantity, within that share; none where no load was given, and it has six values."""
+    if len(known.values) != 1:
+        return []
+    value, unit = in_large_unit(float(known.values[0]), quantity.unit)
+    name = f"{quantity_in_words(quantity.name)} [{unit}]"
+    return [found.value(name, value, abs(value) * share if np.isfinite(share) else None)]
 
 
 def _data(found: Findings, advice: Advice) -> None:

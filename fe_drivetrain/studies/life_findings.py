@@ -54,16 +54,17 @@ def answers(
     """
     for life in lives:
         years, band = life.years, scatter(life)
-        words = f"Bearing {life.name} lives {in_years(years['L10mr'])} {_under(life, site)} (L10mr"
+        shown = in_years(years["L10mr"])
         if np.isfinite(years["L10mr"]):
             which = f"L10mr of bearing {life.name} [years]"
             found.found(which, years["L10mr"], band, (TORQUE_AND_BENDING,))
         if band is not None:
-            shown = value_with_band(found.figures[-1])
-            words = f"Bearing {life.name} lives {shown} {_under(life, site)} (L10mr, ± two "
-            words += "standard errors of files of the same wind"
-        words += f"; L10r {in_years(years['L10r'])}, L10 {in_years(years['L10'])})"
-        found.say(f"{words}{_takes_longest(life, rules)}{_overloaded(life)}.")
+            shown = f"{value_with_band(found.figures[-1])} (two standard errors of files of the "
+            shown += "same wind)"
+        found.say(
+            f"Bearing {life.name}: L10mr {shown}, L10r {in_years(years['L10r'])}, L10 "
+            f"{in_years(years['L10'])}, {_under(life, site)}{_takes_longest(life, rules)}."
+        )
 
 
 def _under(life: BearingLife, site: Site | None) -> str:
@@ -96,21 +97,6 @@ def _takes_longest(life: BearingLife, rules: LifeRules) -> str:
     return words
 
 
-def _overloaded(life: BearingLife) -> str:
-    """What ends the answer of a bearing whose static safety is below 1; empty of others."""
-    of, rated = life.limits, life.bearing.rated
-    if of.static_safety >= 1.0:
-        return ""
-    if of.max_pressure <= rated.static_pressure:
-        why = f"P0 of {1e-3 * of.max_static:,.0f} kN, above C0 of {1e-3 * rated.static:,.0f} kN"
-    else:
-        why = (
-            f"{1e-6 * of.max_pressure:,.0f} MPa contact pressure, above the "
-            f"{1e-6 * rated.static_pressure:,.0f} MPa limit"
-        )
-    return f"; not usable: static safety S0 is {of.static_safety:.2g}, {why}"
-
-
 def cautions(
     found: Findings,
     scene: Scene,
@@ -136,24 +122,24 @@ def cautions(
     for life in lives:
         if life.bearing.misfit is not None:
             found.note(life.bearing.misfit)
+    for life, row in zip(lives, limits, strict=True):
+        _beyond_limits(found, life, row)
+    for life in lives:
+        if sentence := in_words(life.name, life.years["L10mr"], life.assumptions):
+            found.note(sentence)
     files = [one.file for one in lives[0].files]
     vertical = {short_name(one.file, files): one.vertical for one in lives[0].files}
     if unlike := different_turbines(vertical):
         found.note(unlike)
+    oil = options.rules.lubricant
+    if oil is not None and oil.caution is not None:
+        found.note(oil.caution)
     own_speeds = [one.own_speeds for one in lives[0].files]
     if unused := speed_not_used(options.rotor_speed_rpm, own_speeds):
         found.note(unused)
     for unused in choices_not_used(scene, options.choices, [life.bearing for life in lives]):
         found.note(unused)
     found.note(UNVERIFIED)
-    for life, row in zip(lives, limits, strict=True):
-        _beyond_limits(found, life, row)
-    oil = options.rules.lubricant
-    if oil is not None and oil.caution is not None:
-        found.note(oil.caution)
-    for life in lives:
-        if sentence := in_words(life.name, life.years["L10mr"], life.assumptions):
-            found.note(sentence)
 
 
 def _beyond_limits(found: Findings, life: BearingLife, row: Record) -> None:

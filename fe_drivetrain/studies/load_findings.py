@@ -8,10 +8,12 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.procedure.failure_modes import ROTOR_TORQUE
-from fe_drivetrain.report.number_text import value_with_band
+from fe_drivetrain.report.answer import KeyFigure
+from fe_drivetrain.report.number_text import certain_value
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.load_cautions import cautions
-from fe_drivetrain.studies.load_digest import LoadOptions
+from fe_drivetrain.studies.load_comparison import Comparison
+from fe_drivetrain.studies.load_digest import CHANNELS, UNIT_OF, LoadOptions
 from fe_drivetrain.studies.load_records import (
     loop_rows,
     slope_rows,
@@ -20,7 +22,9 @@ from fe_drivetrain.studies.load_records import (
 )
 from fe_drivetrain.studies.load_totals import LoadTotals
 from fe_drivetrain.studies.load_winds import Capture, CaptureTarget, winds_not_used
+from fe_drivetrain.studies.shown_units import in_large_unit
 from fe_drivetrain.studies.unused import speed_not_used
+from fe_drivetrain.turbine_loads.histories.sets import CHANCE
 from fe_drivetrain.turbine_loads.histories.spectra import MULTIPLES
 
 _NAMED = 3  # files that are sampled too slowly
@@ -48,7 +52,7 @@ def hub_findings(
     capture : Capture or None
         What it holds; None where no file has a wind speed.
     """
-    _answer(found, hub, options)
+    _equivalent(found, hub, options)
     if capture is not None:
         found.say(capture.sentence)
     for sentence in cautions(hub, options):
@@ -79,10 +83,9 @@ def note_unused_speed(
         found.note(unused)
 
 
-def _answer(found: Findings, hub: LoadTotals, options: LoadOptions) -> None:
-    """The equivalent tilting moment and torque, with what the residue leaves open."""
+def _equivalent(found: Findings, hub: LoadTotals, options: LoadOptions) -> None:
+    """The equivalent tilting moment and torque, and what they are of."""
     slope, hertz = options.slopes[0], options.frequency
-    words = []
     for name in ("My", "Mx"):
         one = hub.equivalent_load(name, slope, options)
         if not one.load:
@@ -90,19 +93,74 @@ def _answer(found: Findings, hub: LoadTotals, options: LoadOptions) -> None:
         band = None if one.band is None else one.band / 1e3
         quantity = f"equivalent load of {name}, slope {slope:g} [kN m]"
         found.found(quantity, one.load / 1e3, band, (ROTOR_TORQUE,) if name == "Mx" else ())
-        words.append(f"{value_with_band(found.figures[-1])} in {name}")
-    open_ends = " (± what whole cycles in place of half ones would add)"
+    open_ends = ", \u00b1 what whole cycles in place of half ones would add"
     rule = open_ends if options.residue == "half" else ""
-    said = (
-        f"These loads do the damage of a sine of {hertz:g} Hz with a range of "
-        f"{' and '.join(words)} at a slope of {slope:g}{rule}: "
-    )
+    if found.figures:
+        found.say(
+            f"Equivalent loads are ranges of a sine of {hertz:g} Hz that does the same damage"
+            f"{rule}."
+        )
     files = hub.files
     count = len(files.names)
     found.say(
-        f"{said if words else ''}{count} file{'s' * (count > 1)}, {files.samples:,} samples over "
-        f"{files.seconds:,.6g} s; {options.counted}."
+        f"{count} file{'s' * (count > 1)}, {files.samples:,} samples over {files.seconds:,.6g} s; "
+        f"{options.counted}."
     )
+
+
+def state_answer(found: Findings, hub: LoadTotals, comparison: Comparison | None) -> None:
+    """State extremes and equivalent loads at the hub, or how two sets differ.
+
+    Parameters
+    ----------
+    found : Findings
+        Has the equivalent loads among its values, and takes the answer.
+    hub : LoadTotals
+        Hub loads of all files.
+    comparison : Comparison or None
+        The files beside another set, where one is given.
+    """
+    bending = found.value(*_extreme(hub, "bending moment", "peak bending moment"))
+    figures = [
+        bending,
+        *(found.judged(one.quantity) for one in found.figures),
+        found.value(*_extreme(hub, "Mx", "peak torque Mx")),
+        found.value(*_extreme(hub, "Fx", "peak thrust Fx")),
+        found.value(*_extreme(hub, "radial force", "peak radial force")),
+    ]
+    if comparison is not None:
+        _answer_of_two(found, figures, comparison)
+        return
+    fatigue = "no moment has a cycle"
+    if found.figures:
+        fatigue = f"the {figures[1].name}, is {certain_value(figures[1])}"
+    found.answer(
+        "Which loads act at the hub, at their extremes and in fatigue?",
+        f"Bending at the hub reaches {certain_value(bending)}; {fatigue}.",
+        figures,
+    )
+
+
+def _answer_of_two(found: Findings, figures: Sequence[KeyFigure], comparison: Comparison) -> None:
+    """State how many quantities of two sets of histories differ."""
+    mine, its = comparison.names
+    beyond = sum(len(one.beyond) for one in comparison.winds)
+    number = sum(len(one.differences) for one in comparison.winds)
+    chance = CHANCE * number
+    name = f"quantities of {number} beyond the scatter of seeds"
+    found.answer(
+        f"Do the loads of {mine} differ from those of {its}?",
+        f"{beyond} of {number} quantities differ between {mine} and {its} by more than the scatter "
+        f"of seeds; {chance:.2g} would by chance.",
+        [found.value(name, beyond, beside=chance, by="by chance"), *figures[:3]],
+    )
+
+
+def _extreme(hub: LoadTotals, channel: str, name: str) -> tuple[str, float]:
+    """What a load is, with its unit, and its value that is farthest from zero."""
+    low, _, high, _ = hub.statistics.overall[CHANNELS.index(channel)].tolist()
+    value, unit = in_large_unit(high if abs(high) >= abs(low) else low, UNIT_OF[channel])
+    return f"{name} [{unit}]", value
 
 
 def _aliased(hub: LoadTotals) -> list[str]:

@@ -20,7 +20,12 @@ from fe_drivetrain.shafts.response.stated import Stated, stated_hub_loads
 from fe_drivetrain.studies import load_tables as rows
 from fe_drivetrain.studies.load_comparison import Comparison, LoadSet, compare_sets
 from fe_drivetrain.studies.load_digest import LOADS, UNIT_OF, LoadOptions
-from fe_drivetrain.studies.load_findings import check_classes, hub_findings, note_unused_speed
+from fe_drivetrain.studies.load_findings import (
+    check_classes,
+    hub_findings,
+    note_unused_speed,
+    state_answer,
+)
 from fe_drivetrain.studies.load_lifetime import Event, Lifetime, event, lifetime
 from fe_drivetrain.studies.load_reactions import SceneReactions, digests, scene_reactions
 from fe_drivetrain.studies.load_records import (
@@ -67,7 +72,7 @@ class LoadsResult(Result):
     """
 
     STUDY: ClassVar[str] = "loads"
-    SCHEMA_VERSION: ClassVar[int] = 2
+    SCHEMA_VERSION: ClassVar[int] = 3
 
     asked: LoadOptions
     hub: LoadTotals
@@ -135,7 +140,8 @@ class LoadsResult(Result):
             classes = self.hub.cycles.ranges[name]
             traces.append(trace(name, classes.edges()[:-1] / 1e3, classes.at_least))
         unit = shown_unit(UNIT_OF[loads[0]])
-        caption = f"Cycles of a range or a larger one; {self.asked.counted}"
+        what = "forces" if UNIT_OF[loads[0]] == "N" else "moments"
+        caption = f"Cycles of a range or a larger one, of {what}; {self.asked.counted}"
         return caption, traces, f"range [{unit}]", "cycles", "y"
 
 
@@ -270,6 +276,7 @@ def _counted(asked: _Asked, steps: Steps) -> LoadsResult:
     of_events = [] if life is None else [one.own_speeds for one in life.events]
     note_unused_speed(found, options, [sums.hub.files.own_speeds, *of_events, its.own_speeds])
     check_classes(found, sums.hub)
+    state_answer(found, sums.hub, comparison)
     return LoadsResult(
         asked=options,
         hub=sums.hub,

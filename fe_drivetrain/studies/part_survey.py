@@ -21,10 +21,12 @@ from fe_drivetrain.export.superelement import Superelement
 from fe_drivetrain.foreign.survey import Survey, surveyed
 from fe_drivetrain.geometry import CondensedHousing
 from fe_drivetrain.report.charts import bars, stiffness_chart
+from fe_drivetrain.report.number_text import certain_value
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.result import Result
+from fe_drivetrain.studies.shown_units import in_large_unit
 
 SUPERELEMENTS = {".json": "json", ".csv": "csv", ".bdf": "dmig", ".op4": "op4", ".h5": "hdf5"}
 """Format of a superelement by the ending of its file."""
@@ -130,10 +132,34 @@ def _find_survey(found: Findings, file: Path, survey: Survey) -> None:
     unit = survey.unit or "unit of the file"
     if survey.volume is not None:
         found.found(f"volume [{unit}^3]", survey.volume, survey.volume_band)
-    holes = sum(one.hole for one in survey.bores)
-    found.say(f"{file.name}: {holes} bore{'s' * (holes != 1)} that may be seats.")
+    _answer_survey(found, file, survey)
     found.data("bores", [one._asdict() for one in survey.bores])
     found.data("planes", [one._asdict() for one in survey.planes])
+
+
+def _answer_survey(found: Findings, file: Path, survey: Survey) -> None:
+    """State how many bores may be seats; the widest is the one that a scene takes first."""
+    holes = [one for one in survey.bores if one.hole]
+    plural = "s" * (len(holes) != 1)
+    figures = [
+        found.value("bores that may be seats", len(holes), at_least=1),
+        found.value("planes by which it may be held", len(survey.planes), at_least=1),
+        found.value("round faces", len(survey.bores)),
+    ]
+    verdict = f"{file.name} has {len(holes)} bore{plural} that may be a seat"
+    if holes:
+        of_file = "" if survey.unit else ", in the unit of the file"
+        name = f"diameter of the widest bore{of_file}"
+        wide = found.value(f"{name} [{survey.unit}]" if survey.unit else name, 2 * holes[0].radius)
+        figures.insert(0, wide)
+        verdict = f"{file.name} has {len(holes)} bore{plural} that may be "
+        verdict += f"{'seats, the widest' if plural else 'a seat,'} {certain_value(wide)} wide"
+        verdict += of_file
+    if survey.volume is None:
+        verdict = f"Not usable: elements of {file.name} fold over; it has {len(holes)} bore{plural}"
+    else:
+        figures.append(found.judged("volume"))
+    found.answer(f"What can a scene take of {file.name}?", f"{verdict}.", figures)
 
 
 def _find_stiffness(
@@ -142,11 +168,22 @@ def _find_stiffness(
     """Points of a superelement, and its stiffness at the bore."""
     state = "on its supports" if element.supported else "free"
     points = ", ".join(element.points)
-    found.say(f"{file.name}: superelement {element.name} at {points}, {state}.")
+    found.say(f"Superelement {element.name} at {points}, {state}.")
+    figures = []
     for k, motion in enumerate(MOTIONS):
         unit = "N/m" if k < 3 else "N m/rad"
         value = float(housing.stiffness[k][k])
-        found.found(f"{motion} at the bore, other motions held [{unit}]", value)
+        name = f"{motion} at the bore, other motions held"
+        found.found(f"{name} [{unit}]", value)
+        shown, large = in_large_unit(value, unit)
+        figures.append(found.value(f"{name} [{large}]", shown))
+    softest = min(figures[:3], key=lambda one: one.value)
+    found.answer(
+        f"How stiff is {file.name} as a housing?",
+        f"{file.name} holds its bearing with {certain_value(softest)} in its softest direction, "
+        f"along {softest.name[1]}.",
+        figures,
+    )
     found.data("points", place_records(element.points, element.positions))
     found.data(
         "stiffness [N/m, N, N m/rad]",

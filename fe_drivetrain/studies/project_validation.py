@@ -140,7 +140,8 @@ def validate(project: Project, folder: Path, *, report: Progress = silent) -> Va
     digest = content_digest(project, states, measured.verdicts, record) if complete else ""
     if record is not None:
         found.drivetrains.append(record)
-    _answer(found, project, states)
+    _explain(found, project, states)
+    _answer(found, project, states, measured, digest)
     _judge(found, project, states, measured, digest)
     _data(found, project, states, record, digest)
     return ValidateResult(
@@ -259,22 +260,54 @@ def _measured(
     return measured, matrix
 
 
-def _answer(found: Findings, project: Project, states: Sequence[StepState]) -> None:
-    """Say whether it is complete, why not, and what counts in spite of something."""
+def _answer(
+    found: Findings,
+    project: Project,
+    states: Sequence[StepState],
+    measured: Measured,
+    digest: str,
+) -> None:
+    """State whether it is complete, or which steps are open."""
     open_steps = [state for state in states if not state.complete]
-    if not open_steps:
-        taken = [f.state for state in states for f in state.evidence if f.state != "passed"]
-        accepted = f"; the project accepts {len(taken)} of it as it is" if taken else ""
-        found.say(
-            f"Complete: all six steps were taken, and all of their evidence counts{accepted}."
-        )
-    else:
+    evidence = [one for state in states for one in state.evidence]
+    counting, absent = sum(one.counts for one in evidence), [e for e in evidence if not e.results]
+    taken = sum(one.state != "passed" for one in evidence)
+    if open_steps:
         numbers = ", ".join(str(state.number) for state in open_steps)
-        word = "step" if len(open_steps) == 1 else "steps"
-        found.say(f"Not complete: {word} {numbers} of 6.")
-        for state in open_steps:
-            why = "; ".join(reasons(state))
-            found.say(f"Step {state.number}, {STEPS[state.number - 1]}: {why}.")
+        word = "step {} of 6 is" if len(open_steps) == 1 else "steps {} of 6 are"
+        verdict = f"Not complete: {word.format(numbers)} open, and {counting} of {len(evidence)} "
+        verdict += "results that it rests on count."
+    else:
+        accepted = f", {taken} of them accepted as they are" if taken else ""
+        verdict = f"Complete: all 6 steps were taken, and all {len(evidence)} results that they "
+        verdict += f"rest on count{accepted}{_other_signatures(project, digest)}."
+    figures = [
+        found.value("complete steps", len(states) - len(open_steps), at_least=len(states)),
+        found.value("results that count", counting, at_least=len(evidence)),
+        found.value("results that are not there yet", len(absent), at_most=0),
+    ]
+    if measured.verdicts:
+        agree = sum(one.passed for one in measured.verdicts)
+        name = "comparisons with measurements that agree"
+        figures.append(found.value(name, agree, at_least=len(measured.verdicts)))
+    if project.signed:
+        hold = sum(bool(digest) and one.digest == digest for one in project.signed)
+        figures.append(found.value("signatures that hold", hold, at_least=len(project.signed)))
+    found.answer(f"Is the validation of {project.subject} complete?", verdict, figures)
+
+
+def _other_signatures(project: Project, digest: str) -> str:
+    """How many signatures are of something else, as the end of a sentence; empty without any."""
+    others = sum(one.digest != digest for one in project.signed)
+    return f", but {others} of {len(project.signed)} signatures hold no more" if others else ""
+
+
+def _explain(found: Findings, project: Project, states: Sequence[StepState]) -> None:
+    """Say why steps are open, and what counts in spite of something."""
+    open_steps = [state for state in states if not state.complete]
+    for state in open_steps:
+        why = "; ".join(reasons(state))
+        found.say(f"Step {state.number}, {STEPS[state.number - 1]}: {why}.")
     found.found("complete steps of six", float(len(states) - len(open_steps)))
     hows: dict[str, list[str]] = {}
     for one in (one for state in states for one in state.evidence):

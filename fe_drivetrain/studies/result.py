@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from pydantic import BaseModel
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.report.number_text import value_with_band
 from fe_drivetrain.report.results import Chart, Figure
 from fe_drivetrain.report.suite.findings import Found
-from fe_drivetrain.report.suite.records import as_json
+from fe_drivetrain.report.suite.records import strict_json
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -25,14 +24,21 @@ if TYPE_CHECKING:
 class Result(Found):
     """What a study found.
 
-    ``result["L10mr of bearing front"]`` is a figure, `to_frame` a table, `plot` the chart that
-    answers; `to_json` holds all of it for other programs. Samples of histories are not in it.
+    `answer` is the answer, ``result["L10mr of bearing front"]`` a figure, `to_frame` a table,
+    `plot` the chart that answers; `to_json` holds all of it for other programs. Samples of
+    histories are not in it.
     """
 
     STUDY: ClassVar[str] = ""
     """Name of the study, in the schema of its JSON."""
-    SCHEMA_VERSION: ClassVar[int] = 1
+    SCHEMA_VERSION: ClassVar[int] = 2
     """Raised where a key of the JSON changes its meaning, or goes."""
+
+    def __post_init__(self) -> None:
+        """Let the chart show the verdict where the answer names no other picture."""
+        if not self.answer.hero:
+            shown = self.answer.model_copy(update={"hero": self.chart().caption})
+            object.__setattr__(self, "answer", shown)
 
     def __getitem__(self, quantity: str) -> Figure:
         """The figure of that name; KeyError where there is none, with the names that there are."""
@@ -43,11 +49,11 @@ class Result(Found):
         raise KeyError(f"{quantity!r} is no figure of this result; its figures are: {known}")
 
     def __repr__(self) -> str:
-        """One line: what it is of, its first figure, and how its checks stand."""
+        """One line: what it is of, the verdict, and how its checks stand."""
         of = " and ".join(dict.fromkeys(one.title for one in self.drivetrains))
         passed = sum(check.passed for check in self.checks)
         parts = [f"{self.STUDY} of {of}" if of else self.STUDY]
-        parts += [f"{f.quantity}: {value_with_band(f)}" for f in self.figures[:1]]
+        parts.append(self.answer.verdict.removesuffix("."))
         parts += [f"{passed} of {len(self.checks)} checks pass"] if self.checks else []
         return f"<{'; '.join(parts)}>"
 
@@ -57,8 +63,8 @@ class Result(Found):
             "schema": f"fe-drivetrain/{self.STUDY}/{self.SCHEMA_VERSION}",
             "version": version("fe-drivetrain"),
             "drivetrains": _models(self.drivetrains),
-            "options": _plain(self.options),
-            "answer": None if self.answer is None else _plain(self.answer.model_dump()),
+            "options": strict_json(self.options),
+            "answer": strict_json(self.answer.model_dump()),
             "details": list(self.details),
             "figures": _models(self.figures),
             "checks": _models(self.checks),
@@ -67,7 +73,7 @@ class Result(Found):
             "skipped": list(self.skipped),
             "assumptions": _models(self.assumptions),
             "limits": _models(self.limits),
-            "tables": _plain(self.all_tables()),
+            "tables": strict_json(self.all_tables()),
             "seed": self.seed,
             "times": dict(self.times),
         }
@@ -125,18 +131,4 @@ class Result(Found):
 
 def _models(records: Iterable[BaseModel]) -> list[Any]:
     """Records as plain JSON data."""
-    return [_plain(one.model_dump()) for one in records]
-
-
-def _plain(value: Any) -> Any:
-    """The same as plain JSON data, NaN and infinity as strings."""
-    if isinstance(value, float):
-        return value if abs(value) < float("inf") else str(value)
-    if isinstance(value, str | int) or value is None:
-        return value
-    plain = as_json(value)
-    if isinstance(plain, dict):
-        return {key: _plain(inner) for key, inner in plain.items()}
-    if isinstance(plain, list):
-        return [_plain(inner) for inner in plain]
-    return str(value) if plain is value else _plain(plain)
+    return [strict_json(one.model_dump()) for one in records]

@@ -12,6 +12,7 @@ from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.left_out import left_out
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.report.charts import chart, trace
+from fe_drivetrain.report.number_text import certain_value, formatted
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
@@ -91,11 +92,11 @@ def check(
     found.assume_all(left_out(scene))
     found.seed = None
     parts = {name: float(mass.sum()) for name, mass in model.part_mass.items()}
-    mass = float(model.mass.sum())
-    found.say(_held(scene, mass, model.n_dofs), *model.warnings, *filter(None, misfits))
+    found.say(_held(scene, model.n_dofs))
     with steps.step("levels"):
         costs = forecast(model)
     found.data("levels", [_cost(one) for one in costs])
+    _answer(found, model, costs, list(filter(None, misfits)))
     return CheckResult(
         parts=parts,
         described=description(model),
@@ -105,16 +106,55 @@ def check(
     )
 
 
-def _held(scene: Scene, mass: float, n_dofs: int) -> str:
-    """The answer in a sentence."""
+def _held(scene: Scene, n_dofs: int) -> str:
+    """What the scene is, in a sentence."""
     count = len(scene.bearing_names)
     on_nose = ""
     if scene.nose is not None:
         on_nose = ", some of them on a nose" if scene.bearing_units else " round a nose"
     return (
         f"{scene.title}: a shaft of {scene.shaft.length:g} m on {count} "
-        f"bearing{'s' if count > 1 else ''}{on_nose}, {mass:,.0f} kg in all, "
-        f"{n_dofs:,} degrees of freedom. Its supports hold it: it can be solved."
+        f"bearing{'s' if count > 1 else ''}{on_nose}, {n_dofs:,} degrees of freedom. Its supports "
+        "hold it."
+    )
+
+
+def _answer(
+    found: Findings, model: Model, costs: Sequence[Forecast], misfits: Sequence[str]
+) -> None:
+    """State whether the scene can be solved, and what its most expensive level costs."""
+    scene, top = model.scene, costs[-1]
+    count = len(scene.bearing_names)
+    mass = found.value("mass of all parts [t]", float(model.mass.sum()) / 1e3)
+    seconds = found.value(f"time of level {top.level} ({top.title}) [s]", top.seconds)
+    held = f"{certain_value(mass)} on {count} bearing{'s' if count > 1 else ''}"
+    verdict = f"The scene can be solved: its supports hold {held}; its finest level takes about "
+    verdict += f"{formatted(top.seconds, 2)}\u00a0s."
+    if not top.fits:
+        verdict = f"Its supports hold {held}, but level {top.level}, {top.title}, needs more "
+        verdict += "memory than is free."
+    if misfits:
+        verdict = f"It can be solved, {held}, but {len(misfits)} catalogue "
+        verdict += f"bearing{'s do' if len(misfits) > 1 else ' does'} not fit the shaft."
+    figures = [
+        mass,
+        found.value("bearings that hold the shaft", count),
+        found.value("degrees of freedom of the assembly", model.n_dofs),
+        seconds,
+    ]
+    if top.bytes is not None:
+        name = f"memory of level {top.level} [MiB]"
+        figures.append(found.value(name, top.bytes / 2**20))
+    if misfits:
+        name = "catalogue bearings that do not fit the shaft"
+        figures.append(found.value(name, len(misfits), at_most=0))
+    elif not top.fits:
+        figures.append(found.value("levels without enough memory", 1, at_most=0))
+    found.answer(
+        "Can this scene be solved, and what does it cost?",
+        verdict,
+        figures,
+        cautions=[*misfits, *model.warnings],
     )
 
 

@@ -58,6 +58,7 @@ from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.scene_description import description, quick_scene
 from fe_drivetrain.studies.seat_stiffness import SeatStiffness, seat_stiffness
 from fe_drivetrain.studies.solved_assembly import checked_model, solved_model
+from fe_drivetrain.studies.study_answer import state_answer
 from fe_drivetrain.studies.study_loads import (
     EnteredLoads,
     StudyLoads,
@@ -118,7 +119,7 @@ class StudyResult(Result):
     """
 
     STUDY: ClassVar[str] = "study"
-    SCHEMA_VERSION: ClassVar[int] = 2
+    SCHEMA_VERSION: ClassVar[int] = 3
 
     units: Mapping[str, UnitBounds]
     secants: tuple[TiltSecant, ...]
@@ -148,6 +149,10 @@ class StudyResult(Result):
     def floating(self) -> list[str]:
         """Bearings without axial stiffness, which leave axial force to the others."""
         return [name for name, of in _stiff(self.units).items() if of["axial"] == 0.0]
+
+    def peak_across(self, bearing: str) -> float:
+        """Largest force across the shaft on a bearing, of either component [kN]."""
+        return abs(peak_across(bearing, self.reaction_statistics[bearing].whole)[1])
 
     def reactions(self, loads: Loads, model: str = ASSEMBLY) -> dict[str, Floats]:
         """Reactions to further loads, with the weights that the study has.
@@ -241,13 +246,14 @@ def _studied(
 ) -> StudyResult:
     """Reactions to the loads, errors of every level and of closed forms, effect of spreads."""
     quick = bool(options["quick"])
-    _answer(found, at, quick)
     _stiffness(found, at.levels.units)
     with steps.step("reactions of all load steps"):
         reactions, secants = _reactions(found, at, slopes, steps.report)
     with steps.step("beams against FE"):
         errors, judgement, measures = _errors(found, at, slopes)
         models, forms = _closed_forms(found, at)
+    names = at.scene.bearing_names
+    state_answer(found, names, reactions, judgement, _cautions(found, at, quick))
     facts = load_facts(at.scene, at.entered)
     level = int(judgement.nearest[0])
     uncertainty = _uncertainty(found, steps, at.scene, level, facts.mean, quick)
@@ -330,15 +336,18 @@ def _state(found: Findings, at: _Solved, facts: LoadFacts, stated: Stated) -> No
         found.data("seat_stiffness", at.seat.rows())
 
 
-def _answer(found: Findings, at: _Solved, quick: bool) -> None:
-    """What the loads are, and what the model warns of."""
+def _cautions(found: Findings, at: _Solved, quick: bool) -> list[str]:
+    """What the model warns of, and loads that are not the user's; own ones stand below."""
+    given, together = at.entered.given, at.entered.together
+    if given.own:
+        found.say(given.statement)
     if quick:
         found.say(
             "Quick: on a coarser mesh than the scene's, for a first look; figures will change."
         )
-    given, together = at.entered.given, at.entered.together
     opening = foot_warnings(at.scene, at.response, together, given.weights, given.gravity)
-    found.say(given.statement, *at.model.warnings, *opening)
+    made = [] if given.own else [given.statement]
+    return [*made, *opening, *at.model.warnings]
 
 
 def _stated(model: Model, gravity: float) -> Stated:

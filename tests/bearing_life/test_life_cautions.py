@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from answer_rules import broken_rules
 from tiny_case import Result
 
 from fe_drivetrain.bearing.catalogue import catalogue_entry
@@ -170,11 +171,18 @@ def test_a_bearing_beyond_the_pressure_of_its_rating_is_not_usable(run) -> None:
     over, printed = run(factor=8.0)
     of = over.figures["limits"][0]
     assert of["min S0"] < 1.0 < of["max pressure [MPa]"] / 4000.0
-    words = f"{of['max pressure [MPa]']:,.0f} MPa contact pressure, above the 4,000 MPa limit"
-    assert f"not usable: static safety S0 is {of['min S0']:.2g}, {words}" in printed
+    words = f"{of['max pressure [MPa]']:,.0f} MPa contact pressure in the main bearing"
+    assert printed.startswith(f"Not usable: {words}, above the 4,000 MPa limit of ISO 76")
+    assert over.answer is not None
+    assert broken_rules(over) == []
+    assert "load of the places of its rollers" in over.answer.hero
+    pressure, years, safety, *_ = over.answer.figures
+    assert (pressure.value, safety.value) == pytest.approx((of["max pressure [MPa]"], of["min S0"]))
+    assert (pressure.status, years.name[:5], safety.status) == ("bad", "L10mr", "bad")
     assert any("static safety is below 1" in note for note in over.notes)
     assert not any("static safety is below 1" in note for note in usual.notes)
-    assert "not usable" not in " ".join(usual.details)
+    assert usual.answer is not None
+    assert "Not usable" not in usual.answer.verdict
 
 
 def test_speeds_of_no_bearing_are_refused_and_nothing_is_written(
@@ -218,6 +226,7 @@ def test_a_viscosity_far_from_where_it_is_known_is_said(temperature: float, said
 
 
 def test_a_cold_bearing_says_that_its_viscosity_is_extrapolated(run) -> None:
-    _, printed = run("--temperature", "0")
-    assert "The viscosity at 0 degC, 1.51e+04 mm2/s, is extrapolated" in printed
-    assert "the film is above kappa = 4" in printed
+    found, _ = run("--temperature", "0")
+    said = " ".join(found.notes)
+    assert "The viscosity at 0 degC, 1.51e+04 mm2/s, is extrapolated" in said
+    assert "the film is above kappa = 4" in said

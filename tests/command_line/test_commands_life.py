@@ -69,7 +69,7 @@ def test_lives_of_constant_loads_are_those_of_one_step(
         *("--out", str(out), "--bearing", "main_bearing=bearing_s_o20"),
     )
     assert status == 0, printed + error
-    assert "Bearing main_bearing lives" in printed
+    assert printed.startswith("The main bearing lives ")
     (one,) = bearings_of(
         library_scene(SCENE), Choices({"main_bearing": "bearing_s_o20"}, (), *CHOICES_REST)
     )
@@ -86,8 +86,9 @@ def test_lives_of_constant_loads_are_those_of_one_step(
     ratio = float(lives["C [kN]"]) / float(lives["P_ref [kN]"])
     assert ratio ** (10 / 3) == pytest.approx(float(lives["L10r [Mrev]"]), rel=1e-6)
     covered, years_here = float(shares.sum()), float(lives["L10mr [years]"])
-    assert f"blow {100 * covered:.3g} % of the time and the rest is taken to do no" in printed
-    assert f"blew all the time it would live {covered * years_here:.3g} years" in printed
+    (said,) = read_results(out / "results.json").details
+    assert f"blow {100 * covered:.3g} % of the time and the rest is taken to do no" in said
+    assert f"blew all the time it would live {covered * years_here:.3g} years" in said
     places = rows_of(out / "places.csv")
     laminae = rows_of(out / "laminae.csv")
     assert len(places) == 72
@@ -234,7 +235,7 @@ def test_a_bearing_that_stands_is_said_to_stand(
     )
     assert status == 0, error
     assert "the bearing stands: no life is computed" in printed
-    assert "without end" in printed
+    assert printed.startswith("The main bearing takes no damage (L10mr)")
 
 
 @pytest.mark.parametrize(

@@ -96,7 +96,7 @@ def test_an_openfast_file_may_have_letters_of_any_code_in_its_header(tmp_path):
     ],
 )
 def test_the_case_that_was_meant_is_named(typed, meant):
-    with pytest.raises(InputError, match=f"is unknown .did you mean '{meant}'") as caught:
+    with pytest.raises(InputError, match=f"is unknown: did you mean '{meant}'") as caught:
         find_cases(typed)
     assert "\n" not in str(caught.value)
 

@@ -76,7 +76,8 @@ def test_a_project_is_complete_with_all_six_steps(
     status, results = validate(small)
     assert lacks(results) == {}
     assert status == 0
-    assert results.details[0].startswith("Complete: all six steps were taken")
+    assert results.answer is not None
+    assert results.answer.verdict.startswith("Complete: all 6 steps were taken")
     require_complete(procedure_of("mine", read_log(tmp_path / "p.log.jsonl")))
     # the page leads to the page of each case
     tables = [i for s in results.sections for i in s.items if isinstance(i, Table) and i.links]
@@ -186,7 +187,8 @@ def test_evidence_that_fails_is_quick_or_stale_does_not_count(
     status, results = validate(small | {"accept": ["quick"]})
     assert status == 0
     assert results.notes[0] == "Evidence that counts although of a quick run: group/run."
-    assert results.details[0].endswith("the project accepts 2 of it as it is.")
+    assert results.answer is not None
+    assert results.answer.verdict.endswith("2 of them accepted as they are.")
     write_case(reports, "group/run", code="0" * 64)
     accepted = Project.model_validate(small | {"accept": ["other version"]})
     assert validate_project(accepted, tmp_path).states[0].complete

@@ -126,8 +126,10 @@ def test_details_that_change_nothing_have_no_empty_bars() -> None:
     def result(*effects: Effect) -> AdviseResult:
         advice: Any = SimpleNamespace(quantity=SimpleNamespace(name="hub.Fz"), tolerance=0.05)
         scene: Any = None
+        page = Page()
+        page.answer("Which details matter?", "None of 2 details matters.", [], hero="tornado")
         return AdviseResult(
-            drivetrain=scene, advice=advice, effects=effects, effects_level=1, **Page().frozen({})
+            drivetrain=scene, advice=advice, effects=effects, effects_level=1, **page.frozen({})
         )
 
     items = tornado(result(Effect("bore", 0.0), Effect("rings", 0.0))).items

@@ -230,10 +230,12 @@ def test_check_says_what_a_scene_is(
 ) -> None:
     status, out, _ = invoke("check", "mine.yaml", "--out", "page", *QUICK)
     assert status == 0
-    assert "a shaft of 4.55 m on 1 bearing" in out
-    assert "uy 80 MN/m" in out
-    assert "rx rigid" in out
+    assert out.startswith("The scene can be solved: its supports hold ")
     folder = tmp_path / "page"
+    page = (folder / "results.json").read_text("utf-8")
+    assert "a shaft of 4.55 m on 1 bearing" in page
+    assert "uy 80 MN/m" in page
+    assert "rx rigid" in page
     assert (folder / "model.png").is_file() == can_draw()
     found = tables(folder)
     shaft, bearing, housing = found["Parts"]
@@ -252,13 +254,16 @@ def test_check_says_what_a_scene_is(
     assert shaft["mass [kg]"] == pytest.approx(7850 * volume, rel=1e-3)
     assert housing["density [kg/m³]"] == 7800
     assert found["Bearings"][0]["carries moments"] == "no: spherical joint"
-    assert "against turning" not in out
+    assert "against turning" not in page
 
 
-def test_check_says_that_a_bonded_bearing_takes_torque(invoke: Callable[..., Result]) -> None:
-    status, out, _ = invoke("check", "main_bearing_bonded", "--out", "page", *QUICK)
+def test_check_says_that_a_bonded_bearing_takes_torque(
+    invoke: Callable[..., Result], tmp_path: Path
+) -> None:
+    status, *_ = invoke("check", "main_bearing_bonded", "--out", "page", *QUICK)
     assert status == 0
-    assert "main_bearing: bonded, so held against turning, too" in out
+    page = (tmp_path / "page" / "results.json").read_text("utf-8")
+    assert "main_bearing: bonded, so held against turning, too" in page
 
 
 def test_check_shows_the_point_that_hub_loads_are_about(bonded_model: Model) -> None:
@@ -601,8 +606,8 @@ def test_a_study_without_loads_says_that_they_are_a_surrogate(
     status, out, _ = invoke("study", "main_bearing_spherical", "--quick", "--out", "s", *QUICK)
     assert status == 0
     assert "Hub loads are a surrogate, not those of your turbine" in out
-    assert "Quick: on a coarser mesh" in out
     results = read_results(tmp_path / "s" / "results.json")
+    assert any(sentence.startswith("Quick: on a coarser mesh") for sentence in results.details)
     assert results.assumptions  # of the rotor
     assert not list((tmp_path / "s").glob("reactions_*.csv"))
     # one spherical bearing in front of a gearbox that holds no bending: statics decides

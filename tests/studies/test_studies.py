@@ -3,17 +3,19 @@
 import dataclasses
 import json
 import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 import pytest
+from answer_rules import broken_by, broken_rules
 from coarse_scenes import coarse_scene
 from small_project import OWN, Content, small_project
 from test_commands_life import write_history
 from test_scene_study import HISTORIES
 
-from fe_drivetrain import export
+from fe_drivetrain import export, pages
 from fe_drivetrain.common import InputError
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.drivetrain_file import change_scene, library_component, library_scene
@@ -21,7 +23,17 @@ from fe_drivetrain.elasticity.mesh import Mesh, cached_mesh
 from fe_drivetrain.elasticity.mesh import write as write_mesh
 from fe_drivetrain.export import Superelement
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
+from fe_drivetrain.pages.advise import show_advise
+from fe_drivetrain.pages.check import show_check
+from fe_drivetrain.pages.compare import show_compare
+from fe_drivetrain.pages.life import show_life
+from fe_drivetrain.pages.loads import show_loads
+from fe_drivetrain.pages.study import show_study
+from fe_drivetrain.pages.uncertainty import show_uncertainty
+from fe_drivetrain.pages.validate import show_validate
 from fe_drivetrain.procedure import Project
+from fe_drivetrain.report.suite import Case, Page, Run
+from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.shafts.response import Model
 from fe_drivetrain.studies import (
     AdviseResult,
@@ -138,6 +150,18 @@ def studied() -> StudyResult:
     return study(coarse_scene("bonded"), HISTORIES, slopes=(4.0,))
 
 
+PAGES: dict[str, Callable[[Run, Page, Any], None]] = {
+    "studied": show_study,
+    "checked": show_check,
+    "compared": show_compare,
+    "advised": show_advise,
+    "uncertain": show_uncertainty,
+    "validated": show_validate,
+    "lived": show_life,
+    "loaded": show_loads,
+}
+"""What shows a result on a page."""
+
 RESULTS = (
     "studied",
     *("checked", "compared", "advised", "uncertain", "validated", "lived", "loaded"),
@@ -169,7 +193,38 @@ def test_a_result_cannot_be_changed_and_prints_in_one_line(result: Result) -> No
     with pytest.raises(dataclasses.FrozenInstanceError):
         result.answer = ()  # type: ignore[misc]
     assert "\n" not in repr(result)
-    assert len(repr(result)) < 200
+    assert result.answer.verdict.removesuffix(".") in repr(result)
+    assert len(repr(result)) < 300
+
+
+def test_the_answer_of_a_study_keeps_the_rules(
+    result: Result,
+    request: pytest.FixtureRequest,
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+) -> None:
+    # what is drawn takes seconds, and is tried elsewhere
+    monkeypatch.setattr(pages.study, "model_pictures", lambda *_: [])
+    monkeypatch.setattr(pages.check, "picture_of_model", lambda *_: None)
+    name = request.node.callspec.params["result"]
+    if name not in PAGES:  # its command writes no page
+        assert broken_by(result.answer, [result.chart().caption], result.checks) == []
+        return
+
+    def work(run: Run, page: Page) -> None:
+        page.take(result)
+        PAGES[name](run, page, result)
+
+    case = Case("study/of", "A study", "the user's scene", work)
+    results = case.results(Run({}, quick=False, folder=tmp_path))
+    assert results.answer is not None
+    assert results.answer.verdict == result.answer.verdict
+    assert broken_rules(results) == []
+
+
+def test_what_has_no_answer_cannot_be_a_result() -> None:
+    with pytest.raises(RuntimeError, match="has no answer"):
+        Findings().frozen({})
 
 
 def test_a_result_is_drawn_by_plotly(result: Result) -> None:

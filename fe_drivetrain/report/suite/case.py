@@ -11,12 +11,12 @@ import re
 import shlex
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.near_words import did_you_mean
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.results import PageLink, Results
@@ -210,14 +210,11 @@ def find_cases(name: str) -> list[Case]:
     if group:
         return group
     matches = [c for full, c in cases.items() if name in (full, full.rpartition("/")[2])]
-    if len(matches) != 1:
-        known = [m.name for m in matches] or list(cases)
-        by_word = {word: full for full in cases for word in (full, full.rpartition("/")[2])}
-        by_word |= {full.partition("/")[0]: full.partition("/")[0] for full in cases}
-        close = [] if matches else get_close_matches(name, by_word, n=1)
-        hint = f" (did you mean {by_word[close[0]]!r}?)" if close else ""
-        raise InputError(
-            f"case {name!r} is {'ambiguous' if matches else 'unknown'}{hint}: "
-            f"use one of {', '.join(known)}"
-        )
+    if len(matches) > 1:
+        known = ", ".join(match.name for match in matches)
+        raise InputError(f"case {name!r} is ambiguous: use one of {known}")
+    if not matches:
+        groups = {full.partition("/")[0] for full in cases}
+        near = did_you_mean(name, [*cases, *sorted(groups)]) or "none is like it;"
+        raise InputError(f"case {name!r} is unknown: {near} fe-drivetrain list shows all")
     return matches

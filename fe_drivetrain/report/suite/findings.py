@@ -36,7 +36,7 @@ class Found:
 
     Attributes
     ----------
-    answer : Answer or None
+    answer : Answer
         The answer to what was asked.
     details : tuple of str
         What explains the answer, in sentences.
@@ -65,7 +65,7 @@ class Found:
         Wall time of each step [s].
     """
 
-    answer: Answer | None
+    answer: Answer
     details: tuple[str, ...]
     figures: tuple[Figure, ...]
     checks: tuple[Verdict, ...]
@@ -142,7 +142,14 @@ class Findings(Checks):
             Wall time of each step [s].
         **options : object
             What was asked for.
+
+        Raises
+        ------
+        RuntimeError
+            No answer was given.
         """
+        if self.answered is None:
+            raise RuntimeError("what was found has no answer: call `answer` before `frozen`")
         return {
             "answer": self.answered,
             "details": tuple(self.sentences),

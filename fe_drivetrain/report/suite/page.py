@@ -94,9 +94,9 @@ class Page(Findings):
         Parameters
         ----------
         found : Found
-            Its answer, numbers, checks, cautions, and what it is of.
+            Its answer, unless the page has one, numbers, checks, cautions, and what it is of.
         """
-        self.answered = found.answer or self.answered
+        self.answered = self.answered or found.answer
         self.sentences += found.details
         self.figures += found.figures
         self.checks += found.checks
@@ -110,6 +110,23 @@ class Page(Findings):
         self.tables |= found.tables
         self.scene = found.scene or self.scene
         self.seed = found.seed
+
+    def hero(self, caption: str) -> None:
+        """Let a picture or chart of this page show the verdict, in place of the study's chart.
+
+        Parameters
+        ----------
+        caption : str
+            Of the picture.
+
+        Raises
+        ------
+        RuntimeError
+            The page has no answer.
+        """
+        if self.answered is None:
+            raise RuntimeError(f"{caption!r} shows no verdict: the page has no answer")
+        self.answered = self.answered.model_copy(update={"hero": caption})
 
     def section(self, title: str) -> None:
         """Begin a section; what is added from now on stands under its heading."""

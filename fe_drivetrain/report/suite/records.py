@@ -221,3 +221,23 @@ def as_json(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [as_json(inner) for inner in value]
     return value.tolist() if hasattr(value, "tolist") else value
+
+
+def strict_json(value: Any) -> Any:
+    """The same as plain JSON data, NaN and infinity as strings.
+
+    Parameters
+    ----------
+    value : object
+        As `as_json` takes it.
+    """
+    if isinstance(value, float):
+        return value if abs(value) < float("inf") else str(value)
+    if isinstance(value, str | int) or value is None:
+        return value
+    plain = as_json(value)
+    if isinstance(plain, dict):
+        return {key: strict_json(inner) for key, inner in plain.items()}
+    if isinstance(plain, list):
+        return [strict_json(inner) for inner in plain]
+    return str(value) if plain is value else strict_json(plain)

@@ -1,0 +1,88 @@
+"""What is typed of each command, for the end of its help."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+EXAMPLES: Mapping[str, tuple[str, ...]] = {
+    "new": ("mine.yaml", "mine.yaml --arrangement two-bearings", "--list"),
+    "check": ("two_bearings", "mine.yaml --open"),
+    "study": (
+        "two_bearings --quick",
+        "mine.yaml --loads 'outputs/*.outb' --open",
+        "mine.yaml --loads outputs --json > study.json",
+    ),
+    "advise": (
+        "main_bearing_bonded --quantity main_bearing.My --tolerance 2%",
+        "mine.yaml --load hub.My=1e6",
+    ),
+    "loads": (
+        "'outputs/*.outb' --site class-II --open",
+        "mine.csv --against 'others/*.csv'",
+    ),
+    "life": (
+        "two_bearings --loads 'outputs/*.outb' --site class-II",
+        "mine.yaml --loads outputs --bearing front=240/630",
+    ),
+    "compare": (
+        "mine.yaml stiffer.yaml",
+        "two_bearings --vary shaft.front=-1.2:-0.8:5",
+    ),
+    "uncertainty": ("mine.yaml --quantity main_bearing.My --sobol",),
+    "report": (
+        "mine.yaml --loads 'outputs/*.outb' --site class-II --open",
+        "mine.yaml --loads outputs --pdf",
+    ),
+    "run": (
+        "verification/nafems_le10 --quick",
+        "gear --quick --out results",
+        "--all --quick --junit verdicts.xml",
+    ),
+    "list": ("gear", "spherical roller", "--settings"),
+    "validate": ("project.yaml --new", "project.yaml --open"),
+    "history": ("nafems_le10", "--out results"),
+    "compare-runs": ("before after",),
+    "export": (
+        "two_bearings --out shaft.json --format json",
+        "mine.yaml --out model.inp",
+        "--list",
+    ),
+    "part": ("housing.step --picture faces.png", "housing.csv --bore bore"),
+}
+"""Arguments and options by command."""
+
+
+def examples_text(command: str) -> str:
+    """Examples as the end of a help text.
+
+    Parameters
+    ----------
+    command : str
+        Its name.
+
+    Returns
+    -------
+    str
+        A heading, and a line for each; empty where there are none.
+    """
+    lines = [f"  fe-drivetrain {command} {words}" for words in EXAMPLES.get(command, ())]
+    return "\n".join(["Examples:", *lines]) if lines else ""
+
+
+def unfolded(description: str) -> str:
+    """A description whose paragraphs are one line each, so that a terminal folds them.
+
+    Parameters
+    ----------
+    description : str
+        Docstring of a command.
+
+    Returns
+    -------
+    str
+    """
+    from inspect import cleandoc
+
+    return "\n\n".join(
+        " ".join(paragraph.split()) for paragraph in cleandoc(description).split("\n\n")
+    )
