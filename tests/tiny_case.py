@@ -19,8 +19,8 @@ def work(run, page):
         (run.folder / "half.txt").write_text("half")
         if run.settings.get("work") == "forever":
             time.sleep(600)
-    page.say("\u2208 one")
     page.equals("one", 1.0, 1.0, within=0.1, why="r", source="s")
+    page.answer("Is it one?", "\u2208 one.", [page.judged("one")])
 
 if __name__ == "__main__":
     main_of_case(Case("group/tiny", "T\u00eft\u2082e", "s", work, settings=("work",)))
@@ -30,12 +30,14 @@ if __name__ == "__main__":
 def check_one(page: Page, computed: float = 1.01, within: float = 0.05, **more: Any) -> None:
     """One check, that the computed value is one; `more` is unit, measure, band."""
     page.equals("one", computed, 1.0, within=within, why="r", source="s", **more)
+    if page.answered is None:
+        page.answer("Is it one?", "The answer is one.", [page.judged("one")])
 
 
 def count(run: Run, page: Page, computed: float = 1.01) -> None:
     """Two checks, the first of which a computed value beyond 1.05 fails."""
     with run.step("count to one"):
         pass
-    page.say("The answer is one.", "Second.", "Third.", "Fourth.")
+    page.say("Second.", "Third.", "Fourth.")
     check_one(page, computed, unit="N m/rad")
     page.equals("ratio", 2.0, 2.0, within=0.0, why="r", source="s", relative=False)

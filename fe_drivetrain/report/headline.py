@@ -25,16 +25,15 @@ def values_found(results: Results) -> list[Figure | Verdict]:
     -------
     list of Figure or Verdict
         A key figure that is a check or value of the results is that one, and stands once. Of a file
-        of an older program its values stand first, and before them the check that it names.
+        of an older program the first number stands first.
     """
     every: list[Figure | Verdict] = [*results.answers, *results.verdicts]
     first: list[Figure | Verdict] = []
     if results.answer is not None:
         first = [_record_of(figure, every) for figure in results.answer.figures]
     else:
-        named = (one for one in results.verdicts if one.quantity == results.headline)
         numbers = (one for one in every if isinstance(one, Figure) or one.check != "holds")
-        first = [*named, *numbers][:1]
+        first = list(numbers)[:1]
     return [*first, *(one for one in every if not any(one is other for other in first))]
 
 

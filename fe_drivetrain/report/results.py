@@ -389,10 +389,6 @@ class Results(_Result):
     answer: Answer | None = Field(default=None, description="the answer to what was asked")
     details: list[str] = Field(description="what explains the answer, in sentences")
     answers: list[Figure] = Field(default=[], description="values that were found, not judged")
-    headline: str = Field(
-        default="",
-        description="quantity of the check that answers what was asked; empty: the first",
-    )
     verdicts: list[Verdict]
     sections: list[Section]
     limits: list[Limit] = []
@@ -419,7 +415,7 @@ class Results(_Result):
         if not isinstance(given, dict) or given.get("schema_version") not in (1, 2):
             return given
         return {
-            **{key: value for key, value in given.items() if key != "summary"},
+            **{key: value for key, value in given.items() if key not in ("summary", "headline")},
             "schema_version": 3,
             "details": given.get("summary", []),
         }

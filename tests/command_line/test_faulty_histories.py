@@ -59,7 +59,7 @@ def test_the_page_notes_what_may_mislead(invoke: Callable[..., Result], tmp_path
     my = loads[:, 4]
     usual = 1.4826 * np.median(np.abs(my[1:-1] - 0.5 * (my[:-2] + my[2:])))
     said = notes.split("alone in My, ")[1].split(" times as far from both neighbours")[0]
-    assert float(said.replace(THIN_SPACE, "")) == pytest.approx(3e6 / usual, rel=0.01)
+    assert float(said.replace(THIN_SPACE, "")) == pytest.approx(3e6 / usual, rel=0.05)  # two digits
     assert "Mx does not vary in 1 of 1 files" in notes
     assert "1 of 1 files are shorter than ten minutes" in notes
     share = float(notes.split(" % of the damage is of half cycles")[0].split()[-1])

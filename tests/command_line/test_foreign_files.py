@@ -184,7 +184,7 @@ def test_what_an_earlier_run_wrote_and_this_one_does_not_goes(tmp_path: Path) ->
     out = tmp_path / "b"
     run_case(marked_case(OLD), out)
     (out / "two" / "mine.txt").write_text("mine")
-    run_case(Case("a/b", "t", "s", lambda run, page: page.say("none")), out)
+    run_case(Case("a/b", "t", "s", lambda run, page: page.answer("What?", "None.", [])), out)
     names = {str(p.relative_to(out)) for p in out.rglob("*")}
     assert names == {MANIFEST, FILE, "report.html", "results.json", "two", "two/mine.txt"}
 
@@ -211,7 +211,7 @@ def test_a_folder_in_the_way_of_a_file_and_a_file_in_that_of_a_folder_are_kept(
     tmp_path: Path,
 ) -> None:
     out = tmp_path / "b"
-    run_case(Case("a/b", "t", "s", lambda run, page: page.say("none")), out)
+    run_case(Case("a/b", "t", "s", lambda run, page: page.answer("What?", "None.", [])), out)
     (out / "one.txt").mkdir()
     (out / "one.txt" / "inner").write_text("inner")
     (out / "two").write_text("two")

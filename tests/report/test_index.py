@@ -188,7 +188,6 @@ def test_the_answer_is_the_named_check_or_the_first_that_is_a_number() -> None:
     statement = check("holds", 1.0, 1.0)
     checks = [statement, verdict(1.0), judge("mass", 2.0, 2.0, tolerance=0, reason="", source="")]
     assert headline(results(verdicts=checks)) == checks[1]
-    assert headline(results(verdicts=checks, headline="mass")) == checks[2]
     assert headline(results(verdicts=[statement])) == statement
     assert headline(results(verdicts=[])) is None
     plain = answer_sentence(verdict(1.004, band=0.001)).replace("\u00a0", " ")

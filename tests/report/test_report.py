@@ -557,8 +557,11 @@ def test_safe_ranges_are_written_in_words(low: float | None, high: float | None,
 
 
 def test_only_ends_with_a_unit_are_written_in_steps_of_three_powers() -> None:
-    assert safe_range(limit(parameter="ratio", low=1e-10)) == "from 1\u00a0×\u00a010⁻¹⁰"
-    assert safe_range(limit(parameter="spring [N/m]", low=1e-10)) == "from 100\u00a0×\u00a010⁻¹²"
+    assert safe_range(limit(parameter="ratio", low=1e-10, high=None)) == "from 1\u00a0×\u00a010⁻¹⁰"
+    assert (
+        safe_range(limit(parameter="spring [N/m]", low=1e-10, high=None))
+        == "from 100\u00a0×\u00a010⁻¹²"
+    )
 
 
 def test_limits_are_on_the_page_and_on_the_atlas(tmp_path: Path) -> None:

@@ -30,8 +30,14 @@ def test_a_quick_run_against_a_full_one_is_named(
     assert "against" not in invoke("compare-runs", "full", "again")[1]
 
 
+def said(page: Page) -> None:
+    """An answer, which every case has."""
+    page.answer("Is it right?", "It is.", [])
+
+
 def answers(run: Run, page: Page) -> None:
     page.found("stiffness [MN m/rad]", 579.0 * float(run.settings["k"]))
+    page.answer("How stiff?", "So stiff.", [page.judged("stiffness")])
 
 
 @pytest.mark.parametrize(
@@ -59,6 +65,7 @@ def judged(run: Run, page: Page) -> None:
         page.vanishes(quantity, 0.0, within=1e-9, why="r", source="s")
     within = float(run.settings.get("within", 1e-12))
     page.equals("order", 4.0, 4.0, within=within, why="r", source="s")
+    page.answer("Is it right?", "It is.", [page.judged("order")])
     page.data("numbers", [2.5 * (1.0 + float(run.settings.get("rounding", 0.0))), 4.0])
 
 
@@ -99,12 +106,15 @@ def test_a_check_that_allows_the_same_in_other_words_has_not_changed(tmp_path: P
 
     def relative(run: Run, page: Page) -> None:
         page.equals("load", 200.0, 200.0, within=0.05, why="r", source="s")
+        said(page)
 
     def between(run: Run, page: Page) -> None:
         page.between("load", 200.0, 190.0, 210.0, why="r", source="s")
+        said(page)
 
     def in_the_unit(run: Run, page: Page) -> None:
         page.equals("load", 200.0, 200.0, within=5.0, relative=False, why="r", source="s")
+        said(page)
 
     for work in (relative, between, in_the_unit):
         run_cases([Case("group/tiny", "A tiny case", "nobody", work)], tmp_path / work.__name__)
@@ -117,6 +127,7 @@ def test_a_check_that_allows_the_same_in_other_words_has_not_changed(tmp_path: P
 def test_a_check_that_moved_to_another_case_is_found_there(tmp_path: Path) -> None:
     def alone(run: Run, page: Page) -> None:
         page.vanishes("residual", 0.0, within=1e-9, why="r", source="s")
+        said(page)
 
     run_cases([JUDGED, Case("group/alone", "Alone", "nobody", alone)], tmp_path / "other")
     run_cases([JUDGED], tmp_path / "one")

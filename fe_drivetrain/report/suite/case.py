@@ -85,6 +85,8 @@ class Case:
 
         page = Page()
         self.run(run, page)
+        if page.answered is None:
+            raise RuntimeError(f"case {self.name} has no answer: call `page.answer` in its work")
         found = Results(
             case=self.name,
             title=f"{page.subject}: {self.title}" if page.subject else self.title,
@@ -108,7 +110,6 @@ class Case:
             drivetrains=page.drivetrains,
             links=list(self.links),
             skipped=page.skipped,
-            headline=page.headline,
             environment=environment(
                 run.settings, page.seed, run.quick, self.command or self._typed(run)
             ),

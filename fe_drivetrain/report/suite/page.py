@@ -79,13 +79,11 @@ class Page(Findings):
         What a page is about, if the user gave it; empty where it is the case's own.
     sections : list of Section
         Headings, and what stands under them.
-    headline : str
-        Quantity of the check that answers, or empty for the first value.
     """
 
     def __init__(self) -> None:
         super().__init__()
-        self.subject = self.headline = ""
+        self.subject = ""
         self.sections: list[Section] = []
 
     def take(self, found: Found) -> None:
