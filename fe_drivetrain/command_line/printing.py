@@ -49,7 +49,7 @@ def browser() -> str:
 
 
 def write_pdf(program: str, page: Path, target: Path) -> None:
-    """Print a page.
+    """Print the answer of a page and its sections, without checks, assumptions and how it was made.
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ def _run(program: str, page: Path, *options: str) -> None:
             if hasattr(os, "geteuid") and os.geteuid() == 0:
                 common.append("--no-sandbox")  # as root it has none
             subprocess.run(
-                [program, *common, *options, page.resolve().as_uri()],
+                [program, *common, *options, f"{page.resolve().as_uri()}#brief"],
                 check=False,
                 capture_output=True,
                 timeout=_SECONDS,

@@ -2,6 +2,8 @@
 // buttons that copy and save; links and paper that unfold what is folded
 (function () {
   document.documentElement.classList.add("scripted");
+  // what a reader of a few printed pages does not ask for is left out
+  if (location.hash === "#brief") document.documentElement.classList.add("brief");
 
   function copied(button) {
     const text = button.textContent;
