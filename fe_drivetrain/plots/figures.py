@@ -16,7 +16,12 @@ MINIMUM = 1e-8
 """Relative errors that are smaller are drawn here: a logarithmic axis has no zero."""
 
 _NOTHING = 1e-9  # share of the diagonal: round-off, of what symmetry makes zero
-_CHOSEN = {"mode": "markers+text", "text": ["chosen"], "textposition": "bottom right"}
+_CHOSEN = {
+    "mode": "markers+text",
+    "text": ["chosen"],
+    "textposition": "bottom center",
+    "cliponaxis": False,
+}
 _READABLE = 6  # rows of a matrix whose cells have room for a number
 
 

@@ -11,6 +11,7 @@ from fe_drivetrain.report.results import Figure, Limit, Verdict
 DIGITS = 4
 """Significant digits of a number without a band; results.json keeps all of them."""
 
+_NOTHING = 0.1  # share of its band below which a value has no digit
 _MAX_DIGITS = 7  # of a value with a band
 _PRINTED_DIGITS = 7  # of a number that somebody has given; what was computed has more
 _ROUND_OFF = 1e-13  # of one that was converted to another unit
@@ -88,8 +89,8 @@ def value_text(
         Its unit, after a space that does not break; empty of a pure number.
     band : float or None
         Half width of its numerical uncertainty, in the unit: the value is rounded to the place of
-        the second digit of the band, and to "~0" where it is smaller than the band. Four digits
-        without a band.
+        the second digit of the band, and to "~0" where it is at most a tenth of the band. Four
+        digits without a band.
     with_band : bool
         Whether the band is shown, too.
 
@@ -109,7 +110,7 @@ def _digits_of(value: float, unit: str, band: float | None, with_band: bool) -> 
     """The number of `value_text`, without its unit."""
     if not band or not math.isfinite(value) or not math.isfinite(band):
         return formatted(value, unit=unit)
-    if abs(value) < band:
+    if abs(value) <= _NOTHING * band:
         around = f" ± {formatted(band, 2, unit)}" if with_band else ""
         return f"~0{around}"
     power = power_of_ten(value, unit)
@@ -278,7 +279,7 @@ def standing_of_answer(answer: Answer) -> tuple[Status, str] | None:
     if answer.claim:
         alone: Status = "good" if answer.claim == "holds" else "watch"
         status = alone if answer.status == "none" else answer.status
-        return status, f"The statement {answer.claim}"
+        return status, f"The source's statement {answer.claim}"
     words: dict[Status, str] = {
         "good": "✓ within all limits",
         "watch": "! near a limit",

@@ -248,9 +248,12 @@ def _against_time(advice: Advice) -> Chart:
     # errors are differences from the last level: its own error is the band of each
     bands = [advice.top.estimate] * (len(advice.results) - 1) + [0.0]
     traces = error_traces(*advice.ladder, advice.tolerance, advice.chosen, bands)
+    enough = "none is accurate enough" if advice.chosen is None else "the chosen one is enough"
+    caption = f"Error of each level against its time, {enough}; bars: uncertainty of the finest"
+    if min(advice.ladder[2][:-1], default=1.0) <= MINIMUM:
+        caption += f"; errors of zero are drawn at {100 * MINIMUM:g} %"
     found = chart(
-        "Error of each level against its time, bars: own error of the last. The chosen one is "
-        f"accurate enough; errors of zero are drawn at {100 * MINIMUM:g} %",
+        caption,
         traces,
         x="time [s]",
         y="error [%]",

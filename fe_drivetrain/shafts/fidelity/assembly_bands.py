@@ -57,10 +57,7 @@ _SHOWN: dict[Behaviour, str] = {
 }
 _FILE = "assembly_bands.py"  # of the estimate, beside the rooms that make a solution
 _TWO = "of coarser meshes there is only one, which shows no order of convergence"
-_NONE = (
-    f"coarser meshes cannot be made, or their elements are not {MIN_RATIO:g} times as large: "
-    "there is no series of meshes"
-)
+_NONE = f"no series of coarser meshes could be made, each {MIN_RATIO:g} times as coarse as the next"
 
 
 @dataclass(frozen=True)
