@@ -133,6 +133,6 @@ def test_what_was_given_keeps_its_digits_and_what_was_computed_does_not() -> Non
     banded = judge("f", 727.0345678, 727.02, band=0.5, **given)
     assert (computed_text(banded), error_text(banded)) == ("727.03", "~0\u00a0%")
     failing = judge("f", 750.0, 727.02, band=30.0, **given)
-    assert error_text(failing) == "+3.16\u00a0%"  # what fails says by how much
+    assert error_text(failing) == "+3.2\u00a0%"  # what fails says by how much
     off = judge("f", 720.0, 727.02, band=0.5, **given)
     assert error_text(off) == "\u22120.966\u00a0%"
