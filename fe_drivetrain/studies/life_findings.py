@@ -130,15 +130,15 @@ def cautions(
     files = [one.file for one in lives[0].files]
     vertical = {short_name(one.file, files): one.vertical for one in lives[0].files}
     if unlike := different_turbines(vertical):
-        found.note(unlike)
+        found.note(unlike, first=True)
     oil = options.rules.lubricant
     if oil is not None and oil.caution is not None:
         found.note(oil.caution)
     own_speeds = [one.own_speeds for one in lives[0].files]
     if unused := speed_not_used(options.rotor_speed_rpm, own_speeds):
-        found.note(unused)
+        found.note(unused, first=True)
     for unused in choices_not_used(scene, options.choices, [life.bearing for life in lives]):
-        found.note(unused)
+        found.note(unused, first=True)
     found.note(UNVERIFIED)
 
 

@@ -58,7 +58,7 @@ def hub_findings(
     for sentence in cautions(hub, options):
         found.note(sentence)
     for sentence in winds_not_used(target, capture):
-        found.note(sentence)
+        found.note(sentence, first=True)
     for sentence in _aliased(hub):
         found.note(sentence)
     _data(found, hub, options, capture)
@@ -80,7 +80,7 @@ def note_unused_speed(
     """
     given = options.rotor_speed_rpm
     if unused := speed_not_used(given, [speeds for own in stated for speeds in own]):
-        found.note(unused)
+        found.note(unused, first=True)
 
 
 def _equivalent(found: Findings, hub: LoadTotals, options: LoadOptions) -> None:

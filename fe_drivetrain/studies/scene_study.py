@@ -346,8 +346,9 @@ def _cautions(found: Findings, at: _Solved, quick: bool) -> list[str]:
             "Quick: on a coarser mesh than the scene's, for a first look; figures will change."
         )
     opening = foot_warnings(at.scene, at.response, together, given.weights, given.gravity)
+    doubtful = [given.caution] if given.caution else []
     made = [] if given.own else [given.statement]
-    return [*made, *opening, *at.model.warnings]
+    return [*doubtful, *made, *opening, *at.model.warnings]
 
 
 def _stated(model: Model, gravity: float) -> Stated:

@@ -52,6 +52,8 @@ class StudyLoads:
         Time that was left out at the beginning of each [s].
     seeds : tuple of int
         Seeds of made wind, which the program fixes; none of histories of the user.
+    caution : str
+        What does not belong together among them; empty where nothing does.
     """
 
     histories: Sequence[LoadHistory]
@@ -61,6 +63,7 @@ class StudyLoads:
     gravity: float = GRAVITY
     skip: float = 0.0
     seeds: tuple[int, ...] = ()
+    caution: str = ""
 
     def asked(self) -> dict[str, Any]:
         """What they are, as plain data."""
@@ -174,10 +177,10 @@ def _of_the_user(
         f"Hub loads: {count} {words[count > 1]} of your own, {samples:,} load steps "
         f"over {seconds:,.6g} s"
         + (f"; the first {skip:g} s of each are left out." if skip else ".")
-        + about
-        + (f" {unlike}" if unlike else ""),
+        + about,
         True,
         skip=skip,
+        caution=unlike,
     )
 
 

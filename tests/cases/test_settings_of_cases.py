@@ -19,7 +19,7 @@ from fe_drivetrain.report.suite.suite import run_cases
 
 
 def nothing(run, page):
-    page.say("done")
+    page.answer("Is it done?", "Done.", [])
 
 
 PLAIN = Case("g/plain", "t", "s", nothing)

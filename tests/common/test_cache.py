@@ -315,6 +315,7 @@ def test_a_case_that_measures_takes_nothing_from_the_cache(folder: Path, tmp_pat
 
         def work(run: Run, page: Page, alone: bool = alone) -> None:
             seen[alone] = user_cache().folder
+            page.answer("Which?", "This one.", [])
 
         run_case(Case("a/b", "t", "s", work, alone=alone), tmp_path / "out")
     assert seen == {True: None, False: folder}

@@ -314,7 +314,7 @@ def test_a_page_names_all_its_scenes(tmp_path: Path, capsys: pytest.CaptureFixtu
         result = None
 
         def __call__(self, run: Run, page: Page) -> None:
-            pass
+            page.answer("Which?", "None.", [])
 
     def said(*scenes: str) -> str:
         study: Any = Nothing()

@@ -72,7 +72,7 @@ def test_the_documented_sign_of_carried_moments_is_that_of_statics(tmp_path: Pat
     found = read_recorded(file, mapping).history
     np.testing.assert_allclose(found.loads[0, 3:], [2000e3, 2520e3, 95e3])
     page = Path(__file__).parents[2].joinpath("docs", "loads.md").read_text("utf-8")
-    assert "M_hub = M + (d, 0, 0) cross F" in page
+    assert r"$M_\mathrm{hub} = M + (d, 0, 0) \times F$" in page
 
 
 def test_rotating_loads_are_turned_back_by_the_azimuth(tmp_path: Path) -> None:

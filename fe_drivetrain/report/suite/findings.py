@@ -360,10 +360,19 @@ class Findings(Checks):
         """
         self.skipped.append(f"{check}: {why}")
 
-    def note(self, sentence: str) -> None:
-        """State, above all else, what must be known before any figure; the same sentence once."""
+    def note(self, sentence: str, first: bool = False) -> None:
+        """State what must be known before any figure; the same sentence once.
+
+        Parameters
+        ----------
+        sentence : str
+            The caution.
+        first : bool
+            Whether it stands before all others: what was given does not belong together, or is not
+            used.
+        """
         if sentence not in self.notes:
-            self.notes.append(sentence)
+            self.notes.insert(0 if first else len(self.notes), sentence)
 
     def data(self, name: str, value: Any) -> None:
         """Keep numbers for other programs in results.json, under a name with its unit."""
