@@ -116,7 +116,7 @@ def answer(page: Page, free: dict[str, Torsional], tabled: float, lss: Record) -
         "How strongly do the tabled dampers damp the drivetrain's swing?",
         f"The thesis's {asked:g}\u00a0% of critical damping "
         f"{'holds' if holds else 'does not hold'}: its tabled shaft dampers give "
-        f"{value_text(100 * tabled, '%')}; with inertias in Eq 4.5 they would give it.",
+        f"{value_text(100 * tabled, '%')}; computed from inertias, not from areas, they would.",
         [
             page.value(
                 "damping ratio of the swing, dampers as tabled [%]",
@@ -126,7 +126,7 @@ def answer(page: Page, free: dict[str, Torsional], tabled: float, lss: Record) -
             ),
             *(
                 page.value(
-                    f"the same with inertias in Eq 4.5, {name} [%]", ratio, beside=asked, by="text"
+                    f"the same, dampers as meant, {name} [%]", ratio, beside=asked, by="text"
                 )
                 for name, ratio in ratios.items()
             ),

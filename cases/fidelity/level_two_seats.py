@@ -202,7 +202,7 @@ def answer(page: Page, largest: float, milliseconds: float) -> None:
             page.value("stiffnesses compared", len(terms)),
             page.value("time of the meridian [ms]", milliseconds),
             *(
-                page.judged(quantity, name, "solids", unit=unit)
+                page.judged(quantity, name, "solids, within their band", unit=unit)
                 for quantity, name, unit in shown_first
             ),
         ],

@@ -16,8 +16,8 @@ def answer(page: Page, counts: Floats) -> None:
     page.answer(
         "What torque do pitch and yaw motors need, and does Eq 5.1 of PROTEST give it?",
         "Eq 5.1 as printed does not hold: in a shutdown the pitch motor needs "
-        f"{right:.0f}\u00a0N\u00a0m, not {printed:.0f}\u00a0N\u00a0m, as its inertia is "
-        "negative.".replace("-", MINUS),
+        f"{right:.0f}\u00a0N\u00a0m, not {printed:.0f}\u00a0N\u00a0m: inertia and friction "
+        "have the wrong sign.".replace("-", MINUS),
         [
             page.value(
                 "largest torque of the pitch motor in a shutdown [N m]",
