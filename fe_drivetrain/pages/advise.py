@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fe_drivetrain.report.pictures.sketch import shaft_with_rings
+from fe_drivetrain.pages.drivetrain_sketch import drivetrain_sketch
 from fe_drivetrain.report.results import Cell, Chart, Section, Table, Text
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.run import Run
@@ -20,15 +20,14 @@ def show_advise(run: Run, page: Page, result: AdviseResult) -> None:
     Parameters
     ----------
     run : Run
-        Its folder takes the picture.
+        The run.
     page : Page
         Takes sections.
     result : AdviseResult
         What was found.
     """
     page.sections.append(ladder(result))
-    bodies = shaft_with_rings(result.drivetrain)
-    page.image("Shaft and bearing rings", run.sketch(*bodies, file="shaft.png"))
+    page.add(drivetrain_sketch("The drivetrain from the side", result.drivetrain, {}, {}))
     if result.effects:
         page.sections.append(tornado(result))
 

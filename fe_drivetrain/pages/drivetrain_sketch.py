@@ -72,7 +72,7 @@ def drivetrain_sketch(
                 "x": bearing.x,
                 "y": outer,
                 "ax": 0,
-                "ay": -60 - 70 * (number % 2),
+                "ay": -30 - (60 * (number % 2) if words else 0),
                 "text": "<br>".join(lines),
                 "arrowcolor": colour,
                 "font": {"size": 14},
