@@ -72,7 +72,7 @@ def drivetrain_sketch(
                 "x": bearing.x,
                 "y": outer,
                 "ax": 0,
-                "ay": -30 - (60 * (number % 2) if words else 0),
+                "ay": -20 - 10 * len(lines) - (50 * (number % 2) if words else 0),
                 "text": "<br>".join(lines),
                 "arrowcolor": colour,
                 "font": {"size": 14},
@@ -87,10 +87,12 @@ def drivetrain_sketch(
         "shapes": shapes,
         "annotations": notes,
         "showlegend": False,
+        "xaxis": {"title": {"text": "x [m]"}, "zeroline": False},
         "height": 430,
         "yaxis": {
             "title": {"text": "z [m]"},
             "scaleanchor": "x",
+            "zeroline": False,
             "range": rounded([-1.4 * top, 3.2 * top]),
         },
     }
