@@ -129,7 +129,7 @@ def test_meshes_of_nearly_one_size_count_once() -> None:
     one = assembly_band([0.9, 1.01, 1.0], values, np.array([0.1]))
     assert np.isnan(one.series)
     assert one.half_width == pytest.approx(SAFETY * 0.1 / 1.19)
-    assert "no series of meshes" in one.sentence()
+    assert "no series of coarser meshes" in one.sentence()
 
 
 @pytest.mark.parametrize("coarse", [[1.1], [1.25, 1.1]])
@@ -139,7 +139,7 @@ def test_meshes_that_are_hardly_coarser_are_no_series(coarse: list[float]) -> No
     found = assembly_band([*coarse, 1.0], values, np.array([0.1]))
     assert np.isnan(found.series)
     assert found.half_width == pytest.approx(SAFETY * 0.1 / values[-1][0])
-    assert "no series of meshes" in found.sentence()
+    assert "no series of coarser meshes" in found.sentence()
     wider = assembly_band([1.4, *coarse, 1.0], [np.array([1.1]), *values], np.array([0.1]))
     assert np.isfinite(wider.series)
 
