@@ -92,3 +92,4 @@ def mistake(report: Progress) -> None:
 def pid(run: Run, page: Page) -> None:
     page.data("pid", os.getpid())
     page.equals("one", 1.0, 1.0, within=0.1, why="r", source="s")
+    page.answer("Is it one?", "It is 1.", [page.judged("one")])
