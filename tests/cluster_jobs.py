@@ -74,6 +74,7 @@ def numbers(run: Run, page: Page) -> None:
     values = np.sin(np.random.default_rng(1).standard_normal(50))
     page.data("values", values.tolist())
     page.equals("sum", float(values.sum()), float(values.sum()), within=0.0, why="r", source="s")
+    page.answer("Which sum?", "It is 1 sum.", [page.judged("sum")])
 
 
 def seeded(_report: Progress, number: int) -> Floats:
