@@ -83,15 +83,15 @@ def outcome_text(results: Results, page: Path, more: Sequence[str] = ()) -> str:
     -------
     str
     """
-    from fe_drivetrain.report.results import verdict_sentence
+    from fe_drivetrain.report.results import cautions_of, verdict_sentence
 
-    notes = [*results.unsettled, *results.notes]
     parts: list[RenderableType]
     if results.answer is None:
+        notes = cautions_of(results)
         parts = [*notes, *([""] if notes else []), *results.details[:_DETAILS]]
     else:
         verdict = verdict_sentence(results)
-        parts = [*_answer_parts(results.answer, verdict, results.passed, notes)]
+        parts = [*_answer_parts(results.answer, verdict, results.passed, cautions_of(results))]
     parts += ["", *_check_lines(results.verdicts), *more]
     return rendered(*parts, f"Report: {page}")
 
@@ -110,11 +110,12 @@ def answer_text(answer: Answer, notes: Sequence[str] = ()) -> str:
     -------
     str
     """
-    return rendered(*_answer_parts(answer, answer.verdict, True, notes))
+    cautions = [*answer.cautions, *notes]
+    return rendered(*_answer_parts(answer, answer.verdict, True, cautions))
 
 
 def _answer_parts(
-    answer: Answer, verdict: str, passed: bool, notes: Sequence[str]
+    answer: Answer, verdict: str, passed: bool, cautions: Sequence[str]
 ) -> Iterator[RenderableType]:
     """Verdict, key figures and cautions."""
     from rich.text import Text
@@ -125,7 +126,6 @@ def _answer_parts(
     yield Text(verdict.translate(_TYPED), style=f"bold {colour}".strip())
     yield ""
     yield figures_table(answer.figures)
-    cautions = [*answer.cautions, *notes]
     if cautions:
         yield ""
     for caution in cautions[:MAX_CAUTIONS]:
@@ -140,7 +140,7 @@ def figures_table(figures: Sequence[KeyFigure]) -> RenderableType:
     Parameters
     ----------
     figures : sequence of KeyFigure
-        Of an answer.
+        Those of an answer.
 
     Returns
     -------
@@ -173,7 +173,7 @@ def rendered(*parts: RenderableType) -> str:
     Parameters
     ----------
     *parts : RenderableType
-        Of rich; a str is a line that is never folded, and has no markup.
+        What rich prints; a str is a line that is never folded, and has no markup.
 
     Returns
     -------

@@ -13,10 +13,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_drivetrain.common.errors import InputError, MissingToolError
-from fe_drivetrain.common.files import atomic_path
 
 if TYPE_CHECKING:
-    from fe_drivetrain.report.results import Results
+    from fe_drivetrain.report.results import Chart, Results
 
 BROWSERS = (
     "chromium",
@@ -65,10 +64,9 @@ def write_pdf(program: str, page: Path, target: Path) -> None:
     InputError
         The browser has printed nothing.
     """
-    with atomic_path(target) as unfinished:
-        _run(program, page, f"--print-to-pdf={unfinished}", "--no-pdf-header-footer")
-        if not unfinished.is_file() or not unfinished.read_bytes().startswith(b"%PDF"):
-            raise InputError(f"{program} has printed no PDF of {page}: try it by hand")
+    _run(program, page, f"--print-to-pdf={target}", "--no-pdf-header-footer")
+    if not target.is_file() or not target.read_bytes().startswith(b"%PDF"):
+        raise InputError(f"{program} has printed no PDF of {page}: try it by hand")
 
 
 def write_pictures(program: str, results: Results, folder: Path) -> list[Path]:
@@ -79,9 +77,9 @@ def write_pictures(program: str, results: Results, folder: Path) -> list[Path]:
     program : str
         The browser, of `browser`.
     results : Results
-        Of the page.
+        Results that the page shows.
     folder : Path
-        Takes the pictures; it is made.
+        Takes the pictures.
 
     Returns
     -------
@@ -91,7 +89,6 @@ def write_pictures(program: str, results: Results, folder: Path) -> list[Path]:
     from fe_drivetrain.report.bundle import place_plotly, plotly_file
     from fe_drivetrain.report.results import Chart
 
-    folder.mkdir(parents=True, exist_ok=True)
     charts = [
         item for section in results.sections for item in section.items if isinstance(item, Chart)
     ]
@@ -102,25 +99,20 @@ def write_pictures(program: str, results: Results, folder: Path) -> list[Path]:
         for number, chart in enumerate(charts, 1):
             sheet = Path(made) / "sheet.html"
             sheet.write_text(_sheet(chart, source, plotly_file()), encoding="utf-8")
-            target, shot = folder / f"{number}-{_file_name(chart.caption)}.png", Path(made, "a.png")
-            _run(program, sheet, f"--screenshot={shot}", f"--window-size={_SIZE[0]},{_SIZE[1]}")
-            if not shot.is_file():
+            target = folder / f"{number}-{_file_name(chart.caption)}.png"
+            _run(program, sheet, f"--screenshot={target}", f"--window-size={_SIZE[0]},{_SIZE[1]}")
+            if not target.is_file():
                 raise InputError(
                     f"{program} has drawn no picture of {chart.caption!r}: leave --png out"
                 )
-            with atomic_path(target) as unfinished:
-                unfinished.write_bytes(shot.read_bytes())
-            shot.unlink()
             written.append(target)
     return written
 
 
-def _sheet(chart: object, source: str, plotly: str) -> str:
+def _sheet(chart: Chart, source: str, plotly: str) -> str:
     """A page with one chart, its title and its source."""
     from fe_drivetrain.report.chart_style import figure_as_json
-    from fe_drivetrain.report.results import Chart
 
-    assert isinstance(chart, Chart)
     figure = figure_as_json(chart)
     return (
         "<!DOCTYPE html><meta charset='utf-8'><style>body{margin:16px;font-family:sans-serif;"

@@ -12,6 +12,7 @@ import typer
 from fe_drivetrain.command_line.answer_text import show_outcome
 from fe_drivetrain.command_line.options import (
     Catalogues,
+    LoadFiles,
     RotorSpeed,
     SceneName,
     Skip,
@@ -26,6 +27,7 @@ from fe_drivetrain.command_line.terminal import as_typed
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.common.threads import hold_threads
 from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
+from fe_drivetrain.report.suite.ownership import check_result_folder
 
 if TYPE_CHECKING:
     from fe_drivetrain.drivetrain_file.scene import Scene
@@ -39,7 +41,7 @@ if TYPE_CHECKING:
 
     Work = Callable[[Run, Page], None]
 
-GROUP, OVERVIEW = "dossier", "overview"
+GROUP, OVERVIEW, PRINTED = "dossier", "overview", "printed"
 TOLERANCE = 0.05
 """Within which the cheapest model has to have the first bearing's vertical force."""
 TITLES: Mapping[str, str] = {
@@ -58,15 +60,7 @@ class ReportRequest:
     """Arguments and options of ``report`` as typed; each help text says what one is."""
 
     scene: SceneName
-    loads: Annotated[
-        list[str],
-        typer.Option(
-            "--loads",
-            metavar="FILES",
-            help="Hub loads: a file (.out, .outb of OpenFAST, or .csv), a folder, or a pattern in "
-            "quotes, as in 'outputs/*.outb'. May be repeated.",
-        ),
-    ]
+    loads: LoadFiles
     site: Annotated[
         str | None,
         typer.Option(
@@ -84,15 +78,16 @@ class ReportRequest:
     pdf: Annotated[
         bool,
         typer.Option(
-            "--pdf", help="Print the first page as dossier.pdf, too; needs Chromium or Chrome."
+            "--pdf",
+            help="Print the first page as printed/dossier.pdf, too; needs Chromium or Chrome.",
         ),
     ] = False
     png: Annotated[
         bool,
         typer.Option(
             "--png",
-            help="Write the charts of the first page as pictures, too, each with title and "
-            "source; needs Chromium or Chrome.",
+            help="Write the charts of the first page as pictures into printed, too, each with "
+            "title and source; needs Chromium or Chrome.",
         ),
     ] = False
     out: Annotated[
@@ -127,29 +122,48 @@ def report_command(context: typer.Context, asked: ReportRequest) -> int:
 
     One folder with a page for each question and a first page that answers all of them. Pages that
     the same program has made of the same drivetrain, files and options are kept; all others are
-    made anew.
+    made again.
 
     The exit status is 0 if every check passes.
     """
     hold_threads()
     scene = read_drivetrain(asked.scene, parse_settings(asked.set_ or ()))
-    from fe_drivetrain.command_line.printing import browser, write_pdf, write_pictures
+    from fe_drivetrain.command_line.printing import browser
     from fe_drivetrain.studies.study_loads import own_loads
 
     needs_browser = browser() if asked.pdf or asked.png else ""
     own = own_loads(asked.loads, asked.skip, scene, asked.channels)
     folder = asked.folder.resolve()
+    if needs_browser:
+        check_result_folder(folder / PRINTED)
     with show_steps() as report:
         results = _dossier(folder, asked, scene, own, report)
-        page = folder / GROUP / OVERVIEW / "report.html"
-        if asked.pdf:
-            report("PDF")
-            write_pdf(needs_browser, page, folder / "dossier.pdf")
-        if asked.png:
-            report("pictures")
-            write_pictures(needs_browser, results, folder / "pictures")
+        if needs_browser:
+            _print(needs_browser, folder, asked, results, report)
     shown_page = asked.folder / GROUP / OVERVIEW / "report.html"
     return show_outcome(results, shown_page)
+
+
+def _print(
+    program: str, folder: Path, asked: ReportRequest, results: Results, report: Progress
+) -> None:
+    """Print the first page into a folder whose other files stay, as those of results do."""
+    from fe_drivetrain.command_line.printing import write_pdf, write_pictures
+    from fe_drivetrain.report.suite.result_folders import new_folder, put_in_place
+
+    target = folder / PRINTED
+    made = new_folder(target)
+    try:
+        if asked.pdf:
+            report("PDF")
+            page = folder / GROUP / OVERVIEW / "report.html"
+            write_pdf(program, page, made.path / "dossier.pdf")
+        if asked.png:
+            report("pictures")
+            write_pictures(program, results, made.path)
+        put_in_place(made, target)
+    finally:
+        made.discard()
 
 
 def _dossier(
@@ -184,16 +198,18 @@ def content_of(asked: ReportRequest, scene: Scene) -> dict[str, Any]:
     Returns
     -------
     dict
-        Its hash, SHA-256 of each file by path, and the options.
+        Hash of the drivetrain and of the content of its files, SHA-256 of each file of loads by
+        path, and the options.
     """
     from fe_drivetrain.common.provenance import file_digest
-    from fe_drivetrain.report.seal import drivetrain_hash
+    from fe_drivetrain.report.seal import content_hash
+    from fe_drivetrain.shafts.response.cached import whole_content
     from fe_drivetrain.turbine_loads.hub_loads.recorded import recorded_files
 
     files = [*recorded_files(asked.loads)]
     beside = [path for path in (asked.mapping, *(asked.catalogue or ())) if path is not None]
     return {
-        "drivetrain": drivetrain_hash(scene),
+        "drivetrain": content_hash(whole_content(scene)),
         "files": {str(path): file_digest(str(path)) for path in [*files, *beside]},
         "site": asked.site or "",
         "skip": asked.skip,

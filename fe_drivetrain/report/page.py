@@ -45,6 +45,7 @@ from fe_drivetrain.report.results import (
     Table,
     Text,
     Verdict,
+    cautions_of,
     read_results,
     verdict_sentence,
 )
@@ -178,18 +179,16 @@ def _printed_references(results: Results) -> list[str]:
 def _cautions(results: Results) -> list[tuple[str, str]]:
     """What limits the answer, most severe first, each with its kind for the style."""
     fails = [f"Fails: {answer_sentence(check)}" for check in results.verdicts if not check.passed]
-    said = results.answer.cautions if results.answer else []
+    # the badge of a quick run says it
+    badge = "Quick run: " if results.environment.quick else "\0"
     return [
         *(("failing", sentence) for sentence in fails),
-        *(("unsettled", sentence) for sentence in results.unsettled),
-        *(("", sentence) for sentence in (*said, *_notes(results))),
+        *(
+            ("unsettled" if sentence in results.unsettled else "", sentence)
+            for sentence in cautions_of(results)
+            if not sentence.startswith(badge)
+        ),
     ]
-
-
-def _notes(results: Results) -> list[str]:
-    """What must be known, without what the badge of a quick run says."""
-    badge = "Quick run: " if results.environment.quick else "\0"
-    return [note for note in results.notes if not note.startswith(badge)]
 
 
 def _contents(section: Section) -> str:

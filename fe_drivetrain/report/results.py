@@ -437,7 +437,7 @@ def verdict_sentence(results: Results) -> str:
     Parameters
     ----------
     results : Results
-        Of a case or command.
+        What a case or command found.
 
     Returns
     -------
@@ -453,6 +453,23 @@ def verdict_sentence(results: Results) -> str:
     number = len(results.verdicts)
     before = f"Not to be relied on, {failed} of {number} checks fail: " if failed else ""
     return f"{before}{results.answer.verdict}"
+
+
+def cautions_of(results: Results) -> list[str]:
+    """What limits the answer of results, most severe first: page, terminal and dossier show these.
+
+    Parameters
+    ----------
+    results : Results
+        What a case or command found.
+
+    Returns
+    -------
+    list of str
+        What has not converged, cautions of the answer, and notes.
+    """
+    said = results.answer.cautions if results.answer else []
+    return [*results.unsettled, *said, *results.notes]
 
 
 def results_below(folder: Path) -> dict[str, Path]:

@@ -46,7 +46,8 @@ def drivetrain_hash(drivetrain: Described) -> str:
     """
     values = drivetrain.model_dump(mode="json")
     kind = type(drivetrain).__name__.lower()
-    return _hash({"kind": kind, **{k: v for k, v in values.items() if k not in _WORDS}})[:_DIGITS]
+    stated = {k: v for k, v in values.items() if k not in _WORDS}
+    return content_hash({"kind": kind, **stated})[:_DIGITS]
 
 
 def drivetrain_record(drivetrain: Described, name: str = "") -> DrivetrainRecord:
@@ -92,8 +93,9 @@ def results_digest(text: str) -> str:
         64 hexadecimal digits.
     """
     content = json.loads(text)
-    return _hash({key: value for key, value in content.items() if key != "digest"})
+    return content_hash({key: value for key, value in content.items() if key != "digest"})
 
 
-def _hash(content: Mapping[str, Any]) -> str:
+def content_hash(content: Mapping[str, Any]) -> str:
+    """SHA-256 of plain data, whatever the order of its keys."""
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()

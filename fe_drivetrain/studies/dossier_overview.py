@@ -12,7 +12,8 @@ from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.charts import bars, trace
 from fe_drivetrain.report.charts import chart as line_chart
 from fe_drivetrain.report.number_text import certain_value, value_text
-from fe_drivetrain.report.results import Chart, Figure, Results
+from fe_drivetrain.report.results import Chart, Figure, Results, cautions_of
+from fe_drivetrain.report.suite.case import QUICK
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.load_extremes import around_largest, load_extremes
@@ -22,6 +23,7 @@ from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
 
 REACTIONS, LIFE, LOADS, MODEL, CHECK = "reactions", "life", "loads", "model", "check"
 """Parts of a dossier."""
+_SEVERE_FIRST = (LIFE, REACTIONS, LOADS, MODEL, CHECK)
 DESIGN_LIFE = 20.0
 """Years that a wind turbine is designed for, at least (IEC 61400-1, 6.2)."""
 
@@ -40,7 +42,7 @@ class DossierResult(Result):
     parts : Mapping[str, Results]
         What its parts have found; not part of the JSON.
     bearings : tuple of dict
-        Of each bearing: place, largest forces, and life where it has one.
+        Place of each bearing, its largest forces, and its life where it has one.
     """
 
     STUDY: ClassVar[str] = "dossier"
@@ -60,7 +62,7 @@ def extremes_of(result: StudyResult, histories: Sequence[LoadHistory]) -> dict[s
     Parameters
     ----------
     result : StudyResult
-        Of the histories.
+        The study of the histories.
     histories : sequence of LoadHistory
         Hub loads that were studied.
 
@@ -119,7 +121,7 @@ def dossier(scene: Scene, parts: Mapping[str, Results]) -> DossierResult:
 def _bearing_rows(
     scene: Scene, extremes: Sequence[Mapping[str, Any]], life: Results | None
 ) -> list[Record]:
-    """Of each bearing: where it is, what it carries at most, and how long it lives."""
+    """Place of each bearing, what it carries at most, and how long it lives."""
     lives = {row["bearing"]: row for row in life.figures.get("lives", ())} if life else {}
     limits = {row["bearing"]: row for row in life.figures.get("limits", ())} if life else {}
     places = {unit.bearing.name: unit.bearing.x for unit in scene.bearing_units}
@@ -151,7 +153,7 @@ def _answer(found: Findings, rows: Sequence[Record], parts: Mapping[str, Results
     if lived:
         shortest: Any = min(lived, key=lambda row: float(row["L10mr [years]"]))  # type: ignore[arg-type]
         weakest: Any = min(lived, key=lambda row: float(row["min S0 [-]"]))  # type: ignore[arg-type]
-        life = _life_figure(parts[LIFE], shortest)
+        life = _life_figure(found, parts[LIFE], shortest)
         safety = found.value(
             f"static safety S0 of {weakest['bearing']}",
             weakest["min S0 [-]"],
@@ -166,16 +168,22 @@ def _answer(found: Findings, rows: Sequence[Record], parts: Mapping[str, Results
                 f"{certain_value(safety)}, with {pressure} contact pressure"
             )
         elif life.status == "bad":
-            said += f"; {shortest['bearing']} lives {certain_value(life)}, less than 20"
+            lives = f"{shortest['bearing']} lives {certain_value(life)}"
+            said += f"; {lives}, less than {DESIGN_LIFE:g}"
         else:
             said += f"; the bearings live {certain_value(life)} or more"
-    figures += _others(found, parts, {one.quantity for one in figures})
+    figures += _others(parts)
     found.answer(
         "What do these loads do to this drivetrain?",
         f"{said}.",
         figures[:6],
         hero=SKETCH,
-        cautions=[s for part in parts.values() if part.answer for s in part.answer.cautions],
+        cautions=[
+            f"{name}: {sentence}"
+            for name in sorted(parts, key=_SEVERE_FIRST.index)
+            for sentence in cautions_of(parts[name])
+            if sentence != QUICK and sentence not in parts[name].unsettled
+        ],
     )
 
 
@@ -193,12 +201,12 @@ def _peak_figure(found: Findings, part: Results, name: str, row: Mapping[str, An
     return found.value(f"largest radial force of {name} [kN]", value, band)
 
 
-def _life_figure(part: Results, row: Mapping[str, Any]) -> KeyFigure:
+def _life_figure(found: Findings, part: Results, row: Mapping[str, Any]) -> KeyFigure:
     """The shortest life, beside what turbines are designed for."""
     name = str(row["bearing"])
     stated = _figure_of(part, f"L10mr of bearing {name}", "years")
     band = None if stated is None else stated.band
-    return Findings().value(
+    return found.value(
         f"L10mr of {name} [years]",
         float(row["L10mr [years]"]),
         band,
@@ -212,13 +220,13 @@ def _figure_of(part: Results, words: str, unit: str) -> Figure | None:
     return next((f for f in part.answers if f.quantity.endswith(words) and f.unit == unit), None)
 
 
-def _others(found: Findings, parts: Mapping[str, Results], taken: set[str]) -> list[KeyFigure]:
-    """K_R, and what the cheapest model that is enough errs by: key figures of the parts' own."""
+def _others(parts: Mapping[str, Results]) -> list[KeyFigure]:
+    """The first key figures of the parts that are values or checks of theirs."""
     others: list[KeyFigure] = []
     for name in (REACTIONS, MODEL, LOADS):
         answer = parts[name].answer if name in parts else None
         if answer is not None:
-            others += [f for f in answer.figures if f.quantity not in taken][:2]
+            others += [f for f in answer.figures if f.quantity][:2]
     return others
 
 
@@ -228,7 +236,7 @@ def peak_chart(table: Mapping[str, Any]) -> Chart:
     Parameters
     ----------
     table : mapping
-        Of `Around.table`.
+        What `Around.table` returns.
 
     Returns
     -------
@@ -256,7 +264,7 @@ def life_chart(rows: Sequence[Mapping[str, Any]]) -> Chart | None:
     Parameters
     ----------
     rows : sequence of dict
-        Of `DossierResult.bearings`.
+        Those of `DossierResult.bearings`.
 
     Returns
     -------

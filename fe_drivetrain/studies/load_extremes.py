@@ -36,6 +36,8 @@ class Extreme:
         In which history.
     time : float
         When, by the clock of that history [s].
+    number : int
+        Which of the histories, from 0: several may have one name.
     """
 
     place: str
@@ -44,6 +46,7 @@ class Extreme:
     value: float
     history: str
     time: float
+    number: int
 
     def row(self) -> Record:
         """As a record for a table; forces and moments have columns of their own."""
@@ -67,7 +70,7 @@ def load_extremes(
     histories : sequence of LoadHistory
         Hub loads.
     reactions : mapping of str to sequence of ndarray
-        Of each bearing, and "gearbox": (n, 6) of each history [N, N m].
+        By bearing, and "gearbox": (n, 6) of each history [N, N m].
 
     Returns
     -------
@@ -108,6 +111,7 @@ def _largest(
         float(values[which][at]) / 1e3,
         history.name,
         float(history.time[at]),
+        which,
     )
 
 
@@ -156,9 +160,9 @@ def around_largest(
     histories : sequence of LoadHistory
         Hub loads.
     reactions : mapping of str to sequence of ndarray
-        Of each bearing: (n, 6) of each history [N, N m].
+        By bearing: (n, 6) of each history [N, N m].
     extremes : sequence of Extreme
-        Of `load_extremes`.
+        What `load_extremes` returns.
 
     Returns
     -------
@@ -168,16 +172,9 @@ def around_largest(
         (one for one in extremes if one.place in reactions and one.load == "radial force"),
         key=lambda one: one.value,
     )
-    (number,) = [k for k, h in enumerate(histories) if h.name == peak.history][:1]
-    time = histories[number].time
+    time = histories[peak.number].time
     window = np.flatnonzero(np.abs(time - peak.time) <= AROUND)
     window = window[:: max(1, -(-len(window) // _MOST_POINTS))]
-    return Around(
-        peak.history,
-        time[window],
-        {
-            n: np.hypot(each[number][window, 1], each[number][window, 2])
-            for n, each in reactions.items()
-        },
-        peak,
-    )
+    shown = {name: each[peak.number][window] for name, each in reactions.items()}
+    radial = {name: np.hypot(of[:, 1], of[:, 2]) for name, of in shown.items()}
+    return Around(peak.history, time[window], radial, peak)

@@ -1,4 +1,4 @@
-"""``report``: one folder that answers, made once, and made anew where something has changed."""
+"""``report``: one folder that answers, made once, and made again where something has changed."""
 
 import shutil
 from collections.abc import Callable
@@ -12,9 +12,10 @@ from tiny_case import Result
 from fe_drivetrain.command_line import printing
 from fe_drivetrain.command_line.report import ReportRequest, content_of
 from fe_drivetrain.common.components import FORCES
-from fe_drivetrain.drivetrain_file import library_scene
+from fe_drivetrain.drivetrain_file import library_scene, read_drivetrain
 from fe_drivetrain.drivetrain_file.without_weight import weightless
 from fe_drivetrain.report.results import read_results
+from fe_drivetrain.report.suite.case import QUICK
 
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
 
@@ -53,6 +54,10 @@ def test_a_dossier_answers_and_is_made_once(
     typed = overview.answer.verdict.replace("\u00a0", " ").replace("\u202f", ",")
     assert said.splitlines()[0] == typed
     assert overview.links[0].title == "Overview"
+    life = read_results(out / "dossier/life/results.json")
+    assert life.notes
+    for note in life.notes:
+        assert f"life: {note}" in overview.answer.cautions or note == QUICK
     extremes = {(row["place"], row["load"]): row for row in overview.figures["extremes"]}
     assert extremes["hub", "My"]["largest [kN m]"] == pytest.approx(600.0, rel=0.05)
     assert extremes["hub", "My"]["file"] == "gust"
@@ -69,6 +74,44 @@ def test_a_file_that_has_changed_is_other_content(loads: Path) -> None:
     loads.write_text(loads.read_text() + "60,2e5,0,-3e5,9e5,7e5,0,15\n")
     assert content_of(asked, scene) != before
     assert content_of(asked, weightless(scene)) != content_of(asked, scene)
+
+
+def test_a_housing_file_that_has_changed_is_another_drivetrain(loads: Path, tmp_path: Path) -> None:
+    (tmp_path / "mine.yaml").write_text(
+        "title: mine\n"
+        "shaft: {front: -1.2, sections: [{length: 2.8, outer_diameter: 0.4}]}\n"
+        "bearing_units:\n"
+        "  - bearing: {kind: ring, raceway_diameter: 0.6}\n"
+        "    interface: bonded\n"
+        "    housing:\n"
+        "      step: block.step\n"
+        "      seat: {radius: 300}\n"
+        "      held: [{point: [0, 0, -420], normal: [0, 0, 1]}]\n"
+        "gearbox: {stiffness: [4.0e6, 8.0e7, 8.0e7, rigid, 0, 0]}\n"
+    )
+    asked, found = ReportRequest(SCENE, [str(loads)]), []
+    for content in ("one", "other", "one"):
+        (tmp_path / "block.step").write_text(content)
+        found.append(content_of(asked, read_drivetrain(tmp_path / "mine.yaml")))
+    assert found[0] == found[2]
+    assert found[0] != found[1]
+
+
+@pytest.mark.skipif(
+    not any(map(shutil.which, printing.BROWSERS)), reason="no Chromium or Chrome is installed"
+)
+def test_files_of_the_user_where_a_dossier_is_printed_stop_it_before_any_work(
+    invoke: Callable[..., Result], loads: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "boss"
+    mine = out / "printed" / "dossier.pdf"
+    mine.parent.mkdir(parents=True)
+    mine.write_text("mine")
+    status, _, error = invoke("report", SCENE, "--loads", str(loads), "--pdf", "--out", str(out))
+    assert status == 2
+    assert "printed" in error
+    assert mine.read_text() == "mine"
+    assert [path.name for path in out.iterdir()] == ["printed"]
 
 
 def test_without_a_browser_nothing_is_begun(
