@@ -71,7 +71,7 @@ def copy_pages(folder: Path, site: Path) -> None:
     Parameters
     ----------
     folder : Path
-        Of results; where it has none, those of an earlier build are taken out of the site.
+        Folder of results; where it has none, those of an earlier build are taken out of the site.
     site : Path
         Folder of the site.
     """
@@ -100,7 +100,7 @@ def linked(file: str | Path, to: str | Path) -> None:
 
 
 def of_the_run(found: Mapping[str, tuple[Results, Path]]) -> str:
-    """Of which run the site has results, with links to its lists; or that it has none."""
+    """The run whose results the site has, with links to its lists; or that it has none."""
     if not found:
         return (
             "This site was built without results of a run: `fe-drivetrain run --all`, and build it "

@@ -21,7 +21,7 @@ def heights(pages: list[Path], width: int, height: int) -> dict[Path, int]:
     pages : list of Path
         Files of pages.
     width, height : int
-        Of the window.
+        Those of the window.
     """
     from playwright.sync_api import sync_playwright
 

@@ -95,12 +95,12 @@ def run(run: Run, page: Page) -> None:
 
 
 def answer(page: Page, apart: float, thrice: dict[str, float]) -> None:
-    """State how alike the shafts swing, and how much more than the rotor at 3P."""
+    """State how equally the shafts swing, and how much more than the rotor at 3P."""
     most = max(thrice, key=lambda letter: thrice[letter])
     same = apart < SAME
     page.answer(
         "Do all shafts of a drivetrain have the same torque over rated in normal operation?",
-        f"All shafts swing alike within {percent_text(apart)}, {'as' if same else 'not as'} "
+        f"All shafts swing equally within {percent_text(apart)}, {'as' if same else 'not as'} "
         f"printed for B; at 3P those of {most} swing {thrice[most]:.2f} times as much as the "
         "rotor's torque.",
         [

@@ -28,7 +28,7 @@ def answer(
     result : AdviseResult
         All levels.
     row : Record
-        Of the table of cases: ``question``, and ``asked``, the quantity in words.
+        Row of the table of cases: ``question``, and ``asked``, the quantity in words.
     torsion : KeyFigure or None
         Torsional stiffness beside a published one.
     quick : bool

@@ -299,7 +299,7 @@ def answer(page: Page, found: Sequence[Compared], question: str, subject: str) -
 
 
 def _caption(one: Compared) -> str:
-    """Of the chart of one deck's differences."""
+    """Caption of the chart of one deck's differences."""
     return (
         f"{one.label}: largest difference between CalculiX and this project, relative to the "
         "largest value of the load"

@@ -114,7 +114,7 @@ def answer(
     stiffness : float
         That of the whole drivetrain, published [N m/rad].
     diameters : tuple of float
-        Of the shaft, and what the published stiffness would need [m].
+        Diameter of the shaft, and what the published stiffness would need [m].
     modes : tuple of float
         Free-free frequency of rotor and generator by the published stiffness and by the shafts
         [Hz].

@@ -54,7 +54,7 @@ def answer(page: Page, rows: list[Record], from_statics: float, bonded: float) -
     page : Page
         Where it stands.
     rows : list of dict
-        Of each form of the spherical joint.
+        By form of the spherical joint.
     from_statics : float
         Largest difference of the reactions from statics, relative.
     bonded : float

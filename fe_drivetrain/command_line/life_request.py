@@ -12,6 +12,7 @@ import typer
 from fe_drivetrain.command_line.options import (
     Catalogues,
     Channels,
+    LoadFiles,
     Mapping,
     Resume,
     RotorSpeed,
@@ -33,15 +34,7 @@ class LifeRequest:
     """Arguments and options of ``life`` as typed; each help text says what one is."""
 
     scene: SceneName
-    loads: Annotated[
-        list[str],
-        typer.Option(
-            "--loads",
-            metavar="FILES",
-            help="Hub loads: a file (.out, .outb of OpenFAST, or .csv), a folder, or a pattern in "
-            "quotes, as in 'outputs/*.outb'. May be repeated.",
-        ),
-    ]
+    loads: LoadFiles
     site: Annotated[
         str | None,
         typer.Option(

@@ -28,6 +28,15 @@ SceneName = Annotated[
         help="A scene file, or a name of the library, as in two_bearings.",
     ),
 ]
+LoadFiles = Annotated[
+    list[str],
+    typer.Option(
+        "--loads",
+        metavar="FILES",
+        help="Hub loads: a file (.out, .outb of OpenFAST, or .csv), a folder, or a pattern in "
+        "quotes, as in 'outputs/*.outb'. May be repeated.",
+    ),
+]
 Channels = Annotated[
     list[str] | None,
     typer.Option(

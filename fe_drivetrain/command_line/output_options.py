@@ -30,7 +30,7 @@ def open_if_asked(page: Path) -> None:
     Parameters
     ----------
     page : Path
-        Of HTML.
+        Its HTML file.
     """
     if _asked["page"]:
         import webbrowser

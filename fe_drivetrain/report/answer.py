@@ -1,4 +1,4 @@
-"""The answer to what was asked: one record that page, terminal, JSON and index show alike."""
+"""The answer to what was asked: one record, which page, terminal, JSON and index show."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ def worst(figures: list[KeyFigure], claim: Claim) -> Status:
     Parameters
     ----------
     figures : list of KeyFigure
-        Of the answer.
+        Those of the answer.
     claim : Claim
         How a statement of the source stands.
 

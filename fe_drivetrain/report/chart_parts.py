@@ -73,7 +73,7 @@ def draw_events(layout: dict[str, Any], events: Mapping[str, float]) -> None:
     Parameters
     ----------
     layout : dict
-        Of Plotly, which takes the lines; the lists that it had are not changed.
+        Plotly's layout, which takes the lines; the lists that it had are not changed.
     events : dict of str to float
         What happens, and where on the horizontal axis.
     """

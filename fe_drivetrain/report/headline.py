@@ -19,7 +19,7 @@ def values_found(results: Results) -> list[Figure | Verdict]:
     Parameters
     ----------
     results : Results
-        Of a case or command.
+        What a case or command found.
 
     Returns
     -------
@@ -52,7 +52,7 @@ def headline(results: Results) -> Figure | Verdict | None:
     Parameters
     ----------
     results : Results
-        Of the case.
+        What the case found.
 
     Returns
     -------

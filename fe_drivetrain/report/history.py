@@ -109,7 +109,7 @@ class PastRun(NamedTuple):
     allowed : float
         As in `Point`.
     verdict, status : str
-        Of the answer; empty of a run without one.
+        Those of the answer; empty of a run without one.
     """
 
     date: str

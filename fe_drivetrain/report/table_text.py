@@ -21,7 +21,7 @@ def numeric_columns(table: Table) -> set[int]:
     Parameters
     ----------
     table : Table
-        Of a page.
+        Table of a page.
 
     Returns
     -------
@@ -46,7 +46,7 @@ def band_columns(table: Table) -> dict[int, int]:
     Parameters
     ----------
     table : Table
-        Of a page.
+        Table of a page.
 
     Returns
     -------
@@ -89,7 +89,7 @@ def cell_texts(table: Table) -> list[list[str]]:
     Parameters
     ----------
     table : Table
-        Of a page.
+        Table of a page.
 
     Returns
     -------

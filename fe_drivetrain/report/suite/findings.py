@@ -272,7 +272,7 @@ class Findings(Checks):
         Parameters
         ----------
         quantity : str
-            Of the check, or of the value by `found`; without its unit.
+            Quantity of the check, or of the value by `found`, without its unit.
         name : str
             In the words of the reader; the quantity where left out.
         by : str

@@ -115,7 +115,7 @@ class Page(Findings):
         Parameters
         ----------
         caption : str
-            Of the picture.
+            Caption of the picture.
 
         Raises
         ------
