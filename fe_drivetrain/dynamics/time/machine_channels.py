@@ -11,6 +11,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.bodies.damping_ratios import element_of, mesh_names
+from fe_drivetrain.dynamics.bodies.equations import CONSTANT
 from fe_drivetrain.dynamics.bodies.machine_rows import PlanetaryData
 from fe_drivetrain.dynamics.bodies.steady_state import wind_up
 from fe_drivetrain.dynamics.time.motion import Motion
@@ -135,6 +136,8 @@ def machine_channels(of: Running) -> Channels:
 def _with_rated(made: Channels, of: Running) -> Channels:
     """Values at rated torque, all torques, mesh forces and speeds then being positive."""
     turning, e = of.turning, of.equations
+    # stiffnesses at their mean over a period
+    e = replace(e, springs=replace(e.springs, wave=np.full(len(e.springs.rows), CONSTANT)))
     load = turning.torque * turning.to_rotor - turning.generator_torque * turning.to_generator
     load = load if turning.beside is None else load + turning.beside
     q = wind_up(e, load, turning.velocity).q
@@ -179,8 +182,6 @@ def _add_bearing(rows: _Rows, of: Running, name: str) -> None:
 
 def _turning_bodies(of: Running) -> list[str]:
     """The rotor, what each stage drives, and the generator."""
-    kinds = [
-        "sun" if isinstance(stage, PlanetaryData) else "pinion" for stage in of.machine.stages
-    ]
+    kinds = ["sun" if isinstance(stage, PlanetaryData) else "pinion" for stage in of.machine.stages]
     rear = [f"stage {number} {kind}" for number, kind in enumerate(kinds, start=1)]
     return ["rotor", *rear, "generator"]

@@ -120,7 +120,7 @@ def running(
         Backlash of all meshes along their lines of action [m].
     teeth : bool
         Whether the stiffness of meshes varies with the angle of their gears, as a square wave of
-        the contact ratio.
+        the contact ratio; each mesh is then in one point.
 
     Raises
     ------
@@ -130,6 +130,10 @@ def running(
     _check(torque, rotor_speed, backlash)
     free = machine.generator.model_copy(update={"stiffness": 0.0})
     machine = machine.model_copy(update={"generator": free})
+    if teeth:
+        # a wave in each slice would cost the square of their number
+        one = tuple(stage.model_copy(update={"slices": 1}) for stage in machine.stages)
+        machine = machine.model_copy(update={"stages": one})
     system = with_damping_ratios(machine, machine_system(machine, level), damping)
     equations = varying_equations(system, {}, rotor_speed)
     if teeth:
