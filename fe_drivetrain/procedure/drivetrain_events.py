@@ -251,7 +251,7 @@ class RunUp:
 
     levels: ClassVar[tuple[Level, ...]] = tuple(Level)
     teeth: ClassVar[bool] = True
-    seconds: ClassVar[float] = 10.0
+    seconds: ClassVar[float] = 5.0
 
     begin: float = 0.3
     end: float = 1.1

@@ -77,9 +77,7 @@ class Operation:
         turning = self.of.turning
         while end - state.time > 0.5 * step:
             count = min(AT_ONCE, round((end - state.time) / step))
-            found = integrate(
-                self.equations, self.loads, (count - 1e-6) * step, step, start=state
-            )
+            found = integrate(self.equations, self.loads, (count - 1e-6) * step, step, start=state)
             yield found
             # turning back as a whole changes nothing, and keeps the digits of windings
             q = found.end.q

@@ -1,0 +1,445 @@
+"""A drivetrain in time: torque, speeds, forces of meshes and bearings, in events and operation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+
+from fe_drivetrain.common.errors import InputError, require_known
+from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.common.steps import Steps
+from fe_drivetrain.dynamics.bodies.levels import Level
+from fe_drivetrain.dynamics.bodies.tables import Machine
+from fe_drivetrain.dynamics.time.machine_channels import Kind
+from fe_drivetrain.procedure.drivetrain_events import EVENTS, Event, event_of
+from fe_drivetrain.procedure.drivetrain_operation import operation
+from fe_drivetrain.report.charts import chart, trace
+from fe_drivetrain.report.results import Chart
+from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.studies.result import Result
+from fe_drivetrain.studies.transient_digest import (
+    FileDigest,
+    OperationOptions,
+    digests,
+    driven,
+)
+from fe_drivetrain.studies.transient_findings import (
+    judge_run,
+    state_answer,
+    state_assumptions,
+    state_figures,
+)
+from fe_drivetrain.studies.transient_ladder import (
+    QUANTITIES,
+    LevelError,
+    cheapest_level,
+    level_error,
+)
+from fe_drivetrain.studies.transient_runs import (
+    Extreme,
+    LevelRun,
+    Prepared,
+    Rated,
+    Samples,
+    with_bands,
+)
+from fe_drivetrain.studies.transient_tables import (
+    alternating_rows,
+    digest_rows,
+    equivalent_rows,
+    extreme_rows,
+    level_rows,
+    over_files,
+    spectrum_rows,
+)
+from fe_drivetrain.turbine_loads.hub_loads.drive_history import read_drive
+from fe_drivetrain.turbine_loads.hub_loads.recorded import Files, recorded_files, short_name
+
+OPERATION = "operation"
+"""Event that is driven by histories."""
+
+EVENT_NAMES = (OPERATION, *EVENTS)
+"""Names of all events."""
+
+LEVELS: Mapping[str, Level] = {
+    "torsional": Level.TORSIONAL,
+    "rigid": Level.RIGID,
+    "flexible": Level.FLEXIBLE,
+}
+"""Levels by the word that asks for them."""
+
+WINDOW = 60.0
+"""Part of the first history in which levels and steps are compared [s]."""
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class TransientResult(Result):
+    """What a drivetrain does in an event, or in operation.
+
+    Attributes
+    ----------
+    event : str
+        Name of the event.
+    level : str
+        Level of the model that extremes and samples are of: "torsional", "rigid", "flexible".
+    runs : tuple of LevelRun
+        The event at each level that was run, from the simplest to the finest; of operation the
+        beginning of the first history. Not part of the JSON.
+    errors : tuple of tuple of LevelError
+        Error of each level against the finest, for torques, meshes and bearings.
+    quantity : str
+        For which of these the level is enough: "torque", "mesh" or "bearing".
+    tolerance : float
+        Allowed error of the level.
+    extremes : Mapping[str, Extreme]
+        Extremes of each channel, by its name: "torque of HSS", "force of stage 3 mesh", "force of
+        HS-A", "speed of generator".
+    marks : Mapping[str, float]
+        What happened when [s].
+    imbalance : float
+        Energy that appears from nowhere, over the largest.
+    samples : Samples
+        Values over time; of operation those of the first history. Not part of the JSON.
+    files : Mapping[str, FileDigest]
+        What it did over each history, by its name; empty of an event.
+    """
+
+    STUDY: ClassVar[str] = "transient"
+    SCHEMA_VERSION: ClassVar[int] = 1
+
+    event: str
+    level: str
+    runs: tuple[LevelRun, ...] = field(repr=False)
+    errors: tuple[tuple[LevelError, ...], ...]
+    quantity: Kind
+    tolerance: float
+    extremes: Mapping[str, Extreme]
+    marks: Mapping[str, float]
+    imbalance: float
+    samples: Samples = field(repr=False)
+    files: Mapping[str, FileDigest]
+
+    @property
+    def chosen(self) -> LevelRun:
+        """The run at the level that is reported."""
+        return next(run for run in self.runs if run.level is LEVELS[self.level])
+
+    def frames(self) -> Mapping[str, Any]:
+        """Tables that `to_frame` gives, by name: those of the page, and "samples" over time."""
+        columns = {"time [s]": self.samples.times.tolist()}
+        for k, (name, unit) in enumerate(zip(self.samples.names, self.samples.units, strict=True)):
+            columns[f"{name} [{unit}]"] = self.samples.values[:, k].tolist()
+        rows = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+        return {**self.all_tables(), "samples": rows}
+
+    def chart(self) -> Chart:
+        """Torque of the shafts, or the loaded bearings of an offset, over time."""
+        kind: Kind = "bearing" if self.event in ("offset", "base") else "torque"
+        return self.over_time(kind)
+
+    def over_time(self, kind: Kind, most: int = 8) -> Chart:
+        """Channels of a kind over their rated values against time, with what happened.
+
+        Parameters
+        ----------
+        kind : str
+            "torque", "mesh", "bearing" or "speed".
+        most : int
+            Number of curves, those with the largest values over rated ones.
+        """
+        of = {**QUANTITIES, "speed": "speeds"}[kind]
+        relative = kind != "bearing"
+        size = {
+            name: one.largest / (abs(one.rated) if relative else 1.0)
+            for name, one in self.extremes.items()
+            if one.kind == kind and (not relative or np.isfinite(one.over_rated))
+        }
+        names = sorted(size, key=lambda name: -size[name])[:most]
+        shown = self.samples.thinned(2000)
+        traces = [
+            trace(
+                name,
+                shown.times,
+                shown.of(name) / (self.extremes[name].rated if relative else 1e3),
+            )
+            for name in sorted(names, key=list(self.extremes).index)
+        ]
+        few = f", the {most} largest of {len(size)}" if len(size) > most else ""
+        caption = f"{of[0].upper()}{of[1:]}{' over their rated values' if relative else ''}{few}"
+        y = "over rated" if relative else "force [kN]"
+        return chart(caption, traces, "time [s]", y, events=self.marks)
+
+
+def transient(
+    drivetrain: Machine,
+    event: str,
+    values: Mapping[str, float | str] | None = None,
+    *,
+    loads: Files = (),
+    torque: float | None = None,
+    rotor_speed: float | None = None,
+    level: str | None = None,
+    quantity: Kind = "bearing",
+    tolerance: float = 0.05,
+    duration: float | None = None,
+    step: float | None = None,
+    rated: Rated | None = None,
+    options: OperationOptions | None = None,
+    resume: bool = False,
+    report: Progress = silent,
+) -> TransientResult:
+    """Compute what a drivetrain does in an event, or in operation, by the cheapest level that is
+    enough.
+
+    Parameters
+    ----------
+    drivetrain : Machine
+        The drivetrain.
+    event : str
+        "stop" (emergency stop with brake), "grid_loss", "dip" (of the voltage), "run_up", "offset"
+        (of the generator), "base" (which moves), or "operation" under histories.
+    values : Mapping[str, float or str], optional
+        Values of the event other than its defaults, by name: see the classes of
+        `fe_drivetrain.procedure.EVENTS`.
+    loads : str, path, or sequence of these
+        Histories of operation: files (.out, .outb of OpenFAST, or .csv), folders, patterns.
+    torque, rotor_speed : float, optional
+        Rated torque and speed of the rotor [N m, rad/s].
+    level : str, optional
+        "torsional", "rigid" or "flexible"; all are run and compared where left out.
+    quantity : str
+        For which the level has to be enough: "torque", "mesh", "bearing".
+    tolerance : float
+        Allowed error against the finest level.
+    duration : float, optional
+        End of the run, or how much of each history [s].
+    step : float, optional
+        Step of integration; what the event needs where left out [s].
+    rated : Rated, optional
+        All that is rated, in place of `torque` and `rotor_speed`.
+    options : OperationOptions, optional
+        How histories are read and counted.
+    resume : bool
+        Take digests of histories that an earlier run kept.
+    report : Progress
+        Called with the name of each step as it begins.
+
+    Raises
+    ------
+    InputError
+        The event, a value or a level is unknown or out of range, a rated value is missing, or the
+        drivetrain does not have what the event needs.
+    """
+    require_known("event", event, EVENT_NAMES)
+    require_known("quantity", quantity, tuple(QUANTITIES))
+    if not 0.0 < tolerance < 1.0:
+        raise InputError(f"tolerance is {tolerance:g} but must be between 0 and 1: change it")
+    asked = _Asked(
+        drivetrain,
+        event,
+        dict(values or {}),
+        rated or _rated(torque, rotor_speed),
+        level,
+        quantity,
+        tolerance,
+        duration,
+        step,
+    )
+    steps = Steps(report)
+    if event == OPERATION:
+        return _operated(asked, recorded_files(loads), options or OperationOptions(), resume, steps)
+    if loads:
+        raise InputError(f"event {event} takes no histories: leave loads out, or ask for operation")
+    return _happened(asked, steps)
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """What is asked of a drivetrain."""
+
+    machine: Machine
+    event: str
+    values: dict[str, float | str]
+    rated: Rated
+    level: str | None
+    quantity: Kind
+    tolerance: float
+    duration: float | None
+    step: float | None
+
+    def levels(self, possible: Sequence[Level]) -> list[Level]:
+        """Levels to run, of those at which the event can happen."""
+        if self.level is None:
+            return list(possible)
+        require_known("level", self.level, tuple(LEVELS))
+        if LEVELS[self.level] not in possible:
+            words = [word for word, one in LEVELS.items() if one in possible]
+            raise InputError(
+                f"event {self.event} does not happen at the level {self.level}: choose one of "
+                f"{', '.join(words)}"
+            )
+        return [LEVELS[self.level]]
+
+    def plain(self) -> dict[str, Any]:
+        """All of it as plain data."""
+        return {
+            "event": self.event,
+            "values": self.values,
+            "rated": asdict(self.rated),
+            "level": self.level,
+            "quantity": self.quantity,
+            "tolerance": self.tolerance,
+            "duration": self.duration,
+            "step": self.step,
+        }
+
+
+def _rated(torque: float | None, rotor_speed: float | None) -> Rated:
+    for name, value, unit in (("torque", torque, "N m"), ("rotor_speed", rotor_speed, "rad/s")):
+        if value is None:
+            raise InputError(f"rated {name} of the rotor is not given: give {name} in {unit}")
+    assert torque is not None
+    assert rotor_speed is not None
+    return Rated(torque, rotor_speed)
+
+
+def _happened(asked: _Asked, steps: Steps) -> TransientResult:
+    """An event, at all levels that were asked for."""
+    event = event_of(asked.event, asked.values)
+    duration = _duration(asked, event)
+
+    def at(level: Level) -> Callable[[float | None], LevelRun]:
+        of = Prepared(asked.machine, level, asked.rated, event.teeth)
+        planned = event.plan(of.of, duration, asked.rated.slip)
+        return lambda step: of.event(planned, event.step(of.of) if step is None else step)
+
+    found = _findings(asked)
+    runs, number = _compared(asked, asked.levels(event.levels), at, asked.step, steps)
+    run = runs[number]
+    return _result(asked, found, steps, runs, number, run.extremes, run.samples, {}, {})
+
+
+def _duration(asked: _Asked, event: Event) -> float:
+    if asked.duration is None:
+        return event.seconds
+    longest = 3600.0
+    if not 0.0 < asked.duration <= longest:
+        raise InputError(
+            f"duration is {asked.duration:g} s but must be above 0 s and at most {longest:g} s: "
+            "change it"
+        )
+    return asked.duration
+
+
+def _compared(
+    asked: _Asked,
+    levels: Sequence[Level],
+    at: Callable[[Level], Callable[[float | None], LevelRun]],
+    step: float | None,
+    steps: Steps,
+) -> tuple[list[LevelRun], int]:
+    """Runs at all levels, the chosen and the finest with their bands; number of the chosen one."""
+    if step is not None and not 1e-7 <= step <= 1.0:
+        raise InputError(f"step is {step:g} s but must be from 1e-07 to 1 s: change it")
+    runs, again = [], []
+    for level in levels:
+        with steps.step(level.value):
+            again.append(at(level))
+            runs.append(again[-1](step))
+    number = cheapest_level(runs, asked.quantity, asked.tolerance)
+    for k in sorted({number, len(runs) - 1}):
+        with steps.step("longer steps"):
+            runs[k] = with_bands(runs[k], again[k])
+    return runs, number
+
+
+def _operated(
+    asked: _Asked, files: Sequence[Path], options: OperationOptions, resume: bool, steps: Steps
+) -> TransientResult:
+    """Operation under histories, one by one."""
+    if not files:
+        raise InputError("operation needs histories: give loads, as in loads='outputs/*.outb'")
+    if asked.values:
+        raise InputError(f"operation has no value {next(iter(asked.values))!r}: leave it out")
+    options = replace(
+        options, step=asked.step or options.step, until=asked.duration or options.until
+    )
+    first = read_drive(files[0], options.names, options.skip)
+    window = min(options.until or WINDOW, WINDOW, first.seconds)
+
+    def at(level: Level) -> Callable[[float | None], LevelRun]:
+        of = Prepared(asked.machine, level, asked.rated)
+        moving = operation(of.of, first, asked.rated.slip)
+        return lambda step: of.window(moving, options.step if step is None else step, window)
+
+    found = _findings(asked)
+    runs, number = _compared(asked, asked.levels(list(Level)), at, options.step, steps)
+    level = runs[number].level
+    names = [short_name(path, files) for path in files]
+    with steps.step("files"):
+        of = Prepared(asked.machine, level, asked.rated)
+        begun, samples = driven(of, first, options)
+        rest = digests(files[1:], asked.machine, level, asked.rated, options, resume, steps.report)
+        of_files = dict(zip(names, [begun, *rest], strict=True))
+    extremes = over_files(of_files, runs[number])
+    more = {
+        "files": names,
+        **{key: getattr(options, key) for key in ("skip", "step", "until")},
+        "slopes": [float(slope) for slope in options.slopes],
+    }
+    found.data("equivalent_loads", equivalent_rows(of_files, extremes, options.slopes))
+    found.data("duration_spectra", spectrum_rows(of_files, extremes))
+    found.data("files", digest_rows(of_files, extremes))
+    return _result(asked, found, steps, runs, number, extremes, samples, of_files, more)
+
+
+def _findings(asked: _Asked) -> Findings:
+    found = Findings()
+    found.seed = None
+    found.about(asked.machine)
+    return found
+
+
+def _result(
+    asked: _Asked,
+    found: Findings,
+    steps: Steps,
+    runs: Sequence[LevelRun],
+    number: int,
+    extremes: Mapping[str, Extreme],
+    samples: Samples,
+    files: Mapping[str, FileDigest],
+    more: Mapping[str, Any],
+) -> TransientResult:
+    """State what was found, and freeze it."""
+    run = runs[number]
+    kinds = [kind for kind in QUANTITIES if any(e.kind == kind for e in extremes.values())]
+    errors = tuple(tuple(level_error(one, runs[-1], kind) for kind in kinds) for one in runs)
+    imbalance = max([run.imbalance, *(one.imbalance for one in files.values())])
+    found.data("extremes", extreme_rows(extremes))
+    found.data("levels", level_rows(runs, errors, number))
+    if asked.event == "offset":
+        found.data("alternating", alternating_rows(run))
+    judge_run(found, asked.event, run, imbalance, asked.rated)
+    state_assumptions(found, asked.event, asked.values, asked.rated)
+    state_figures(found, extremes, run)
+    state_answer(found, asked.event, extremes, run, runs, number, files, asked.quantity)
+    word = next(word for word, one in LEVELS.items() if one is run.level)
+    return TransientResult(
+        event=asked.event,
+        level=word,
+        runs=tuple(runs),
+        errors=errors,
+        quantity=asked.quantity,
+        tolerance=asked.tolerance,
+        extremes=extremes,
+        marks=run.marks,
+        imbalance=imbalance,
+        samples=samples,
+        files=files,
+        **found.frozen(steps.times, **{**asked.plain(), **more}),
+    )
