@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -12,10 +12,12 @@ import numpy as np
 from fe_drivetrain.common.errors import InputError, require_known
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.dynamics.bodies.damping_ratios import ASSUMED_RATIOS
 from fe_drivetrain.dynamics.bodies.levels import Level
-from fe_drivetrain.dynamics.bodies.tables import Machine
+from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of
 from fe_drivetrain.dynamics.time.machine_channels import Kind
-from fe_drivetrain.procedure.drivetrain_events import EVENTS, Event, event_of
+from fe_drivetrain.procedure.drivetrain_events import EVENTS, SLIP, Event, event_of
 from fe_drivetrain.procedure.drivetrain_operation import operation
 from fe_drivetrain.report.charts import chart, trace
 from fe_drivetrain.report.results import Chart
@@ -175,19 +177,17 @@ class TransientResult(Result):
 
 
 def transient(
-    drivetrain: Machine,
+    drivetrain: Drivetrain,
     event: str,
     values: Mapping[str, float | str] | None = None,
     *,
     loads: Files = (),
-    torque: float | None = None,
-    rotor_speed: float | None = None,
     level: str | None = None,
     quantity: Kind = "bearing",
     tolerance: float = 0.05,
     duration: float | None = None,
     step: float | None = None,
-    rated: Rated | None = None,
+    backlash: float = 0.0,
     options: OperationOptions | None = None,
     resume: bool = False,
     report: Progress = silent,
@@ -197,8 +197,9 @@ def transient(
 
     Parameters
     ----------
-    drivetrain : Machine
-        The drivetrain.
+    drivetrain : Drivetrain
+        The drivetrain, with rotor and generator; its brake, damping and operation where it has
+        them.
     event : str
         "stop" (emergency stop with brake), "grid_loss", "dip" (of the voltage), "run_up", "offset"
         (of the generator), "base" (which moves), or "operation" under histories.
@@ -207,8 +208,6 @@ def transient(
         `fe_drivetrain.procedure.EVENTS`.
     loads : str, path, or sequence of these
         Histories of operation: files (.out, .outb of OpenFAST, or .csv), folders, patterns.
-    torque, rotor_speed : float, optional
-        Rated torque and speed of the rotor [N m, rad/s].
     level : str, optional
         "torsional", "rigid" or "flexible"; all are run and compared where left out.
     quantity : str
@@ -219,8 +218,8 @@ def transient(
         End of the run, or how much of each history [s].
     step : float, optional
         Step of integration; what the event needs where left out [s].
-    rated : Rated, optional
-        All that is rated, in place of `torque` and `rotor_speed`.
+    backlash : float
+        Backlash of all meshes along their lines of action [m].
     options : OperationOptions, optional
         How histories are read and counted.
     resume : bool
@@ -240,9 +239,10 @@ def transient(
         raise InputError(f"tolerance is {tolerance:g} but must be between 0 and 1: change it")
     asked = _Asked(
         drivetrain,
+        machine_of(drivetrain),
         event,
-        dict(values or {}),
-        rated or _rated(torque, rotor_speed),
+        {**_of_file(drivetrain, event), **(values or {})},
+        rated_of(drivetrain, backlash),
         level,
         quantity,
         tolerance,
@@ -261,6 +261,7 @@ def transient(
 class _Asked:
     """What is asked of a drivetrain."""
 
+    drivetrain: Drivetrain
     machine: Machine
     event: str
     values: dict[str, float | str]
@@ -274,7 +275,14 @@ class _Asked:
     def levels(self, possible: Sequence[Level]) -> list[Level]:
         """Levels to run, of those at which the event can happen."""
         if self.level is None:
-            return list(possible)
+            turns = bool(self.machine.not_given)
+            found = [one for one in possible if not turns or one is Level.TORSIONAL]
+            if not found:
+                raise InputError(
+                    f"event {self.event} needs all motions of {self.machine.title!r}, whose file "
+                    f"does not state {', '.join(self.machine.not_given)}: add it"
+                )
+            return found
         require_known("level", self.level, tuple(LEVELS))
         if LEVELS[self.level] not in possible:
             words = [word for word, one in LEVELS.items() if one in possible]
@@ -289,7 +297,7 @@ class _Asked:
         return {
             "event": self.event,
             "values": self.values,
-            "rated": asdict(self.rated),
+            "rated": self.rated.plain(),
             "level": self.level,
             "quantity": self.quantity,
             "tolerance": self.tolerance,
@@ -298,13 +306,51 @@ class _Asked:
         }
 
 
-def _rated(torque: float | None, rotor_speed: float | None) -> Rated:
-    for name, value, unit in (("torque", torque, "N m"), ("rotor_speed", rotor_speed, "rad/s")):
-        if value is None:
-            raise InputError(f"rated {name} of the rotor is not given: give {name} in {unit}")
-    assert torque is not None
-    assert rotor_speed is not None
-    return Rated(torque, rotor_speed)
+def rated_of(drivetrain: Drivetrain, backlash: float = 0.0) -> Rated:
+    """What a drivetrain runs at, from its file.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        With `operation`, or the rated torque of its generator and a speed of the rotor.
+    backlash : float
+        Backlash of all meshes along their lines of action [m].
+
+    Raises
+    ------
+    InputError
+        A value is missing; the message names its key.
+    """
+    of, generator = drivetrain.operation, drivetrain.generator
+    if of is None or of.rotor_speed is None:
+        raise InputError(
+            f"{drivetrain.title!r} does not state the speed of its rotor: add operation: "
+            "{rotor_speed: [least, rated]} in rad/s"
+        )
+    torque = of.rated_torque
+    if torque is None and generator is not None and generator.rated_torque is not None:
+        torque = generator.rated_torque * abs(machine_of(drivetrain).speeds[-1])
+    if torque is None:
+        raise InputError(
+            f"{drivetrain.title!r} does not state its rated power: add operation: "
+            "{rated_power: ...} in W"
+        )
+    slip = None if generator is None else generator.slip
+    return Rated(
+        torque,
+        of.rotor_speed[1],
+        SLIP if slip is None else slip,
+        drivetrain.damping or ASSUMED_RATIOS,
+        backlash,
+    )
+
+
+def _of_file(drivetrain: Drivetrain, event: str) -> dict[str, float | str]:
+    """Values of an event that the drivetrain's file states: its brake."""
+    brake = drivetrain.brake
+    if event != "stop" or brake is None:
+        return {}
+    return {"on": brake.on, "brake_torque": brake.torque, "rise": brake.rise}
 
 
 def _happened(asked: _Asked, steps: Steps) -> TransientResult:
@@ -400,7 +446,12 @@ def _operated(
 def _findings(asked: _Asked) -> Findings:
     found = Findings()
     found.seed = None
-    found.about(asked.machine)
+    found.about(asked.drivetrain)
+    if asked.machine.not_given:
+        found.note(
+            "Bodies only turn, since the file does not state "
+            f"{', '.join(asked.machine.not_given)}: there are no forces of bearings."
+        )
     return found
 
 
@@ -425,7 +476,7 @@ def _result(
     if asked.event == "offset":
         found.data("alternating", alternating_rows(run))
     judge_run(found, asked.event, run, imbalance, asked.rated)
-    state_assumptions(found, asked.event, asked.values, asked.rated)
+    state_assumptions(found, asked.event, asked.values, asked.drivetrain)
     state_figures(found, extremes, run)
     state_answer(found, asked.event, extremes, run, runs, number, files, asked.quantity)
     word = next(word for word, one in LEVELS.items() if one is run.level)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,7 @@ from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.common.provenance import file_digest, program_hash
 from fe_drivetrain.dynamics.bodies.levels import Level
-from fe_drivetrain.dynamics.bodies.tables import Machine
+from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.dynamics.time.machine_channels import Channels
 from fe_drivetrain.procedure.drivetrain_operation import EnergyAccount, operation
 from fe_drivetrain.report.seal import drivetrain_hash
@@ -304,7 +304,7 @@ def _content(
         "file": file_digest(str(file)),
         "drivetrain": drivetrain_hash(machine),
         "level": level.value,
-        "rated": asdict(rated),
+        "rated": rated.plain(),
         "mapping": asked.names.content(),
         "skip": asked.skip,
         "slopes": [float(slope) for slope in asked.slopes],

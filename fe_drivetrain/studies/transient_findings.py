@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.dynamics.bodies.damping_ratios import ASSUMED_RATIOS
 from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.time.machine_channels import Kind
@@ -100,7 +101,7 @@ def _judge_rest(found: Findings, run: LevelRun, before: np.ndarray) -> None:
 
 
 def state_assumptions(
-    found: Findings, event: str, values: Mapping[str, float | str], rated: Rated
+    found: Findings, event: str, values: Mapping[str, float | str], drivetrain: Drivetrain
 ) -> None:
     """State the values that nobody gave.
 
@@ -112,19 +113,21 @@ def state_assumptions(
         Name of the event.
     values : Mapping[str, float or str]
         What was given of it.
-    rated : Rated
-        Slip and damping.
+    drivetrain : Drivetrain
+        Its file, for slip and damping.
     """
     kind = EVENTS.get(event)
     for one in () if kind is None else fields(kind):  # type: ignore[arg-type]
         if one.name not in values:
             unit = "s" if one.name in _TIMES else _UNITS.get(one.name, "")
             found.assume(f"{one.name} of the event", one.default, unit, "assumed: not stated")
-    if rated.damping == ASSUMED_RATIOS:
+    if drivetrain.damping is None:
         source = "assumed: Al-Hamadani 2018, section 4.1"
-        found.assume("damping ratio of shafts and bearings", rated.damping.shafts, "-", source)
-        found.assume("damping ratio of meshes", rated.damping.meshes, "-", source)
-    if rated.slip == SLIP and event not in ("dip", "run_up"):
+        found.assume("damping ratio of shafts and bearings", ASSUMED_RATIOS.shafts, "-", source)
+        found.assume("damping ratio of meshes", ASSUMED_RATIOS.meshes, "-", source)
+    generator = drivetrain.generator
+    known = generator is not None and generator.slip is not None
+    if not known and event not in ("dip", "run_up"):
         found.assume("slip of the generator at rated torque", SLIP, "-", "assumed: not stated")
 
 

@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.comparison.in_time import InTime, converge_in_time, peak_between
-from fe_drivetrain.dynamics.bodies.damping_ratios import ASSUMED_RATIOS, DampingRatios
+from fe_drivetrain.drivetrain_file.turning_parts import DampingRatios
+from fe_drivetrain.dynamics.bodies.damping_ratios import ASSUMED_RATIOS
 from fe_drivetrain.dynamics.bodies.levels import Level
-from fe_drivetrain.dynamics.bodies.tables import Machine
+from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.dynamics.time.integration import transient
 from fe_drivetrain.dynamics.time.machine_channels import Channels, Kind, machine_channels
 from fe_drivetrain.dynamics.time.running import Running, running
@@ -49,6 +51,11 @@ class Rated:
     slip: float = SLIP
     damping: DampingRatios = ASSUMED_RATIOS
     backlash: float = 0.0
+
+    def plain(self) -> dict[str, Any]:
+        """All of it as plain data."""
+        own = {name: getattr(self, name) for name in ("torque", "rotor_speed", "slip", "backlash")}
+        return {**own, "damping": self.damping.model_dump()}
 
     def running(self, machine: Machine, level: Level, teeth: bool = False) -> Running:
         """A machine that turns steadily at a level; see `running`."""

@@ -3,52 +3,19 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
+from fe_drivetrain.drivetrain_file.machine_table import MachineTable
+from fe_drivetrain.drivetrain_file.turning_parts import DampingRatios
 from fe_drivetrain.dynamics.bodies.levels import Level, machine_system
-from fe_drivetrain.dynamics.bodies.machine_rows import MachineTable, PlanetaryData
 from fe_drivetrain.dynamics.bodies.system import System
 from fe_drivetrain.dynamics.torsion.damping import shaft_damping
 
-HIGHEST = 1.0
-"""Damping ratio of an element alone, at most."""
-
-
-@dataclass(frozen=True)
-class DampingRatios:
-    """Damping ratios of elements alone, of the two sides that each opposes to each other.
-
-    Attributes
-    ----------
-    shafts : float
-        Ratio of shafts, bearings and planets' pins.
-    meshes : float
-        Ratio of gear meshes.
-
-    Raises
-    ------
-    InputError
-        One is not from 0 to 1.
-    """
-
-    shafts: float = 0.006
-    meshes: float = 0.1
-
-    def __post_init__(self) -> None:
-        for name in ("shafts", "meshes"):
-            value = getattr(self, name)
-            if not 0.0 <= value <= HIGHEST:
-                raise InputError(
-                    f"damping ratio of {name} is {value:g} but must be from 0 to {HIGHEST:g}: "
-                    "change it"
-                )
-
-
-ASSUMED_RATIOS = DampingRatios()
+ASSUMED_RATIOS = DampingRatios(shafts=0.006, meshes=0.1)
 """Those of a 2 MW and a 3 MW turbine (Al-Hamadani 2018, section 4.1)."""
 
 

@@ -139,6 +139,27 @@ def bushing(
             for i, m in enumerate(MOTIONS)
             if k[i] > 0 or c[i] > 0
         ]
+    return [
+        directed(f"{name} {i}", one, other, point, direction, value)
+        for i, (direction, value) in along_eigenvectors(name, k).items()
+    ]
+
+
+def along_eigenvectors(name: str, k: Floats) -> dict[int, tuple[Floats, float]]:
+    """Directions (6,) and stiffnesses of the springs of a matrix, by their number from 1.
+
+    Parameters
+    ----------
+    name : str
+        What they are of, for messages.
+    k : ndarray, (6, 6)
+        Stiffness, see `bushing`.
+
+    Raises
+    ------
+    InputError
+        The matrix is not symmetric, or has a negative eigenvalue.
+    """
     if np.abs(k - k.T).max() > 1e-9 * np.abs(k).max():
         raise InputError(f"{name}: the stiffness matrix must be symmetric: make it so")
     root = diagonal_roots(k.diagonal())
@@ -148,11 +169,11 @@ def bushing(
             f"{name}: the stiffness matrix has an eigenvalue of {values[0]:g} (on a unit diagonal) "
             "but none may be negative: correct it"
         )
-    return [
-        directed(f"{name} {i + 1}", one, other, point, root * vectors[:, i], float(value))
+    return {
+        i + 1: (root * vectors[:, i], float(value))
         for i, value in enumerate(values)
         if value > 1e-12 * values[-1]
-    ]
+    }
 
 
 def line_of_action(mesh: Mesh, to_pitch: ArrayLike, flank: int = 1) -> Floats:

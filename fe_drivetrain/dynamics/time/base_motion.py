@@ -172,7 +172,8 @@ def on_base(system: System, bodies: Iterable[Body]) -> Floats:
     rows, rigid = [np.zeros((0, len(identity)))], [np.zeros((0, 6))]
     for body in stands:
         moves = system.motion_of(body.name, identity)
-        if moves.any():  # what is held is part of the base
+        # what is held is part of the base, and what has no inertia does not feel it
+        if moves.any() and (body.mass > 0.0 or body.polar > 0.0):
             # a generator that turns alone on its foundation goes along with the base otherwise
             own = moves.any(axis=1) if moving and body.free == TURNS else np.ones(6, dtype=bool)
             rows.append(moves[own])

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.short_repr import short_repr
+from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.dynamics.bodies.damping_ratios import element_of, mesh_names
 from fe_drivetrain.dynamics.bodies.equations import CONSTANT
-from fe_drivetrain.dynamics.bodies.machine_rows import PlanetaryData
+from fe_drivetrain.dynamics.bodies.springs import along_eigenvectors
 from fe_drivetrain.dynamics.bodies.steady_state import wind_up
 from fe_drivetrain.dynamics.time.motion import Motion
 from fe_drivetrain.dynamics.time.running import Running
@@ -72,6 +75,12 @@ class Channels:
         return UNITS[self.kinds[k]]
 
 
+Weights = Mapping[int, float]
+"""Weights of springs by their number."""
+
+NOTHING: Weights = MappingProxyType({})
+
+
 class _Rows:
     """Rows of channels as they are gathered."""
 
@@ -84,15 +93,17 @@ class _Rows:
         self,
         name: str,
         kind: Kind,
-        along: Sequence[int] = (),
-        across: Sequence[int] = (),
+        along: Weights = NOTHING,
+        across: Weights = NOTHING,
         rate: Floats | None = None,
+        both: bool = False,
     ) -> None:
-        """Add a channel of the springs of these numbers, or of a velocity."""
+        """Add a channel of springs with weights by their number, or of a velocity."""
         first, second = np.zeros(len(self.springs)), np.zeros(len(self.springs))
-        first[list(along)], second[list(across)] = 1.0, 1.0
+        for weights, sums in ((along, first), (across, second)):
+            sums[list(weights)] = list(weights.values())
         rates = np.zeros(self.n) if rate is None else rate
-        self.rows.append((name, kind, first, second, rates, float(bool(across))))
+        self.rows.append((name, kind, first, second, rates, float(both)))
 
     def numbers(self, *names: str) -> list[int]:
         """Numbers of springs of these names, those that there are."""
@@ -112,12 +123,13 @@ def machine_channels(of: Running) -> Channels:
     for shaft in of.machine.shafts:
         found = rows.numbers(f"{shaft.name} rx", f"{shaft.name} element 1 rx")
         if found and system.rows[found].any():
-            rows.add(f"torque of {shaft.name}", "torque", found)
+            rows.add(f"torque of {shaft.name}", "torque", dict.fromkeys(found, 1.0))
     names = [element_of(name) for name in system.spring_names]
     for mesh in mesh_names(of.machine):
-        rows.add(f"force of {mesh}", "mesh", [k for k, name in enumerate(names) if name == mesh])
-    for bearing in _bearing_names(of):
-        _add_bearing(rows, of, bearing)
+        slices = {k: 1.0 for k, name in enumerate(names) if name == mesh}
+        rows.add(f"force of {mesh}", "mesh", slices)
+    for bearing, stiffness in _bearings(of):
+        _add_bearing(rows, of, bearing, stiffness)
     for body in _turning_bodies(of):
         rows.add(f"speed of {body}", "speed", rate=of.row(body))
     labels, kinds, along, across, rates, both = zip(*rows.rows, strict=True)
@@ -155,27 +167,30 @@ def _with_rated(made: Channels, of: Running) -> Channels:
     )
 
 
-def _bearing_names(of: Running) -> list[str]:
-    """Bearings in the housing, then those of planets."""
-    found = [bearing.name for bearing in of.machine.bearings]
+def _bearings(of: Running) -> list[tuple[str, Floats]]:
+    """Bearings in the housing, then those of planets, with six stiffnesses or a matrix."""
+    found = [(bearing.name, np.asarray(bearing.stiffness)) for bearing in of.machine.bearings]
     for number, stage in enumerate(of.machine.stages, start=1):
         if isinstance(stage, PlanetaryData):
             found += [
-                f"stage {number} pin {k + 1} {pin.name}".strip()
+                (f"stage {number} pin {k + 1} {pin.name}".strip(), np.ones(6))  # its own axes
                 for k in range(stage.planets)
                 for pin in stage.pins
             ]
     return found
 
 
-def _add_bearing(rows: _Rows, of: Running, name: str) -> None:
+def _add_bearing(rows: _Rows, of: Running, name: str, stiffness: Floats) -> None:
     """Force across the axis of a bearing, and that along it where it carries one."""
+    if stiffness.ndim == 2:
+        directions = {f"{name} {k}": d for k, (d, _) in along_eigenvectors(name, stiffness).items()}
+    else:
+        directions = dict(zip((f"{name} {m}" for m in MOTIONS), np.eye(6), strict=True))
     felt = of.system.rows.any(axis=1)
-    y, z, x = (
-        [k for k in rows.numbers(f"{name} {motion}") if felt[k]] for motion in ("uy", "uz", "ux")
-    )
+    by = {k: directions[n] for k, n in enumerate(rows.springs) if n in directions and felt[k]}
+    x, y, z = ({k: float(d[axis]) for k, d in by.items() if d[axis]} for axis in range(3))
     if y or z:
-        rows.add(f"force of {name}", "bearing", y, z or y)
+        rows.add(f"force of {name}", "bearing", y, z, both=True)
     if x:
         rows.add(f"axial force of {name}", "bearing", x)
 

@@ -10,9 +10,9 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
+from fe_drivetrain.drivetrain_file.turning_parts import DampingRatios
 from fe_drivetrain.dynamics.bodies.damping_ratios import (
     ASSUMED_RATIOS,
-    DampingRatios,
     element_of,
     mesh_names,
     with_damping_ratios,
@@ -20,10 +20,10 @@ from fe_drivetrain.dynamics.bodies.damping_ratios import (
 from fe_drivetrain.dynamics.bodies.equations import Equations
 from fe_drivetrain.dynamics.bodies.gear_pairs import contact_ratios
 from fe_drivetrain.dynamics.bodies.levels import Level, machine_system
+from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.dynamics.bodies.meshing import machine_meshing, varying_equations
 from fe_drivetrain.dynamics.bodies.steady_state import free_motions
 from fe_drivetrain.dynamics.bodies.system import System
-from fe_drivetrain.dynamics.bodies.tables import Machine
 from fe_drivetrain.dynamics.time.steady_turning import Turning
 
 _ABOUT_AXIS = np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0])
