@@ -24,6 +24,11 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
         "two_bearings --loads 'outputs/*.outb' --site class-II",
         "mine.yaml --loads outputs --bearing front=240/630",
     ),
+    "transient": (
+        "mine.yaml stop --value braked=2.5 --open",
+        "mine.yaml operation --loads 'outputs/*.outb' --level rigid",
+        "mine.yaml dip --value depth=0.9 --value length=0.25 --json",
+    ),
     "compare": (
         "mine.yaml stiffer.yaml",
         "two_bearings --vary shaft.front=-1.2:-0.8:5",

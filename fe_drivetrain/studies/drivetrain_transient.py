@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.errors import InputError, require_known
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
@@ -236,7 +237,9 @@ def transient(
     require_known("event", event, EVENT_NAMES)
     require_known("quantity", quantity, tuple(QUANTITIES))
     if not 0.0 < tolerance < 1.0:
-        raise InputError(f"tolerance is {tolerance:g} but must be between 0 and 1: change it")
+        raise InputError(
+            f"{argument('tolerance')} is {tolerance:g} but must be between 0 and 1: change it"
+        )
     asked = _Asked(
         drivetrain,
         machine_of(drivetrain),
@@ -253,7 +256,9 @@ def transient(
     if event == OPERATION:
         return _operated(asked, recorded_files(loads), options or OperationOptions(), resume, steps)
     if loads:
-        raise InputError(f"event {event} takes no histories: leave loads out, or ask for operation")
+        raise InputError(
+            f"event {event} takes no histories: leave {argument('loads')} out, or ask for operation"
+        )
     return _happened(asked, steps)
 
 
@@ -375,7 +380,7 @@ def _duration(asked: _Asked, event: Event) -> float:
     longest = 3600.0
     if not 0.0 < asked.duration <= longest:
         raise InputError(
-            f"duration is {asked.duration:g} s but must be above 0 s and at most {longest:g} s: "
+            f"{argument('duration')} is {asked.duration:g} s but must be above 0 s and at most {longest:g} s: "
             "change it"
         )
     return asked.duration
@@ -390,7 +395,9 @@ def _compared(
 ) -> tuple[list[LevelRun], int]:
     """Runs at all levels, the chosen and the finest with their bands; number of the chosen one."""
     if step is not None and not 1e-7 <= step <= 1.0:
-        raise InputError(f"step is {step:g} s but must be from 1e-07 to 1 s: change it")
+        raise InputError(
+            f"{argument('step')} is {step:g} s but must be from 1e-07 to 1 s: change it"
+        )
     runs, again = [], []
     for level in levels:
         with steps.step(level.value):
@@ -408,7 +415,9 @@ def _operated(
 ) -> TransientResult:
     """Operation under histories, one by one."""
     if not files:
-        raise InputError("operation needs histories: give loads, as in loads='outputs/*.outb'")
+        raise InputError(
+            f"operation needs histories: give {argument('loads')}, as in outputs/*.outb"
+        )
     if asked.values:
         raise InputError(f"operation has no value {next(iter(asked.values))!r}: leave it out")
     options = replace(

@@ -360,7 +360,7 @@ def _base(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigu
     one = of.extremes[worst]
     least, most, rated = (value_text(v / 1e3, "kN") for v in (one.least, one.most, one.rated))
     verdict = f"As the base moves, the {worst} is between {least} and {most}, beside {rated}."
-    return verdict, [of.force(worst), of.over(of.last), *_others(of)]
+    return verdict, [of.force(worst), of.over(of.last), *_others(of)[:1]]
 
 
 def _operation(of: _Answered, files: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigure]]:
