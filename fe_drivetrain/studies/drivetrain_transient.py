@@ -174,7 +174,19 @@ class TransientResult(Result):
         few = f", the {most} largest of {len(size)}" if len(size) > most else ""
         caption = f"{of[0].upper()}{of[1:]}{' over their rated values' if relative else ''}{few}"
         y = "over rated" if relative else "force [kN]"
-        return chart(caption, traces, "time [s]", y, events=self.marks)
+        return chart(caption, traces, "time [s]", y, events=self._together())
+
+    def _together(self) -> dict[str, float]:
+        """What happened, by time; what happened as good as at once in one."""
+        span = float(self.samples.times[-1] - self.samples.times[0])
+        found: dict[str, float] = {}
+        for name, at in sorted(self.marks.items(), key=lambda item: item[1]):
+            last = next(reversed(found), "")
+            if last and at - found[last] < 0.01 * span:
+                found[f"{last}, {name}"] = found.pop(last)
+            else:
+                found[name] = at
+        return found
 
 
 def transient(
@@ -380,8 +392,8 @@ def _duration(asked: _Asked, event: Event) -> float:
     longest = 3600.0
     if not 0.0 < asked.duration <= longest:
         raise InputError(
-            f"{argument('duration')} is {asked.duration:g} s but must be above 0 s and at most {longest:g} s: "
-            "change it"
+            f"{argument('duration')} is {asked.duration:g} s but must be above 0 s and at most "
+            f"{longest:g} s: change it"
         )
     return asked.duration
 

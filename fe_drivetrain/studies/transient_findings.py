@@ -17,7 +17,7 @@ from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import percent_text, value_text
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.transient_digest import FileDigest
-from fe_drivetrain.studies.transient_ladder import QUANTITIES, level_error
+from fe_drivetrain.studies.transient_ladder import COUNTED, QUANTITIES, level_error
 from fe_drivetrain.studies.transient_runs import Extreme, LevelRun, Rated
 from fe_drivetrain.studies.transient_tables import alternating_rows, in_shown_unit
 
@@ -152,12 +152,14 @@ def state_figures(found: Findings, extremes: Mapping[str, Extreme], run: LevelRu
         found.found(f"largest {name} [{unit}]", most, bands[0])
         found.found(f"least {name} [{unit}]", least, bands[1])
         band = max(one.most_band or 0.0, one.least_band or 0.0)
-        if one.kind != "speed" and band > SETTLED * one.largest:
+        of_kind = max(each.largest for each in extremes.values() if each.kind == one.kind)
+        counts = one.kind != "speed" and one.largest >= COUNTED * of_kind
+        if counts and band > SETTLED * one.largest:
             loose.append((band / one.largest, name))
     if loose:
         share, name = max(loose)
         found.unsettled.append(
-            f"Not converged: {len(loose)} channels, uncertain by up to {percent_text(share)} by "
+            f"Not converged: {len(loose)} channel{'s' * (len(loose) > 1)}, uncertain by up to {percent_text(share)} by "
             f"the step of {1e3 * run.step:g} ms ({name}): take a shorter step."
         )
 
