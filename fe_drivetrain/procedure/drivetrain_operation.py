@@ -2,7 +2,9 @@
 
 What a file has at the hub is what the shaft feels there. The rotor's inertia stands before it, so
 the torque that drives the rotor is that of the shaft and what speeds the rotor up, ``Mx + J w'``,
-with the speed w of the file; and the rotor's weight is in the file's loads already. The generator
+with the speed w of the file. Across the axis the loads at the hub hold what the rotor's mass takes,
+its weight, too: a rotor that swung on the main bearings beside them would be there twice, so it
+keeps its polar inertia alone. The generator
 has the file's own torque, held to the file's speed by a line so weak that it answers in some
 seconds: gear ratios and inertias of file and drivetrain are never quite the same, and the speed
 would drift. A file without the generator's torque gets a line of slip about its own speed.
@@ -17,7 +19,6 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.bodies.equations import Equations, Loads, SpringLaws, summed, varying
 from fe_drivetrain.dynamics.bodies.levels import Level
@@ -125,7 +126,7 @@ def operation(of: Running, history: DriveHistory, slip: float) -> Operation:
     """
     speed = _rotor_speed(of, history)
     law, pull = _generator(of, history, speed, slip)
-    loads = summed(_at_hub(of, history, speed), pull, *of_weights(of, history))
+    loads = summed(_at_hub(of, history, speed), pull, *of_weights(of, history, of.rotor_weight))
     equations = with_laws(of.equations, law)
     velocity = speed[0] / float(of.turning.to_rotor @ of.turning.velocity) * of.turning.velocity
     found = wind_up(equations, loads.at(history.time[0]), velocity)
@@ -179,7 +180,7 @@ def _own_torque(history: DriveHistory, ratio: float) -> Floats:
     return np.asarray(history.generator_torque * abs(of_file / ratio))
 
 
-def of_weights(of: Running, history: DriveHistory) -> list[Loads]:
+def of_weights(of: Running, history: DriveHistory, rotor_weight: float) -> list[Loads]:
     """Weights of all bodies; without the rotor's where the file's loads have it.
 
     Parameters
@@ -188,12 +189,13 @@ def of_weights(of: Running, history: DriveHistory) -> list[Loads]:
         The machine at a level.
     history : DriveHistory
         What drives it.
+    rotor_weight : float
+        Weight of the rotor [N].
     """
     if of.level is Level.TORSIONAL or of.turning.beside is None:
         return []
     weights = of.turning.beside
-    if "Fz" not in history.absent:
-        mass = float(of.system.body_mass[of.system.bodies.index("rotor")])
-        lifted = np.array([0.0, 0.0, mass * GRAVITY, 0.0, 0.0, 0.0])
+    if history.has_all:
+        lifted = np.array([0.0, 0.0, rotor_weight, 0.0, 0.0, 0.0])
         weights = weights + of.system.load_on("rotor", lifted)
     return [varying(weights, [0.0], [1.0])]

@@ -439,7 +439,7 @@ def _operated(
     window = min(options.until or WINDOW, WINDOW, first.seconds)
 
     def at(level: Level) -> Callable[[float | None], LevelRun]:
-        of = Prepared(asked.machine, level, asked.rated)
+        of = Prepared(asked.machine, level, asked.rated, hub_loads=first.has_all)
         moving = operation(of.of, first, asked.rated.slip)
         return lambda step: of.window(moving, options.step if step is None else step, window)
 
@@ -448,7 +448,7 @@ def _operated(
     level = runs[number].level
     names = [short_name(path, files) for path in files]
     with steps.step("files"):
-        of = Prepared(asked.machine, level, asked.rated)
+        of = Prepared(asked.machine, level, asked.rated, hub_loads=first.has_all)
         begun, samples = driven(of, first, options)
         rest = digests(files[1:], asked.machine, level, asked.rated, options, resume, steps.report)
         of_files = dict(zip(names, [begun, *rest], strict=True))

@@ -290,7 +290,8 @@ def kept_digest(
         if kept is not None:
             return kept
     history = read_drive(file, asked.names, asked.skip)
-    found, _ = driven(Prepared(machine, level, rated), history, asked)
+    prepared = Prepared(machine, level, rated, hub_loads=history.has_all)
+    found, _ = driven(prepared, history, asked)
     cache.keep_record("transient-digests", content, found)
     return found
 

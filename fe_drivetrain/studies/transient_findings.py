@@ -159,8 +159,9 @@ def state_figures(found: Findings, extremes: Mapping[str, Extreme], run: LevelRu
     if loose:
         share, name = max(loose)
         found.unsettled.append(
-            f"Not converged: {len(loose)} channel{'s' * (len(loose) > 1)}, uncertain by up to {percent_text(share)} by "
-            f"the step of {1e3 * run.step:g} ms ({name}): take a shorter step."
+            f"Not converged: {len(loose)} channel{'s' * (len(loose) > 1)}, uncertain by up to "
+            f"{percent_text(share)} by the step of {1e3 * run.step:g} ms ({name}): take a shorter "
+            "step."
         )
 
 

@@ -57,7 +57,9 @@ class Rated:
         own = {name: getattr(self, name) for name in ("torque", "rotor_speed", "slip", "backlash")}
         return {**own, "damping": self.damping.model_dump()}
 
-    def running(self, machine: Machine, level: Level, teeth: bool = False) -> Running:
+    def running(
+        self, machine: Machine, level: Level, teeth: bool = False, hub_loads: bool = False
+    ) -> Running:
         """A machine that turns steadily at a level; see `running`."""
         return running(
             machine,
@@ -67,6 +69,7 @@ class Rated:
             self.damping,
             backlash=self.backlash,
             teeth=teeth,
+            hub_loads=hub_loads,
         )
 
 
@@ -210,12 +213,21 @@ class Prepared:
         Torque, speed and damping.
     teeth : bool
         Whether the stiffness of meshes varies as teeth pass.
+    hub_loads : bool
+        Whether loads of a history act at the hub, see `running`.
     """
 
-    def __init__(self, machine: Machine, level: Level, rated: Rated, teeth: bool = False) -> None:
+    def __init__(
+        self,
+        machine: Machine,
+        level: Level,
+        rated: Rated,
+        teeth: bool = False,
+        hub_loads: bool = False,
+    ) -> None:
         begin = perf_counter()
         self.rated = rated
-        self.of = rated.running(machine, level, teeth)
+        self.of = rated.running(machine, level, teeth, hub_loads)
         self.channels = machine_channels(self.of)
         self.seconds = perf_counter() - begin
 

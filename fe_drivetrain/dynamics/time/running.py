@@ -26,6 +26,10 @@ from fe_drivetrain.dynamics.bodies.steady_state import free_motions
 from fe_drivetrain.dynamics.bodies.system import System
 from fe_drivetrain.dynamics.time.steady_turning import Turning
 
+LIGHT = 1e-3
+"""Part of a rotor's mass that is left where loads at the hub hold what it takes: its swings on the
+main bearings are then far above what a history resolves."""
+
 _ABOUT_AXIS = np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0])
 
 
@@ -45,6 +49,8 @@ class Running:
         Equations of motion without the generator's law.
     turning : Turning
         Rated torque and speed.
+    rotor_weight : float
+        Weight of the rotor [N].
     """
 
     __repr__ = short_repr
@@ -54,6 +60,7 @@ class Running:
     system: System
     equations: Equations
     turning: Turning
+    rotor_weight: float
 
     def row(self, body: str) -> Floats:
         """(n,) row to the angle of a body, and load of a unit torque on it.
@@ -103,6 +110,7 @@ def running(
     *,
     backlash: float = 0.0,
     teeth: bool = False,
+    hub_loads: bool = False,
 ) -> Running:
     """A machine that turns steadily at a level.
 
@@ -121,6 +129,9 @@ def running(
     teeth : bool
         Whether the stiffness of meshes varies with the angle of their gears, as a square wave of
         the contact ratio; each mesh is then in one point.
+    hub_loads : bool
+        Whether loads will act that a history has at the hub: they hold what the rotor's mass takes
+        already, so that the rotor keeps its polar inertia alone, and its weight.
 
     Raises
     ------
@@ -134,7 +145,11 @@ def running(
         # a wave in each slice would cost the square of their number
         one = tuple(stage.model_copy(update={"slices": 1}) for stage in machine.stages)
         machine = machine.model_copy(update={"stages": one})
-    system = with_damping_ratios(machine, machine_system(machine, level), damping)
+    system = machine_system(machine, level)
+    whole = system.gravity(np.array([0.0, 0.0, -GRAVITY]))
+    if hub_loads and level is not Level.TORSIONAL:
+        system = _light_rotor(machine, system)
+    system = with_damping_ratios(machine, system, damping)
     equations = varying_equations(system, {}, rotor_speed)
     if teeth:
         equations = _with_teeth(machine, system, rotor_speed)
@@ -143,7 +158,6 @@ def running(
     to_rotor = system.load_on("rotor", _ABOUT_AXIS)
     motion = free_motions(varying_equations(system, {}))[:, 0]
     velocity = rotor_speed * motion / float(to_rotor @ motion)
-    weights = system.gravity(np.array([0.0, 0.0, -GRAVITY]))
     return Running(
         machine,
         level,
@@ -155,9 +169,22 @@ def running(
             torque,
             machine.speeds[-1],
             velocity,
-            None if level is Level.TORSIONAL else weights,
+            None if level is Level.TORSIONAL else whole,
         ),
+        GRAVITY * machine.rotor.apart[0],
     )
+
+
+def _light_rotor(machine: Machine, system: System) -> System:
+    """The system with a small part of its rotor's mass, and its polar inertia alone."""
+    mass, across = machine.rotor.apart
+    found, turned = system.mass.copy(), system.gyroscopic.copy()
+    at = [system.place(f"rotor {motion}") for motion in ("ux", "uy", "uz", "ry", "rz")]
+    found[at, at] -= (1.0 - LIGHT) * np.array([mass, mass, mass, across, across])
+    turned[np.ix_(at[3:], at[3:])] = 0.0
+    masses = system.body_mass.copy()
+    masses[system.bodies.index("rotor")] -= (1.0 - LIGHT) * mass
+    return replace(system, mass=found, gyroscopic=turned, body_mass=masses)
 
 
 def _check(torque: float, rotor_speed: float, backlash: float) -> None:

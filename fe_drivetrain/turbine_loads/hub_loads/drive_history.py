@@ -66,6 +66,11 @@ class DriveHistory:
         return self.loads[:, FORCES.index("Mx")]
 
     @property
+    def has_all(self) -> bool:
+        """Whether all six loads were recorded."""
+        return not self.absent
+
+    @property
     def seconds(self) -> float:
         """From the first sample to the last [s]."""
         return float(self.time[-1] - self.time[0])
