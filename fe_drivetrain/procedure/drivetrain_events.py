@@ -70,6 +70,9 @@ class Event(Protocol):
     def step(self, of: Running) -> float:
         """Step that resolves what excites the event [s]."""
 
+    def lasts(self, of: Running) -> float:
+        """Duration that shows the event where none is asked for [s]."""
+
 
 @dataclass(frozen=True)
 class EmergencyStop:
@@ -110,6 +113,18 @@ class EmergencyStop:
         _in_range(self, off=(0.0, 1e4), left=(-1.0, 1.5), rise=(0.0, 60.0), brake=(0.0, 50.0))
         _in_range(self, brake_torque=(0.0, 1e9), braked=(0.0, 1e4))
         _in_order(self, "off", "pitched")
+
+    def lasts(self, of: Running) -> float:
+        """Until the disc stands and some seconds more, where the brake is stronger than the wind."""
+        row = of.disc(self.on)
+        speed = abs(float(row @ of.turning.velocity))
+        rotor = float(of.turning.to_rotor @ of.turning.velocity)
+        braking = (self.brake_torque or self._torque_on(of, row)) * speed / rotor
+        net = braking - self.left * of.turning.torque
+        if net <= 0.0:
+            return self.seconds
+        still = max(self.pitched, self.braked + self.rise) + of.inertia * rotor / net
+        return float(min(max(self.seconds, still + 5.0), 10.0 * self.seconds))
 
     def plan(self, of: Running, duration: float, slip: float) -> Planned:
         """Phases of the stop; marks are the generator's end, blades and brake."""
@@ -163,6 +178,10 @@ class GridLoss:
     def __post_init__(self) -> None:
         _in_range(self, off=(0.0, 1e4), delay=(0.0, 60.0), pitch=(1e-3, 60.0), left=(-1.0, 1.5))
 
+    def lasts(self, of: Running) -> float:
+        """Duration that shows the event where none is asked for [s]."""
+        return self.seconds
+
     def plan(self, of: Running, duration: float, slip: float) -> Planned:
         """Phases of the loss; marks are the loss itself, and the blades."""
         begins, ends = self.off + self.delay, self.off + self.delay + self.pitch
@@ -215,6 +234,10 @@ class VoltageDip:
         """The dip as a table."""
         return Dip(self.start, self.depth, self.length, self.fall, self.recovery)
 
+    def lasts(self, of: Running) -> float:
+        """Duration that shows the event where none is asked for [s]."""
+        return self.seconds
+
     def plan(self, of: Running, duration: float, slip: float) -> Planned:
         """One phase; marks are the begin of the dip, of the recovery, and its end."""
         table, turning = self.dip().table, of.turning
@@ -261,6 +284,10 @@ class RunUp:
         _in_range(self, begin=(0.0, 3.0), end=(1e-3, 3.0), share=(0.0, 2.0))
         _in_order(self, "begin", "end")
 
+    def lasts(self, of: Running) -> float:
+        """Duration that shows the event where none is asked for [s]."""
+        return self.seconds
+
     def plan(self, of: Running, duration: float, slip: float) -> Planned:
         """One phase; its mark is where the speed is the rated one."""
         turning = of.turning
@@ -289,6 +316,10 @@ class Offset(CouplingOffset):
     levels: ClassVar[tuple[Level, ...]] = SIX_MOTIONS
     teeth: ClassVar[bool] = False
     seconds: ClassVar[float] = 2.0
+
+    def lasts(self, of: Running) -> float:
+        """Duration that shows the event where none is asked for [s]."""
+        return self.seconds
 
     def plan(self, of: Running, duration: float, slip: float) -> Planned:
         """One phase with the coupling's springs; nothing is marked."""
@@ -325,6 +356,10 @@ class BaseMoves:
                 "the motion of a base needs a file: give it, as in file=base.csv, with columns "
                 "'time [s]' and some of ux [m] to rz [rad]"
             )
+
+    def lasts(self, of: Running) -> float:
+        """Duration that shows the event where none is asked for [s]."""
+        return self.seconds
 
     def plan(self, of: Running, duration: float, slip: float) -> Planned:
         """One phase; nothing is marked."""

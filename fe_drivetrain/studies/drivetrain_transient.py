@@ -388,7 +388,7 @@ def _happened(asked: _Asked, steps: Steps) -> TransientResult:
 
 def _duration(asked: _Asked, event: Event) -> float:
     if asked.duration is None:
-        return event.seconds
+        return event.lasts(asked.rated.running(asked.machine, Level.TORSIONAL))
     longest = 3600.0
     if not 0.0 < asked.duration <= longest:
         raise InputError(

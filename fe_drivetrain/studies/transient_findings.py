@@ -296,11 +296,15 @@ def _stop(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigu
     verdict = (
         f"The stop loads the {last.removeprefix('torque of ')} to {one.over_rated:.2f} of rated "
         f"torque{f' and back to {one.least_over_rated:.2f}' if turned else ''}; "
-        + (f"its disc stands after {value_text(stands, 's')}." if stands else "it still turns.")
+        + (
+            f"its disc first stands after {value_text(stands, 's')}."
+            if stands
+            else "it still turns."
+        )
     )
     figures = [of.over(last), of.over(last, least=True), *_others(of)]
     if stands:
-        figures.append(of.found.value("disc stands at [s]", stands))
+        figures.append(of.found.value("disc first stands at [s]", stands))
     return verdict, figures
 
 

@@ -246,7 +246,7 @@ class Prepared:
         marks = dict(planned.marks)
         stands = [t for t, what in motion.braking.events if what == "sticks"]
         if stands:
-            marks["disc stands"] = stands[-1]
+            marks["disc stands"] = stands[0]
         return self._run(
             begin,
             step,

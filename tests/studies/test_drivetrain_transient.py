@@ -40,7 +40,7 @@ def dipped() -> TransientResult:
 def write_torque(path: Path, amplitude: float, seconds: float = 40.0) -> None:
     """Torque about three quarters of rated at 0.25 Hz, at rated speed, other loads constant."""
     time = np.arange(0.0, seconds + 0.01, 0.05)
-    torque = 0.75 * TORQUE + amplitude * np.sin(2 * np.pi * 0.25 * time)
+    torque = 0.75 * TORQUE + amplitude * np.cos(2 * np.pi * 0.25 * time)
     still = np.tile([1e3, 0.0, -1e5], (len(time), 1))
     table = np.column_stack([time, still, torque, 0.0 * time, 0.0 * time, 0.0 * time + SPEED])
     header = "time [s],Fx [N],Fy [N],Fz [N],Mx [N m],My [N m],Mz [N m],rotor speed [rad/s]"
