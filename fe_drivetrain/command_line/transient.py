@@ -20,7 +20,7 @@ from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 if TYPE_CHECKING:
     from fe_drivetrain.report.suite.page import Page
     from fe_drivetrain.report.suite.run import Run
-    from fe_drivetrain.studies.drivetrain_transient import TransientResult
+    from fe_drivetrain.studies.transient_result import TransientResult
 
 _OF_HISTORIES = {
     "channel": "--channel",

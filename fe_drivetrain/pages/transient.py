@@ -11,8 +11,8 @@ from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.report.suite.run import Run
-from fe_drivetrain.studies.drivetrain_transient import TransientResult
 from fe_drivetrain.studies.transient_ladder import QUANTITIES, finest_band
+from fe_drivetrain.studies.transient_result import TransientResult
 from fe_drivetrain.studies.transient_tables import spectrum_of
 
 _SHOWN = 20

@@ -115,7 +115,7 @@ class EmergencyStop:
         _in_order(self, "off", "pitched")
 
     def lasts(self, of: Running) -> float:
-        """Until the disc stands and some seconds more, where the brake is stronger than the wind."""
+        """Until the disc stands, and some seconds more, if the brake is stronger than the wind."""
         row = of.disc(self.on)
         speed = abs(float(row @ of.turning.velocity))
         rotor = float(of.turning.to_rotor @ of.turning.velocity)

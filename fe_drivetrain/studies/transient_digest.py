@@ -274,8 +274,14 @@ def kept_digest(
         Report of a job in a process; what takes this long shows no steps.
     file : Path
         The file with the history.
-    machine, level, rated, asked
-        As of `driven`.
+    machine : Machine
+        Table of the machine.
+    level : Level
+        What may move.
+    rated : Rated
+        Rated torque, speed and damping.
+    asked : OperationOptions
+        How histories are read and counted.
     resume : bool
         Take what is kept.
 
@@ -286,13 +292,13 @@ def kept_digest(
     """
     cache, content = user_cache(), _content(file, machine, level, rated, asked)
     if resume:
-        kept = cache.load_record("transient-digests", content, FileDigest)
+        kept = cache.load_record("load-digests", content, FileDigest)
         if kept is not None:
             return kept
     history = read_drive(file, asked.names, asked.skip)
     prepared = Prepared(machine, level, rated, hub_loads=history.has_all)
     found, _ = driven(prepared, history, asked)
-    cache.keep_record("transient-digests", content, found)
+    cache.keep_record("load-digests", content, found)
     return found
 
 
@@ -301,6 +307,7 @@ def _content(
 ) -> dict[str, Any]:
     """All that the digest of a file depends on: what is in the file counts, not its name."""
     return {
+        "of": "a drivetrain in time",
         "code": program_hash(),
         "file": file_digest(str(file)),
         "drivetrain": drivetrain_hash(machine),
@@ -329,8 +336,14 @@ def digests(
     ----------
     files : sequence of Path
         Histories.
-    machine, level, rated, asked
-        As of `driven`.
+    machine : Machine
+        Table of the machine.
+    level : Level
+        What may move.
+    rated : Rated
+        Rated torque, speed and damping.
+    asked : OperationOptions
+        How histories are read and counted.
     resume : bool
         Take digests that an earlier run kept.
     report : Progress

@@ -120,7 +120,8 @@ def state_assumptions(
     for one in () if kind is None else fields(kind):  # type: ignore[arg-type]
         if one.name not in values:
             unit = "s" if one.name in _TIMES else _UNITS.get(one.name, "")
-            found.assume(f"{one.name} of the event", one.default, unit, "assumed: not stated")
+            value: float | str = getattr(kind, one.name)
+            found.assume(f"{one.name} of the event", value, unit, "assumed: not stated")
     if drivetrain.damping is None:
         source = "assumed: Al-Hamadani 2018, section 4.1"
         found.assume("damping ratio of shafts and bearings", ASSUMED_RATIOS.shafts, "-", source)

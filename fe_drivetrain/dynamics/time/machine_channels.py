@@ -186,7 +186,7 @@ def _add_bearing(rows: _Rows, of: Running, name: str, stiffness: Floats) -> None
         directions = {f"{name} {k}": d for k, (d, _) in along_eigenvectors(name, stiffness).items()}
     else:
         directions = dict(zip((f"{name} {m}" for m in MOTIONS), np.eye(6), strict=True))
-    felt = of.system.rows.any(axis=1)
+    felt = np.abs(of.system.rows).max(axis=1) > 0.0
     by = {k: directions[n] for k, n in enumerate(rows.springs) if n in directions and felt[k]}
     x, y, z = ({k: float(d[axis]) for k, d in by.items() if d[axis]} for axis in range(3))
     if y or z:
