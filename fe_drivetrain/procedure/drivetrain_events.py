@@ -32,6 +32,10 @@ from fe_drivetrain.procedure.voltage_dips import Dip
 SIX_MOTIONS = (Level.RIGID, Level.FLEXIBLE)
 """Levels whose bodies have all motions."""
 
+ROUNDS = 8
+"""Rounds in which the phases of stiffnesses at the beginning are found: each leaves a fifth or
+less of what the one before did."""
+
 SLIP = 0.01
 """Slip of a generator at rated torque, where nothing else is known."""
 
@@ -450,7 +454,15 @@ def _steady_rotor(of: Running) -> Loads:
 
 
 def _wound_up(equations: Equations, acting: Sequence[Loads], velocity: Floats) -> State:
-    """State without vibration under the loads at the beginning."""
+    """State without vibration under the loads at the beginning.
+
+    Stiffnesses that go with an angle are those of the state itself, found by a few rounds with
+    phases that stand.
+    """
     load = np.sum([one.at(0.0) for one in acting], axis=0)
-    found = wind_up(equations, load, velocity)
+    s, q = equations.springs, np.zeros(len(velocity))
+    for _ in range(ROUNDS if s.turns.any() else 1):
+        stands = replace(s, phase=s.phase + s.turns @ q, turns=np.zeros_like(s.turns))
+        found = wind_up(replace(equations, springs=stands), load, velocity)
+        q = found.q
     return State(found.q, velocity, found.acceleration)

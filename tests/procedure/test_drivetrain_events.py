@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from small_drivetrain import GENERATOR, ROTOR, SPEED, TORQUE, two_masses
 
 from fe_drivetrain.common import Floats, InputError
-from fe_drivetrain.drivetrain_file import DampingRatios
+from fe_drivetrain.drivetrain_file import DampingRatios, read_drivetrain
 from fe_drivetrain.dynamics import Level, assembly, library_machine, machine_of, on_base, transient
 from fe_drivetrain.dynamics.bodies.equations import equations_of_motion
 from fe_drivetrain.dynamics.bodies.steady_state import restoring
@@ -69,6 +69,17 @@ def test_teeth_pass_at_the_frequencies_of_their_meshes() -> None:
     known = 1.2 * machine.speeds[2] * 95 / (2 * np.pi)
     assert_allclose(periods[third], known, rtol=1e-9)
     assert_allclose(event_of("run_up", {"end": 1.5}).step(of), 0.05 / (1.5 * known), rtol=1e-9)
+
+
+def test_a_run_up_begins_in_balance_with_the_teeth_where_they_are() -> None:
+    of = running(machine_of(read_drivetrain("grc_750kw")), Level.RIGID, 3e5, 2.3, teeth=True)
+    event = event_of("run_up", {})
+    planned = event.plan(of, 5.0, 0.01)
+    (phase,), start = planned.phases, planned.start
+    load = sum(one.at(0.0) for one in phase.acting)
+    force = restoring(phase.equations, 0.0, start.q, start.velocity, driven=False)[0]
+    left = load - force - of.equations.mass @ start.acceleration
+    assert np.abs(left).max() < 1e-6 * np.abs(load).max()
 
 
 @pytest.mark.parametrize("turned", [0.0, 0.3, 1.1, 2.0])
