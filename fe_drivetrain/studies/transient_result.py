@@ -86,9 +86,41 @@ class TransientResult(Result):
         return {**self.all_tables(), "samples": rows}
 
     def chart(self) -> Chart:
-        """Torque of the shafts, or the loaded bearings of an offset, over time."""
-        kind: Kind = "bearing" if self.event in ("offset", "base") else "torque"
-        return self.over_time(kind)
+        """Torque of the shafts over time; of a run-up the meshes, of an offset the bearings."""
+        if self.event in ("offset", "base"):
+            return self.bearing_changes()
+        return self.over_time("mesh" if self.event == "run_up" else "torque")
+
+    def bearing_changes(self, most: int = 6) -> Chart:
+        """Forces of bearings against those of aligned, steady turning over time, the largest ones.
+
+        Parameters
+        ----------
+        most : int
+            Number of curves.
+        """
+        size = {
+            name: max(one.most - one.rated, one.rated - one.least)
+            for name, one in self.extremes.items()
+            if one.kind == "bearing"
+        }
+        names = sorted(size, key=lambda name: -size[name])[:most]
+        shown = self.samples.thinned(4000)
+        last, begin = float(shown.times[-1]), float(shown.times[0])
+        few = f", the {most} largest of {len(size)}" if len(size) > most else ""
+        caption = f"Change of the forces of bearings{few}"
+        if self.event == "offset":
+            turn = 2.0 * np.pi / self.extremes["speed of generator"].rated
+            begin, caption = (
+                max(begin, last - 4.0 * turn),
+                f"{caption}; last turns of the generator",
+            )
+        kept = shown.times >= begin
+        traces = [
+            trace(name, shown.times[kept], (shown.of(name)[kept] - self.extremes[name].rated) / 1e3)
+            for name in sorted(names, key=list(self.extremes).index)
+        ]
+        return chart(caption, traces, "time [s]", "force less that at rated torque [kN]")
 
     def over_time(self, kind: Kind, most: int = 8) -> Chart:
         """Channels of a kind over their rated values against time, with what happened.

@@ -201,4 +201,10 @@ def alternating_rows(run: LevelRun) -> list[Record]:
                 "largest [kN]": float(values.max()) / 1e3,
             }
         )
-    return [row for row in rows if abs(float(row["mean [kN]"])) > SMALL]
+
+    def moved(row: Record) -> float:
+        keys = ("change of the mean [kN]", "once a turn [kN]", "twice a turn [kN]")
+        return max(abs(float(row[key])) for key in keys)
+
+    largest = max(map(moved, rows), default=0.0)
+    return [row for row in rows if moved(row) >= SMALL * largest]
