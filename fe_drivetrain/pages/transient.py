@@ -89,7 +89,8 @@ def _levels(page: Page, result: TransientResult) -> None:
     page.table("The same in numbers", result.tables["levels"])
     page.text(
         "Error: largest difference of an extreme from that of the finest level, over the largest "
-        "value of its channel there. Time: to build and to integrate once."
+        "value of its channel there; that of the finest, and the bars, are what its step leaves "
+        "uncertain. Time: to build and to integrate once."
     )
 
 
@@ -98,6 +99,7 @@ def _against_time(result: TransientResult, kind: Kind) -> Chart:
     chosen = result.runs.index(result.chosen)
     band = finest_band(result.runs[-1], kind)
     bands = [band] * (len(errors) - 1) + [0.0]
+    errors[-1] = max(errors[-1], band)
     traces = error_traces(
         [run.level.value for run in result.runs],
         [run.seconds for run in result.runs],
@@ -107,7 +109,7 @@ def _against_time(result: TransientResult, kind: Kind) -> Chart:
         bands,
     )
     found = chart(
-        f"Error of {QUANTITIES[kind]} against the time of each level; bars: step of the finest",
+        f"Error of {QUANTITIES[kind]} against the time of each level; the finest by its step",
         traces,
         x="time [s]",
         y="error [%]",
