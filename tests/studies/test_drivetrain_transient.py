@@ -218,7 +218,7 @@ def test_the_command_writes_a_page_and_samples(
     assert broken_rules(results) == []
     lines = (out / "samples.csv").read_text(encoding="utf-8").splitlines()
     assert lines[0].startswith("time [s],torque of shaft [N m]")
-    assert len(lines) == 1002
+    assert len(lines) == 2002
     status, printed, _ = invoke(
         *("transient", str(mine), "operation", "--loads", str(tmp_path / "a.csv")),
         *("--out", str(tmp_path / "driven"), "--json", "--slope", "4"),
