@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_drivetrain.cases.references import published_drivetrains as published
+from fe_drivetrain.drivetrain_file import Drivetrain
 from fe_drivetrain.dynamics import gear_table
 from fe_drivetrain.dynamics.torsion import GearTable
 from fe_drivetrain.report.suite import Page, Run
@@ -19,7 +20,8 @@ class Rated(NamedTuple):
 
     ``table`` is of `published_drivetrains` or of a user's file, ``ratios`` are damping ratios where
     it has no dampers, ``peak`` is the printed peak of the torque's spectrum in a shutdown [Hz],
-    ``held`` what two masses swing at with the generator's shaft held [Hz].
+    ``held`` what two masses swing at with the generator's shaft held [Hz], ``brake`` the torque of
+    a brake at the generator over the generator's rated one.
     """
 
     letter: str
@@ -30,6 +32,7 @@ class Rated(NamedTuple):
     peak: float
     held: float
     tripped: float
+    brake: float | None = None
 
     @property
     def slow(self) -> str:
@@ -89,4 +92,18 @@ def own_or_published(run: Run, page: Page) -> list[Rated]:
     tripped = (rear - front) / (front + rear)
     nan = float("nan")
     per_minute = speed * 30.0 / np.pi
-    return [Rated(chosen.title, table, torque * speed, per_minute, ratios, nan, nan, tripped)]
+    of_brake = brake_over_rated(chosen.drivetrain, table, torque)
+    own = Rated(
+        chosen.title, table, torque * speed, per_minute, ratios, nan, nan, tripped, of_brake
+    )
+    return [own]
+
+
+def brake_over_rated(drivetrain: Drivetrain, table: GearTable, torque: float) -> float | None:
+    """Torque of the file's brake at the generator, over the generator's rated one."""
+    brake = drivetrain.brake
+    if brake is None:
+        return None
+    # over the rated torque of its own shaft, which is the same share at the generator's
+    speeds = dict(zip((shaft.name for shaft in table.shafts), table.speeds, strict=True))
+    return brake.torque * speeds[brake.on] / torque
