@@ -36,11 +36,6 @@ UNSTAMPED = {
     name: reason
     for reason, names in {
         "of four drivetrains of a thesis at once, which it compares": (
-            "dynamics/campbell_table",
-            "dynamics/hss_stiffness",
-            "dynamics/normal_operation",
-            "dynamics/shutdown",
-            "dynamics/two_mass_transients",
             "verification/drivetrain_shafts",
         ),
         "of a bearing in a housing that the case makes, on a library's shaft for its size": (
