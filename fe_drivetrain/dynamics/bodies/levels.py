@@ -202,8 +202,8 @@ def _add_generator(
     moves = moves - TURNS if held else moves
     built.bodies.append(Body("generator", at, mass, own.inertia, across, machine.speeds[-1], moves))
     if own.stiffness > 0:
-        grid = (0, 0, 0, own.stiffness, 0, 0)
-        built.springs.extend(bushing("grid", Place("generator", at), None, at, grid))
+        grid, lost = (0, 0, 0, own.stiffness, 0, 0), (0, 0, 0, own.damping, 0, 0)
+        built.springs.extend(bushing("grid", Place("generator", at), None, at, grid, lost))
 
 
 def _add_shafts(
@@ -296,7 +296,8 @@ def planetary_set(
         slices=stage.slices,
         position=(machine.axes[number][0], *machine.axes[number - 1][1:]),
         free=free,
-        mesh_damping=stage.mesh_damping,
+        sun_damping=stage.along_line(stage.sun_planet_damping),
+        ring_damping=stage.along_line(stage.ring_planet_damping),
     )
 
 
@@ -353,8 +354,8 @@ def _parallel(
         Place(bodies[1].name, pinion_at),
         np.asarray(gear_at) + radius * out,
         replace(mesh, base_helix=stage.hand * mesh.base_helix),
-        stage.along_line,
-        stage.mesh_damping,
+        stage.along_line(stage.stiffness),
+        stage.along_line(stage.damping),
         1 if machine.speeds[number - 1] > 0 else -1,
         stage.slices,
     )
@@ -374,10 +375,11 @@ def torsional(machine: MachineTable) -> Torsional:
     ]
     parts = [part.name for part in inertias]
     elements = []
-    for name, row, k in zip(system.spring_names, system.rows, system.stiffness, strict=True):
+    springs = zip(system.spring_names, system.rows, system.stiffness, system.damping, strict=True)
+    for name, row, k, c in springs:
         winding = {part: float(by) for part, by in zip(parts, row, strict=True) if by}
         if winding:
-            elements.append(Element(name.removesuffix(" rx"), winding, float(k)))
+            elements.append(Element(name.removesuffix(" rx"), winding, float(k), float(c)))
     return Torsional(tuple(inertias), tuple(elements))
 
 

@@ -95,7 +95,7 @@ class PlanetarySet:
         Degrees of freedom of the bodies; `PLANE` of a stage that stays in its plane.
     pins : tuple[Place, ...]
         Bodies that the planets are on, of a flexible carrier; the carrier where there are none.
-    mesh_damping : float
+    sun_damping, ring_damping : float
         Damping of each mesh along its line of action [N s/m].
     """
 
@@ -118,7 +118,8 @@ class PlanetarySet:
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
     free: frozenset[str] = ALL
     pins: tuple[Place, ...] = ()
-    mesh_damping: float = 0.0
+    sun_damping: float = 0.0
+    ring_damping: float = 0.0
     ratio: float = field(init=False)
 
     def __post_init__(self) -> None:
@@ -246,7 +247,7 @@ def springs_of(stage: PlanetarySet) -> list[Spring]:
             axis + stage.sun_radius * out,
             _handed(stage.sun_mesh, stage.hand),
             stage.sun_stiffness,
-            stage.mesh_damping,
+            stage.sun_damping,
             -stage.driving,
             stage.slices,
         )
@@ -257,7 +258,7 @@ def springs_of(stage: PlanetarySet) -> list[Spring]:
             np.asarray(planet.centre) + stage.planet_ring_radius * out,
             _handed(stage.ring_mesh, -stage.hand),
             stage.ring_stiffness,
-            stage.mesh_damping,
+            stage.ring_damping,
             stage.driving,
             stage.slices,
         )
