@@ -146,10 +146,7 @@ def pin_loads(found: Static, stage: PlanetaryData, number: int) -> dict[str, flo
         for k in range(stage.planets)
         for pin in stage.pins
     ]
-    return {
-        name: float(np.hypot(found.force(f"{name} uy"), found.force(f"{name} uz")))
-        for name in names
-    }
+    return {name: found.radial(name) for name in names}
 
 
 def planet_sharing(of: Asked) -> float | None:
