@@ -25,6 +25,7 @@ from fe_drivetrain.drivetrain_file.turning_parts import (
     MAX_STIFFNESS,
     PinData,
     Radius,
+    CarrierBody,
     RotorBody,
     Six,
     Teeth,
@@ -265,7 +266,7 @@ class PlanetaryStage(GearStage):
     faces: Annotated[RingPlanetSun[Radius] | None, *_NAMED] = _faces()
     fillets: Annotated[RingPlanetSun[Fillet] | None, *_NAMED] = _fillets()
     planets: int = Field(ge=1, le=50, description="number of planets")
-    carrier: RotorBody | None = Field(default=None, description="carrier, planets left out")
+    carrier: CarrierBody | None = Field(default=None, description="carrier, planets left out")
     planet: RotorBody | None = Field(
         default=None, description="one planet; a disc of steel where left out"
     )

@@ -101,6 +101,17 @@ class RotorBody(Part):
         return mass, across if self.transverse is None else self.transverse
 
 
+class CarrierBody(RotorBody):
+    """A planet carrier, planets left out."""
+
+    component: str | None = Field(
+        default=None,
+        min_length=1,
+        max_length=1000,
+        description="planet carrier that gives: a component's file, or one of the library",
+    )
+
+
 class GeneratorBody(RotorBody):
     """The generator's rotor, and what holds its speed; without a mass, it turns and no more."""
 

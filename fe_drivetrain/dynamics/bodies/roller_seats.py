@@ -316,6 +316,11 @@ def without_bearings(system: System, seats: Sequence[Seat]) -> System:
             spring = f"{one.name} {motion}"
             if carried and spring in system.spring_names:
                 none[spring] = 0.0
+        if f"{one.name} 1" in system.spring_names:
+            raise InputError(
+                f"bearing {one.name!r} has a stiffness of six rows, in whose place rollers cannot "
+                "stand: give it six numbers, which hold what its rollers leave free"
+            )
         if not any(name.startswith(f"{one.name} u") for name in system.spring_names):
             raise InputError(
                 f"no springs of a bearing {one.name!r} in the system: correct its name"
