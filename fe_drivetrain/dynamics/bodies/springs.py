@@ -155,7 +155,13 @@ def bushing(
     if np.abs(k - k.T).max() > 1e-9 * np.abs(k).max():
         raise InputError(f"{name}: the stiffness matrix must be symmetric: make it so")
     root = diagonal_roots(k.diagonal())
-    values, vectors = np.linalg.eigh(scaled_to_unit_diagonal(k))
+    # what the matrix leaves free stays exactly so, as the turn of a shaft in its bearing must
+    carried = np.flatnonzero(k.any(axis=1))
+    if not carried.size:
+        return []
+    values, own = np.linalg.eigh(scaled_to_unit_diagonal(k)[np.ix_(carried, carried)])
+    vectors = np.zeros((6, len(values)))
+    vectors[carried] = own
     if values[0] < -1e-9 * values[-1]:
         raise InputError(
             f"{name}: the stiffness matrix has an eigenvalue of {values[0]:g} (on a unit diagonal) "
