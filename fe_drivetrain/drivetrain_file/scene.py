@@ -249,8 +249,8 @@ def main_bearings(
     supports : mapping of str to ndarray (6, 6), optional
         Stiffness of bearings with their housings, at the bearing's centre [N/m, N, N m/rad], see
         `fe_drivetrain.shafts.fidelity.main_supports`; others are the joint alone, in a rigid
-        housing. All let the shaft turn: housings carry no torque about x. Without a gearbox the shaft's rear is held by the
-        springs of ``gearbox.stiffness``.
+        housing. All let the shaft turn: housings carry no torque about x. Without gear stages the
+        shaft's rear is held by the springs of ``gearbox.stiffness``.
     """
     given = supports or {}
     held = {

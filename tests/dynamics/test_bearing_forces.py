@@ -129,7 +129,7 @@ def test_over_a_turn_loads_of_six_rows_are_those_of_six_numbers() -> None:
 
 
 def test_what_is_no_bearing_is_refused_by_name() -> None:
-    with pytest.raises(InputError, match="no bearing 'PLC'.*PLC-A"):
+    with pytest.raises(InputError, match=r"no bearing 'PLC'.*PLC-A"):
         loaded(FIVE_MW).wrench("PLC")
 
 

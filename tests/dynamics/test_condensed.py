@@ -1,4 +1,4 @@
-"""What is condensed of a drivetrain's file: housings at both bounds, mount, carriers, main shaft."""
+"""What is condensed of a drivetrain's file: housings at both bounds, mount, carriers, shaft."""
 
 from dataclasses import replace
 from typing import Any
@@ -48,13 +48,9 @@ def made_up() -> Scene:
     gears = read_drivetrain("synthetic_2mw")
     box = gears.gearbox.model_dump(exclude_unset=True)
     box["bearings"] = [b for b in box["bearings"] if b["holds"] != "LSS"]
-    of_gears = {
-        **{
-            key: getattr(gears, key).model_dump(exclude_unset=True)
-            for key in ("rotor", "generator")
-        },
-        **{f"gearbox.{key}": value for key, value in box.items()},
-    }
+    whole = gears.model_dump(exclude_unset=True)
+    of_gears = {key: whole[key] for key in ("rotor", "generator")}
+    of_gears |= {f"gearbox.{key}": value for key, value in box.items()}
     steps = [
         {"length": length, "outer_diameter": d}
         for length, d in zip(LENGTHS, (0.46, 0.4, 0.36), strict=True)

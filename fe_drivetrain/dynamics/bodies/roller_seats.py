@@ -222,6 +222,15 @@ class OnRollers:
         """
         return seat_number(self.seats, name)
 
+    def wrench(self, name: str) -> Floats:
+        """(6,) that the rollers of a bearing carry from its inner ring, see `System.wrench`.
+
+        Springs that stay beside the rollers, such as an axial guide, are not in it.
+        """
+        k = self.of(name)
+        directions = np.array([row.direction for row in self.seats[k].motions])
+        return np.asarray(self.loads[k] @ directions)
+
     def radial(self, name: str) -> float:
         """Radial load of a bearing [N]."""
         return float(np.hypot(*self.loads[self.of(name), 1:3]))
