@@ -109,9 +109,8 @@ def _drivetrain(data: dict[str, Any], source: str) -> Drivetrain:
                 "components can be exported, and have cases of their own"
             )
     shaft = data.get("shaft")
-    if isinstance(shaft, dict) and any(key in shaft for key in BY_STIFFNESS):
-        return validated(LumpedDrivetrain, data, source)
-    return validated(Scene, data, source)
+    by_stiffness = isinstance(shaft, dict) and any(key in shaft for key in BY_STIFFNESS)
+    return validated(LumpedDrivetrain if by_stiffness else Scene, data, source)
 
 
 def scene_text(drivetrain: Drivetrain) -> str:

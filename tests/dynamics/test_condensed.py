@@ -1,18 +1,21 @@
 """What is condensed of a drivetrain's file: housings at both bounds, mount, carriers, shaft."""
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 from coarse_scenes import coarse_scene
 
+from fe_drivetrain.cases.references.machine_rungs import carrier_of
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.stiffness_bands import StiffnessBands
-from fe_drivetrain.drivetrain_file.drivetrain import MAIN_SHAFT
+from fe_drivetrain.drivetrain_file.carriers import carriers_of
 from fe_drivetrain.drivetrain_file.joint_springs import free_to_turn
 from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
-from fe_drivetrain.drivetrain_file.reading import change_scene
+from fe_drivetrain.drivetrain_file.reading import change_scene, library_component, library_text
 from fe_drivetrain.drivetrain_file.scene import Scene, main_bearings
 from fe_drivetrain.dynamics.bodies.advice import Operation, ladder
 from fe_drivetrain.dynamics.bodies.condensed_rungs import (
@@ -29,6 +32,7 @@ from fe_drivetrain.dynamics.bodies.levels import Level, machine_system
 from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of
 from fe_drivetrain.dynamics.bodies.modes import system_modes
 from fe_drivetrain.dynamics.bodies.static import Static, static
+from fe_drivetrain.shafts.fidelity.bearing_units import unit_bounds
 from fe_drivetrain.shafts.fidelity.main_supports import MainSupports, main_supports
 from fe_drivetrain.shafts.fidelity.shafts import beam_shaft, meridian_shaft
 from fe_drivetrain.shafts.response.bearing_stiffness import bearing_unit_stiffness, without_gearbox
@@ -93,6 +97,17 @@ def test_both_bounds_enclose_the_assembly(supports: MainSupports, bonded_model: 
     for tilt in (4, 5):
         found = solved[tilt, tilt]
         assert supports.soft[BEARING][tilt, tilt] < found < supports.stiff[BEARING][tilt, tilt]
+
+
+def test_the_seat_of_a_spring_joint_is_between_bounds_too() -> None:
+    joint = {"interface": "spring", "stiffness": [1e9, 5e9, 5e9, 0, 1e8, 1e8]}
+    scene = coarse_scene("bonded", **{f"bearing_units.0.{k}": v for k, v in joint.items()})
+    found = main_supports(scene)
+    for motion in (0, 1, 2, 4, 5):
+        soft, stiff = (way[BEARING][motion, motion] for way in (found.soft, found.stiff))
+        assert soft < stiff < joint["stiffness"][motion]  # type: ignore[index, operator]
+    # solid models hold it on average
+    np.testing.assert_allclose(unit_bounds(scene, BEARING).stiff, found.soft[BEARING], rtol=1e-12)
 
 
 def test_a_shaft_turns_in_its_bearing_whatever_the_housing_does(supports: MainSupports) -> None:
@@ -163,7 +178,7 @@ def test_a_soft_mount_lowers_the_first_torsional_mode(scene: Scene, rungs: Rungs
 
 def test_a_stepped_shaft_is_the_condensed_beam(scene: Scene, machine: Machine) -> None:
     """Springs at elastic centres and a frame of beams: one theory, two codes."""
-    beam = Flexible(shafts={MAIN_SHAFT: beam_shaft(scene, rings=False)})
+    beam = Flexible(shafts={scene.shaft.name: beam_shaft(scene, rings=False)})
     one, two = (under_torque(machine, way, Level.FLEXIBLE) for way in (Flexible(), beam))
     for name in ("PLC-A", BEARING):
         np.testing.assert_allclose(one.wrench(name), two.wrench(name), rtol=1e-6, atol=1.0)
@@ -177,10 +192,8 @@ def test_the_meridian_moves_modes_less_than_the_shafts_differ(
     beam, meridian = beam_shaft(scene, rings=False), meridian_shaft(scene, rings=False)
     band = StiffnessBands.of_difference(beam.stiffness, meridian.stiffness).largest
     one, two = (
-        system_modes(
-            machine_system(machine, Level.FLEXIBLE, flexible=Flexible(shafts={MAIN_SHAFT: body}))
-        ).frequencies
-        for body in (beam, meridian)
+        system_modes(machine_system(machine, Level.FLEXIBLE, flexible=way)).frequencies
+        for way in (Flexible(shafts={scene.shaft.name: body}) for body in (beam, meridian))
     )
     first = np.flatnonzero(one > 0)[:5]
     apart = np.abs(two[first] / one[first] - 1)
@@ -216,12 +229,15 @@ def test_a_mount_that_cannot_be_is_left_out_by_name(
         gearbox_housing(change_scene(scene, changes), machine)
 
 
-def test_a_lumped_shaft_has_the_rungs_that_its_file_states() -> None:
+def test_a_lumped_shaft_has_the_rungs_that_its_file_states(tmp_path: Path) -> None:
     found = rungs_of(read_drivetrain("synthetic_2mw"))
     assert [rung.name for rung in found.rungs] == list(NAMES[:3])
     assert "no sections" in found.left_out[STIFF_SEATS]
-    carrier = {"gearbox.stages.0.carrier.component": "planet_carrier"}
-    found = rungs_of(read_drivetrain("nrel_5mw", carrier))
+    own = tmp_path / "carrier.yaml"
+    fitting = carrier_of(machine_of(read_drivetrain("synthetic_2mw")).stages[0].centre_distance)
+    own.write_text(yaml.safe_dump(fitting.model_dump(exclude_unset=True, mode="json")))
+    named = {"gearbox.stages.0.carrier.component": str(own)}
+    found = rungs_of(read_drivetrain("synthetic_2mw", named))
     assert found.rungs[-1].name == "carriers of beams"
     assert list(found.rungs[-1].flexible.carriers) == [1]
 
@@ -231,13 +247,12 @@ def test_a_lumped_shaft_has_the_rungs_that_its_file_states() -> None:
     [
         ("synthetic_2mw", "planet_carrier", "on a circle of .* twice the centre distance"),
         ("nrel_5mw", "gearbox_housing", "is no planet carrier"),
-        ("nrel_5mw", "two_bearings", "is no planet carrier"),
+        ("nrel_5mw", "two_bearings", "must have one of the keys"),
     ],
 )
 def test_a_carrier_that_does_not_fit_is_refused(name: str, component: str, message: str) -> None:
-    drivetrain = read_drivetrain(name, {"gearbox.stages.0.carrier.component": component})
     with pytest.raises(InputError, match=message):
-        rungs_of(drivetrain)
+        read_drivetrain(name, {"gearbox.stages.0.carrier.component": component})
 
 
 def test_what_does_not_turn_in_space_is_torsional_alone() -> None:
@@ -249,3 +264,16 @@ def test_what_does_not_turn_in_space_is_torsional_alone() -> None:
 def test_a_bearing_that_is_not_there_is_refused(machine: Machine) -> None:
     with pytest.raises(InputError, match="no bearing 'HS-Z'"):
         machine_system(machine, flexible=Flexible(bearings={"HS-Z": np.eye(6)}))
+
+
+def test_a_carrier_of_ones_own_is_looked_for_beside_the_file(tmp_path: Path) -> None:
+    own = library_component("planet_carrier").model_dump(exclude_unset=True, mode="json")
+    (tmp_path / "mine.yaml").write_text(yaml.safe_dump(own))
+    text = library_text("nrel_5mw")
+    file = tmp_path / "drivetrain.yaml"
+    named = "carrier: {component: mine.yaml, inertia: 1.9e3, mass: 5000}"
+    file.write_text(text.replace("carrier: {inertia: 1.9e3, mass: 5000}", named))
+    assert list(carriers_of(read_drivetrain(file))) == [1]
+    (tmp_path / "mine.yaml").unlink()
+    with pytest.raises(InputError, match=r"mine\.yaml"):
+        read_drivetrain(file)

@@ -69,7 +69,7 @@ UNCONDENSED = (
     "housings of main bearings that give",
     "a gearbox housing that moves",
     "carriers that give",
-    "what steps and ends do to the sections of the main shaft",
+    "what steps, ends and rings of bearings do to the sections of the main shaft",
     "clearance and rollers of bearings",
 )
 #: What each level leaves out beside it.

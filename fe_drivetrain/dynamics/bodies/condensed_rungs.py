@@ -14,11 +14,10 @@ from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.steps import Clock, Steps
+from fe_drivetrain.drivetrain_file.carriers import carriers_of
 from fe_drivetrain.drivetrain_file.component import CarrierComponent
-from fe_drivetrain.drivetrain_file.drivetrain import MAIN_SHAFT, Drivetrain
-from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryStage
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.joint_springs import free_to_turn
-from fe_drivetrain.drivetrain_file.named_scenes import named_scene_or_component
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.dynamics.bodies.advice import RUNGS, UNCONDENSED, Rung
 from fe_drivetrain.dynamics.bodies.flexible import Flexible
@@ -106,8 +105,7 @@ def rungs_of(
     Raises
     ------
     InputError
-        `machine_of` refuses the drivetrain; a carrier is no planet carrier, or its pins are not on
-        the circle of the planets.
+        `machine_of` refuses the drivetrain, or a housing or carrier cannot be meshed.
     """
     machine = machine_of(drivetrain)
     if machine.not_given:
@@ -115,7 +113,7 @@ def rungs_of(
         return Rungs(RUNGS[:1], {rung.name: why for rung in RUNGS[1:]})
     clock = Steps() if steps is None else steps
     built = _Built(list(RUNGS), {}, Flexible(), clock)
-    carriers = carriers_of(drivetrain, machine)
+    carriers = carriers_of(drivetrain)
     if isinstance(drivetrain, Scene):
         _add_housings(built, main_supports(drivetrain, cache, clock))
         _add_mount(built, drivetrain, machine)
@@ -134,48 +132,6 @@ def rungs_of(
     else:
         built.left_out["main shaft in its meridian"] = "the main shaft has no sections"
     return Rungs(tuple(built.rungs), built.left_out)
-
-
-def carriers_of(drivetrain: Drivetrain, machine: Machine) -> dict[int, CarrierComponent]:
-    """Carriers of planetary stages by number, as far as the file names their components.
-
-    Parameters
-    ----------
-    drivetrain, machine : Drivetrain, Machine
-        The drivetrain and its rows.
-
-    Raises
-    ------
-    InputError
-        A component is no planet carrier, has another number of pins, or pins on another circle.
-    """
-    found = {}
-    for number, stage in enumerate(drivetrain.gearbox.stages, start=1):
-        if not isinstance(stage, PlanetaryStage) or stage.carrier is None:
-            continue
-        name = stage.carrier.component
-        if name is None:
-            continue
-        component = named_scene_or_component(name)
-        if not isinstance(component, CarrierComponent):
-            raise InputError(
-                f"stage {number}: carrier.component {name!r} is no planet carrier: name one with "
-                "the key planet_carrier"
-            )
-        body, circle = component.planet_carrier, 2 * machine.stages[number - 1].centre_distance
-        if body.planets != stage.planets:
-            raise InputError(
-                f"stage {number}: carrier {name!r} has {body.planets} pins but the stage "
-                f"{stage.planets} planets: make them the same"
-            )
-        if abs(body.pin_circle_diameter - circle) > 1e-6 * circle:
-            raise InputError(
-                f"stage {number}: pins of carrier {name!r} are on a circle of "
-                f"{body.pin_circle_diameter:g} m but the planets on one of {circle:.7g} m, twice "
-                "the centre distance: correct planet_carrier.pin_circle_diameter"
-            )
-        found[number] = component
-    return found
 
 
 @dataclass
@@ -257,7 +213,7 @@ def _add_shaft(
     """Add the main shaft in its meridian, and with solids as one, carriers with it."""
     with built.clock.step("main shaft in its meridian"):
         shaft = meridian_shaft(scene)
-    given = replace(built.gives, shafts={MAIN_SHAFT: shaft})
+    given = replace(built.gives, shafts={scene.shaft.name: shaft})
     built.add("main shaft in its meridian", given, (_SECTIONS,))
     if not solids:
         built.left_out["solid main shaft and carriers"] = "not asked for: solids"
@@ -268,5 +224,5 @@ def _add_shaft(
     for number, component in carriers.items():
         with built.clock.step(f"solid carrier of stage {number}"):
             bodies[number] = solid_component(component).body
-    given = replace(given, shafts={MAIN_SHAFT: solid}, carriers=bodies)
+    given = replace(given, shafts={scene.shaft.name: solid}, carriers=bodies)
     built.add("solid main shaft and carriers", given, ("cheeks of carriers that bend",))

@@ -45,9 +45,9 @@ def main_supports(
     """Condense each main bearing's housing to the bearing's seat, by both ways to couple it.
 
     The shaft keeps the seat in shape, but not wholly: a seat that moves on average is too soft and
-    one that is rigid too stiff. Joint, housing, further parts and bedplate are in series, see
-    `fe_drivetrain.shafts.fidelity.unit_bounds`. Where the joint says how its faces move, or the
-    housing is a stiffness alone, both are the same.
+    one that is rigid too stiff; that holds for the seats of spring joints, too. Joint, housing,
+    further parts and bedplate are in series, see `fe_drivetrain.shafts.fidelity.unit_bounds`. Where
+    the joint is "averaged" or "rigid", or the housing is a stiffness alone, both are the same.
 
     Parameters
     ----------
@@ -77,5 +77,5 @@ def main_supports(
         if name in left_out:
             continue
         with clock.step(f"housing of {name}"):
-            soft[name], stiff[name], meshes[name] = unit_bounds(scene, name, cache)
+            soft[name], stiff[name], meshes[name] = unit_bounds(scene, name, cache, of_springs=True)
     return MainSupports(soft, stiff, meshes, left_out)
