@@ -340,7 +340,7 @@ class PlanetaryData(PlanetaryStage):
     centre_distance: float = dimension(of="centre distance", gt=0, le=MAX_GEAR)
     face_width: float = dimension(of="face width in contact", gt=0, le=MAX_GEAR)
     stiffness_of: Literal["line", "axis"] = Field(description="line or axis")
-    carrier: RotorBody = Field(description="carrier, planets left out")
+    carrier: CarrierBody = Field(description="carrier, planets left out")
     planet: RotorBody = Field(description="one planet")
     sun: RotorBody = Field(description="sun")
     sun_planet: float = dimension(of="mesh stiffness", unit="N m/rad", gt=0, le=MAX_STIFFNESS)

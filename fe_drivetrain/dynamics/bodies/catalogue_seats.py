@@ -131,7 +131,9 @@ def _of_planets(
     """Seats of planets' bearings, in the order of the stages."""
     found = []
     for number, stage in enumerate(machine.stages, start=1):
-        for pin in stage.pins if isinstance(stage, PlanetaryData) else ():
+        if not isinstance(stage, PlanetaryData):
+            continue
+        for pin in stage.pins:
             bearing = kinds.get(f"stage {number} pin {pin.name}".strip())
             if bearing is None:
                 continue

@@ -201,10 +201,10 @@ def _add_mount(built: _Built, scene: Scene, machine: Machine) -> None:
     outside = {b.name for b in scene.gearbox.bearings if b.holds in ("rotor", "generator")}
     mains = {bearing.name for bearing in machine.bearings} & set(scene.bearing_names)
     given = replace(built.gives, housing=housing, apart=frozenset(outside | mains))
-    assumed = (_REST if housing.mass > 0 else _NO_MASS,)
+    assumed = [_REST if housing.mass > 0 else _NO_MASS]
     if housing.mass > 0 and scene.gearbox.housing_inertia is None:
-        assumed = (*assumed, _TUBE)
-    built.add(name, given, (_MOUNT,), "a gearbox housing that deforms", assumed)
+        assumed.append(_TUBE)
+    built.add(name, given, (_MOUNT,), "a gearbox housing that deforms", tuple(assumed))
 
 
 def _add_shaft(
