@@ -182,7 +182,8 @@ def a_turn(machine: Machine, count: int, steps: int) -> tuple[Turn, float]:
     )
     assert found.converged
     second = slice(count, 2 * count)
-    turn = Turn(found.azimuth[second], carriers.system.spring_names, found.forces[second])
+    of = carriers.system
+    turn = Turn(found.azimuth[second], of.spring_names, found.forces[second], of.directions)
     return turn, found.relative_imbalance
 
 

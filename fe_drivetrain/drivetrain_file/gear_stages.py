@@ -29,6 +29,7 @@ from fe_drivetrain.drivetrain_file.stage_fields import (
 from fe_drivetrain.drivetrain_file.turning_parts import (
     MAX_GEAR,
     MAX_STIFFNESS,
+    CarrierBody,
     PinData,
     Radius,
     RotorBody,
@@ -212,7 +213,7 @@ class PlanetaryStage(GearStage):
     faces: Annotated[RingPlanetSun[Radius] | None, *NAMED] = stage_fields.faces()
     fillets: Annotated[RingPlanetSun[Fillet] | None, *NAMED] = stage_fields.fillets()
     planets: int = Field(ge=1, le=50, description="number of planets")
-    carrier: RotorBody | None = Field(default=None, description="carrier, planets left out")
+    carrier: CarrierBody | None = Field(default=None, description="carrier, planets left out")
     planet: RotorBody | None = Field(
         default=None, description="one planet; a disc of steel where left out"
     )
@@ -311,7 +312,7 @@ class PlanetaryData(PlanetaryStage):
     centre_distance: float = dimension(of="centre distance", gt=0, le=MAX_GEAR)
     face_width: float = dimension(of="face width in contact", gt=0, le=MAX_GEAR)
     stiffness_of: Literal["line", "axis"] = Field(description="line or axis")
-    carrier: RotorBody = Field(description="carrier, planets left out")
+    carrier: CarrierBody = Field(description="carrier, planets left out")
     planet: RotorBody = Field(description="one planet")
     sun: RotorBody = Field(description="sun")
     sun_planet: float = dimension(of="mesh stiffness", unit="N m/rad", gt=0, le=MAX_STIFFNESS)

@@ -14,6 +14,12 @@ from .bodies.bodies import Body as Body
 from .bodies.bodies import Superelement as Superelement
 from .bodies.bodies import assemble as assemble
 from .bodies.bodies import disc as disc
+from .bodies.catalogue_seats import catalogued as catalogued
+from .bodies.catalogue_seats import on_catalogue as on_catalogue
+from .bodies.condensed_rungs import SOFT_SEATS as SOFT_SEATS
+from .bodies.condensed_rungs import STIFF_SEATS as STIFF_SEATS
+from .bodies.condensed_rungs import Rungs as Rungs
+from .bodies.condensed_rungs import rungs_of as rungs_of
 from .bodies.elastic_ring import Rim as Rim
 from .bodies.elastic_ring import with_rim as with_rim
 from .bodies.equations import Equations as Equations
@@ -39,6 +45,10 @@ from .bodies.gear_pairs import mesh_courses as mesh_courses
 from .bodies.gear_pairs import mesh_stresses as mesh_stresses
 from .bodies.gear_pairs import pitch_contacts as pitch_contacts
 from .bodies.gear_pairs import with_iso_stiffness as with_iso_stiffness
+from .bodies.gearbox_mount import gearbox_housing as gearbox_housing
+from .bodies.housing_bounds import Between as Between
+from .bodies.housing_bounds import HousingBounds as HousingBounds
+from .bodies.housing_bounds import housing_bounds as housing_bounds
 from .bodies.levels import Assembly as Assembly
 from .bodies.levels import Level as Level
 from .bodies.levels import assembly as assembly
