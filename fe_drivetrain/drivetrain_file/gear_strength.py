@@ -1,17 +1,24 @@
-"""Strength of the gears of a stage: steels, roughness, accuracy, and load factors that are given."""
+"""Strength of the gears of a stage: steels, roughness, accuracy, load factors that are given."""
 
-from typing import Annotated, Literal, Self
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, field_validator, model_validator
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.geometry.part import Part, dimension, rows_of
+from fe_drivetrain.geometry.part import Assumption, Part, dimension
 
 #: Allowable stress numbers sigma_Hlim and sigma_Flim [Pa] of ISO 6336-5 by steel and quality; of
 #: case-hardened MQ the lowest of its three root limits.
 QUALITIES = {
     "case-hardened": {"ML": (1300e6, 312e6), "MQ": (1500e6, 425e6), "ME": (1650e6, 525e6)},
     "nitrided": {"ML": (1125e6, 270e6), "MQ": (1250e6, 420e6), "ME": (1450e6, 468e6)},
+}
+
+#: Names of the meshes of a stage with these gears.
+MESHES_OF: dict[tuple[str, ...], tuple[str, ...]] = {
+    ("planet", "ring", "sun"): ("ring_planet", "sun_planet"),
+    ("gear", "pinion"): ("mesh",),
 }
 
 Factor = Annotated[float, Field(ge=1.0, le=10.0)]
@@ -85,8 +92,8 @@ class GearSteel(Part):
 class GearStrength(Part):
     """What a rating by ISO 6336 needs of a stage beside its geometry."""
 
-    gears: tuple[GearSteel, ...] = Field(
-        min_length=2, max_length=3, description="steels of the gears, as the stage's teeth"
+    gears: dict[str, GearSteel] = Field(
+        description="steels by gear: ring, planet and sun, or gear and pinion"
     )
     grade: int | None = Field(
         default=None, ge=1, le=12, description="accuracy grade of ISO 1328-1, for K_v and K_Halpha"
@@ -95,15 +102,15 @@ class GearStrength(Part):
         default=None, description="application factor K_A of the rated torque"
     )
     sharing: Factor | None = Field(
-        default=None, description="mesh load factor K_gamma of the formula level"
+        default=None, description="mesh load factor K_gamma of the torsional level"
     )
-    face_load: tuple[Factor, ...] | None = Field(
+    face_load: dict[str, Factor] | None = Field(
         default=None,
-        description="face load factors K_Hbeta of the formula level, of each mesh: ring and "
-        "planet, planet and sun; or of a pair",
+        description="face load factors K_Hbeta of the torsional level by mesh: ring_planet and "
+        "sun_planet, or mesh",
     )
-    dynamic: tuple[Factor, ...] | None = Field(
-        default=None, description="dynamic factors K_v, as face_load, in place of those by grade"
+    dynamic: dict[str, Factor] | None = Field(
+        default=None, description="dynamic factors K_v by mesh, in place of those by the grade"
     )
     contact_safety: float = dimension(
         1.25, of="least S_H", unit="-", gt=0, le=10, source="assumed: IEC 61400-4, 1.25"
@@ -112,15 +119,43 @@ class GearStrength(Part):
         1.56, of="least S_F", unit="-", gt=0, le=10, source="assumed: IEC 61400-4, 1.56"
     )
 
-    _gears = field_validator("gears", mode="before")(rows_of("gear", GearSteel))
+    @field_validator("gears", mode="before")
+    @classmethod
+    def _steels(cls, value: Any) -> Any:
+        if not isinstance(value, Mapping):
+            return value
+        found = {}
+        for name, steel in value.items():
+            try:
+                given = isinstance(steel, Mapping)
+                found[name] = GearSteel.model_validate(steel) if given else steel
+            except InputError as error:
+                raise InputError(f"gears: {name}: {error}") from None
+        return found
 
     @model_validator(mode="after")
-    def _one_for_each_mesh(self) -> Self:
+    def _of_one_stage(self) -> Self:
+        gears = tuple(sorted(self.gears))
+        if gears not in MESHES_OF:
+            raise InputError(
+                f"a strength has the gears {', '.join(self.gears) or 'none'} but must have ring, "
+                "planet and sun of a planetary stage, or gear and pinion of a parallel one: name "
+                "them"
+            )
         for name in ("face_load", "dynamic"):
-            given, meshes = getattr(self, name), len(self.gears) - 1
-            if given is not None and len(given) != meshes:
+            given = getattr(self, name)
+            if given is not None and not set(given) <= set(MESHES_OF[gears]):
                 raise InputError(
-                    f"{name} of a strength with {len(self.gears)} gears is {list(given)} but must "
-                    f"have {meshes}, one for each mesh: correct it"
+                    f"{name} of a strength has {', '.join(given)} but its meshes are "
+                    f"{' and '.join(MESHES_OF[gears])}: name these"
                 )
         return self
+
+    def assumptions(self) -> list[Assumption]:
+        """Say what is assumed, of each gear too."""
+        of_gears = [
+            row._replace(name=f"{name}: {row.name}")
+            for name, steel in self.gears.items()
+            for row in steel.assumptions()
+        ]
+        return [*super().assumptions(), *of_gears]
