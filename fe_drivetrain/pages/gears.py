@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fe_drivetrain.report.charts import bars, chart, marked, trace
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.records import Record
@@ -91,8 +92,8 @@ def _sharing(page: Page, result: GearsResult) -> None:
     page.table("Largest load of a planet over the mean, over a turn of the rotor", rows)
     page.text(
         "Statics with gravity and the loads of the hub, the carriers turning with the rotor at "
-        "their ratios; teeth that would pull are apart. Sun and ring share alike but for the "
-        "planets' weight. Bands: every other azimuth, and half of the slices."
+        "their ratios; teeth that would pull are apart. Bands: every other "
+        "azimuth, and half of the slices."
     )
 
 
@@ -155,12 +156,10 @@ def _damage(page: Page, result: GearsResult) -> None:
         "flank": {name: life.damage.flank for name, life in lives.items()},
         "root": {name: life.damage.root for name, life in lives.items()},
     }
-    hours = result.spectrum.hours
+    hours = formatted(result.spectrum.hours)
     page.add(
         bars(
-            f"Damage of each gear in {hours:,.0f} h; 1 is failure, 10⁻⁶ stands for less".replace(
-                ",", "\u2009"
-            ),
+            f"Damage of each gear in {hours}\u00a0h; 1 is failure, 10⁻⁶ stands for less",
             groups,
             "damage, with the least safety on stresses [-]",
             least=_LEAST,

@@ -81,8 +81,8 @@ def _strength(
         figures.append(found.value("life of the first gear to fail [h]", hours, at_least=asked))
     over = "over the spectrum" if result["varies"] else f"at {_torque(result['torque'])}"
     safety = worst.safety
-    what = f"{worst.of}\u00a0{formatted(safety.value, _DIGITS)} {over}, "
-    what += f"asked\u00a0for\u00a0{formatted(safety.required)}"
+    what = f"{worst.of}\u00a0{formatted(safety.value, _DIGITS)} {over} where "
+    what += f"{formatted(safety.required)} is asked for"
     if worst.reserve < 1.0:
         verdict = f"The {worst.part} is too weak: {what}"
         verdict += f"; it lasts {value_text(hours, 'h')}." if np.isfinite(hours) else "."

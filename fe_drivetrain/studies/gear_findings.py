@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.report.charts import bars, mark_events
+from fe_drivetrain.common.arrays import rounded
+from fe_drivetrain.report.charts import bars, chart, error_bars
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.gear_answer import state_answer
-from fe_drivetrain.studies.gear_answers import GearAnswer, LevelAnswer, MeshAnswer, safeties
+from fe_drivetrain.studies.gear_answers import GearAnswer, LevelAnswer, MeshAnswer, Safety, safeties
 from fe_drivetrain.studies.gear_machine import GearTrain
 from fe_drivetrain.studies.gear_options import HOURS
 from fe_drivetrain.studies.gear_stresses import SHARING
@@ -26,7 +27,7 @@ _ROUND_OFF = 1e-6
 
 
 def gear_chart(gears: Mapping[str, GearAnswer], varies: bool) -> Chart:
-    """Safety factors of all gears with the least that are asked for; stresses without strength.
+    """Safety factors of all gears over the least that is asked for; stresses without strength.
 
     Parameters
     ----------
@@ -35,26 +36,44 @@ def gear_chart(gears: Mapping[str, GearAnswer], varies: bool) -> Chart:
     varies : bool
         Whether safety is over a spectrum.
     """
-    rated = {name: one for name, one in gears.items() if one.required is not None}
+    rated = {name: safeties(one, varies) for name, one in gears.items() if one.required}
     if not rated:
         stress = {name: one.contact_stress / 1e6 for name, one in gears.items()}
         return bars("Contact stress of all gears", {"sigma_H": stress}, "sigma_H [MPa]")
-    groups: dict[str, dict[str, float]] = {"S_H, flanks": {}, "S_F, roots": {}}
-    ends: dict[str, dict[str, tuple[float, float]]] = {name: {} for name in groups}
-    for name, one in rated.items():
-        for group, safety in zip(groups, safeties(one, varies), strict=True):
-            if safety is not None:
-                groups[group][name] = safety.value
-                ends[group][name] = (safety.value - safety.band, safety.value + safety.band)
+    traces = [_dots(label, k, rated) for k, label in enumerate(("flanks, S_H", "roots, S_F"))]
     over = "over the spectrum" if varies else "at the reference torque"
-    found = bars(
-        f"Safety of all gears {over}, with the least asked for", groups, "S_H, S_F [-]", ends=ends
+    found = chart(
+        f"Safety factors {over}, relative to the least asked for",
+        [one for one in traces if one["x"]],
+        "safety factor over the least asked for [-]",
+        "",
+        events={"just enough": 1.0},
     )
-    required = {one.required for one in rated.values() if one.required is not None}
-    lines = {}
-    for contact, root in sorted(required):
-        lines |= {f"S_H {contact:g}": contact, f"S_F {root:g}": root}
-    return mark_events(found, lines)
+    found.figure["layout"] |= {
+        "height": 170 + 22 * max(len(rated), 5),
+        "yaxis": {"autorange": "reversed", "automargin": True, "type": "category"},
+    }
+    found.figure["layout"]["xaxis"]["rangemode"] = "tozero"
+    return found
+
+
+def _dots(label: str, number: int, rated: Mapping[str, tuple[Safety | None, ...]]) -> Any:
+    """Reserves of flanks (0) or roots (1), with their bands; the factors are told on pointing."""
+    shown = {name: both[number] for name, both in rated.items()}
+    known = {name: one for name, one in shown.items() if one is not None}
+    reserve = np.array([one.value / one.required for one in known.values()])
+    band = np.array([one.band / one.required for one in known.values()])
+    return {
+        "type": "scatter",
+        "mode": "markers",
+        "name": label,
+        "x": rounded(reserve),
+        "y": list(known),
+        "customdata": rounded([one.value for one in known.values()]),
+        "hovertemplate": "%{y}: S %{customdata:.3g}, %{x:.3g} of the least<extra></extra>",
+        "marker": {"size": 11, "symbol": ("circle", "diamond")[number]},
+        **error_bars("x", reserve - band, reserve, reserve + band),
+    }
 
 
 def state_findings(
