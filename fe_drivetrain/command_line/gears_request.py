@@ -12,7 +12,6 @@ from fe_drivetrain.command_line.options import (
     Channels,
     Mapping,
     Resume,
-    RotorSpeed,
     SceneName,
     Scheduler,
     Skip,
@@ -65,8 +64,8 @@ class GearsRequest:
         typer.Option(
             "--spectrum",
             metavar="CSV",
-            help="A torque spectrum: columns 'torque [kNm]' and 'time [h]', and 'rotor speed "
-            "[rpm]' where it differs.",
+            help="A torque spectrum: columns torque, time and, where it differs, rotor speed, each "
+            "with its unit (docs/gear_rating.md).",
         ),
     ] = None
     site: Annotated[
@@ -116,7 +115,16 @@ class GearsRequest:
             help="Oil, as in 'VG 320' or 320 (mm2/s at 40 degC). Default: operation.lubricant.",
         ),
     ] = None
-    rotor_speed: RotorSpeed = None
+    rotor_speed: Annotated[
+        float | None,
+        typer.Option(
+            "--rotor-speed",
+            metavar="RPM",
+            min=0.0,
+            help="Rated speed of the rotor, and that of files that have none. Default: "
+            "operation.rotor_speed.",
+        ),
+    ] = None
     channel: Channels = None
     mapping: Mapping = None
     skip: Skip = GearOptions.skip
