@@ -9,8 +9,8 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.short_repr import short_repr
+from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.dynamics.bodies.levels import Level
-from fe_drivetrain.dynamics.bodies.machine_rows import MachineTable
 from fe_drivetrain.dynamics.bodies.mesh_loads import MeshResponses, mesh_springs
 from fe_drivetrain.studies.gear_stresses import SHARING, MeshStresses, spread_at_ends
 

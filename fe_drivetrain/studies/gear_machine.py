@@ -6,8 +6,10 @@ from dataclasses import dataclass
 
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.gear_strength import GearStrength
-from fe_drivetrain.dynamics.bodies.machine_rows import MachineTable
+from fe_drivetrain.drivetrain_file.machine_table import MachineTable
+from fe_drivetrain.dynamics.bodies.machine import machine_of
 from fe_drivetrain.studies.gear_options import GearOptions
 from fe_drivetrain.studies.gear_stresses import Conditions
 
@@ -42,7 +44,7 @@ class GearTrain:
     missing: tuple[str, ...]
 
 
-def gear_train(drivetrain, options: GearOptions, torque: float | None) -> GearTrain:
+def gear_train(drivetrain: Drivetrain, options: GearOptions, torque: float | None) -> GearTrain:
     """What a rating needs of a drivetrain.
 
     Parameters
@@ -59,10 +61,9 @@ def gear_train(drivetrain, options: GearOptions, torque: float | None) -> GearTr
     InputError
         The file has no gears, or no torque is known.
     """
-    machine = drivetrain
-    if not machine.stages:
+    if not drivetrain.gearbox.stages:
         raise InputError(f"{drivetrain.title!r} has no gears: give gearbox.stages")
-    operation = getattr(drivetrain, "operation", None)
+    machine, operation = machine_of(drivetrain), drivetrain.operation
     speed, oil = None, None
     if operation is not None:
         speed = None if operation.rotor_speed is None else operation.rotor_speed[1]
@@ -88,7 +89,7 @@ def gear_train(drivetrain, options: GearOptions, torque: float | None) -> GearTr
     strengths = {
         number: stage.strength
         for number, stage in enumerate(machine.stages, start=1)
-        if getattr(stage, "strength", None) is not None
+        if stage.strength is not None
     }
     missing = ("operation.rotor_speed",) if speed is None else ()
     missing += ("operation.lubricant",) if oil is None else ()

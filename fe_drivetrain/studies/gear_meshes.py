@@ -6,14 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.gear_stages import ParallelData, PlanetaryData
 from fe_drivetrain.drivetrain_file.gear_strength import GearSteel, GearStrength
-from fe_drivetrain.dynamics.bodies.machine_rows import (
-    MachineTable,
-    ParallelData,
-    PlanetaryData,
-)
+from fe_drivetrain.drivetrain_file.machine_table import MachineTable
+from fe_drivetrain.drivetrain_file.stage_gears import stage_pairs
 from fe_drivetrain.dynamics.bodies.mesh_loads import mesh_springs
-from fe_drivetrain.dynamics.bodies.stage_gears import stage_pairs
 from fe_drivetrain.gear.accuracy import gear_tolerances
 from fe_drivetrain.gear.damage import ParallelStage, PlanetaryStage, loads_per_turn
 from fe_drivetrain.gear.involute import Gear, Pair

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings

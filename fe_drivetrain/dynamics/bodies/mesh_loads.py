@@ -17,8 +17,9 @@ from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
+from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
+from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.dynamics.bodies.levels import Level, azimuths, machine_system
-from fe_drivetrain.dynamics.bodies.machine_rows import MachineTable, PlanetaryData
 from fe_drivetrain.dynamics.bodies.static import solved
 from fe_drivetrain.dynamics.bodies.system import System, springs_named
 
