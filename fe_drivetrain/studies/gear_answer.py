@@ -82,14 +82,14 @@ def _strength(
     over = "over the spectrum" if result["varies"] else f"at {_torque(result['torque'])}"
     safety = worst.safety
     what = f"{worst.of}\u00a0{formatted(safety.value, _DIGITS)} {over} where "
-    what += f"{formatted(safety.required)} is asked for"
+    what += f"{formatted(safety.required)} is required"
     if worst.reserve < 1.0:
         verdict = f"The {worst.part} is too weak: {what}"
         verdict += f"; it lasts {value_text(hours, 'h')}." if np.isfinite(hours) else "."
     else:
         count = len({one.gear for one in ratings})
-        verdict = f"All {count} flanks that are rated are strong enough; the {worst.part} has "
-        verdict += f"least reserve: {what}."
+        verdict = f"All {count} rated flanks are strong enough; the {worst.part} has least "
+        verdict += f"reserve: {what}."
     found.answer(
         "Are the gears strong enough under these loads?", verdict, [*figures, *spread][:_SHOWN]
     )
@@ -102,7 +102,7 @@ def _torque(torque: float) -> str:
 def _figure(found: Findings, rated: Rated) -> KeyFigure:
     """A safety factor against the least that is asked for."""
     quantity, safety = f"{rated.of} of {rated.gear}", rated.safety
-    one = found.value(quantity, safety.value, safety.band, at_least=safety.required, by="asked for")
+    one = found.value(quantity, safety.value, safety.band, at_least=safety.required, by="required")
     return one.model_copy(update={"quantity": quantity})
 
 

@@ -43,9 +43,9 @@ def gear_chart(gears: Mapping[str, GearAnswer], varies: bool) -> Chart:
     traces = [_dots(label, k, rated) for k, label in enumerate(("flanks, S_H", "roots, S_F"))]
     over = "over the spectrum" if varies else "at the reference torque"
     found = chart(
-        f"Safety factors {over}, relative to the least asked for",
+        f"Safety factors {over}, relative to those required",
         [one for one in traces if one["x"]],
-        "safety factor over the least asked for [-]",
+        "safety factor over that required [-]",
         "",
         events={"just enough": 1.0},
     )
@@ -295,7 +295,8 @@ def _cautions(
 def _assumptions(found: Findings, train: GearTrain, result: Mapping[str, Any]) -> None:
     """State what neither the file nor the user gives."""
     for row in train.machine.assumptions():
-        found.assume(*row)
+        if not row.name.endswith(": slices"):  # those of the options count
+            found.assume(*row)
     for number, strength in train.strengths.items():
         for one in strength.assumptions():
             if one.is_assumed:
