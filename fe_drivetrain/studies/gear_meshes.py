@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.drivetrain_file.gear_stages import ParallelData, PlanetaryData
+from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.drivetrain_file.gear_strength import GearSteel, GearStrength
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.drivetrain_file.stage_gears import stage_pairs
@@ -165,11 +164,6 @@ def gear_meshes(
         By the names of `machine_pairs`.
     left_out : dict of str to str
         Why a mesh is not rated, by its name.
-
-    Raises
-    ------
-    InputError
-        A strength has other gears than its stage.
     """
     meshes: dict[str, GearMesh] = {}
     left_out: dict[str, str] = {}
@@ -181,11 +175,6 @@ def gear_meshes(
             left_out |= dict.fromkeys(of_stage, f"{name} lacks {', '.join(lacking)}")
             continue
         strength = strengths.get(number)
-        if strength is not None and set(strength.gears) != set(_parts(stage)):
-            raise InputError(
-                f"{name}: strength has the gears {', '.join(strength.gears)} but the stage has "
-                f"{', '.join(_parts(stage))}: name these"
-            )
         for mesh, pair in stage_pairs(stage, name).items():
             made = _mesh(machine, number, mesh, pair, strength)
             meshes[made.name] = made
@@ -256,11 +245,6 @@ def _first(mesh: str, pair: Pair) -> tuple[str, float]:
     """Part that is the first gear of a mesh, and its base radius [m]."""
     part = {"sun-planet": "sun", "ring-planet": "planet", "mesh": "pinion"}[mesh]
     return part, pair.first.base_radius
-
-
-def _parts(stage: PlanetaryData | ParallelData) -> tuple[str, ...]:
-    """Names of the gears in the order of the teeth."""
-    return ("ring", "planet", "sun") if isinstance(stage, PlanetaryData) else ("gear", "pinion")
 
 
 def _loads(machine: MachineTable, number: int) -> dict[str, float]:
