@@ -91,6 +91,6 @@ def gear_train(drivetrain: Drivetrain, options: GearOptions, torque: float | Non
         for number, stage in enumerate(machine.stages, start=1)
         if stage.strength is not None
     }
-    missing = ("operation.rotor_speed",) if speed is None else ()
-    missing += ("operation.lubricant",) if oil is None else ()
-    return GearTrain(machine, strengths, Conditions(speed, oil), torque, stated, missing)
+    missing = ["operation.rotor_speed"] if speed is None else []
+    missing += ["operation.lubricant"] if oil is None else []
+    return GearTrain(machine, strengths, Conditions(speed, oil), torque, stated, tuple(missing))

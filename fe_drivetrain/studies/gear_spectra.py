@@ -125,11 +125,11 @@ def spectrum_of(
 def merged(spectra: Iterable[TorqueSpectrum], width: float) -> TorqueSpectrum:
     """Several spectra together, in classes of a width [N m]."""
     parts = list(spectra)
-    columns = [
+    torques, seconds, turns, hub = (
         np.concatenate([getattr(one, name) for one in parts])
         for name in ("torques", "seconds", "turns", "hub")
-    ]
-    return _in_classes(*columns, width)
+    )
+    return _in_classes(torques, seconds, turns, hub, width)
 
 
 def _in_classes(
@@ -141,7 +141,7 @@ def _in_classes(
     count = int(index.max(initial=-1)) + 1
 
     def summed(values: Floats) -> Floats:
-        return np.bincount(index, values, count)
+        return np.asarray(np.bincount(index, values, count), dtype=np.float64)
 
     time = summed(seconds)
     mean = np.column_stack([summed(seconds * column) / time for column in (torques, *hub.T)])

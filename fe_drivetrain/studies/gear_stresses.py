@@ -190,4 +190,4 @@ def spread_at_ends(slices: Floats) -> Floats:
         return slices
     low = 1.5 * slices[..., :1] - 0.5 * slices[..., 1:2]
     high = 1.5 * slices[..., -1:] - 0.5 * slices[..., -2:-1]
-    return np.maximum(np.concatenate([low, slices, high], axis=-1), 0.0)
+    return np.asarray(np.maximum(np.concatenate([low, slices, high], axis=-1), 0.0))

@@ -124,8 +124,8 @@ def mesh_damage(
     share = np.array([one.share for one in spreads])[..., None]
     face = np.array([one.face for one in spreads])
     K = _dynamics(stresses, spectrum, spreads, application)
-    contact = stresses.contact(spectrum.torques, [one.contact for one in K])
-    roots = stresses.root(spectrum.torques, [one.root for one in K])
+    contact = stresses.contact(spectrum.torques, np.array([one.contact for one in K]))
+    roots = stresses.root(spectrum.torques, np.array([one.root for one in K]))
     forward, found = spectrum.torques > 0.0, {}
     for number, flank in enumerate(mesh.flanks):
         counts = spectrum.turns * flank.loads

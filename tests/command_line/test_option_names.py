@@ -38,6 +38,7 @@ SCENE = "main_bearing_spherical"
 LIBRARY = Path(fe_drivetrain.__file__).parent
 
 OWNERS = {
+    "GearOptions": GearOptions,
     "LifeOptions": LifeOptions,
     "LoadOptions": LoadOptions,
     "CaptureTarget": CaptureTarget,
