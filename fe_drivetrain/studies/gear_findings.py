@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -260,16 +260,16 @@ def _cautions(
 ) -> None:
     """State what must be known before the ratings, most severe first."""
     gears, meshes = result["gears"], result["meshes"]
-    missing = sorted({key for one in gears.values() for key in one.missing if "grade" not in key})
+    keys = {key for one in gears.values() for key in one.missing}
+    missing = _by_key(key for key in keys if "grade" not in key)
     if missing:
-        found.note(
-            f"The file does not state {', '.join(missing)}: what needs it is not rated.", first=True
-        )
-    without_grade = sorted({k for one in gears.values() for k in one.missing if "grade" in k})
+        found.note(f"The file does not state {missing}: what needs it is not rated.", first=True)
+    without_grade = _by_key(key for key in keys if "grade" in key)
     if without_grade:
-        found.note(f"Without {', '.join(without_grade)} K_v and K_Halpha are taken as 1.")
-    for reason in dict.fromkeys(left_out.values()):
-        found.note(f"{reason[:1].upper()}{reason[1:]}: loads of its meshes are found, no stresses.")
+        found.note(f"Without {without_grade} K_v and K_Halpha are taken as 1.")
+    lacking = _by_key(left_out.values())
+    if lacking:
+        found.note(f"The file does not state {lacking}: loads are found there, no stresses.")
     low = [
         mesh
         for mesh in meshes.values()
@@ -290,6 +290,16 @@ def _cautions(
             "of the driving sense."
         )
     found.note(UNREAD)
+
+
+def _by_key(keys: Iterable[str]) -> str:
+    """Keys of the file with the stages that lack them: "strength of stage 1, stage 2"."""
+    stages: dict[str, list[str]] = {}
+    for key in sorted(set(keys)):
+        stage, colon, name = key.partition(": ")
+        stages.setdefault(name if colon else stage, []).extend([stage] if colon else [])
+    words = (f"{k} of {', '.join(of)}" if of else k for k, of in stages.items())
+    return "; ".join(words)
 
 
 def _assumptions(found: Findings, train: GearTrain, result: Mapping[str, Any]) -> None:

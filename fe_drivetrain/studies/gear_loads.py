@@ -16,6 +16,7 @@ from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.studies.gear_machine import GearTrain
 from fe_drivetrain.studies.gear_options import HOURS, GearOptions
 from fe_drivetrain.studies.gear_spectra import (
+    Reading,
     TorqueSpectrum,
     constant_spectrum,
     files_spectrum,
@@ -25,6 +26,10 @@ from fe_drivetrain.turbine_loads.histories.sites import Site
 
 Rows = Sequence[Sequence[float]]
 """Torque [N m], hours and, where it differs, speed [rad/s] of each class of a spectrum."""
+
+
+_MOST = 20
+"""Reference torques to which classes may reach."""
 
 
 @dataclass(frozen=True)
@@ -153,7 +158,13 @@ def loads_of(
     beside = np.zeros(6) if hub is None else hub_wrench(hub)
     hours = HOURS if asked.hours is None else asked.hours
     if files:
-        whole = files_spectrum(files, asked, width, site, given.resume, report)
+        reading = Reading(asked, width, train.entrance)
+        whole = files_spectrum(files, reading, site, given.resume, report)
+        if len(whole.torques) > _MOST * asked.classes:
+            raise InputError(
+                f"gears: the torque of the files goes to {_MOST} times the reference torque, "
+                f"{train.torque:g} N m, and more: give {argument('torque')} of their size"
+            )
         if site is None:
             whole = whole.times(hours / whole.hours)
         nearest = int(np.abs(whole.torques - train.torque).argmin())

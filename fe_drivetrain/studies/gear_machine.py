@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.entrance import Entrance
 from fe_drivetrain.drivetrain_file.gear_strength import GearStrength
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
+from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.dynamics.bodies.machine import machine_of
 from fe_drivetrain.studies.gear_options import GearOptions
 from fe_drivetrain.studies.gear_stresses import Conditions
@@ -30,6 +32,8 @@ class GearTrain:
         Rated speed of the rotor, and oil.
     torque : float
         Reference torque of the rotor [N m].
+    entrance : Entrance or None
+        Where hub loads enter; None of a main shaft without sections.
     stated : str
         Where the torque comes from.
     missing : tuple of str
@@ -40,6 +44,7 @@ class GearTrain:
     strengths: dict[int, GearStrength]
     conditions: Conditions
     torque: float
+    entrance: Entrance | None
     stated: str
     missing: tuple[str, ...]
 
@@ -91,6 +96,9 @@ def gear_train(drivetrain: Drivetrain, options: GearOptions, torque: float | Non
         for number, stage in enumerate(machine.stages, start=1)
         if stage.strength is not None
     }
+    where = drivetrain.entrance if isinstance(drivetrain, Scene) else None
     missing = ["operation.rotor_speed"] if speed is None else []
     missing += ["operation.lubricant"] if oil is None else []
-    return GearTrain(machine, strengths, Conditions(speed, oil), torque, stated, tuple(missing))
+    return GearTrain(
+        machine, strengths, Conditions(speed, oil), torque, where, stated, tuple(missing)
+    )

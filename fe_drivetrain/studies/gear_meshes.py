@@ -172,7 +172,7 @@ def gear_meshes(
         of_stage = [mesh for mesh in mesh_springs(machine) if mesh.startswith(f"{name} ")]
         if stage.teeth is None or stage.module is None or stage.shifts is None:
             lacking = [k for k in ("teeth", "module", "shifts") if getattr(stage, k) is None]
-            left_out |= dict.fromkeys(of_stage, f"{name} lacks {', '.join(lacking)}")
+            left_out |= dict.fromkeys(of_stage, f"{name}: {', '.join(lacking)}")
             continue
         strength = strengths.get(number)
         for mesh, pair in stage_pairs(stage, name).items():

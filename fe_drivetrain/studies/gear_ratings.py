@@ -104,8 +104,8 @@ def gears(
     options : GearOptions or None
         Level, numbers of azimuths and slices, hours; None takes all defaults.
     hub : mapping of str to float, or None
-        Fx, Fy, Fz, My, Mz of the rotor on the hub beside the torque, its weight in them [N, N m];
-        None is the rotor's weight alone.
+        Fx, Fy, Fz, My, Mz of the rotor at the shaft's front beside the torque, its weight in them
+        [N, N m]; None is the rotor's weight alone.
     spectrum : sequence of sequence of float, or None
         Torque of the rotor [N m], hours and, where it differs, speed [rad/s] of each class.
     resume : bool

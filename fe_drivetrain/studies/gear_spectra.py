@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +17,8 @@ from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.common.provenance import file_digest, program_hash
 from fe_drivetrain.common.short_repr import short_repr
+from fe_drivetrain.drivetrain_file.entrance import Entrance
+from fe_drivetrain.shafts.response.entering import at_front
 from fe_drivetrain.studies.history_options import HistoryOptions
 from fe_drivetrain.turbine_loads.histories.sites import (
     HOURS_A_YEAR,
@@ -25,6 +28,7 @@ from fe_drivetrain.turbine_loads.histories.sites import (
     rounded_wind,
 )
 from fe_drivetrain.turbine_loads.hub_loads.channels import MOMENT_UNITS, existing_file, in_si
+from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
 from fe_drivetrain.turbine_loads.hub_loads.recorded import (
     SPEED_UNITS,
     csv_channels,
@@ -81,6 +85,43 @@ class TorqueSpectrum:
     def coarser(self) -> TorqueSpectrum:
         """The same with classes of twice the width."""
         return merged([self], 2.0 * self.width)
+
+
+@dataclass(frozen=True)
+class Reading:
+    """How files of hub loads become spectra.
+
+    Attributes
+    ----------
+    options : HistoryOptions
+        How they are read.
+    width : float
+        Width of the classes of torque [N m].
+    entrance : Entrance or None
+        Where loads enter the drivetrain, and which point those of files are about; None where the
+        hub is all that is known of its shaft.
+    """
+
+    options: HistoryOptions
+    width: float
+    entrance: Entrance | None
+
+    @property
+    def content(self) -> list[Any]:
+        """All of it, for the cache."""
+        options = self.options
+        return [options.skip, options.rotor_speed_rpm, self.width, repr(self.entrance)]
+
+    def loads(self, history: LoadHistory) -> Floats:
+        """(n, 6) loads of a history about the point where they enter [N, N m]."""
+        return (history if self.entrance is None else at_front(_At(self.entrance), history)).loads
+
+
+@dataclass(frozen=True)
+class _At:
+    """What `at_front` asks of a drivetrain."""
+
+    entrance: Entrance
 
 
 @dataclass(frozen=True, eq=False)
@@ -219,9 +260,7 @@ def read_spectrum(path: Path) -> list[tuple[float, ...]]:
     return [tuple(row) for row in np.column_stack(found).tolist()]
 
 
-def file_spectrum(
-    report: Progress, file: Path, options: HistoryOptions, width: float, resume: bool
-) -> FileSpectrum:
+def file_spectrum(report: Progress, file: Path, reading: Reading, resume: bool) -> FileSpectrum:
     """The spectrum of a file, or what an earlier run kept where that is asked for.
 
     Parameters
@@ -230,10 +269,8 @@ def file_spectrum(
         Told which file is read.
     file : Path
         File with hub loads.
-    options : HistoryOptions
+    reading : Reading
         How it is read.
-    width : float
-        Width of the classes [N m].
     resume : bool
         Take what is kept.
 
@@ -246,18 +283,19 @@ def file_spectrum(
     content = {
         "code": program_hash(),
         "file": file_digest(str(file)),
-        "mapping": options.names.content(),
-        "reading": [options.skip, options.rotor_speed_rpm, width],
+        "mapping": reading.options.names.content(),
+        "reading": reading.content,
     }
     cache = user_cache()
     kept = cache.load_record("gear-spectra", content, FileSpectrum) if resume else None
     if kept is None:
-        kept = _read(file, options, width)
+        kept = _read(file, reading)
         cache.keep_record("gear-spectra", content, kept)
     return kept
 
 
-def _read(file: Path, options: HistoryOptions, width: float) -> FileSpectrum:
+def _read(file: Path, reading: Reading) -> FileSpectrum:
+    options = reading.options
     found = read_recorded(file, options.names, options.skip)
     history, speed = found.history, found.rotor_speed
     if speed is None and options.rotor_speed_rpm is None:
@@ -269,16 +307,15 @@ def _read(file: Path, options: HistoryOptions, width: float) -> FileSpectrum:
     if speed is None:
         speed = np.full(len(history), (options.rotor_speed_rpm or 0.0) * np.pi / 30.0)
     turns = np.abs(speed) * history.step / (2.0 * np.pi)
-    loads = history.loads
+    loads = reading.loads(history)
     wind = np.nan if found.wind_speed is None else float(found.wind_speed.mean())
-    spectrum = spectrum_of(loads[:, TORQUE], loads, turns, history.step, width)
+    spectrum = spectrum_of(loads[:, TORQUE], loads, turns, history.step, reading.width)
     return FileSpectrum(spectrum, wind)
 
 
 def files_spectrum(
     files: Sequence[Path],
-    options: HistoryOptions,
-    width: float,
+    reading: Reading,
     site: Site | None,
     resume: bool,
     report: Progress,
@@ -289,10 +326,8 @@ def files_spectrum(
     ----------
     files : sequence of Path
         Files with hub loads.
-    options : HistoryOptions
+    reading : Reading
         How they are read.
-    width : float
-        Width of the classes [N m].
     site : Site or None
         Whose winds weight the files; the time outside of all of them has no load.
     resume : bool
@@ -305,7 +340,8 @@ def files_spectrum(
     InputError
         A file cannot be read, or a site is given and files have no wind speed.
     """
-    items = [(file, options, width, resume) for file in files]
+    width = reading.width
+    items = [(file, reading, resume) for file in files]
     local = len(items) if len(items) >= _MANY else 1
     found = list(mapped(file_spectrum, items, local, report))
     if site is None:
