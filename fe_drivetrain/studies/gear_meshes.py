@@ -250,12 +250,12 @@ def _first(mesh: str, pair: Pair) -> tuple[str, float]:
 def _loads(machine: MachineTable, number: int) -> dict[str, float]:
     """Loads per turn of the rotor of the flanks of a stage, by their names."""
     stage = machine.stages[number - 1]
-    teeth = stage.teeth or ()
-    alone = (
-        PlanetaryStage(teeth[2], teeth[1], teeth[0], stage.planets)
-        if isinstance(stage, PlanetaryData)
-        else ParallelStage(*teeth)
-    )
+    alone: PlanetaryStage | ParallelStage
+    if isinstance(stage, PlanetaryData):
+        ring, planet, sun = stage.teeth or (1, 1, 1)
+        alone = PlanetaryStage(sun, planet, ring, stage.planets)
+    else:
+        alone = ParallelStage(*(stage.teeth or (1, 1)))
     turns = abs(machine.speeds[number - 1])
     return {
         name.replace("stage 1", f"stage {number}"): turns * loads

@@ -279,6 +279,17 @@ def test_files_make_the_spectrum_and_a_site_weights_them(small: Drivetrain, tmp_
     assert again.spectrum.turns == pytest.approx(found.spectrum.turns, rel=1e-15)
 
 
+def test_moments_of_files_are_moved_to_where_loads_enter(tmp_path: Path) -> None:
+    """From a metre upwind of the shaft's front: M + r x F with r = (-1, 0, 0) m."""
+    scene = read_drivetrain("nrel_5mw", {"hub.loads_at": -1.333})
+    _write(tmp_path / "a.csv", 4e6, 8.0)
+    text = (tmp_path / "a.csv").read_text().replace(",0,0,0,4000000.0", ",0,0,-1e6,4000000.0")
+    (tmp_path / "a.csv").write_text(text)
+    options = GearOptions(**{**FEW, "level": "torsional"})
+    found = gears(scene, loads=tmp_path / "a.csv", options=options)
+    assert found.hub == pytest.approx([0.0, 0.0, -1e6, 0.0, -1e6, 0.0])
+
+
 def test_the_command_writes_a_page_and_tables(
     tmp_path: Path, invoke: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
