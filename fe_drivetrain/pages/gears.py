@@ -156,7 +156,7 @@ def _damage(page: Page, result: GearsResult) -> None:
         "flank": {name: life.damage.flank for name, life in lives.items()},
         "root": {name: life.damage.root for name, life in lives.items()},
     }
-    hours = formatted(result.spectrum.hours)
+    hours = formatted(result.hours)
     page.add(
         bars(
             f"Damage of each gear in {hours}\u00a0h; 1 is failure, 10⁻⁶ stands for less",
@@ -176,6 +176,12 @@ def _damage(page: Page, result: GearsResult) -> None:
     page.table("Damage with the least safety factors on the stresses", rows, columns)
     if result.varies:
         _spectrum(page, result)
+    if result.site is not None:
+        share = 100.0 * result.spectrum.hours / result.hours
+        page.text(
+            f"The winds of the files blow {formatted(share, 3)} % of the time; the rest is taken "
+            "to do no damage."
+        )
     ring = next((n for n, life in lives.items() if len(life.of_teeth)), None)
     if ring is not None and lives[ring].of_teeth.max() > 0.0:
         teeth = lives[ring].of_teeth

@@ -8,9 +8,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fe_drivetrain.report.answer import KeyFigure
-from fe_drivetrain.report.number_text import formatted, value_text
+from fe_drivetrain.report.number_text import certain_value, formatted, value_text
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.gear_answers import GearAnswer, MeshAnswer, Safety, safeties
+from fe_drivetrain.turbine_loads.histories.sites import HOURS_A_YEAR
 
 _SHOWN = 6  # key figures
 _DIGITS = 4
@@ -72,20 +73,15 @@ def _strength(
         least = [one for one in ratings if one.of == of]
         if least:
             figures.append(_figure(found, min(least, key=lambda one: one.reserve)))
-    hours = min(
-        (one.life_hours for one in result["gears"].values() if one.life is not None),
-        default=np.inf,
-    )
-    asked = result["spectrum"].hours
-    if np.isfinite(hours):
-        figures.append(found.value("life of the first gear to fail [h]", hours, at_least=asked))
+    lasting = _life(found, result)
+    figures += [] if lasting is None else [lasting]
     over = "over the spectrum" if result["varies"] else f"at {_torque(result['torque'])}"
     safety = worst.safety
     what = f"{worst.of}\u00a0{formatted(safety.value, _DIGITS)} {over} where "
     what += f"{formatted(safety.required)} is required"
     if worst.reserve < 1.0:
         verdict = f"The {worst.part} is too weak: {what}"
-        verdict += f"; it lasts {value_text(hours, 'h')}." if np.isfinite(hours) else "."
+        verdict += "." if lasting is None else f"; it lasts {certain_value(lasting)}."
     else:
         count = len({one.gear for one in ratings})
         verdict = f"All {count} rated flanks are strong enough; the {worst.part} has least "
@@ -93,6 +89,20 @@ def _strength(
     found.answer(
         "Are the gears strong enough under these loads?", verdict, [*figures, *spread][:_SHOWN]
     )
+
+
+def _life(found: Findings, result: Mapping[str, Any]) -> KeyFigure | None:
+    """Life of the first gear to fail, in years at a site; None where none fails."""
+    lives = [one for one in result["gears"].values() if np.isfinite(one.life_hours)]
+    if not lives:
+        return None
+    first = min(lives, key=lambda one: one.life_hours)
+    scale, unit = (1.0, "h") if result["site"] is None else (1.0 / HOURS_A_YEAR, "years")
+    hours, band = first.life_hours, None
+    if first.life is not None and first.bands is not None and hours > 0.0:
+        band = scale * hours * first.bands.damage / first.life.damage.largest
+    name, asked = f"life of the first gear to fail [{unit}]", scale * result["hours"]
+    return found.value(name, scale * hours, band, at_least=asked, by="asked for")
 
 
 def _torque(torque: float) -> str:

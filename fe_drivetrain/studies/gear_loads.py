@@ -22,7 +22,7 @@ from fe_drivetrain.studies.gear_spectra import (
     files_spectrum,
     stated_spectrum,
 )
-from fe_drivetrain.turbine_loads.histories.sites import Site
+from fe_drivetrain.turbine_loads.histories.sites import HOURS_A_YEAR, Site
 
 Rows = Sequence[Sequence[float]]
 """Torque [N m], hours and, where it differs, speed [rad/s] of each class of a spectrum."""
@@ -46,12 +46,16 @@ class GearLoads:
         Whether the rotor has its weight; loads of a hub hold it already.
     varies : bool
         Whether the spectrum has several torques.
+    hours : float
+        Life asked for [h]: of a site all hours of its years, those outside of the winds of the
+        files without load.
     """
 
     spectrum: TorqueSpectrum | None
     hub: Floats
     weight: bool
     varies: bool
+    hours: float
 
 
 @dataclass(frozen=True)
@@ -168,7 +172,8 @@ def loads_of(
         if site is None:
             whole = whole.times(hours / whole.hours)
         nearest = int(np.abs(whole.torques - train.torque).argmin())
-        return GearLoads(whole, whole.hub[nearest], False, True)
+        asked_for = hours if site is None else site.years * HOURS_A_YEAR
+        return GearLoads(whole, whole.hub[nearest], False, True, asked_for)
     if spectrum is not None:
         if speed is None and any(len(row) < 3 for row in spectrum):
             raise InputError(
@@ -180,9 +185,8 @@ def loads_of(
             raise InputError("the torque spectrum lasts 0 h: give hours above 0")
         if asked.hours is not None:
             whole = whole.times(hours / whole.hours)
-        return GearLoads(whole, beside, hub is None, True)
+        return GearLoads(whole, beside, hub is None, True, whole.hours)
     if speed is None:
-        return GearLoads(None, beside, hub is None, False)
-    return GearLoads(
-        constant_spectrum(train.torque, beside, hours, speed), beside, hub is None, False
-    )
+        return GearLoads(None, beside, hub is None, False, hours)
+    constant = constant_spectrum(train.torque, beside, hours, speed)
+    return GearLoads(constant, beside, hub is None, False, hours)

@@ -50,6 +50,8 @@ class GearsResult(Result):
         Other loads of the hub at that torque [N, N m].
     spectrum : TorqueSpectrum or None
         Torques and turns of the life asked for; None where no speed of the rotor is known.
+    hours : float
+        Life asked for [h].
     asked : GearOptions
         Choices of the rating.
     site : Site or None
@@ -68,6 +70,7 @@ class GearsResult(Result):
     torque: float
     hub: Floats
     spectrum: TorqueSpectrum | None
+    hours: float
     asked: GearOptions
     site: Site | None
     varies: bool
@@ -142,6 +145,7 @@ def gears(
         "torque": train.torque,
         "hub": given.hub,
         "spectrum": given.spectrum,
+        "hours": given.hours,
         "asked": asked,
         "site": site,
         "varies": given.varies,

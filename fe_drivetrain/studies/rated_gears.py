@@ -151,9 +151,9 @@ class GearRating:
                 answer = self._gear_answer(own, meshes[name], number)
                 life, bands = damage.get(flank.name, (None, None))
                 hours = np.nan
-                if life is not None and self.given.spectrum is not None:
+                if life is not None:
                     largest = life.damage.largest
-                    hours = self.given.spectrum.hours / largest if largest else np.inf
+                    hours = self.given.hours / largest if largest else np.inf
                 found[flank.name] = replace(answer, life=life, bands=bands, life_hours=hours)
         return found
 

@@ -274,6 +274,8 @@ def test_files_make_the_spectrum_and_a_site_weights_them(small: Drivetrain, tmp_
         assert life is not None
         assert other is not None
         assert life.damage.flank == pytest.approx(other.damage.flank, rel=1e-5)
+        assert one.life_hours == pytest.approx(20.0 * 8760.0 / life.damage.largest)
+    assert found.hours == 20.0 * 8760.0
     again = gears(small, 2e5, str(tmp_path / "*.csv"), site, options, resume=True)
     assert again.spectrum is not None
     assert again.spectrum.turns == pytest.approx(found.spectrum.turns, rel=1e-15)
