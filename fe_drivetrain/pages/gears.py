@@ -15,13 +15,7 @@ from fe_drivetrain.studies.gear_ratings import GearsResult
 
 _LEAST = 1e-6
 _RATINGS = ("gear", "sigma_H [MPa]", "sigma_F [MPa]", "S_H", "S_F", "least S_H", "least S_F")
-_DAMAGES = (
-    "gear",
-    "damage of the flank",
-    "damage of the other flank",
-    "damage of the root",
-    "life [h]",
-)
+_DAMAGES = ("gear", "damage of the flank", "damage of the other flank", "damage of the root")
 _OVER = ("gear", "S_H over the spectrum", "S_F over the spectrum")
 
 
@@ -165,15 +159,14 @@ def _damage(page: Page, result: GearsResult) -> None:
             least=_LEAST,
         )
     )
-    rows: list[Record] = result.tables["gears"]
-    columns = [
-        "gear",
-        "damage of the flank",
-        "damage of the other flank",
-        "damage of the root",
-        "life [h]",
+    rows: list[Record] = [
+        {
+            **{column: row[column] for column in _DAMAGES},
+            "life [h]": _lasting(result.gears[str(row["gear"])].life_hours),
+        }
+        for row in result.tables["gears"]
     ]
-    page.table("Damage with the least safety factors on the stresses", rows, columns)
+    page.table("Damage with the least safety factors on the stresses", rows)
     if result.varies:
         _spectrum(page, result)
     if result.site is not None:
@@ -182,20 +175,30 @@ def _damage(page: Page, result: GearsResult) -> None:
             f"The winds of the files blow {formatted(share, 3)} % of the time; the rest is taken "
             "to do no damage."
         )
-    ring = next((n for n, life in lives.items() if len(life.of_teeth)), None)
-    if ring is not None and lives[ring].of_teeth.max() > 0.0:
-        teeth = lives[ring].of_teeth
-        degrees = np.append(
-            np.degrees(result.meshes[result.gears[ring].mesh].spread.azimuths), 360.0
-        )
-        page.add(
-            chart(
-                f"Damage of the teeth round the {ring}",
-                [marked("flank", degrees, np.append(teeth, teeth[0]))],
-                "place of the tooth, from y to z [deg]; 90 on top",
-                "damage [-]",
-            )
-        )
+    _ring(page, result.tables["ring"])
+
+
+def _lasting(hours: float) -> float | str:
+    """Life in hours, in words where nothing is damaged or rated."""
+    if np.isnan(hours):
+        return "not rated"
+    return hours if np.isfinite(hours) else "no damage"
+
+
+def _ring(page: Page, rows: list[Record]) -> None:
+    """Damage round the first ring, whose teeth stand still under gravity and the hub's loads."""
+    if not any(float(row["damage"]) > 0.0 for row in rows):
+        return
+    degrees = [*(float(row["place [deg]"]) for row in rows), 360.0]
+    damage = [float(row["damage"]) for row in rows]
+    found = chart(
+        f"Damage of the teeth round the {rows[0]['gear']}",
+        [marked("flank", degrees, [*damage, damage[0]])],
+        "place of the tooth, from y to z [deg]; 90 on top",
+        "damage [-]",
+    )
+    found.figure["layout"]["xaxis"] |= {"dtick": 90, "range": [0, 360]}
+    page.add(found)
 
 
 def _spectrum(page: Page, result: GearsResult) -> None:

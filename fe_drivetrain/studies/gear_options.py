@@ -38,7 +38,7 @@ class GearOptions(HistoryOptions):
     classes : int
         Classes of torque up to the reference torque.
     hours : float or None
-        Life asked for, without a site [h]; None takes 175200, twenty years.
+        Hours of the life asked for, without a site; None takes 175200, twenty years.
     lubricant : float or None
         Kinematic viscosity of the oil at 40 degC [mm2/s], where the drivetrain states none.
 

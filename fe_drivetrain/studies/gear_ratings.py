@@ -51,7 +51,7 @@ class GearsResult(Result):
     spectrum : TorqueSpectrum or None
         Torques and turns of the life asked for; None where no speed of the rotor is known.
     hours : float
-        Life asked for [h].
+        Hours of the life asked for.
     asked : GearOptions
         Choices of the rating.
     site : Site or None
