@@ -34,6 +34,8 @@ from .studies import AdviseResult as AdviseResult
 from .studies import CheckResult as CheckResult
 from .studies import CompareResult as CompareResult
 from .studies import ExportResult as ExportResult
+from .studies import GearOptions as GearOptions
+from .studies import GearsResult as GearsResult
 from .studies import LifeOptions as LifeOptions
 from .studies import LifeResult as LifeResult
 from .studies import LoadOptions as LoadOptions
@@ -46,6 +48,7 @@ from .studies import ValidateResult as ValidateResult
 from .studies import advise as advise
 from .studies import check as check
 from .studies import compare as compare
+from .studies import gears as gears
 from .studies import life as life
 from .studies import loads as loads
 from .studies import part as part

@@ -20,6 +20,7 @@ from fe_drivetrain.command_line.compare_runs import compare_runs_command
 from fe_drivetrain.command_line.designs import compare_command
 from fe_drivetrain.command_line.examples import examples_text, unfolded
 from fe_drivetrain.command_line.export import export_command
+from fe_drivetrain.command_line.gears import gears_command
 from fe_drivetrain.command_line.history import history_command
 from fe_drivetrain.command_line.life import life_command
 from fe_drivetrain.command_line.loads import loads_command
@@ -60,6 +61,7 @@ _COMMANDS: tuple[tuple[str, str, Callable[..., None]], ...] = (
     (_STUDY, "advise", advise_command),
     (_STUDY, "loads", loads_command),
     (_STUDY, "life", life_command),
+    (_STUDY, "gears", gears_command),
     (_STUDY, "compare", compare_command),
     (_STUDY, "uncertainty", uncertainty_command),
     (_STUDY, "report", report_command),

@@ -24,6 +24,11 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
         "two_bearings --loads 'outputs/*.outb' --site class-II",
         "mine.yaml --loads outputs --bearing front=240/630",
     ),
+    "gears": (
+        "nrel_5mw --open",
+        "mine.yaml --torque 4e6 --load hub.My=1e6 --hours 50000",
+        "mine.yaml --loads 'outputs/*.outb' --site class-II",
+    ),
     "compare": (
         "mine.yaml stiffer.yaml",
         "two_bearings --vary shaft.front=-1.2:-0.8:5",

@@ -18,6 +18,7 @@ from pydantic import (
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file import stage_fields
+from fe_drivetrain.drivetrain_file.gear_strength import GearStrength
 from fe_drivetrain.drivetrain_file.stage_fields import (
     NAMED,
     Fillet,
@@ -112,11 +113,16 @@ class GearStage(Part):
             "source": "assumed: each mesh in one point, without stiffness against tilt",
         },
     )
+    strength: GearStrength | None = Field(
+        default=None, description="steels, roughness and accuracy of the gears, for their ratings"
+    )
     stiffness_of: Literal["line", "axis"] | None = Field(
         default=None,
         description="line: meshes in N/m and N s/m along the line of action; axis: in N m/rad and "
         "N m s/rad about the planet's, or the gear's, axis",
     )
+
+    _strength = field_validator("strength", mode="wrap")(in_its_field)
 
     @model_validator(mode="after")
     def _helix_has_a_hand(self) -> Self:
@@ -143,7 +149,8 @@ class GearStage(Part):
         ------
         InputError
             More or fewer than one of teeth, radii and ratio are given, or a module without teeth,
-            profile shifts without a module, or a face narrower than the contact.
+            profile shifts without a module, a face narrower than the contact, or the strength of
+            other gears.
         """
         kind = "planetary" if isinstance(self, PlanetaryStage) else "parallel"
         radii = getattr(self, "radii", None)
@@ -157,6 +164,12 @@ class GearStage(Part):
             raise InputError(
                 f"a module of {self.module:g} m needs the teeth: give them in place of radii or "
                 "ratio, or remove the module"
+            )
+        gears = ("ring", "planet", "sun") if kind == "planetary" else ("gear", "pinion")
+        if self.strength is not None and set(self.strength.gears) != set(gears):
+            raise InputError(
+                f"strength has the gears {', '.join(self.strength.gears)} but a {kind} stage has "
+                f"{', '.join(gears)}: name these"
             )
         if self.shifts is not None and self.module is None:
             raise InputError("profile shifts need a module: give it, or remove the shifts")

@@ -64,6 +64,9 @@ from .bodies.machine import machine_of as machine_of
 from .bodies.mesh_errors import MeshError as MeshError
 from .bodies.mesh_errors import error_of_slices as error_of_slices
 from .bodies.mesh_errors import harmonic_error as harmonic_error
+from .bodies.mesh_loads import MeshLoads as MeshLoads
+from .bodies.mesh_loads import MeshResponses as MeshResponses
+from .bodies.mesh_loads import mesh_springs as mesh_springs
 from .bodies.meshing import Meshing as Meshing
 from .bodies.meshing import contact_wave as contact_wave
 from .bodies.meshing import machine_meshing as machine_meshing

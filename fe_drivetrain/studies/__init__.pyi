@@ -10,6 +10,9 @@ from .dossier_overview import DossierResult as DossierResult
 from .dossier_overview import dossier as dossier
 from .export_content import ExportResult as ExportResult
 from .export_content import prepare_export as prepare_export
+from .gear_options import GearOptions as GearOptions
+from .gear_ratings import GearsResult as GearsResult
+from .gear_ratings import gears as gears
 from .input_uncertainty import UncertaintyResult as UncertaintyResult
 from .input_uncertainty import uncertainty as uncertainty
 from .level_advice import AdviseResult as AdviseResult

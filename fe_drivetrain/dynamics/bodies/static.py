@@ -100,7 +100,7 @@ def static(
         tried.add(closed.tobytes())
         k = np.where(closed, system.stiffness, 0.0)
         K = system.rows.T @ (k[:, None] * system.rows) + system.extra
-        q = _solved(system, K, load + system.rows.T @ (k * short))
+        q = solved(system, K, load + system.rows.T @ (k * short))
         stretch = system.rows @ q - short
         tiny = 1e-12 * float(np.abs(stretch).max(initial=0.0))
         wanted = np.where(one_sided, stretch > -tiny, True)
@@ -126,7 +126,23 @@ def gaps_and_contacts(
     return short, one_sided
 
 
-def _solved(system: System, K: Floats, f: Floats) -> Floats:
+def solved(system: System, K: Floats, f: Floats) -> Floats:
+    """Displacements of K q = f, with a refinement.
+
+    Parameters
+    ----------
+    system : System
+        System whose degrees of freedom they are.
+    K : ndarray, (n, n)
+        Stiffness.
+    f : ndarray, (n,) or (n, loads)
+        Loads.
+
+    Raises
+    ------
+    InputError
+        Something moves freely.
+    """
     root = diagonal_roots(np.where(K.diagonal() > 0, K.diagonal(), 1.0))
     loose = np.flatnonzero(K.diagonal() <= 0)
     scaled = scaled_to_unit_diagonal(K, root**2)
@@ -137,10 +153,10 @@ def _solved(system: System, K: Floats, f: Floats) -> Floats:
             f"{system.names[moving]} can move freely, so that there is no equilibrium: hold it, or "
             "give it a spring"
         )
-    right = f / root
-    q = vectors @ ((vectors.T @ right) / values)
-    q += vectors @ ((vectors.T @ (right - scaled @ q)) / values)
-    return np.asarray(q / root)
+    right = (f.T / root).T
+    q = vectors @ ((vectors.T @ right).T / values).T
+    q += vectors @ ((vectors.T @ (right - scaled @ q)).T / values).T
+    return np.asarray((q.T / root).T)
 
 
 @dataclass(frozen=True)
