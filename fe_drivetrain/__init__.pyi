@@ -43,6 +43,7 @@ from .studies import LoadsResult as LoadsResult
 from .studies import PartResult as PartResult
 from .studies import Result as Result
 from .studies import StudyResult as StudyResult
+from .studies import TransientResult as TransientResult
 from .studies import UncertaintyResult as UncertaintyResult
 from .studies import ValidateResult as ValidateResult
 from .studies import advise as advise
@@ -54,6 +55,7 @@ from .studies import loads as loads
 from .studies import part as part
 from .studies import prepare_export as prepare_export
 from .studies import study as study
+from .studies import transient as transient
 from .studies import uncertainty as uncertainty
 from .studies import validate as validate
 from .turbine_loads.histories import Site as Site

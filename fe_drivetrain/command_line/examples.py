@@ -29,6 +29,11 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
         "mine.yaml --torque 4e6 --load hub.My=1e6 --hours 50000",
         "mine.yaml --loads 'outputs/*.outb' --site class-II",
     ),
+    "transient": (
+        "mine.yaml stop --value braked=2.5 --open",
+        "mine.yaml operation --loads 'outputs/*.outb' --level rigid",
+        "mine.yaml dip --value depth=0.9 --value length=0.25 --json",
+    ),
     "compare": (
         "mine.yaml stiffer.yaml",
         "two_bearings --vary shaft.front=-1.2:-0.8:5",

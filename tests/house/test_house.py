@@ -101,7 +101,6 @@ FOR_USERS = {
     "export.formats.windio": "how-to/shafts-of-a-gearbox.md",
     "export.programs.ross_rotor": "how-to/housing-to-ross-and-exudyn.md",
     "gear.coupled_slices": "gear_rating.md",
-    "turbine_loads.histories.farm": "clusters.md",
     "turbine_loads.hub_loads.events": "turbine.md",
     "turbine_loads.hub_loads.wind_boxes": "loads.md",
     # loads at the interfaces of any scene, from a level of the ladder

@@ -152,13 +152,34 @@ def bushing(
             f"{name}: stiffness is six rows, which have no damping of their own: make the damping "
             "0, or give six numbers"
         )
+    return [
+        directed(f"{name} {i}", one, other, point, along.T @ direction, value)
+        for i, (direction, value) in along_eigenvectors(name, k).items()
+    ]
+
+
+def along_eigenvectors(name: str, k: Floats) -> dict[int, tuple[Floats, float]]:
+    """Directions (6,) and stiffnesses of the springs of a matrix, by their number from 1.
+
+    Parameters
+    ----------
+    name : str
+        What they are of, for messages.
+    k : ndarray, (6, 6)
+        Stiffness, see `bushing`.
+
+    Raises
+    ------
+    InputError
+        The matrix is not symmetric, or has a negative eigenvalue.
+    """
     if np.abs(k - k.T).max() > 1e-9 * np.abs(k).max():
         raise InputError(f"{name}: the stiffness matrix must be symmetric: make it so")
     root = diagonal_roots(k.diagonal())
     # what the matrix leaves free stays exactly so, as the turn of a shaft in its bearing must
     carried = np.flatnonzero(k.any(axis=1))
     if not carried.size:
-        return []
+        return {}
     values, own = np.linalg.eigh(scaled_to_unit_diagonal(k)[np.ix_(carried, carried)])
     vectors = np.zeros((6, len(values)))
     vectors[carried] = own
@@ -167,11 +188,11 @@ def bushing(
             f"{name}: the stiffness matrix has an eigenvalue of {values[0]:g} (on a unit diagonal) "
             "but none may be negative: correct it"
         )
-    return [
-        directed(f"{name} {i + 1}", one, other, point, along.T @ (root * v), float(value))
+    return {
+        i + 1: (root * v, float(value))
         for i, (value, v) in enumerate(zip(values, vectors.T, strict=True))
         if value > 1e-12 * values[-1]
-    ]
+    }
 
 
 def line_of_action(mesh: Mesh, to_pitch: ArrayLike, flank: int = 1) -> Floats:
