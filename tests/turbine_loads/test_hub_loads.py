@@ -212,10 +212,10 @@ def test_real_file_gage_and_tip_moments_tell_one_story() -> None:
             info["attribute_names"], info["attribute_units"], data.T, strict=True
         )
     }
-    _, at_tip, _ = openfast.loads_from_channels("real", channels)
+    at_tip = openfast.loads_from_channels("real", channels).loads
     only_gage = {n: c for n, c in channels.items() if not n.startswith("lsstipm")}
     # ShftGagL of the NREL 5 MW model is 1.912 m (Jonkman 2009).
-    _, from_gage, _ = openfast.loads_from_channels("real", only_gage, gage_distance=1.912)
+    from_gage = openfast.loads_from_channels("real", only_gage, gage_distance=1.912).loads
     # Each channel is packed in 16 bits; a few steps of the widest are the most they can differ.
     step = 1e3 * np.ptp(channels["lssgagmya"].values) / 65535.0
     np.testing.assert_allclose(from_gage, at_tip, atol=4.0 * step)

@@ -44,6 +44,8 @@ from fe_drivetrain.turbine_loads.hub_loads.openfast import (
 )
 from fe_drivetrain.turbine_loads.hub_loads.openfast_output import openfast_channels
 from fe_drivetrain.turbine_loads.hub_loads.point_loads import moved_moments
+from fe_drivetrain.turbine_loads.hub_loads.stamps import TimeColumn
+from fe_drivetrain.turbine_loads.hub_loads.table_names import TABLE_NAMES, named_columns
 
 SPEED_UNITS = {"rad/s": 1.0, "rpm": np.pi / 30.0, "deg/s": np.pi / 180.0}
 WIND_UNITS = {"m/s": 1.0}
@@ -119,7 +121,11 @@ def short_name(file: Path, files: Sequence[Path]) -> str:
 
 
 def read_recorded(
-    path: Path, mapping: ChannelMap = OWN_NAMES, skip: float = 0.0, also: Sequence[str] = ()
+    path: Path,
+    mapping: ChannelMap = OWN_NAMES,
+    skip: float = 0.0,
+    also: Sequence[str] = (),
+    measured: bool = False,
 ) -> Recorded:
     """Read a history of any format, with rotor speed and wind speed where the file has them.
 
@@ -133,6 +139,8 @@ def read_recorded(
         What is left out at the beginning [s].
     also : sequence of str
         Further channels, as the file calls them.
+    measured : bool
+        Take what components there are, at whatever times: see `LoadHistory.measured`.
 
     Raises
     ------
@@ -149,7 +157,7 @@ def read_recorded(
     is_table, loads_mapped = suffix == ".csv", mapping.loads_mapped
     wanted = _wanted(mapping, also, is_table)
     channels = (
-        csv_channels(file, wanted, mapping.units, points=bool(loads_mapped))
+        csv_channels(file, wanted, mapping.units, bool(loads_mapped), _times(mapping))
         if is_table
         else openfast_channels(file, wanted | LOAD_CHANNELS)
     )
@@ -161,11 +169,11 @@ def read_recorded(
     further = [_named(file, channels, name) for name in also]
     azimuth = _azimuth(file, channels, named) if is_table and mapping.rotating else None
     if is_table and not loads_mapped:
-        history = read_csv(file)
+        history = read_csv(file, measured, mapping.gearbox_ratio)
         if azimuth is not None:
             history = _turned_back(history, azimuth, mapping)
     else:
-        history = _of_channels(file, channels, named, mapping)
+        history = _of_channels(file, channels, named, mapping, measured)
         if is_table:
             history = _with_points(file, history, channels, mapping, azimuth)
     history = _at_hub(history, mapping, own_names=not (is_table or loads_mapped))
@@ -173,7 +181,7 @@ def read_recorded(
     history = replace(history, unread=tuple(unread))
     beside = _beside_loads(file, history, channels, named)
     others = {f"{c.name} [{c.unit.strip('()')}]": c.values for c in further}
-    require_sound(f"hub loads '{file}'", history.time, others)
+    require_sound(f"hub loads '{file}'", history.time, others, even=not measured)
     kept = history.time >= history.time[0] + skip
     if kept.sum() < MIN_SAMPLES:
         raise InputError(
@@ -198,7 +206,14 @@ def _wanted(mapping: ChannelMap, also: Sequence[str], is_table: bool) -> set[str
         wanted |= {name.lower() for name in AZIMUTH}
     if is_table and mapping.loads_mapped:
         wanted |= {name.lower() for name in LOAD_NAMES} | LOAD_CHANNELS
+        wanted |= {name for names in TABLE_NAMES.values() for name in names}
     return wanted
+
+
+def _times(mapping: ChannelMap) -> set[str]:
+    """Names of the columns of a table that may hold date-times, in lower case."""
+    own = mapping.channels.get("time")
+    return {own.lower()} if own else {"time", *TABLE_NAMES["time"]}
 
 
 def _beside_loads(
@@ -214,7 +229,8 @@ def _beside_loads(
         channel = named.get(name) or next((c for c in candidates if c is not None), None)
         if channel is not None:
             beside[name] = in_si(str(file), channel, sizes)
-            require_sound(f"hub loads '{file}'", history.time, {channel.name: beside[name]})
+            found = {channel.name: beside[name]}
+            require_sound(f"hub loads '{file}'", history.time, found, even=not history.measured)
     return beside
 
 
@@ -241,22 +257,36 @@ def read_mapped(mapping: ChannelMap, path: Path, skip: float = 0.0) -> LoadHisto
 
 
 def _of_channels(
-    file: Path, channels: dict[str, Channel], named: Mapping[str, Channel], mapping: ChannelMap
+    file: Path,
+    channels: dict[str, Channel],
+    named: Mapping[str, Channel],
+    mapping: ChannelMap,
+    measured: bool,
 ) -> LoadHistory:
     """Loads of OpenFAST's channels, or of those that are mapped in their place."""
     if file.suffix.lower() == ".csv":  # the columns of a table, but for those that are mapped
-        shared = {name: channels.get(name.lower()) for name in LOAD_NAMES}
-        named = {name: c for name, c in shared.items() if c is not None} | dict(named)
+        taken = {mapping.column(name)[0].lower() for name in mapping.channels}
+        own = [(key, channel) for key, channel in channels.items() if key not in taken]
+        known = named_columns(str(file), [key for key, _ in own], mapping.channels)
+        shared = {name: own[k][1] for k, name in known.items()}
+        azimuth = {"azimuth": channels["azimuth"]} if "azimuth" in channels else {}
+        named = {**azimuth, **shared, **named}
     channels = dict(channels)
     for name in LOAD_NAMES:
         if name in named:
             channels.pop(LOAD_NAMES[name], None)  # fixed ones would be taken before rotating ones
             channels[mapping.read_as(name)] = named[name]
     at_gage = mapping.moments_at if "My" not in mapping.channels and mapping.moments_at else None
-    time, loads, read = loads_from_channels(
-        str(file), channels, at_gage, np.radians(mapping.azimuth_blade1_up)
+    found = loads_from_channels(
+        str(file),
+        channels,
+        at_gage,
+        np.radians(mapping.azimuth_blade1_up),
+        measured,
+        mapping.gearbox_ratio,
     )
-    return LoadHistory(file.stem, time, loads, {"source": file.name, "channels": read})
+    origin = {"source": file.name, "channels": found.read, **found.attributes}
+    return LoadHistory(file.stem, found.time, found.loads, origin, measured=measured)
 
 
 def _with_points(
@@ -298,6 +328,11 @@ def _at_hub(history: LoadHistory, mapping: ChannelMap, own_names: bool) -> LoadH
         )
     if mapping.tilt:
         loads = to_shaft_frame(loads, mapping.tilt)
+        if not np.isfinite(loads).any():
+            raise InputError(
+                f"hub loads '{history.attributes['source']}': tilt makes Fx and Fz, or Mx and Mz, "
+                "from each other, and the file has one of them alone: leave out tilt, or map both"
+            )
         at = {point: to_shaft_frame(own, mapping.tilt) for point, own in at.items()}
         read = read.removesuffix(_NOTHING_TURNED)
         read += f"; turned from a horizontal frame by the shaft's tilt of {mapping.tilt:g} deg"
@@ -332,7 +367,8 @@ def _angle(history: LoadHistory, azimuth: Channel, mapping: ChannelMap) -> Float
     """Angle by which the rotor has turned since blade 1 pointed up [rad]."""
     source = str(history.attributes["source"])
     angle = in_si(source, azimuth, ANGLE_UNITS)
-    require_sound(f"hub loads '{source}'", history.time, {azimuth.name: angle})
+    columns = {azimuth.name: angle}
+    require_sound(f"hub loads '{source}'", history.time, columns, even=not history.measured)
     return np.asarray(angle - np.radians(mapping.azimuth_blade1_up))
 
 
@@ -359,7 +395,11 @@ def _of_fixed_frame(loads: Floats, angle: Floats) -> Floats:
 
 
 def csv_channels(
-    file: Path, wanted: Collection[str], units: Collection[str] = (), points: bool = False
+    file: Path,
+    wanted: Collection[str],
+    units: Collection[str] = (),
+    points: bool = False,
+    times: Collection[str] = (),
 ) -> dict[str, Channel]:
     """Columns of a table that have a unit, by their names in lower case.
 
@@ -374,6 +414,8 @@ def csv_channels(
         Names of columns whose unit is known though their title has none.
     points : bool
         Whether columns like ``brake.Fz [kN]``, of loads at load points, are wanted, too.
+    times : collection of str
+        Names in lower case of columns that may be date-times, without a unit.
 
     Raises
     ------
@@ -383,7 +425,8 @@ def csv_channels(
     before, titles = _header(file)
     found: dict[str, Channel] = {}
     places: dict[str, int] = {}
-    bare = {name.lower() for name in units}
+    stamps: dict[str, TimeColumn] = {}
+    bare = {name.lower() for name in units}.union(times)
     for place, title in enumerate(titles):
         match = re.fullmatch(r"\s*(.+?)\s*[\[(]\s*(.*?)\s*[\])]\s*", title)
         if match is None and title.strip().lower() in bare:
@@ -392,6 +435,8 @@ def csv_channels(
             found[match[1].lower()] = Channel(match[1], match[2], np.zeros(0))
             if match[1].lower() in wanted or (points and is_of_point(match[1])):
                 places[match[1].lower()] = place
+                if match[1].lower() in times:
+                    stamps[match[1].lower()] = TimeColumn()
     if not places:
         return found
     try:
@@ -400,6 +445,7 @@ def csv_channels(
             delimiter=",",
             skiprows=before,
             usecols=list(places.values()),
+            converters={places[name]: read for name, read in stamps.items()} or None,
             ndmin=2,
             encoding="utf-8-sig",
         )
@@ -411,7 +457,8 @@ def csv_channels(
             "the line"
         ) from error
     for name, column in zip(places, values.T, strict=True):
-        found[name] = Channel(found[name].name, found[name].unit, column)
+        note = stamps[name].words if name in stamps else ""
+        found[name] = Channel(found[name].name, "s" if note else found[name].unit, column, note)
     return found
 
 
