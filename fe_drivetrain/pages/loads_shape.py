@@ -212,8 +212,8 @@ def _campbell(found: Campbell, load: str) -> Chart:
     speed = 0.5 * (found.speed[1:] + found.speed[:-1])
     kept = (lines > 0.0) & (lines <= min(HIGHEST, 4.0))
     chart = heat_map(
-        f"Campbell diagram of {load}: spectra of segments of {SEGMENT:g} s by their mean rotor speed; "
-        f"dotted {', '.join(f'{n}P' for n in MULTIPLES)}",
+        f"Campbell diagram of {load}: spectra of segments of {SEGMENT:g} s by their mean rotor "
+        f"speed; dotted {', '.join(f'{n}P' for n in MULTIPLES)}",
         speed,
         lines[kept],
         np.log10(density[:, kept].T),

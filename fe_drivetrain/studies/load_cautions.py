@@ -78,9 +78,8 @@ def left_out(found: LoadTotals, with_reactions: bool) -> list[str]:
         )
     if shaft:
         said.append(
-            f"Mx is the torque of the {shaft} as recorded; turns are the rotor's. The gearbox ratio "
-            "makes it the rotor's torque, without losses and inertia between: give gearbox_ratio in a "
-            "mapping."
+            f"Mx is the torque of the {shaft} as recorded; turns are the rotor's. gearbox_ratio in "
+            "a mapping makes it the rotor's torque, without losses and inertia between."
         )
     return said
 

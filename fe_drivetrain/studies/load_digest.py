@@ -279,7 +279,7 @@ def _spectra(
     speed: Floats | None,
     known: Sequence[int],
 ) -> HistorySpectra | None:
-    """Spectra of all pieces, of samples at even times; those of loads that are not known are NaN."""
+    """Spectra of all pieces, of samples at even times; NaN of loads that are not known."""
     shown = next((name for name in CAMPBELL if name in channels), next(iter(channels)))
     sampling = history.sampling
     parts = []
@@ -306,8 +306,15 @@ def _spectra(
 
 def _of_all(found: CycleSums, known: Sequence[int]) -> CycleSums:
     """Cycles with rows of all `LOADS`, NaN of those that are not known."""
-    rows = ("damage", "halves", "about_zero", "largest", "number", "left_out")
-    return replace(found, **{name: _rows_of_all(getattr(found, name), known) for name in rows})
+    return replace(
+        found,
+        damage=_rows_of_all(found.damage, known),
+        halves=_rows_of_all(found.halves, known),
+        about_zero=_rows_of_all(found.about_zero, known),
+        largest=_rows_of_all(found.largest, known),
+        number=_rows_of_all(found.number, known),
+        left_out=_rows_of_all(found.left_out, known),
+    )
 
 
 def _rows_of_all(values: Floats, known: Sequence[int]) -> Floats:

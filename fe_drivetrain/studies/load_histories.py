@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
@@ -89,7 +89,7 @@ class LoadsResult(Result):
     def stated(self) -> Stated:
         """What the hub loads are: sign, frame, origin."""
         of = self.scene_reactions
-        return stated_hub_loads(None if of is None else of.scene)
+        return _stated(self.hub, None if of is None else of.scene)
 
     @property
     def equivalent_loads(self) -> dict[str, dict[float, EquivalentLoad]]:
@@ -131,7 +131,7 @@ class LoadsResult(Result):
         return {**self.tables, **self.file_tables()}
 
     def chart(self) -> Chart:
-        """Cycles of a range or a larger one, of the moments, or of the forces where there is none."""
+        """Cycles of a range or a larger one, of the moments, or else of the forces."""
         caption, traces, x, y, logarithmic = self.exceedances(self.hub.by_kind[-1])
         return chart(caption, traces, x, y, logarithmic)
 
@@ -267,12 +267,13 @@ def _counted(asked: _Asked, steps: Steps) -> LoadsResult:
     sums = _added_up(asked, steps, reactions, mine)
     if not sums.hub.has_loads:
         raise InputError("all hub loads of all files are zero: give histories with loads")
+    _check_ultimate(options, sums.hub)
     if not sums.reactions:
         reactions = None
     capture = captured(sums.hub.statistics, asked.target)
     found.notes += left_out(sums.hub, with_reactions=scene is not None)
     hub_findings(found, sums.hub, options, asked.target, capture)
-    found.data("hub_loads_stated", stated_hub_loads(scene).facts())
+    found.data("hub_loads_stated", _stated(sums.hub, scene).facts())
     if reactions is not None:
         found.data("reactions", reaction_rows(sums.reactions, options))
         found.data("reactions_stated", reactions.stated.facts())
@@ -295,6 +296,29 @@ def _counted(asked: _Asked, steps: Steps) -> LoadsResult:
         scene_reactions=reactions,
         **found.frozen(steps.times, **asked.plain()),
     )
+
+
+def _check_ultimate(options: LoadOptions, hub: LoadTotals) -> None:
+    """Refuse ultimate loads of what the files do not have."""
+    for name in options.ultimate:
+        if name not in hub.loads:
+            raise InputError(
+                f"load histories: an ultimate load of {name} is given, which not every file has "
+                f"({', '.join(hub.loads)} are there): leave it out"
+            )
+
+
+def _stated(hub: LoadTotals, scene: Scene | None) -> Stated:
+    """What hub loads are: sign, frame, origin; of a torque alone less."""
+    found, shaft = stated_hub_loads(scene), hub.files.torque_of
+    if hub.loads == ("Mx",):
+        return replace(
+            found,
+            load=f"torque of the {shaft or 'rotor on the shaft'}",
+            origin="about the axis of the shaft",
+            weight="no part of a torque about the axis",
+        )
+    return replace(found, load=f"{found.load}, Mx of the {shaft}") if shaft else found
 
 
 def _reactions(found: Findings, steps: Steps, scene: Scene, level: int) -> SceneReactions:

@@ -82,7 +82,7 @@ def plane_digest(
     numbers = loop_statistics(loops, len(y) * float(np.mean(step)), passing or None)
     return PlaneDigest(
         in_classes(-y, z, weights=np.full(len(y), step)),
-        np.bincount(sector, np.full(len(y), step), SECTORS),
+        np.asarray(np.bincount(sector, np.full(len(y), step), SECTORS), dtype=np.float64),
         np.stack([loops.duration, np.degrees(loops.swept), loops.highest - loops.lowest]),
         time_on_loops(loops),
         numbers.get("rate over 3P", np.nan),

@@ -189,7 +189,7 @@ def kept_digest(
         kept = cache.load_record("load-digests", content, FileDigest)
         if kept is not None:
             return kept
-    recorded = read_recorded(file, options.names, options.skip, options.also, measured=True)
+    recorded = read_recorded(file, options.names, options.skip, options.also, True)
     found = file_digest(recorded, options, reactions)
     cache.keep_record("load-digests", content, found)
     return found

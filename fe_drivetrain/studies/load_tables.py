@@ -26,8 +26,10 @@ from fe_drivetrain.turbine_loads.histories.windows import COLUMNS
 
 
 def file_rows(found: LoadTotals) -> list[Record]:
-    """Each file."""
+    """Each file; with its gaps where one has some."""
     winds, speeds = (found.statistics.mean_of(name) for name in ("wind speed", "rotor speed"))
+    gaps = [steps.gaps for steps in found.files.steps]
+    broken = any(len(own) for own in gaps)
     return [
         {
             "file": name,
@@ -37,9 +39,15 @@ def file_rows(found: LoadTotals) -> list[Record]:
             "samples": span.samples,
             "mean wind speed [m/s]": _known(wind),
             "mean rotor speed [rad/s]": _known(speed),
+            **({"gaps": len(own), "in gaps [s]": float(own[:, 1].sum())} if broken else {}),
         }
-        for name, span, wind, speed in zip(
-            found.files.names, found.files.spans, winds.tolist(), speeds.tolist(), strict=True
+        for name, span, wind, speed, own in zip(
+            found.files.names,
+            found.files.spans,
+            winds.tolist(),
+            speeds.tolist(),
+            gaps,
+            strict=True,
         )
     ]
 

@@ -548,7 +548,7 @@ def test_component_and_cut() -> None:
     with pytest.raises(InputError, match="'Fq' is not one of Fx, Fy"):
         history.component("Fq")
     np.testing.assert_array_equal(history.between(3.0, 7.0).time, [3.0, 4.0, 5.0, 6.0, 7.0])
-    with pytest.raises(InputError, match="1 samples"):
+    with pytest.raises(InputError, match="1 sample,"):
         history.between(9.0)
 
 
@@ -663,7 +663,7 @@ def test_a_history_that_never_varies_is_refused(tmp_path: Path) -> None:
     ("rows", "says"),
     [
         (["0,1,2,nan,4,5,6", *(f"{k},1,{k},3,4,5,6" for k in range(1, 5))], "Fz is nan at line 2"),
-        (["0,1,2,3,4,5,6"], "1 samples, fewer than the 3"),
+        (["0,1,2,3,4,5,6"], "1 sample, fewer than the 3"),
         ([], "0 samples, fewer than the 3"),
         ([f"{k},1,2,3,4,5,6" for k in range(5)], "all 5 samples are the same load"),
     ],

@@ -334,13 +334,13 @@ def _require_columns(file: Path, columns: Collection[str], measured: bool) -> No
     if measured:
         if "time" in missing:
             raise InputError(
-                f"hub loads '{file}': no column time; give one, like 'time [s]', or date-times like "
-                f"{EXAMPLE}"
+                f"hub loads '{file}': no column time; give one, like 'time [s]', or one of "
+                f"date-times like {EXAMPLE}"
             )
         if set(FORCES) <= set(missing):
             raise InputError(
-                f"hub loads '{file}': no column of a load; name one or more of {', '.join(FORCES)}, "
-                f"like 'Mx [kN m]', or those that you have, as in --channel 'Mx=Torque'"
+                f"hub loads '{file}': no column of a load; name one or more of "
+                f"{', '.join(FORCES)}, like 'Mx [kN m]', or map yours, as in --channel 'Mx=Torque'"
             )
     elif missing:
         what = f"; {NEED_ALL}" if set(missing) & set(FORCES) else ""

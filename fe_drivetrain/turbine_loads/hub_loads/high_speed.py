@@ -54,8 +54,8 @@ def at_rotor(
     if high_speed is None:
         if ratio is not None:
             raise InputError(
-                f"hub loads '{source}': gearbox_ratio is {ratio:g}, and no torque of the high-speed "
-                "shaft is read, which it would be applied to: leave it out, or map high-speed torque"
+                f"hub loads '{source}': gearbox_ratio is {ratio:g}, but no torque of the "
+                "high-speed shaft is read: leave it out, or map high-speed torque"
             )
         return dict(loads), TorqueAt("", {})
     if ratio is None:

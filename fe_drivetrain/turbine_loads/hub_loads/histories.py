@@ -229,8 +229,8 @@ def require_sound(
 
     if time.size < MIN_SAMPLES:
         raise InputError(
-            f"{source}: {time.size} samples, fewer than the {MIN_SAMPLES} that a mean error, an "
-            "RMSE and a correlation need; give a longer history"
+            f"{source}: {time.size} sample{'s' * (time.size != 1)}, fewer than the {MIN_SAMPLES} "
+            "that a mean error, an RMSE and a correlation need; give a longer history"
         )
     for name, values in {"time": time, **columns}.items():
         bad = np.flatnonzero(~np.isfinite(values))
@@ -253,7 +253,8 @@ def require_sound(
     if back.size:
         raise InputError(
             f"{source}: time does not increase after {at(back[0])}, the next is "
-            f"{time[back[0] + 1]:g} s; sort the samples and remove repeated ones"
+            f"{time[back[0] + 1]:g} s; sort the samples and remove repeated ones, or write time "
+            "with more digits"
         )
     if not SHORTEST_STEP <= median <= LONGEST_STEP:
         raise InputError(
@@ -281,13 +282,13 @@ def require_all_loads(history: LoadHistory) -> None:
     if history.absent:
         there = [name for name in FORCES if name not in history.absent]
         raise InputError(
-            f"hub loads: {history.name} has {', '.join(there)} and not {', '.join(history.absent)}, "
-            f"which are not known rather than zero: {NEED_ALL}"
+            f"hub loads: {history.name} has {', '.join(there)}, and {', '.join(history.absent)} "
+            f"are not known rather than zero: {NEED_ALL}"
         )
     if history.torque_of:
         raise InputError(
-            f"hub loads: {history.name} has the torque of the {history.torque_of}, not the rotor's: "
-            "give gearbox_ratio in a mapping"
+            f"hub loads: {history.name} has the torque of the {history.torque_of}, not the "
+            "rotor's: give gearbox_ratio in a mapping"
         )
 
 

@@ -252,8 +252,8 @@ def _fixed(source: str, pair: _Pair, units: Mapping[str, float], psi: Floats) ->
         if channel is not None
     }
     if pair.rotating:
-        y, z = turn_to_fixed(*found.values(), psi)
-        return dict(zip(found, (y, z), strict=True))
+        turned = turn_to_fixed(found[f"{letter}y"], found[f"{letter}z"], psi)
+        return dict(zip(found, turned, strict=True))
     return found
 
 
@@ -308,14 +308,16 @@ class _Chosen:
             for prefix in prefixes:
                 names = [prefix.replace("*", axis) for axis in "yz"]
                 if all(n.lower() in self._channels for n in names):
-                    return _Pair(*(self.needed([n], n) for n in names), turning)
+                    y, z = (self.needed([n], n) for n in names)
+                    return _Pair(y, z, turning)
         return None
 
     def _one_of(self, fixed: str) -> _Pair:
         """What there is of a pair that does not turn, of a file that may lack the other one."""
         if not self._measured:
             return _Pair(None, None)
-        return _Pair(*(self.first([fixed.replace("*", axis)]) for axis in "yz"))
+        y, z = (self.first([fixed.replace("*", axis)]) for axis in "yz")
+        return _Pair(y, z)
 
     def shear(self) -> _Pair:
         """The shear forces."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -84,7 +85,7 @@ def sampling_of(time: Floats) -> Sampling:
     usual = float(np.median(steps))
     far = np.flatnonzero(steps > GAP * usual)
     ends = [0, *(far + 1).tolist(), len(time)]
-    pieces = tuple(slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True))
+    pieces = tuple(slice(a, b) for a, b in pairwise(ends))
     near = np.delete(steps, far)
     gaps = np.column_stack([time[far], steps[far]])
     found = Steps(usual, float(near.min()), float(near.max()), gaps)
