@@ -16,6 +16,7 @@ from fe_drivetrain.studies.load_totals import LoadSums
 from fe_drivetrain.studies.study_loads import given_loads
 from fe_drivetrain.turbine_loads.histories.cycle_sums import equivalent_loads
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
+from fe_drivetrain.turbine_loads.hub_loads.csv_table import read_csv, write_hub_loads
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
 from fe_drivetrain.turbine_loads.hub_loads.openfast import read_openfast
 from fe_drivetrain.turbine_loads.hub_loads.recorded import Recorded, read_recorded
@@ -238,6 +239,17 @@ def test_all_six_even_components_give_the_same_either_way() -> None:
     assert one.spectra is not None
     assert other.spectra is not None
     np.testing.assert_array_equal(one.spectra.density, other.spectra.density)
+
+
+def test_a_measured_history_is_written_and_read_again(tmp_path: Path) -> None:
+    time = np.array([0.0, 1.0, 2.5, 9.0])
+    loads = np.array(measured(time, time**2).loads)
+    history = LoadHistory("a", time, loads, {"torque of": "high-speed shaft"}, measured=True)
+    write_hub_loads(history, tmp_path / "a.csv")
+    again = read_csv(tmp_path / "a.csv", measured=True)
+    assert (again.absent, again.torque_of) == (history.absent, "high-speed shaft")
+    np.testing.assert_array_equal(again.loads, history.loads)
+    np.testing.assert_array_equal(again.time, time)
 
 
 # --- counted by hand -----------------------------------------------------------------------------

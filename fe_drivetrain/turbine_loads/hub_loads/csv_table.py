@@ -108,6 +108,7 @@ def read_csv(
     origin: dict[str, Attribute] = {"source": file.name}
     loads, where = at_rotor(source, loads, torque, gearbox_ratio)
     read = "; ".join(filter(None, (read, where.words, table.times)))
+    about = _about(attributes)
     origin |= {"channels": f"{read}; signs as in the file, nothing turned", **where.attributes}
     missing = np.full(len(time), np.nan)
     return LoadHistory(
@@ -117,7 +118,7 @@ def read_csv(
         origin | attributes,
         at,
         table.unread,
-        _about(attributes),
+        about,
         measured,
     )
 
@@ -259,6 +260,8 @@ def write_hub_loads(
 ) -> None:
     """Write a history as ``read_csv`` reads it, exactly, and whole or not at all.
 
+    Components that are absent have no column.
+
     Parameters
     ----------
     history : LoadHistory
@@ -276,12 +279,15 @@ def write_hub_loads(
     file = Path(path)
     more = dict(beside or {})
     columns = [values[:, None] for values in more.values()]
-    table = np.column_stack((history.time, history.loads, *history.at.values(), *columns))
+    there = [k for k, name in enumerate(FORCES) if name not in history.absent]
+    loads = history.loads[:, there]
+    table = np.column_stack((history.time, loads, *history.at.values(), *columns))
     others = [f"{p}.{c} [{u}]" for p in history.at for c, u in zip(FORCES, UNITS, strict=True)]
     facts = dict(history.attributes)
     facts |= {} if history.about is None else {_ABOUT: str(history.about)}
     lines = [comment_line(f"{key} = {value}") for key, value in facts.items()]
-    lines.append(table_row([*_CSV_EXAMPLE.split(","), *others, *more]))
+    titles = _CSV_EXAMPLE.split(",")
+    lines.append(table_row([titles[0], *(titles[k + 1] for k in there), *others, *more]))
     lines += [",".join(map(repr, row)) for row in table.tolist()]
     try:
         with atomic_path(file) as temporary:
