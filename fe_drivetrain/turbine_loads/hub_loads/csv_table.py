@@ -346,7 +346,8 @@ def _require_columns(file: Path, columns: Collection[str], measured: bool) -> No
         if set(FORCES) <= set(missing):
             raise InputError(
                 f"hub loads '{file}': no column of a load; name one or more of "
-                f"{', '.join(FORCES)}, like 'Mx [kN m]', or map yours, as in --channel 'Mx=Torque'"
+                f"{', '.join(FORCES)}, like 'Mx [kN m]', or map yours, as in "
+                "`ChannelMap(channels={'Mx': 'Torque'})`"
             )
     elif missing:
         what = f"; {NEED_ALL}" if set(missing) & set(FORCES) else ""

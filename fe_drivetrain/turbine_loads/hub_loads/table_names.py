@@ -47,7 +47,7 @@ def named_columns(
             raise InputError(
                 f"hub loads '{source}': columns {' and '.join(titles[k] for k in places)} could "
                 f"both be {name}: name the one that is meant, as in "
-                f"--channel '{name}={titles[places[0]]}'"
+                f"`ChannelMap(channels={{'{name}': '{titles[places[0]]}'}})`"
             )
         found |= dict.fromkeys(places, name)
     return found
