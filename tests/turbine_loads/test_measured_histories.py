@@ -132,6 +132,24 @@ def test_a_torque_of_the_generator_becomes_the_rotors_by_the_gearbox_ratio(tmp_p
         read_recorded(of_rotor, ChannelMap(gearbox_ratio=97.0), measured=True)
 
 
+def test_the_speed_of_the_generator_becomes_the_rotors(tmp_path: Path) -> None:
+    header = "time [s],GenTq [kN m],{} [rpm]"
+    for name in ("GenSpeed", "HSS speed", "n2"):
+        file = table(tmp_path / "a.csv", header.format(name), "0,1,970", "1,2,970", "2,3,485")
+        names = {"generator speed": "n2"} if name == "n2" else {}
+        turned = ChannelMap(channels=names, gearbox_ratio=97.0)
+        found = read_recorded(file, turned, measured=True)
+        assert found.rotor_speed == pytest.approx(np.pi / 30 * np.array([10.0, 10.0, 5.0]))
+        said = str(found.history.attributes["channels"])
+        assert f"rotor speed = {name} [rpm] over the gearbox ratio 97" in said
+        alone = read_recorded(file, ChannelMap(channels=names), measured=True)
+        assert alone.rotor_speed is None
+    both = "time [s],GenTq [kN m],GenSpeed [rpm],rotor speed [rpm]"
+    file = table(tmp_path / "b.csv", both, "0,1,970,9", "1,2,970,9", "2,3,485,9")
+    own = read_recorded(file, ChannelMap(gearbox_ratio=97.0), measured=True)
+    assert own.rotor_speed == pytest.approx(3 * [0.3 * np.pi])
+
+
 def test_torques_of_two_shafts_are_not_counted_together() -> None:
     time = np.arange(10.0)
     rotor = digest(Recorded(measured(time, 1e6 + time)), LoadOptions())

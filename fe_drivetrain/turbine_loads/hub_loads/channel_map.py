@@ -29,7 +29,7 @@ LOAD_NAMES = {
 }
 """What is read by `loads_from_channels`, and the name of OpenFAST that it is read under."""
 
-NAMES = (*LOAD_NAMES, "rotor speed", "wind speed")
+NAMES = (*LOAD_NAMES, "rotor speed", "generator speed", "wind speed")
 """What a channel of a file can be mapped as."""
 
 _ACROSS = ("Fy", "Fz", "My", "Mz")
@@ -58,7 +58,8 @@ class ChannelMap(BaseModel):
         is not the hub; of OpenFAST's LSSGagM channels, ShftGagL [m].
     gearbox_ratio : float or None
         Speed of the generator over that of the rotor: a torque that files have at the high-speed
-        shaft alone, as GenTq, becomes the rotor's Mx, without losses and inertia between.
+        shaft alone, as GenTq, becomes the rotor's Mx, without losses and inertia between, and a
+        speed of the generator alone that of the rotor.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import csv
 import os
-import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.csv_cells import cell_as_given
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import (
@@ -25,9 +22,9 @@ from fe_drivetrain.turbine_loads.hub_loads.channels import (
     Channel,
     existing_file,
     in_si,
-    not_utf8,
     without_unit,
 )
+from fe_drivetrain.turbine_loads.hub_loads.csv_columns import csv_channels, table_header
 from fe_drivetrain.turbine_loads.hub_loads.csv_table import is_of_point, point_loads, read_csv
 from fe_drivetrain.turbine_loads.hub_loads.files import SUFFIXES, files_of_patterns
 from fe_drivetrain.turbine_loads.hub_loads.histories import (
@@ -44,7 +41,6 @@ from fe_drivetrain.turbine_loads.hub_loads.openfast import (
 )
 from fe_drivetrain.turbine_loads.hub_loads.openfast_output import openfast_channels
 from fe_drivetrain.turbine_loads.hub_loads.point_loads import moved_moments
-from fe_drivetrain.turbine_loads.hub_loads.stamps import TimeColumn
 from fe_drivetrain.turbine_loads.hub_loads.table_names import TABLE_NAMES, named_columns
 
 SPEED_UNITS = {"rad/s": 1.0, "rpm": np.pi / 30.0, "deg/s": np.pi / 180.0}
@@ -55,6 +51,8 @@ KNOWN = {
     "wind speed": ("wind speed", "RtVAvgxh", "WindHubVelX", "Wind1VelX", "HorWindV", "WindVxi"),
 }
 """Channels beside the loads, and by which names files have them, the best first."""
+
+_GENERATOR_SPEEDS = ("generator speed", "GenSpeed", "HSS speed")
 
 _NOTHING_TURNED = ", nothing turned"
 
@@ -179,6 +177,7 @@ def read_recorded(
     history = _at_hub(history, mapping, own_names=not (is_table or loads_mapped))
     unread = [t for t in history.unread if without_unit(t).lower() not in wanted]
     history = replace(history, unread=tuple(unread))
+    history, named = _with_ratio(history, channels, named, mapping.gearbox_ratio)
     beside = _beside_loads(file, history, channels, named)
     others = {f"{c.name} [{c.unit.strip('()')}]": c.values for c in further}
     require_sound(f"hub loads '{file}'", history.time, others, even=not measured)
@@ -199,7 +198,8 @@ def read_recorded(
 
 def _wanted(mapping: ChannelMap, also: Sequence[str], is_table: bool) -> set[str]:
     """Names in lower case of channels that are looked for, beside OpenFAST's loads."""
-    beside_loads = [n.lower() for names in KNOWN.values() for n in names]
+    known = (*KNOWN.values(), _GENERATOR_SPEEDS)
+    beside_loads = [n.lower() for names in known for n in names]
     wanted = {*beside_loads, *(mapping.column(name)[0].lower() for name in mapping.channels)}
     wanted |= {name.lower() for name in also}
     if is_table and mapping.rotating:
@@ -232,6 +232,27 @@ def _beside_loads(
             found = {channel.name: beside[name]}
             require_sound(f"hub loads '{file}'", history.time, found, even=not history.measured)
     return beside
+
+
+def _with_ratio(
+    history: LoadHistory,
+    channels: Mapping[str, Channel],
+    named: dict[str, Channel],
+    ratio: float | None,
+) -> tuple[LoadHistory, dict[str, Channel]]:
+    """The rotor speed of a file that has that of the generator alone, and what was done."""
+    known = {*named, *channels}
+    if ratio is None or not known.isdisjoint(name.lower() for name in KNOWN["rotor speed"]):
+        return history, named
+    candidates = (channels.get(name.lower()) for name in _GENERATOR_SPEEDS)
+    of_generator = named.get("generator speed") or next((c for c in candidates if c), None)
+    if of_generator is None:
+        return history, named
+    title = f"{of_generator.name} [{of_generator.unit}]"
+    read = f"{_read_of(history)}; rotor speed = {title} over the gearbox ratio {ratio:g}"
+    speed = replace(of_generator, values=of_generator.values / ratio)
+    attributes = {**history.attributes, "channels": read}
+    return replace(history, attributes=attributes), {**named, "rotor speed": speed}
 
 
 def read_mapped(mapping: ChannelMap, path: Path, skip: float = 0.0) -> LoadHistory:
@@ -300,7 +321,7 @@ def _with_points(
     taken = {mapping.column(name)[0].lower() for name in mapping.channels}
     own = [c for key, c in channels.items() if key not in taken and is_of_point(c.name)]
     read_ones = {c.name for c in own}
-    unread = (title for title in _header(file)[1] if without_unit(title) not in read_ones)
+    unread = (title for title in table_header(file)[1] if without_unit(title) not in read_ones)
     history = replace(history, unread=tuple(unread))
     if not own:
         return history
@@ -392,88 +413,6 @@ def _of_fixed_frame(loads: Floats, angle: Floats) -> Floats:
     for y in (1, 4):
         turned[:, y], turned[:, y + 1] = turn_to_fixed(loads[:, y], loads[:, y + 1], angle)
     return turned
-
-
-def csv_channels(
-    file: Path,
-    wanted: Collection[str],
-    units: Collection[str] = (),
-    points: bool = False,
-    times: Collection[str] = (),
-) -> dict[str, Channel]:
-    """Columns of a table that have a unit, by their names in lower case.
-
-    Parameters
-    ----------
-    file : Path
-        A table with a header like ``time [s],thrust [kN]``; lines with # before it are left out.
-    wanted : collection of str
-        Names in lower case; other columns have no values, so that a large table is read in the
-        memory of what is used.
-    units : collection of str
-        Names of columns whose unit is known though their title has none.
-    points : bool
-        Whether columns like ``brake.Fz [kN]``, of loads at load points, are wanted, too.
-    times : collection of str
-        Names in lower case of columns that may be date-times, without a unit.
-
-    Raises
-    ------
-    InputError
-        A cell of a wanted column is not a number.
-    """
-    before, titles = _header(file)
-    found: dict[str, Channel] = {}
-    places: dict[str, int] = {}
-    stamps: dict[str, TimeColumn] = {}
-    bare = {name.lower() for name in units}.union(times)
-    for place, title in enumerate(titles):
-        match = re.fullmatch(r"\s*(.+?)\s*[\[(]\s*(.*?)\s*[\])]\s*", title)
-        if match is None and title.strip().lower() in bare:
-            match = re.fullmatch(r"\s*(.+?)()\s*", title)
-        if match is not None and match[1].lower() not in found:
-            found[match[1].lower()] = Channel(match[1], match[2], np.zeros(0))
-            if match[1].lower() in wanted or (points and is_of_point(match[1])):
-                places[match[1].lower()] = place
-                if match[1].lower() in times:
-                    stamps[match[1].lower()] = TimeColumn()
-    if not places:
-        return found
-    try:
-        values = np.loadtxt(
-            file,
-            delimiter=",",
-            skiprows=before,
-            usecols=list(places.values()),
-            converters={places[name]: read for name, read in stamps.items()} or None,
-            ndmin=2,
-            encoding="utf-8-sig",
-        )
-    except UnicodeDecodeError as error:
-        raise not_utf8("table", file) from error
-    except ValueError as error:
-        raise InputError(
-            f"table '{file}': {error}, counted below the header: correct the cell, or remove "
-            "the line"
-        ) from error
-    for name, column in zip(places, values.T, strict=True):
-        note = stamps[name].words if name in stamps else ""
-        found[name] = Channel(found[name].name, "s" if note else found[name].unit, column, note)
-    return found
-
-
-def _header(file: Path) -> tuple[int, list[str]]:
-    """The line of a table's header, from 1, and its titles."""
-    before, titles = 0, ""
-    try:
-        with file.open(encoding="utf-8-sig") as stream:
-            for before, line in enumerate(stream, 1):  # noqa: B007
-                if line.strip() and not line.startswith("#"):
-                    titles = line
-                    break
-    except UnicodeDecodeError as error:
-        raise not_utf8("table", file) from error
-    return before, [cell_as_given(title.strip()) for title in next(csv.reader([titles]), [])]
 
 
 def _named(
