@@ -282,6 +282,9 @@ def _spectra(
     """Spectra of all pieces, of samples at even times; NaN of loads that are not known."""
     shown = next((name for name in CAMPBELL if name in channels), next(iter(channels)))
     sampling = history.sampling
+    mean = None
+    if speed is not None and not sampling.regular:
+        mean = float(np.average(np.abs(speed), weights=np.full(len(speed), sampling.weights)))
     parts = []
     for piece in sampling.pieces:
         time, step = history.time[piece], sampling.steps.usual
@@ -294,7 +297,7 @@ def _spectra(
         else:
             own = {name: evenly(time, values, step) for name, values in own.items()}
             turning = None if turning is None else evenly(time, turning, step)
-        found = history_spectra(own, step, turning, shown)
+        found = history_spectra(own, step, turning, shown, mean)
         if found is not None:
             parts.append((found, len(time) * step))
     whole = joined_spectra(parts)

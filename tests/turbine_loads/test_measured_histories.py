@@ -81,6 +81,19 @@ def test_a_lone_torque_is_read_by_each_of_its_names(
         assert "0 s at 2024-03-01T12:00:00" in str(history.attributes["channels"])
 
 
+def test_columns_of_the_hub_beside_mapped_ones(tmp_path: Path) -> None:
+    header = "time [s],hub.Fx [kN],hub.Mx [kN m],Tq [kN m]"
+    file = table(tmp_path / "a.csv", header, "0,1,2,5", "1,2,3,6", "2,3,4,7")
+    for mapped, torque in (({}, [2e3, 3e3, 4e3]), ({"Mx": "Tq"}, [5e3, 6e3, 7e3])):
+        history = read_recorded(file, ChannelMap(channels=mapped), measured=True).history
+        assert history.component("Fx").tolist() == [1e3, 2e3, 3e3]
+        assert history.component("Mx").tolist() == torque
+        assert not history.at
+    twice = table(tmp_path / "b.csv", "time [s],Mx [N m],hub.Mx [N m]", "0,1,2", "1,2,3", "2,3,4")
+    with pytest.raises(InputError, match="column Mx is there twice"):
+        read_recorded(twice, measured=True)
+
+
 def test_date_times_count_across_midnight_in_mapped_columns(tmp_path: Path) -> None:
     file = table(
         tmp_path / "a.csv",
@@ -365,11 +378,12 @@ def test_windows_of_the_clock_leave_out_those_in_a_gap() -> None:
 def test_the_spectrum_of_uneven_samples_in_pieces_has_the_line_of_a_sine(
     rng: np.random.Generator,
 ) -> None:
-    """A sine of 0.3 Hz at 3P: its amplitude, of samples that jitter and miss twenty seconds."""
+    """A sine at 3P of the mean speed: its amplitude, of samples that jitter and miss 20 s."""
     time = np.sort(0.05 * np.arange(8000) + rng.uniform(-0.02, 0.02, 8000))
     time = time[(time < 150.0) | (time > 170.0)]
     torque = 5.0 * np.sin(2.0 * np.pi * 0.3 * time)
-    speed = np.full(len(time), 2.0 * np.pi * 0.1)
+    turning = np.where(time < 160.0, 0.1 - 0.01 * 230 / 150, 0.11)  # 150 s and 230 s
+    speed = 2.0 * np.pi * turning
     found = digest(Recorded(measured(time, torque), speed), LoadOptions())
     assert len(found.steps.gaps) == 1
     assert not found.steps.even

@@ -79,7 +79,11 @@ class HistorySpectra:
 
 
 def history_spectra(
-    channels: Mapping[str, Floats], step: float, rotor_speed: Floats | None, shown: str
+    channels: Mapping[str, Floats],
+    step: float,
+    rotor_speed: Floats | None,
+    shown: str,
+    mean_speed: float | None = None,
 ) -> HistorySpectra | None:
     """Spectra of a history; None of one shorter than half a segment, whose lines are too far apart,
     or of one with too few samples in a segment.
@@ -94,6 +98,9 @@ def history_spectra(
         [rad/s].
     shown : str
         The load of the Campbell diagram.
+    mean_speed : float, optional
+        Mean size of the rotor speed where this is a piece of a history, whose multiples count
+        [rad/s]; that of `rotor_speed` where left out.
     """
     if len(channels[shown]) * step < 0.5 * SEGMENT:
         return None  # lines would be wider apart than 1P and 3P may be
@@ -106,7 +113,7 @@ def history_spectra(
         return HistorySpectra(density, None, None, None)
     amplitudes = appears_at = None
     speed = np.abs(rotor_speed)
-    turning = float(speed.mean())
+    turning = float(speed.mean()) if mean_speed is None else mean_speed
     if turning > 0.0:
         rows = [multiples(s, turning, MULTIPLES) for s in spectra]
         amplitudes = np.array(

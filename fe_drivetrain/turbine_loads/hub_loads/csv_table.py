@@ -42,7 +42,7 @@ from fe_drivetrain.turbine_loads.hub_loads.histories import (
     require_sound,
 )
 from fe_drivetrain.turbine_loads.hub_loads.stamps import EXAMPLE, TimeColumn
-from fe_drivetrain.turbine_loads.hub_loads.table_names import named_columns
+from fe_drivetrain.turbine_loads.hub_loads.table_names import HUB, named_columns
 
 _CSV_COLUMNS = ("time", *FORCES)
 _TABLES = (FORCE_UNITS,) * 3 + (MOMENT_UNITS,) * 3
@@ -362,7 +362,9 @@ def _wanted(title: str) -> str | None:
     point, dot, component = title.rpartition(".")
     known = {name.lower(): name for name in (FORCES if point else _CSV_COLUMNS)}
     name = known.get(component.lower())
-    return None if name is None or (dot and not point) else f"{point}{dot}{name}"
+    if name is None or (dot and not point) or f"{point.lower()}{dot}" == HUB:
+        return None
+    return f"{point}{dot}{name}"
 
 
 def _number_or_text(text: str) -> Attribute:

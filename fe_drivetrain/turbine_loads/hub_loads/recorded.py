@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import (
@@ -41,7 +42,7 @@ from fe_drivetrain.turbine_loads.hub_loads.openfast import (
 )
 from fe_drivetrain.turbine_loads.hub_loads.openfast_output import openfast_channels
 from fe_drivetrain.turbine_loads.hub_loads.point_loads import moved_moments
-from fe_drivetrain.turbine_loads.hub_loads.table_names import TABLE_NAMES, named_columns
+from fe_drivetrain.turbine_loads.hub_loads.table_names import HUB, TABLE_NAMES, named_columns
 
 SPEED_UNITS = {"rad/s": 1.0, "rpm": np.pi / 30.0, "deg/s": np.pi / 180.0}
 WIND_UNITS = {"m/s": 1.0}
@@ -207,6 +208,7 @@ def _wanted(mapping: ChannelMap, also: Sequence[str], is_table: bool) -> set[str
     if is_table and mapping.loads_mapped:
         wanted |= {name.lower() for name in LOAD_NAMES} | LOAD_CHANNELS
         wanted |= {name for names in TABLE_NAMES.values() for name in names}
+        wanted |= {f"{HUB}{name.lower()}" for name in FORCES}
     return wanted
 
 

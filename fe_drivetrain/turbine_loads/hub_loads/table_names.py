@@ -8,10 +8,13 @@ from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import HIGH_SPEED_TORQUE
 
+HUB = "hub."
+"""May stand before a component, as it does before those of a load point its name."""
+
 TABLE_NAMES: dict[str, tuple[str, ...]] = {
     "time": ("timestamp", "time stamp", "datetime", "date-time"),
-    **{name: (f"hub.{name.lower()}",) for name in FORCES},
-    "Mx": ("hub.mx", "torque", "rotor torque", "rottorq", "lsshfttq"),
+    **dict.fromkeys(FORCES, ()),
+    "Mx": ("torque", "rotor torque", "rottorq", "lsshfttq"),
     HIGH_SPEED_TORQUE: ("hss torque", "generator torque", "gentq", "hsshfttq"),
 }
 """Other names of a column, in lower case, where none has its own name."""
@@ -41,7 +44,7 @@ def named_columns(
     for name, others in TABLE_NAMES.items():
         if name in given:
             continue
-        own = [k for k, title in enumerate(lower) if title == name.lower()]
+        own = [k for k, title in enumerate(lower) if title.removeprefix(HUB) == name.lower()]
         places = own or [k for k, title in enumerate(lower) if title in others]
         if len(places) > 1 and not own:
             raise InputError(
