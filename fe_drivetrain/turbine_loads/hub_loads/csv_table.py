@@ -340,8 +340,9 @@ def _require_columns(file: Path, columns: Collection[str], measured: bool) -> No
     if measured:
         if "time" in missing:
             raise InputError(
-                f"hub loads '{file}': no column time; give one, like 'time [s]', or one of "
-                f"date-times like {EXAMPLE}"
+                f"hub loads '{file}': no column time; give one, like 'time [s]' or of "
+                f"date-times like {EXAMPLE}, or map yours, as in "
+                "`ChannelMap(channels={'time': 'Timestamp'})`"
             )
         if set(FORCES) <= set(missing):
             raise InputError(
