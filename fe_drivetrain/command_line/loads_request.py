@@ -35,8 +35,8 @@ class LoadsRequest:
         typer.Argument(
             metavar="FILES",
             help="Hub loads, all six or some, as a torque alone: files (.out, .outb of OpenFAST, "
-            "or .csv), folders, or patterns in quotes, as in 'outputs/**/*.outb'. Lengths and steps "
-            "may differ.",
+            "or .csv), folders, or patterns in quotes, as in 'outputs/**/*.outb'. Lengths and "
+            "steps may differ.",
         ),
     ]
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Result folder.")] = Path(

@@ -395,3 +395,25 @@ def test_the_spectrum_of_uneven_samples_in_pieces_has_the_line_of_a_sine(
     assert np.isnan(found.spectra.density[FORCES.index("My")]).all()
     power = found.spectra.density[TORQUE].sum() / 60.0
     assert power == pytest.approx(12.5, rel=0.02)  # half of the square of the amplitude
+
+
+def test_spectra_of_pieces_are_their_mean_by_time(rng: np.random.Generator) -> None:
+    """Pieces of 120 s and 240 s at two speeds: a third and two thirds, three and seven segments."""
+    time = np.concatenate([0.1 * np.arange(1200), 500.0 + 0.1 * np.arange(2400)])
+    torque = rng.standard_normal(3600)
+    speed = np.repeat([1.01, 1.26], [1200, 2400])
+    parts = [slice(0, 1200), slice(1200, 3600), slice(0, 3600)]
+    one, other, both = (
+        digest(Recorded(measured(time[p], torque[p]), speed[p]), LoadOptions()).spectra
+        for p in parts
+    )
+    assert one is not None
+    assert other is not None
+    assert both is not None
+    mean = (one.density[TORQUE] + 2.0 * other.density[TORQUE]) / 3.0
+    np.testing.assert_allclose(both.density[TORQUE], mean, rtol=1e-9)
+    assert both.by_speed is not None
+    assert both.by_speed.segments.tolist() == [3.0, 7.0]
+    assert both.by_speed.classes.tolist() == [20.0, 25.0]  # of 0.05 rad/s
+    assert one.by_speed is not None
+    np.testing.assert_allclose(both.by_speed.density[0], one.by_speed.density[0], rtol=1e-9)
