@@ -19,6 +19,7 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
     "loads": (
         "'outputs/*.outb' --site class-II --open",
         "mine.csv --against 'others/*.csv'",
+        "torque.csv --channel 'Mx=Main shaft torque' --rotor-speed 12",
     ),
     "life": (
         "two_bearings --loads 'outputs/*.outb' --site class-II",
