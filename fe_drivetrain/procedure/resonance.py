@@ -9,11 +9,12 @@ energy of the mode.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
+from scipy.optimize import brentq
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
@@ -74,7 +75,9 @@ class Excitation:
         return np.inf if self.fixed else crossing_speed(frequency, self.per_turn)
 
 
-def drivetrain_excitations(stages: Iterable[Geared], blades: int = 3) -> tuple[Excitation, ...]:
+def drivetrain_excitations(
+    stages: Iterable[Geared], blades: int = 3, passings: int = 2
+) -> tuple[Excitation, ...]:
     """Blade passing, imbalance of shafts, planets passing, meshes up to 3x and their sidebands.
 
     Imbalance of brake disc, coupling and generator is once a turn of the generator. Frequencies of
@@ -88,6 +91,8 @@ def drivetrain_excitations(stages: Iterable[Geared], blades: int = 3) -> tuple[E
         register.
     blades : int
         Number of blades of the rotor.
+    passings : int
+        Number of multiples of blade passing: 2 of 3P and 6P.
 
     Returns
     -------
@@ -99,7 +104,7 @@ def drivetrain_excitations(stages: Iterable[Geared], blades: int = 3) -> tuple[E
     orders = mesh_orders(given)
     found = [
         Excitation("1P", 1.0, (ROTOR,)),
-        *(Excitation(f"{k * blades}P", float(k * blades), (ROTOR,)) for k in (1, 2)),
+        *(Excitation(f"{k * blades}P", float(k * blades), (ROTOR,)) for k in range(1, passings + 1)),
     ]
     speed = 1.0
     for number, stage in enumerate(given, start=1):
@@ -181,6 +186,7 @@ def resonances(
     speeds: tuple[float, float],
     near: float = NEAR,
     moved: float = MOVED,
+    turning: Callable[[float], Floats] | None = None,
 ) -> list[Meeting]:
     """All excitations against all modes.
 
@@ -197,6 +203,9 @@ def resonances(
         Margin below which a mode is near.
     moved : float
         Share below which a mode is not excited.
+    turning : callable, optional
+        Frequencies (n,) of the modes [Hz] at a speed of the rotor [rad/s], where spinning bodies
+        change them; those of ``modes`` at any speed where left out.
 
     Returns
     -------
@@ -219,7 +228,10 @@ def resonances(
     for excitation in excitations:
         shares = _shares(excitation, known)
         for number, m in enumerate(moving, start=1):
-            frequency, share = float(modes.frequencies[m]), float(shares[m])
+            share = float(shares[m])
+            frequency = float(modes.frequencies[m])
+            if turning is not None:
+                frequency = _where_met(excitation, m, speeds, turning)
             crossing = excitation.crossing(frequency)
             if low <= crossing <= high:
                 margin = 0.0
@@ -239,6 +251,23 @@ def resonances(
                 Meeting(excitation.name, number, frequency, crossing, margin, share, verdict)
             )
     return found
+
+
+def _where_met(
+    excitation: Excitation,
+    mode: int,
+    speeds: tuple[float, float],
+    turning: Callable[[float], Floats],
+) -> float:
+    """Frequency of a mode [Hz] where an excitation meets it, else at the end that is nearer."""
+
+    def apart(speed: float) -> float:
+        return excitation.frequency(speed) - float(turning(speed)[mode])
+
+    ends = [apart(speed) for speed in speeds]
+    if ends[0] * ends[1] > 0.0:
+        return float(turning(speeds[int(np.argmin(np.abs(ends)))])[mode])
+    return excitation.frequency(float(brentq(apart, *speeds)))
 
 
 def _shares(excitation: Excitation, known: Mapping[str, Floats]) -> Floats:

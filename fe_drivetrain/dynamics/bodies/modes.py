@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy import linalg
+from scipy.optimize import linear_sum_assignment
 
-from fe_drivetrain.common.arrays import Bools, Floats
+from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
@@ -220,6 +221,35 @@ def turning_modes(system: System, speed: float = 0.0, damped: bool = True) -> Tu
         np.asarray(shapes / np.linalg.norm(shapes, axis=0), dtype=np.complex128),
         np.sort(np.asarray(real, dtype=np.float64)),
     )
+
+
+def likest_modes(system: System, modes: SystemModes, turning: TurningModes) -> Ints:
+    """For each mode at rest the number of the mode of the turning system that is most like it.
+
+    Each is taken once, so that the likeness of all pairs, by the mass, is the largest in sum.
+
+    Parameters
+    ----------
+    system : System
+        System of both.
+    modes : SystemModes
+        Modes (n,) at rest.
+    turning : TurningModes
+        Modes at a speed.
+
+    Returns
+    -------
+    ndarray, (n,)
+        -1 of motions without frequency, and where there is none left.
+    """
+    moving = np.flatnonzero(modes.frequencies > 0.0)
+    weighted = system.mass @ turning.shapes
+    sizes = np.einsum("ij,ij->j", turning.shapes.conj(), weighted).real
+    likeness = np.abs(modes.shapes[:, moving].T @ weighted) ** 2 / sizes
+    found = np.full(len(modes.frequencies), -1)
+    rows, columns = linear_sum_assignment(likeness, maximize=True)
+    found[moving[rows]] = columns
+    return found
 
 
 def divergence_speeds(system: System) -> Floats:
