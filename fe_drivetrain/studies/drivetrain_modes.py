@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import ClassVar
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
@@ -21,9 +21,6 @@ from fe_drivetrain.studies.mode_parts import described
 from fe_drivetrain.studies.mode_record import Modes
 from fe_drivetrain.studies.mode_speeds import in_operation
 from fe_drivetrain.studies.result import Result
-
-Generator = Literal["free", "held"]
-"""Whether the generator turns freely, or is held as by a locked rotor."""
 
 SHOWN = 16
 """Number of modes that are described, and whose shapes are kept."""
@@ -59,7 +56,7 @@ def modes(
     drivetrain: Machine,
     *,
     level: str | None = None,
-    generator: Generator = "free",
+    generator: str = "free",
     speeds: tuple[float, float] | None = None,
     speed: float | None = None,
     blades: int = 3,

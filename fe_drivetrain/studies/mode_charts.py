@@ -20,28 +20,29 @@ CAMPBELL = (
 )
 FREQUENCIES = "Natural frequencies at rest, by the direction in which most moves"
 _POINTS = 25  # of a straight line on a logarithmic axis
+_ROOM = 0.07  # that a name needs, over the height of the chart
 _GREY = "#767676"
 
-#: How excitations go together in the legend, by what their name ends or has in it.
-_FAMILIES = (
-    ("multiples of 1P", "#d55e00"),
-    ("planets passing", "#cc79a7"),
-    ("shafts and generator", "#e69f00"),
-    ("meshes, harmonics and sidebands", "#56b4e9"),
-    ("fixed frequencies", "#882255"),
-)
+#: How excitations go together in the legend, and their colours.
+_FAMILIES = {
+    "rotor": "#d55e00",
+    "planets passing": "#cc79a7",
+    "shafts": "#e69f00",
+    "meshes": "#56b4e9",
+    "fixed": "#882255",
+}
 
 
 def family(excitation: Excitation) -> str:
     """Kind of an excitation, as the legend has it."""
     name = excitation.name
     if excitation.fixed:
-        return "fixed frequencies"
+        return "fixed"
     if excitation.at == ("rotor",):
-        return "multiples of 1P"
+        return "rotor"
     if name.endswith("planets passing"):
         return "planets passing"
-    return "meshes, harmonics and sidebands" if " mesh " in name else "shafts and generator"
+    return "meshes" if " mesh " in name else "shafts"
 
 
 def campbell_chart(modes: Modes) -> Chart:
@@ -55,10 +56,12 @@ def campbell_chart(modes: Modes) -> Chart:
     if modes.campbell is None or modes.speeds is None:
         raise ValueError("these modes have no speeds: draw their frequencies")
     last = float(modes.campbell.speeds[-1])
-    lowest = 0.6 * float(modes.frequencies[0])
+    first = float(modes.frequencies[0])
+    # once a turn at the largest speed is in it
+    lowest = min(0.6 * first, 0.4 * modes.speeds[1] / np.pi)
     highest = max([one.frequency(last) for one in modes.excitations], default=0.0)
-    highest = max(highest, 2.0 * float(modes.frequencies[0]))
-    traces = [*_excitations(modes.excitations, last, lowest)]
+    highest = max(highest, 2.0 * first)
+    traces = _excitations(modes.excitations, last, lowest, highest)
     traces += _curves(modes, highest)
     traces += _crossings(modes)
     low, high = (speed * RPM for speed in modes.speeds)
@@ -69,7 +72,7 @@ def campbell_chart(modes: Modes) -> Chart:
         "frequency [Hz]",
         ("y",),
         (low, high),
-        x_range=(0.0, last * RPM),
+        x_range=(0.6 * low, last * RPM),
         y_range=(lowest, 1.3 * highest),
     )
     found.figure["layout"]["height"] = 560
@@ -87,7 +90,9 @@ def frequency_chart(modes: Modes) -> Chart:
     return chart(FREQUENCIES, traces, "number of the mode", "frequency [Hz]", ("y",))
 
 
-def _excitations(every: Iterable[Excitation], last: float, lowest: float) -> list[Any]:
+def _excitations(
+    every: Iterable[Excitation], last: float, lowest: float, highest: float
+) -> list[Any]:
     """A trace for each family, whose lines have gaps between them, and names at their ends."""
     lines: dict[str, dict[str, list[Any]]] = {}
     ends: list[tuple[float, str]] = []
@@ -95,7 +100,7 @@ def _excitations(every: Iterable[Excitation], last: float, lowest: float) -> lis
         top = one.frequency(last)
         if top <= lowest:
             continue
-        first = 0.0 if one.fixed else last * lowest / top
+        first = 0.0 if one.fixed else 0.8 * last * lowest / top
         speeds = np.linspace(first, last, _POINTS)
         line = lines.setdefault(family(one), {"x": [], "y": [], "text": []})
         line["x"] += [*rounded(speeds * RPM), None]
@@ -110,17 +115,17 @@ def _excitations(every: Iterable[Excitation], last: float, lowest: float) -> lis
             "line": {"color": colour, "width": 1.2},
             "hoverinfo": "text+x+y",
         }
-        for name, colour in _FAMILIES
+        for name, colour in _FAMILIES.items()
         if name in lines
     ]
-    return [*found, _names(ends, last)]
+    return [*found, _names(ends, last, (highest / lowest) ** _ROOM)]
 
 
-def _names(ends: list[tuple[float, str]], last: float) -> dict[str, Any]:
-    """Names at the ends of lines, of those that stand apart on a logarithmic axis."""
+def _names(ends: Iterable[tuple[float, str]], last: float, apart: float) -> dict[str, Any]:
+    """Names at the ends of lines, of as many as have room; the first that come are kept."""
     shown: list[tuple[float, str]] = []
-    for top, name in sorted(ends):
-        if not shown or top > 1.12 * shown[-1][0]:
+    for top, name in ends:
+        if all(max(top / other, other / top) > apart for other, _ in shown):
             shown.append((top, name))
     return {
         **trace("", [last * RPM] * len(shown), [top for top, _ in shown], mode="text"),
@@ -156,9 +161,9 @@ def _curves(modes: Modes, highest: float) -> list[Any]:
 def _crossings(modes: Modes) -> list[Any]:
     """Where excitations meet modes: those that can be excited, and the rest."""
     rest = [one for one in modes.meetings if one.margin == 0.0 and one.verdict == "not excited"]
-    small = _points("crossings without excitation", rest)
+    small = _points("crossing, not excited", rest)
     small["marker"] = {"symbol": "circle-open", "size": 6, "color": _GREY}
-    met = _points("crossings that can be excited", modes.resonances)
+    met = _points("crossing, excited", modes.resonances)
     # the more of the mode's energy is where the excitation acts, the larger
     met["marker"] |= {"size": rounded([6 + 10 * one.share for one in modes.resonances])}
     return [one for one in (small, met) if one["x"]]

@@ -19,6 +19,8 @@ FIRST = "first torsional frequency [Hz]"
 QUESTION = "Where are the drivetrain's natural frequencies, and what excites them in operation?"
 JUDGED = 3
 """Number of multiples of 1P that the first torsional mode must be apart from: 1P, 3P and 6P."""
+SMALL = 1e-4
+"""Band over the value below which four digits are certain."""
 ROUND_OFF = 1e-6
 """Of sums of energy: free motions and all others come of one solution."""
 
@@ -178,18 +180,23 @@ def _key_figures(found: Findings, modes: Modes) -> list[KeyFigure]:
     """What answers first."""
     first, figures = modes.torsional, []
     if first is not None:
-        figures.append(found.judged(FIRST.partition(" [")[0]))
+        figures.append(_frequency(found, FIRST.partition(" [")[0]))
     if first != 0:
-        lowest = found.judged("mode 1")
-        name = f"lowest frequency, {modes.kinds[0]}"
-        figures.append(lowest.model_copy(update={"name": name}))
+        figures.append(_frequency(found, "mode 1", f"lowest frequency, {modes.kinds[0]}"))
     if modes.speeds is not None:
         figures += _in_operation(found, modes)
     change = _change(modes)
-    if change is not None and modes.speed is not None:
+    if change is not None and modes.speed is not None and change > 0.01:
         name = f"largest change of a frequency by turning at {modes.speed * RPM:.4g} rpm [%]"
         figures.append(found.value(name, change))
     return [*figures, *_of_levels(found, modes)][:6]
+
+
+def _frequency(found: Findings, quantity: str, name: str = "") -> KeyFigure:
+    """A frequency as a key figure; a band below the digits that are shown is left to the table."""
+    figure = found.judged(quantity, name)
+    small = figure.band is not None and figure.band < SMALL * figure.value
+    return figure.model_copy(update={"band": None}) if small else figure
 
 
 def _in_operation(found: Findings, modes: Modes) -> list[KeyFigure]:
@@ -244,7 +251,6 @@ def _of_levels(found: Findings, modes: Modes) -> list[KeyFigure]:
 def _verdict(modes: Modes, first: KeyFigure) -> str:
     """Say where the first mode is, and what meets modes in operation."""
     which = "lowest" if modes.torsional is None else "first torsional"
-    # what a band of elements leaves certain is more than a model of rigid bodies is worth
     begins = f"The {which} mode is at {formatted(first.value, 4)}\u00a0Hz"
     if modes.speeds is None:
         if modes.torsional in (None, 0):

@@ -146,7 +146,8 @@ def campbell(system: System, modes: SystemModes, speeds: Sequence[float]) -> Cam
         frequencies = np.where(modes.frequencies > 0.0, np.nan, 0.0)
         damping = np.zeros_like(frequencies)
         frequencies[known] = turning.frequencies[of[known]]
-        damping[known] = turning.ratios[of[known]]
+        if system.damping.any():
+            damping[known] = turning.ratios[of[known]]
         rows.append(frequencies)
         ratios.append(damping)
     return Campbell(np.array([0.0, *speeds]), np.array(rows), np.array(ratios))
