@@ -43,6 +43,7 @@ OPTIONS: Mapping[str, str] = {
     "rotor_speed_rpm": "--rotor-speed",
     "site": "--site",
     "slopes": "--slope",
+    "speeds": "--speeds",
     "supply": "--supply",
     "support": "--support",
     "temperature": "--temperature",

@@ -104,7 +104,10 @@ def drivetrain_excitations(
     orders = mesh_orders(given)
     found = [
         Excitation("1P", 1.0, (ROTOR,)),
-        *(Excitation(f"{k * blades}P", float(k * blades), (ROTOR,)) for k in range(1, passings + 1)),
+        *(
+            Excitation(f"{k * blades}P", float(k * blades), (ROTOR,))
+            for k in range(1, passings + 1)
+        ),
     ]
     speed = 1.0
     for number, stage in enumerate(given, start=1):

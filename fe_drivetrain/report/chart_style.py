@@ -10,7 +10,6 @@ from markupsafe import Markup
 from fe_drivetrain.plots.style import is_number, styled
 from fe_drivetrain.report.results import Chart, Image, Solid
 
-
 SWING = "swing"
 """Key of a figure with a trace that can swing: its number under "trace", its points at rest "x" and
 "y", and how far they swing, "dx" and "dy"."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-
 import numpy as np
 
 from fe_drivetrain.dynamics import Level, Machine
@@ -19,6 +18,12 @@ FIRST = "first torsional frequency [Hz]"
 QUESTION = "Where are the drivetrain's natural frequencies, and what excites them in operation?"
 JUDGED = 3
 """Number of multiples of 1P that the first torsional mode must be apart from: 1P, 3P and 6P."""
+SAID = 5
+"""Number of crossings that are told in words, the strongest first."""
+LOW = 100.0
+"""Frequency below which modes are counted [Hz]."""
+LEAST_ERROR = 1e-3
+"""Error of a level that is stated as a key figure, at least [%]."""
 SMALL = 1e-4
 """Band over the value below which four digits are certain."""
 ROUND_OFF = 1e-6
@@ -44,6 +49,8 @@ def state_modes(found: Findings, machine: Machine, modes: Modes, shown: int) -> 
         found.found(FIRST, float(modes.frequencies[first]), band_of(modes, first))
     for k in range(min(shown, len(modes.frequencies))):
         found.found(f"mode {k + 1} [Hz]", float(modes.frequencies[k]), band_of(modes, k))
+    for one in modes.resonances[:SAID]:
+        found.say(_met(one, modes))
     _check_energy(found, modes)
     _tables(found, modes, shown)
     _notes(found, machine, modes)
@@ -79,6 +86,17 @@ def crossing_row(one: Meeting, modes: Modes) -> Record:
         "share of the mode's energy [%]": 100.0 * one.share,
         "verdict": one.verdict,
     }
+
+
+def _met(one: Meeting, modes: Modes) -> str:
+    """A crossing in a sentence."""
+    at = f"at {formatted(one.crossing * RPM, 3)}\u00a0rpm"
+    return (
+        f"{one.excitation} meets mode {one.mode} ({modes.words[one.mode - 1].partition(';')[0]}) "
+        f"{at if np.isfinite(one.crossing) else 'at any speed'}, "
+        f"{formatted(one.frequency, 4)}\u00a0Hz; it acts where {100.0 * one.share:.0f}\u00a0% of "
+        "the mode's energy is."
+    )
 
 
 def mode_rows(modes: Modes, shown: int) -> list[Record]:
@@ -189,7 +207,11 @@ def _key_figures(found: Findings, modes: Modes) -> list[KeyFigure]:
     if change is not None and modes.speed is not None and change > 0.01:
         name = f"largest change of a frequency by turning at {modes.speed * RPM:.4g} rpm [%]"
         figures.append(found.value(name, change))
-    return [*figures, *_of_levels(found, modes)][:6]
+    figures += _of_levels(found, modes)
+    below = int((modes.frequencies < LOW).sum())
+    figures.append(found.value(f"modes below {LOW:g} Hz", below))
+    figures.append(found.value("modes of the model", len(modes.frequencies)))
+    return figures[:6]
 
 
 def _frequency(found: Findings, quantity: str, name: str = "") -> KeyFigure:
@@ -242,6 +264,8 @@ def _of_levels(found: Findings, modes: Modes) -> list[KeyFigure]:
         value = answer.values[name]
         if value is not None and best is not None:
             error = 100.0 * abs(value / best - 1.0)
+            if error < LEAST_ERROR:
+                continue
             words = f"error of the level {answer.name} in that frequency [%]"
             limit = 100.0 * modes.tolerance
             figures.append(found.value(words, error, beside=limit, by="tolerance"))
@@ -265,5 +289,3 @@ def _verdict(modes: Modes, first: KeyFigure) -> str:
     at = "always" if met[0].crossing == np.inf else f"at {met[0].crossing * RPM:.3g}\u00a0rpm"
     count = f"{len(met)} crossing{'s' * (len(met) > 1)}"
     return f"{begins}; {over} {count} can be excited, strongest {met[0].excitation} {at}."
-
-

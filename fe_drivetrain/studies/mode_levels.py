@@ -196,7 +196,7 @@ def level_bands(
     finest = Asked(machine, RUNGS[-1], load, held)
     frequencies = own.modes.frequencies[own.modes.frequencies > 0.0]
     best = finest.modes.frequencies[finest.modes.frequencies > 0.0]
-    for k, band in enumerate(finest_bands):
+    for k, band in enumerate(finest_bands[: len(best)]):
         like = like_mode(finest, k + 1)(own)
         if like is None:
             continue

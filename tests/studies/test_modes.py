@@ -1,0 +1,266 @@
+"""Modes of a drivetrain: frequencies by hand, energy, crossings, levels, bands, command and page."""
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fe_drivetrain.command_line import main
+from fe_drivetrain.common import InputError
+from fe_drivetrain.dynamics import (
+    Level,
+    Machine,
+    Operation,
+    ladder,
+    library_machine,
+    machine_system,
+    system_modes,
+    torsional_frequency,
+)
+from fe_drivetrain.pages.mode_shapes import shape_charts
+from fe_drivetrain.procedure import Excitation, drivetrain_excitations, resonances
+from fe_drivetrain.studies.drivetrain_modes import ModesResult, modes
+
+RPM = math.pi / 30.0
+ROTOR, GENERATOR, SHAFT = 4e6, 9e5, 2e8  # kg m^2, kg m^2, N m/rad
+RANGE = (4.0 * RPM, 40.0 * RPM)
+
+
+def two_inertias(**changes: Any) -> Machine:
+    """Rotor and generator on a shaft, without a gearbox."""
+    values: dict[str, Any] = {
+        "title": "direct drive",
+        "rotor": {"inertia": ROTOR, "mass": 5e4},
+        "shafts": [{"name": "main", "length": 2.0, "torsion": SHAFT}],
+        "generator": {"inertia": GENERATOR},
+        "bearings": [{"name": "front", "holds": "rotor", "stiffness": [1e9] * 3 + [0, 1e9, 1e9]}],
+    }
+    return Machine.model_validate({**values, **changes})
+
+
+def three_inertias() -> Machine:
+    """Rotor with a gear on it, pinion, and generator on a shaft."""
+    return Machine.model_validate(
+        {
+            "title": "one stage",
+            "rotor": {"inertia": ROTOR, "mass": 1e4},
+            "shafts": [
+                {"name": "hub", "length": 0.5, "kind": "rigid"},
+                {"name": "fast", "length": 1.0, "torsion": 3e7},
+            ],
+            "stages": [
+                {
+                    "kind": "parallel",
+                    "teeth": [100, 20],
+                    "centre_distance": 1.2,
+                    "face_width": 0.3,
+                    "stiffness_of": "line",
+                    "stiffness": 4e8,
+                    "gear": {"inertia": 3e3, "mass": 6e3},
+                    "pinion": {"inertia": 40.0, "mass": 400.0},
+                }
+            ],
+            "generator": {"inertia": 2e4},
+            "bearings": [
+                {"name": "front", "holds": "stage 1 gear", "stiffness": [1e9] * 3 + [0, 1e9, 1e9]},
+                {"name": "rear", "holds": "stage 1 pinion", "stiffness": [1e9] * 3 + [0, 1e8, 1e8]},
+            ],
+        }
+    )
+
+
+@pytest.fixture(scope="module")
+def geared() -> ModesResult:
+    return modes(library_machine("synthetic_2mw"), speeds=(8.0 * RPM, 18.1 * RPM))
+
+
+def test_two_inertias_by_hand() -> None:
+    found = modes(two_inertias(), level="torsional", speeds=RANGE)
+    by_hand = math.sqrt(SHAFT * (1 / ROTOR + 1 / GENERATOR)) / (2 * math.pi)
+    assert found.level is Level.TORSIONAL
+    assert found.frequencies == pytest.approx([by_hand], rel=1e-12)
+    assert found["first torsional frequency"].computed == found.frequencies[0]
+    assert found.kinetic["rotor"] == pytest.approx(GENERATOR / (ROTOR + GENERATOR))
+    assert found.strain["shaft main"] == pytest.approx([1.0])
+    assert found.words == (
+        "turning of the generator (82\u00a0%); 100\u00a0% of the strain in shaft main",
+    )
+
+
+def test_a_held_generator_by_hand() -> None:
+    found = modes(two_inertias(), level="torsional", generator="held")
+    assert found.frequencies == pytest.approx([math.sqrt(SHAFT / ROTOR) / (2 * math.pi)])
+    assert found.kinetic["rotor"] == pytest.approx([1.0])
+
+
+def test_three_inertias_by_hand() -> None:
+    found = modes(three_inertias(), level="torsional")
+    ratio, base = 5.0, 1.0 * math.cos(math.radians(20.0))
+    J = ROTOR + 3e3, 40.0 * ratio**2, 2e4 * ratio**2
+    k1, k2 = 4e8 * base**2, 3e7 * ratio**2
+    b = k1 / J[0] + (k1 + k2) / J[1] + k2 / J[2]
+    c = k1 * k2 * sum(J) / math.prod(J)
+    squares = np.roots([1.0, -b, c])
+    assert found.frequencies == pytest.approx(np.sort(np.sqrt(squares)) / (2 * math.pi), rel=1e-9)
+
+
+def test_energies_are_all_of_it_at_every_level(geared: ModesResult) -> None:
+    machine = library_machine("synthetic_2mw")
+    for found in (geared, *(modes(machine, level=level) for level in ("torsional", "rigid"))):
+        for parts in (found.kinetic, found.strain):
+            assert sum(parts.values()) == pytest.approx(np.ones(len(found.frequencies)), abs=1e-9)
+    assert {"rotor", "stage 1 planets", "stage 3 pinion", "generator"} <= geared.kinetic.keys()
+    springs = {"shaft LSS", "stage 1 sun meshes", "stage 1 planet bearings", "bearing PLC-A"}
+    assert springs <= geared.strain.keys()
+
+
+def test_crossings_by_hand() -> None:
+    found = modes(two_inertias(), level="torsional", speeds=RANGE)
+    frequency = float(found.frequencies[0])
+    met = {one.excitation: one.crossing / RPM for one in found.meetings if one.margin == 0.0}
+    wanted = {f"{k}P": 60.0 * frequency / k for k in (3, 6, 9)}
+    wanted |= {"generator 2x": 30.0 * frequency}
+    inside = {name: speed for name, speed in wanted.items() if 4.0 <= speed <= 40.0}
+    assert len(inside) > 1
+    assert met == pytest.approx(inside)
+    assert {one.excitation for one in found.resonances} == inside.keys()
+    (margin,) = [one for one in found.meetings if one.excitation == "1P"]
+    assert margin.margin == pytest.approx(1.0 - 40.0 / 60.0 / frequency)
+
+
+def test_a_fixed_frequency_meets_a_mode_at_any_speed() -> None:
+    frequency = float(modes(two_inertias(), level="torsional").frequencies[0])
+    grid = [Excitation(name, 0.0, ("generator",), f) for name, f in (("at", 1.0), ("off", 1.2))]
+    tuned = [Excitation(one.name, 0.0, one.at, one.fixed * frequency) for one in grid]
+    found = modes(two_inertias(), level="torsional", speeds=RANGE, excitations=tuned)
+    verdicts = {one.excitation: one.verdict for one in found.meetings}
+    assert (verdicts["at"], verdicts["off"]) == ("resonance", "clear")
+
+
+def test_crossings_of_whirling_modes_are_on_their_curves(geared: ModesResult) -> None:
+    assert geared.campbell is not None
+    backward, forward = geared.running[0], geared.running[1]
+    assert backward < geared.frequencies[0] < geared.frequencies[1] < forward
+    orders = {one.name: one.per_turn for one in geared.excitations}
+    met = [one for one in geared.meetings if one.margin == 0.0]
+    assert len(met) > 20
+    for one in met:
+        on_curve = geared.campbell.at(one.crossing)[one.mode - 1]
+        assert one.frequency == pytest.approx(on_curve, rel=1e-9)
+        assert orders[one.excitation] * one.crossing / (2 * math.pi) == pytest.approx(on_curve)
+
+
+def test_without_turning_the_register_is_that_of_the_modes_at_rest() -> None:
+    machine = library_machine("synthetic_2mw")
+    at_rest = system_modes(machine_system(machine))
+    every = drivetrain_excitations(machine.stages)
+    plain = resonances(every, at_rest, RANGE)
+    same = resonances(every, at_rest, RANGE, turning=lambda _: at_rest.frequencies)
+    assert [one.verdict for one in same] == [one.verdict for one in plain]
+    for key in ("frequency", "crossing", "margin"):
+        numbers = ([getattr(one, key) for one in of] for of in (same, plain))
+        assert next(numbers) == pytest.approx(next(numbers), abs=1e-9)
+
+
+def test_levels_are_those_of_the_ladder() -> None:
+    machine = library_machine("nrel_5mw")
+    found = modes(machine, level="torsional")
+    known = ladder(machine, Operation(0.0), questions={"f": torsional_frequency(1)})
+    name = next(name for name in found.enough if "torsional" in name)
+    assert [one.values[name] for one in found.ladder] == pytest.approx(
+        [one.values["f"] for one in known]
+    )
+    assert found.enough[name] == "torsional"  # 4.4 % is within 5 %
+    strict = modes(machine, level="torsional", tolerance=0.04)
+    assert strict.enough[name] == "rigid bodies"
+    # modes that are no turning are not at this level
+    assert all(one is None for key, one in found.ladder[0].values.items() if key != name)
+    assert found.bands[0] == pytest.approx(found.frequencies[0] - known[-1].values["f"], rel=1e-4)
+
+
+def test_bands_cover_what_more_elements_change() -> None:
+    machine = library_machine("park_2021")
+    found = modes(machine)
+    finer = system_modes(machine_system(machine, Level.FLEXIBLE, elements=24)).frequencies
+    change = np.abs(finer[finer > 0.0][:16] - found.frequencies[:16])
+    assert np.all(change <= found.bands[:16])
+    assert np.all(found.bands[:16] < 3e-3 * found.frequencies[:16])
+
+
+def test_what_a_level_needs_is_named() -> None:
+    with pytest.raises(InputError, match="level rigid of 'direct drive' needs .* rotor.mass"):
+        modes(two_inertias(), level="rigid")
+    with pytest.raises(InputError, match="no level 'beam' of modes: use one of torsional, rigid"):
+        modes(two_inertias(), level="beam")
+    found = modes(two_inertias())
+    assert any("rotor.mass" in note for note in found.notes)
+    assert any("speeds of operation" in note for note in found.notes)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"generator": "loose"}, "generator is 'loose' but must be free or held"),
+        ({"speeds": (2.0, 1.0)}, "speeds of the rotor are 2 to 1 rad/s"),
+        ({"speed": -1.0}, "speed of the rotor is -1 rad/s but must be above 0"),
+        ({"blades": 0}, "has 0 blades"),
+        ({"tolerance": 1.0}, "tolerance is 1 but must be between 0 and 1"),
+    ],
+)
+def test_an_option_out_of_its_range_is_refused(options: dict[str, Any], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        modes(two_inertias(), **options)
+
+
+def test_shapes_swing_between_their_envelopes(geared: ModesResult) -> None:
+    charts = shape_charts(geared, 3)
+    assert len(charts) == 3
+    assert "turning of the generator" in charts[2].caption
+    for one in charts:
+        rest, other, out = one.figure["data"]
+        swing = one.figure["swing"]
+        for axis in "xy":
+            at, moved = (np.array(swing[key], dtype=float) for key in (axis, f"d{axis}"))
+            assert np.array(rest[axis], dtype=float) == pytest.approx(at, nan_ok=True)
+            ends = (np.array(line[axis], dtype=float) for line in (out, other))
+            for sign, end in zip((1, -1), ends, strict=True):
+                assert end == pytest.approx(at + sign * moved, abs=2e-3, nan_ok=True)
+
+
+def test_the_command_writes_a_page_that_moves(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["modes", "park_2021", "--level", "rigid", "--speeds", "6:12", "--excite", "grid=50"]
+    with pytest.raises(SystemExit) as ended:
+        main([*words, "--json", "--out", str(tmp_path / "out")])
+    assert ended.value.code == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["schema"] == "fe-drivetrain/modes/1"
+    assert found["options"]["excitations"] == ["grid"]
+    page = (tmp_path / "out/report.html").read_text("utf-8")
+    assert "requestAnimationFrame" in page
+    assert '"swing"' in page
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["nosuch"], "nosuch"),
+        (["park_2021", "--level", "beam"], "no level 'beam'"),
+        (["park_2021", "--speeds", "12"], "--speeds 12 must be two speeds in rpm"),
+        (["park_2021", "--excite", "grid"], "--excite grid must be a name and a frequency"),
+        (["park_2021", "--excite", "a=1", "--excite", "a=2"], "--excite a is given twice"),
+        (["park_2021", "--set", "rotor.masss=1"], "masss"),
+    ],
+)
+def test_a_mistake_ends_with_status_2(
+    words: list[str], message: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["modes", *words, "--out", str(tmp_path / "out")])
+    assert ended.value.code == 2
+    assert message in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
