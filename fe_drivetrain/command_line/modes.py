@@ -120,12 +120,11 @@ def modes_command(context: typer.Context, asked: ModesRequest) -> int:
     speed = None if asked.speed is None else asked.speed * _RPM
     share = parse_tolerance(asked.tolerance)
     excitations = parse_excitations(asked.excite or ())
-    from fe_drivetrain.dynamics import named_machine
+    from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
     from fe_drivetrain.pages.modes import show_modes
     from fe_drivetrain.studies.drivetrain_modes import modes
 
-    parse_settings(asked.set_ or ())
-    drivetrain = named_machine(asked.drivetrain)
+    drivetrain = read_drivetrain(asked.drivetrain, parse_settings(asked.set_ or ()))
 
     def study(run: Run) -> ModesResult:
         return modes(

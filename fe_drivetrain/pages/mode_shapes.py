@@ -56,7 +56,7 @@ def shape_charts(result: ModesResult, count: int) -> list[Chart]:
     count : int
         Number of modes.
     """
-    outline = drivetrain_outline(result.drivetrain, assembly(result.drivetrain, result.level))
+    outline = drivetrain_outline(result.machine, assembly(result.machine, result.level))
     kept = next(iter(result.shapes.values())).shape[1]
     first = [] if result.torsional is None or result.torsional >= kept else [result.torsional]
     # the first torsional one is among them, wherever it stands

@@ -86,8 +86,7 @@ def _show_register(page: Page, result: ModesResult) -> None:
     }
     page.table(
         "Every excitation against every mode",
-        [[word, count] for word, count in counts.items()],
-        ["verdict", "pairs"],
+        [{"verdict": word, "pairs": count} for word, count in counts.items()],
     )
     page.text(_REGISTER)
 
@@ -117,8 +116,10 @@ def _show_levels(page: Page, result: ModesResult) -> None:
         )
     page.table(
         f"The simplest level within {100.0 * result.tolerance:g} % of the finest",
-        [[name.partition(" [")[0], level] for name, level in result.enough.items()],
-        ["mode of the finest level", "level"],
+        [
+            {"mode of the finest level": name.partition(" [")[0], "level": level}
+            for name, level in result.enough.items()
+        ],
     )
 
 

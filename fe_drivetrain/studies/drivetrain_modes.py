@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, NamedTuple
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
-from fe_drivetrain.dynamics import Machine, machine_system, system_modes
+from fe_drivetrain.drivetrain_file import Drivetrain
+from fe_drivetrain.dynamics import Level, Machine, machine_of, machine_system, system_modes
+from fe_drivetrain.dynamics.bodies.damping_ratios import with_damping_ratios
 from fe_drivetrain.procedure import Excitation, drivetrain_excitations
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
@@ -24,6 +26,8 @@ from fe_drivetrain.studies.result import Result
 
 SHOWN = 16
 """Number of modes that are described, and whose shapes are kept."""
+FIXED = 1e-6
+"""Width of the range of a rotor of fixed speed, over that speed."""
 PASSINGS = 3
 """Multiples of blade passing that excite: 3P, 6P and 9P of three blades."""
 
@@ -38,14 +42,17 @@ class ModesResult(Modes, Result):
 
     Attributes
     ----------
-    drivetrain : Machine
+    drivetrain : Drivetrain
         The drivetrain.
+    machine : Machine
+        Its bodies, shafts, stages and bearings.
     """
 
     STUDY: ClassVar[str] = "modes"
     SCHEMA_VERSION: ClassVar[int] = 1
 
-    drivetrain: Machine
+    drivetrain: Drivetrain
+    machine: Machine = field(repr=False)
 
     def chart(self) -> Chart:
         """Campbell diagram; the frequencies by kind where no speeds are known."""
@@ -53,7 +60,7 @@ class ModesResult(Modes, Result):
 
 
 def modes(
-    drivetrain: Machine,
+    drivetrain: Drivetrain,
     *,
     level: str | None = None,
     generator: str = "free",
@@ -68,16 +75,16 @@ def modes(
 
     Parameters
     ----------
-    drivetrain : Machine
-        The drivetrain.
+    drivetrain : Drivetrain
+        The drivetrain, with a rotor and a generator.
     level : str or None
         "torsional", "rigid" (bodies with six degrees of freedom) or "flexible" (shafts that bend);
         None for the finest that the data allow.
     generator : str
         "free" to turn, or "held".
     speeds : tuple of float or None
-        Least and largest speed of the rotor in operation [rad/s]; without, nothing is known of
-        excitations.
+        Least and largest speed of the rotor in operation [rad/s]; None for ``rotor_speed`` of its
+        operation. Where neither is known, excitations are left out.
     speed : float or None
         Speed of the rotor of the frequencies in operation [rad/s]; None for the largest.
     blades : int
@@ -92,45 +99,84 @@ def modes(
     Raises
     ------
     InputError
-        An option is out of its range, or the level needs data that are missing.
+        An option is out of its range, or the drivetrain lacks data that the level needs; the
+        message names them.
     """
     _check(generator, speeds, speed, blades, tolerance)
     found, steps = Findings(), Steps(report)
     found.seed = None
     found.about(drivetrain)
-    chosen, held = named_level(level, drivetrain), generator == "held"
+    machine = machine_of(drivetrain)
+    acting = (*drivetrain_excitations(machine.stages, blades, PASSINGS), *excitations)
+    asked = _Asked(named_level(level, machine), generator == "held", tolerance)
+    over = _speeds_of(drivetrain) if speeds is None else speeds
+    record = _record(drivetrain, machine, asked, acting, over, speed, steps)
+    state_modes(found, machine, record, SHOWN)
+    options: dict[str, Any] = {
+        "level": level,
+        "generator": generator,
+        "speeds": over,
+        "speed": speed,
+    }
+    options |= {"blades": blades, "excitations": [one.name for one in excitations]}
+    return ModesResult(
+        drivetrain=drivetrain,
+        machine=machine,
+        **vars(record),
+        **found.frozen(steps.times, **options, tolerance=tolerance),
+    )
+
+
+class _Asked(NamedTuple):
+    """Level and state of the model, and the error that a simpler level may have."""
+
+    level: Level
+    held: bool
+    tolerance: float
+
+
+def _record(
+    drivetrain: Drivetrain,
+    machine: Machine,
+    asked: _Asked,
+    acting: tuple[Excitation, ...],
+    speeds: tuple[float, float] | None,
+    speed: float | None,
+    steps: Steps,
+) -> Modes:
+    """What is known of the modes."""
     with steps.step("modes at rest"):
-        system = machine_system(drivetrain, chosen, held_generator=held)
+        system = machine_system(machine, asked.level, held_generator=asked.held)
+        if drivetrain.damping is not None:
+            system = with_damping_ratios(machine, system, drivetrain.damping)
         solved = system_modes(system)
-    own = described(drivetrain, system, solved, SHOWN)
+        own = described(machine, system, solved, SHOWN)
     with steps.step("levels"):
-        answers, enough = compared_levels(drivetrain, held, tolerance)
+        answers, enough = compared_levels(machine, asked.held, asked.tolerance)
     with steps.step("bands"):
-        bands = frequency_bands(drivetrain, chosen, held, len(own.frequencies))
-    acting = (*drivetrain_excitations(drivetrain.stages, blades, PASSINGS), *excitations)
+        bands = frequency_bands(machine, asked.level, asked.held, len(own.frequencies))
     with steps.step("modes in operation"):
         running = in_operation(system, solved, acting, speeds, speed)
-    record = Modes(
-        level=chosen,
+    return Modes(
+        level=asked.level,
         bands=bands,
         speeds=speeds,
         excitations=acting,
         ladder=tuple(answers),
         enough=enough,
-        tolerance=tolerance,
+        tolerance=asked.tolerance,
         **vars(own),
         **vars(running),
     )
-    state_modes(found, drivetrain, record, SHOWN)
-    asked = {"level": level, "generator": generator, "speeds": speeds, "speed": speed}
-    others = [one.name for one in excitations]
-    return ModesResult(
-        drivetrain=drivetrain,
-        **vars(record),
-        **found.frozen(
-            steps.times, **asked, blades=blades, excitations=others, tolerance=tolerance
-        ),
-    )
+
+
+def _speeds_of(drivetrain: Drivetrain) -> tuple[float, float] | None:
+    """Speeds of the rotor in operation by the file [rad/s]; those about a fixed one."""
+    operation = drivetrain.operation
+    if operation is None or operation.rotor_speed is None:
+        return None
+    low, high = operation.rotor_speed
+    return low, max(high, low * (1.0 + FIXED))
 
 
 def _check(

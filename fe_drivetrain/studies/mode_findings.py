@@ -173,14 +173,15 @@ def _check_energy(found: Findings, modes: Modes) -> None:
 
 def _notes(found: Findings, machine: Machine, modes: Modes) -> None:
     """State what limits the answer."""
-    if modes.level is Level.TORSIONAL and machine.rotor.mass is None:
+    if machine.not_given:
         found.note(
-            "The rotor has no mass in the file (rotor.mass): only its turning is modelled, with "
-            "that of all other bodies."
+            "Bodies only turn here: the file does not state what finer levels need, "
+            f"{', '.join(machine.not_given)}."
         )
     if modes.speeds is None:
         found.note(
-            "No range of speeds of operation is known: give `speeds`; excitations are left out."
+            "No range of speeds of operation is known: give operation.rotor_speed, or `speeds`; "
+            "excitations are left out."
         )
     toothless = [k for k, stage in enumerate(machine.stages, start=1) if stage.teeth is None]
     if toothless and modes.speeds is not None:

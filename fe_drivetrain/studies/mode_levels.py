@@ -46,25 +46,19 @@ def named_level(level: str | None, machine: Machine) -> Level:
     Raises
     ------
     InputError
-        There is no level of that name, or data that it needs are missing.
+        There is no level of that name.
     """
     known = {one.name.lower(): one for one in Level}
-    if level is not None and level not in known:
-        raise InputError(f"no level {level!r} of modes: use one of {', '.join(known)}")
-    missing = machine.rotor.mass is None
     if level is None:
-        return Level.TORSIONAL if missing else Level.FLEXIBLE
-    if missing and known[level] is not Level.TORSIONAL:
-        raise InputError(
-            f"level {level} of {machine.title!r} needs the mass of the rotor: give rotor.mass in "
-            "kg, or use level torsional"
-        )
+        return rungs_of(machine)[-1].level
+    if level not in known:
+        raise InputError(f"no level {level!r} of modes: use one of {', '.join(known)}")
     return known[level]
 
 
 def rungs_of(machine: Machine) -> tuple[Rung, ...]:
     """Levels that the data of a machine allow, from the simplest."""
-    return RUNGS if named_level(None, machine) is Level.FLEXIBLE else RUNGS[:1]
+    return RUNGS[:1] if machine.not_given else RUNGS
 
 
 def compared_levels(

@@ -11,7 +11,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.short_repr import short_repr
-from fe_drivetrain.dynamics import MachineTable, System, SystemModes, direction_kinds
+from fe_drivetrain.dynamics import Machine, System, SystemModes, direction_kinds
 
 _MOTION_WORDS = {
     "torsional": "turning of",
@@ -50,14 +50,12 @@ class ModeDescription:
     __repr__ = short_repr
 
 
-def described(
-    machine: MachineTable, system: System, modes: SystemModes, count: int
-) -> ModeDescription:
+def described(machine: Machine, system: System, modes: SystemModes, count: int) -> ModeDescription:
     """Describe the modes of a machine's system.
 
     Parameters
     ----------
-    machine : MachineTable
+    machine : Machine
         Machine of the system.
     system : System
         System at any level.
@@ -82,12 +80,12 @@ def described(
     )
 
 
-def kinetic_energy(machine: MachineTable, modes: SystemModes) -> dict[str, Floats]:
+def kinetic_energy(machine: Machine, modes: SystemModes) -> dict[str, Floats]:
     """(n,) share of each part in the kinetic energy of each mode; 1 in sum.
 
     Parameters
     ----------
-    machine : MachineTable
+    machine : Machine
         Machine of the modes.
     modes : SystemModes
         Modes (n,) at any level.
@@ -96,12 +94,12 @@ def kinetic_energy(machine: MachineTable, modes: SystemModes) -> dict[str, Float
     return _by_part((_of_body(name, shafts) for name in modes.bodies), modes.kinetic_shares)
 
 
-def strain_energy(machine: MachineTable, modes: SystemModes) -> dict[str, Floats]:
+def strain_energy(machine: Machine, modes: SystemModes) -> dict[str, Floats]:
     """(n,) share of each part in the strain energy of each mode; 1 in sum, 0 of free motion.
 
     Parameters
     ----------
-    machine : MachineTable
+    machine : Machine
         Machine of the modes.
     modes : SystemModes
         Modes (n,) at any level.

@@ -1,4 +1,4 @@
-"""Modes of a drivetrain: frequencies by hand, energy, crossings, levels, bands, command and page."""
+"""Modes of a drivetrain: frequencies by hand, energy, crossings, levels, bands, the command."""
 
 import json
 import math
@@ -10,12 +10,13 @@ import pytest
 
 from fe_drivetrain.command_line import main
 from fe_drivetrain.common import InputError
+from fe_drivetrain.drivetrain_file import LumpedDrivetrain, read_drivetrain
 from fe_drivetrain.dynamics import (
     Level,
-    Machine,
     Operation,
     ladder,
     library_machine,
+    machine_of,
     machine_system,
     system_modes,
     torsional_frequency,
@@ -29,56 +30,55 @@ ROTOR, GENERATOR, SHAFT = 4e6, 9e5, 2e8  # kg m^2, kg m^2, N m/rad
 RANGE = (4.0 * RPM, 40.0 * RPM)
 
 
-def two_inertias(**changes: Any) -> Machine:
-    """Rotor and generator on a shaft, without a gearbox."""
+def two_inertias(**changes: Any) -> LumpedDrivetrain:
+    """Rotor and generator on a shaft, without a gearbox; of neither is the mass known."""
     values: dict[str, Any] = {
         "title": "direct drive",
-        "rotor": {"inertia": ROTOR, "mass": 5e4},
-        "shafts": [{"name": "main", "length": 2.0, "torsion": SHAFT}],
+        "rotor": {"inertia": ROTOR},
+        "shaft": {"name": "main", "torsion": SHAFT},
         "generator": {"inertia": GENERATOR},
-        "bearings": [{"name": "front", "holds": "rotor", "stiffness": [1e9] * 3 + [0, 1e9, 1e9]}],
     }
-    return Machine.model_validate({**values, **changes})
+    return LumpedDrivetrain.model_validate({**values, **changes})
 
 
-def three_inertias() -> Machine:
+def three_inertias() -> LumpedDrivetrain:
     """Rotor with a gear on it, pinion, and generator on a shaft."""
-    return Machine.model_validate(
+    stage = {
+        "kind": "parallel",
+        "teeth": {"gear": 100, "pinion": 20},
+        "centre_distance": 1.2,
+        "face_width": 0.3,
+        "stiffness_of": "line",
+        "stiffness": 4e8,
+        "gear": {"inertia": 3e3, "mass": 6e3},
+        "pinion": {"inertia": 40.0, "mass": 400.0},
+    }
+    bearings = [
+        {"name": "front", "holds": "stage 1 gear", "stiffness": [1e9] * 3 + [0, 1e9, 1e9]},
+        {"name": "rear", "holds": "stage 1 pinion", "stiffness": [1e9] * 3 + [0, 1e8, 1e8]},
+    ]
+    return LumpedDrivetrain.model_validate(
         {
             "title": "one stage",
             "rotor": {"inertia": ROTOR, "mass": 1e4},
-            "shafts": [
-                {"name": "hub", "length": 0.5, "kind": "rigid"},
-                {"name": "fast", "length": 1.0, "torsion": 3e7},
-            ],
-            "stages": [
-                {
-                    "kind": "parallel",
-                    "teeth": [100, 20],
-                    "centre_distance": 1.2,
-                    "face_width": 0.3,
-                    "stiffness_of": "line",
-                    "stiffness": 4e8,
-                    "gear": {"inertia": 3e3, "mass": 6e3},
-                    "pinion": {"inertia": 40.0, "mass": 400.0},
-                }
-            ],
+            "shaft": {"name": "hub", "length": 0.5, "kind": "rigid"},
+            "gearbox": {
+                "stages": [stage],
+                "shafts": [{"name": "fast", "length": 1.0, "torsion": 3e7}],
+                "bearings": bearings,
+            },
             "generator": {"inertia": 2e4},
-            "bearings": [
-                {"name": "front", "holds": "stage 1 gear", "stiffness": [1e9] * 3 + [0, 1e9, 1e9]},
-                {"name": "rear", "holds": "stage 1 pinion", "stiffness": [1e9] * 3 + [0, 1e8, 1e8]},
-            ],
         }
     )
 
 
 @pytest.fixture(scope="module")
 def geared() -> ModesResult:
-    return modes(library_machine("synthetic_2mw"), speeds=(8.0 * RPM, 18.1 * RPM))
+    return modes(read_drivetrain("synthetic_2mw"), speeds=(8.0 * RPM, 18.1 * RPM))
 
 
 def test_two_inertias_by_hand() -> None:
-    found = modes(two_inertias(), level="torsional", speeds=RANGE)
+    found = modes(two_inertias(), speeds=RANGE)
     by_hand = math.sqrt(SHAFT * (1 / ROTOR + 1 / GENERATOR)) / (2 * math.pi)
     assert found.level is Level.TORSIONAL
     assert found.frequencies == pytest.approx([by_hand], rel=1e-12)
@@ -91,7 +91,7 @@ def test_two_inertias_by_hand() -> None:
 
 
 def test_a_held_generator_by_hand() -> None:
-    found = modes(two_inertias(), level="torsional", generator="held")
+    found = modes(two_inertias(), generator="held")
     assert found.frequencies == pytest.approx([math.sqrt(SHAFT / ROTOR) / (2 * math.pi)])
     assert found.kinetic["rotor"] == pytest.approx([1.0])
 
@@ -108,8 +108,8 @@ def test_three_inertias_by_hand() -> None:
 
 
 def test_energies_are_all_of_it_at_every_level(geared: ModesResult) -> None:
-    machine = library_machine("synthetic_2mw")
-    for found in (geared, *(modes(machine, level=level) for level in ("torsional", "rigid"))):
+    mine = read_drivetrain("synthetic_2mw")
+    for found in (geared, *(modes(mine, level=level) for level in ("torsional", "rigid"))):
         for parts in (found.kinetic, found.strain):
             assert sum(parts.values()) == pytest.approx(np.ones(len(found.frequencies)), abs=1e-9)
     assert {"rotor", "stage 1 planets", "stage 3 pinion", "generator"} <= geared.kinetic.keys()
@@ -118,7 +118,7 @@ def test_energies_are_all_of_it_at_every_level(geared: ModesResult) -> None:
 
 
 def test_crossings_by_hand() -> None:
-    found = modes(two_inertias(), level="torsional", speeds=RANGE)
+    found = modes(two_inertias(), speeds=RANGE)
     frequency = float(found.frequencies[0])
     met = {one.excitation: one.crossing / RPM for one in found.meetings if one.margin == 0.0}
     wanted = {f"{k}P": 60.0 * frequency / k for k in (3, 6, 9)}
@@ -132,10 +132,10 @@ def test_crossings_by_hand() -> None:
 
 
 def test_a_fixed_frequency_meets_a_mode_at_any_speed() -> None:
-    frequency = float(modes(two_inertias(), level="torsional").frequencies[0])
+    frequency = float(modes(two_inertias()).frequencies[0])
     grid = [Excitation(name, 0.0, ("generator",), f) for name, f in (("at", 1.0), ("off", 1.2))]
     tuned = [Excitation(one.name, 0.0, one.at, one.fixed * frequency) for one in grid]
-    found = modes(two_inertias(), level="torsional", speeds=RANGE, excitations=tuned)
+    found = modes(two_inertias(), speeds=RANGE, excitations=tuned)
     verdicts = {one.excitation: one.verdict for one in found.meetings}
     assert (verdicts["at"], verdicts["off"]) == ("resonance", "clear")
 
@@ -166,15 +166,15 @@ def test_without_turning_the_register_is_that_of_the_modes_at_rest() -> None:
 
 
 def test_levels_are_those_of_the_ladder() -> None:
-    machine = library_machine("nrel_5mw")
-    found = modes(machine, level="torsional")
-    known = ladder(machine, Operation(0.0), questions={"f": torsional_frequency(1)})
+    mine = read_drivetrain("nrel_5mw")
+    found = modes(mine, level="torsional")
+    known = ladder(machine_of(mine), Operation(0.0), questions={"f": torsional_frequency(1)})
     name = next(name for name in found.enough if "torsional" in name)
     assert [one.values[name] for one in found.ladder] == pytest.approx(
         [one.values["f"] for one in known]
     )
     assert found.enough[name] == "torsional"  # 4.4 % is within 5 %
-    strict = modes(machine, level="torsional", tolerance=0.04)
+    strict = modes(mine, level="torsional", tolerance=0.04)
     assert strict.enough[name] == "rigid bodies"
     # modes that are no turning are not at this level
     assert all(one is None for key, one in found.ladder[0].values.items() if key != name)
@@ -182,21 +182,23 @@ def test_levels_are_those_of_the_ladder() -> None:
 
 
 def test_bands_cover_what_more_elements_change() -> None:
-    machine = library_machine("park_2021")
-    found = modes(machine)
-    finer = system_modes(machine_system(machine, Level.FLEXIBLE, elements=24)).frequencies
+    mine = read_drivetrain("park_2021")
+    found = modes(mine)
+    finer = system_modes(machine_system(machine_of(mine), Level.FLEXIBLE, elements=24)).frequencies
     change = np.abs(finer[finer > 0.0][:16] - found.frequencies[:16])
     assert np.all(change <= found.bands[:16])
     assert np.all(found.bands[:16] < 3e-3 * found.frequencies[:16])
 
 
 def test_what_a_level_needs_is_named() -> None:
-    with pytest.raises(InputError, match="level rigid of 'direct drive' needs .* rotor.mass"):
+    with pytest.raises(InputError, match=r"needs what its file does not state: rotor: mass, shaft"):
         modes(two_inertias(), level="rigid")
+    with pytest.raises(InputError, match=r"does not state its generator"):
+        modes(two_inertias(generator=None))
     with pytest.raises(InputError, match="no level 'beam' of modes: use one of torsional, rigid"):
         modes(two_inertias(), level="beam")
     found = modes(two_inertias())
-    assert any("rotor.mass" in note for note in found.notes)
+    assert any("rotor: mass" in note for note in found.notes)
     assert any("speeds of operation" in note for note in found.notes)
 
 
@@ -213,6 +215,23 @@ def test_what_a_level_needs_is_named() -> None:
 def test_an_option_out_of_its_range_is_refused(options: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError, match=message):
         modes(two_inertias(), **options)
+
+
+def test_speeds_of_operation_are_those_of_the_file() -> None:
+    found = modes(two_inertias(operation={"rotor_speed": RANGE}))
+    assert found.speeds == RANGE
+    assert found.speed == RANGE[1]
+    fixed = modes(two_inertias(operation={"rotor_speed": (2.0, 2.0)}))
+    assert fixed.speeds == pytest.approx((2.0, 2.0))
+    assert not fixed.resonances
+
+
+def test_damping_ratios_of_the_file_are_those_of_one_mode() -> None:
+    # of two inertias the shaft alone is the whole mode
+    found = modes(two_inertias(damping={"shafts": 0.02}), speeds=RANGE)
+    assert found.damping == pytest.approx([0.02], rel=1e-6)
+    assert found.running == pytest.approx(found.frequencies * math.sqrt(1 - 0.02**2))
+    assert not modes(two_inertias(), speeds=RANGE).damping.any()
 
 
 def test_shapes_swing_between_their_envelopes(geared: ModesResult) -> None:

@@ -18,7 +18,12 @@ from test_scene_study import HISTORIES
 from fe_drivetrain import export, pages
 from fe_drivetrain.common import InputError
 from fe_drivetrain.common.components import MOTIONS
-from fe_drivetrain.drivetrain_file import change_scene, library_component, library_scene
+from fe_drivetrain.drivetrain_file import (
+    change_scene,
+    library_component,
+    library_scene,
+    read_drivetrain,
+)
 from fe_drivetrain.elasticity.mesh import Mesh, cached_mesh
 from fe_drivetrain.elasticity.mesh import write as write_mesh
 from fe_drivetrain.export import Superelement
@@ -28,6 +33,7 @@ from fe_drivetrain.pages.check import show_check
 from fe_drivetrain.pages.compare import show_compare
 from fe_drivetrain.pages.life import show_life
 from fe_drivetrain.pages.loads import show_loads
+from fe_drivetrain.pages.modes import show_modes
 from fe_drivetrain.pages.study import show_study
 from fe_drivetrain.pages.uncertainty import show_uncertainty
 from fe_drivetrain.pages.validate import show_validate
@@ -44,6 +50,7 @@ from fe_drivetrain.studies import (
     LifeResult,
     LoadOptions,
     LoadsResult,
+    ModesResult,
     PartResult,
     Result,
     StudyResult,
@@ -54,6 +61,7 @@ from fe_drivetrain.studies import (
     compare,
     life,
     loads,
+    modes,
     part,
     prepare_export,
     study,
@@ -138,6 +146,11 @@ def loaded(tmp_path_factory: pytest.TempPathFactory) -> LoadsResult:
 
 
 @pytest.fixture(scope="module")
+def vibrating() -> ModesResult:
+    return modes(read_drivetrain("park_2021"), level="rigid", speeds=(0.6, 1.2))
+
+
+@pytest.fixture(scope="module")
 def lived(tmp_path_factory: pytest.TempPathFactory) -> LifeResult:
     folder = tmp_path_factory.mktemp("histories")
     for wind in (8.0, 14.0):
@@ -159,13 +172,14 @@ PAGES: dict[str, Callable[[Run, Page, Any], None]] = {
     "validated": show_validate,
     "lived": show_life,
     "loaded": show_loads,
+    "vibrating": show_modes,
 }
 """What shows a result on a page."""
 
 RESULTS = (
     "studied",
     *("checked", "compared", "advised", "uncertain", "validated", "lived", "loaded"),
-    *("shaped", "condensed", "exported"),
+    *("vibrating", "shaped", "condensed", "exported"),
 )
 
 
