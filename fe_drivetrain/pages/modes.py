@@ -1,4 +1,4 @@
-"""The page of a drivetrain's modes: Campbell diagram, shapes that move, energy, crossings, levels."""
+"""The page of a drivetrain's modes: Campbell diagram, moving shapes, energy, crossings, levels."""
 
 from __future__ import annotations
 
@@ -124,10 +124,10 @@ def _show_levels(page: Page, result: ModesResult) -> None:
 
 
 _BANDS = (
-    "Bands are of the numerical model alone: with flexible shafts of the number of elements of each "
-    "shaft, by three numbers; at simpler levels the distance to the mode of the finest level that "
-    "moves in the same way, where there is one. In operation the gyroscopic terms of what spins are "
-    "in the frequencies, at rest they are not."
+    "Bands are of the numerical model alone: with flexible shafts of the number of elements of "
+    "each shaft, by three numbers; at simpler levels the distance to the mode of the finest level "
+    "that moves in the same way, where there is one. In operation the gyroscopic terms of what "
+    "spins are in the frequencies, at rest they are not."
 )
 _SHAPES = (
     "Drawn obliquely from the side, to scale but for the rotor and the generator. Turning is drawn "

@@ -129,10 +129,10 @@ def mode_in_words(
     for name in sorted(kinetic, key=lambda name: -kinetic[name][mode])[:2]:
         if told < _MOST:
             share = float(kinetic[name][mode])
-            moving.append(f"{named(name)} ({100 * share:.0f}\u00a0%)")
+            moving.append(f"{named(name)} ({100 * share:.0f} %)")
             told += share
     most = max(strain, key=lambda name: float(strain[name][mode]))
-    of_strain = f"{100 * float(strain[most][mode]):.0f}\u00a0% of the strain in {named(most)}"
+    of_strain = f"{100 * float(strain[most][mode]):.0f} % of the strain in {named(most)}"
     return f"{_MOTION_WORDS[kind]} {' and '.join(moving)}; {of_strain}"
 
 
