@@ -39,6 +39,10 @@ def show_modes(run: Run, page: Page, result: ModesResult) -> None:
     page.text(_BANDS)
     page.section("Mode shapes")
     page.text(_SHAPES)
+    if result.machine.not_given:
+        page.text(
+            "Lengths and radii that the file does not state are drawn as long as can be seen."
+        )
     page.add(*shape_charts(result, DRAWN))
     page.section("Energy by part")
     for kind, parts in (("kinetic", result.kinetic), ("strain", result.strain)):

@@ -217,7 +217,7 @@ def _model(project: Project, evidence: Evidence) -> list[str]:
         if not found:
             lacks.append(
                 f"no evidence says which level {wanted} needs: link dynamics/drivetrain_levels for "
-                "a machine, fe-drivetrain advise for a scene"
+                "a machine, fe-drivetrain modes for frequencies, fe-drivetrain advise for a scene"
             )
             continue
         levels, least = found[-1]
@@ -248,7 +248,7 @@ def needed_of(
     Parameters
     ----------
     results : Results
-        Results of ``fe-drivetrain advise``, or of the case of levels of a machine.
+        Results of ``fe-drivetrain advise`` or ``modes``, or of the case of levels of a machine.
     record : DrivetrainRecord
         How the results call the drivetrain.
     need : Need
@@ -263,8 +263,11 @@ def needed_of(
         where the results say nothing of the quantity.
     """
     figures = results.figures
-    machine = record.kind != "scene"
-    rows = figures.get(f"ladder_{record.name}") if machine else figures.get("levels")
+    rows = figures.get("levels")
+    of_modes = bool(rows) and need.quantity in rows[0]
+    machine = of_modes or record.kind != "scene"
+    if machine and not of_modes:
+        rows = figures.get(f"ladder_{record.name}")
     if not rows or (not machine and figures.get("quantity") != need.quantity):
         return None
     if not machine and OWN_ERROR not in rows[0]:  # of an older program

@@ -5,16 +5,18 @@ from __future__ import annotations
 import numpy as np
 
 from fe_drivetrain.dynamics import Level, Machine
-from fe_drivetrain.procedure import Meeting
+from fe_drivetrain.procedure import RESONANCE, Meeting
 from fe_drivetrain.procedure.resonance import NEAR
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.studies.mode_levels import FIRST
 from fe_drivetrain.studies.mode_record import Modes
 from fe_drivetrain.studies.unused import RPM
 
-FIRST = "first torsional frequency [Hz]"
+MARGIN = "least margin of an excited frequency"
+"""As projects of validation name it."""
 QUESTION = "Where are the drivetrain's natural frequencies, and what excites them in operation?"
 JUDGED = 3
 """Number of multiples of 1P that the first torsional mode must be apart from: 1P, 3P and 6P."""
@@ -49,6 +51,9 @@ def state_modes(found: Findings, machine: Machine, modes: Modes, shown: int) -> 
         found.found(FIRST, float(modes.frequencies[first]), band_of(modes, first))
     for k in range(min(shown, len(modes.frequencies))):
         found.found(f"mode {k + 1} [Hz]", float(modes.frequencies[k]), band_of(modes, k))
+    margins = [one.margin for one in modes.meetings if one.verdict != "not excited"]
+    if margins:
+        found.found(MARGIN, min(margins), loads=(RESONANCE,))
     for one in modes.resonances[:SAID]:
         found.say(_met(one, modes))
     _check_energy(found, modes)
@@ -91,8 +96,9 @@ def crossing_row(one: Meeting, modes: Modes) -> Record:
 def _met(one: Meeting, modes: Modes) -> str:
     """A crossing in a sentence."""
     at = f"at {formatted(one.crossing * RPM, 3)}\u00a0rpm"
+    name = one.excitation[:1].upper() + one.excitation[1:]
     return (
-        f"{one.excitation} meets mode {one.mode} ({modes.words[one.mode - 1].partition(';')[0]}) "
+        f"{name} meets mode {one.mode} ({modes.words[one.mode - 1].partition(';')[0]}) "
         f"{at if np.isfinite(one.crossing) else 'at any speed'}, "
         f"{formatted(one.frequency, 4)}\u00a0Hz; it acts where {100.0 * one.share:.0f}\u00a0% of "
         "the mode's energy is."
@@ -130,7 +136,7 @@ def level_rows(modes: Modes) -> list[Record]:
             row[name] = value
             best = finest[name]
             error = None if value is None or best is None else 100.0 * (value / best - 1.0)
-            row[f"error of {name.partition(',')[0]} [%]"] = error
+            row[f"error of {name.partition(' [')[0]} [%]"] = error
         rows.append(row)
     return rows
 
@@ -206,7 +212,7 @@ def _key_figures(found: Findings, modes: Modes) -> list[KeyFigure]:
         figures += _in_operation(found, modes)
     change = _change(modes)
     if change is not None and modes.speed is not None and change > 0.01:
-        name = f"largest change of a frequency by turning at {modes.speed * RPM:.4g} rpm [%]"
+        name = f"largest change of a frequency at {modes.speed * RPM:.4g} rpm [%]"
         figures.append(found.value(name, change))
     figures += _of_levels(found, modes)
     below = int((modes.frequencies < LOW).sum())
@@ -257,12 +263,11 @@ def _change(modes: Modes) -> float | None:
 
 def _of_levels(found: Findings, modes: Modes) -> list[KeyFigure]:
     """How far simpler levels are from the finest in the first torsional frequency."""
-    name = next((one for one in modes.enough if "torsional" in one), None)
-    if name is None or len(modes.ladder) < 2:
+    if FIRST not in modes.enough or len(modes.ladder) < 2:
         return []
-    best, figures = modes.ladder[-1].values[name], []
+    best, figures = modes.ladder[-1].values[FIRST], []
     for answer in modes.ladder[:-1]:
-        value = answer.values[name]
+        value = answer.values[FIRST]
         if value is not None and best is not None:
             error = 100.0 * abs(value / best - 1.0)
             if error < LEAST_ERROR:
@@ -288,5 +293,7 @@ def _verdict(modes: Modes, first: KeyFigure) -> str:
     if not met:
         return f"{begins}; {over} no excitation meets a mode that it can drive."
     at = "always" if met[0].crossing == np.inf else f"at {met[0].crossing * RPM:.3g}\u00a0rpm"
-    count = f"{len(met)} crossing{'s' * (len(met) > 1)}"
-    return f"{begins}; {over} {count} can be excited, strongest {met[0].excitation} {at}."
+    if len(met) == 1:
+        return f"{begins}; {over} one crossing can be excited, {met[0].excitation} {at}."
+    count = f"{len(met)} crossings can be excited"
+    return f"{begins}; {over} {count}, strongest {met[0].excitation} {at}."

@@ -23,6 +23,8 @@ from fe_drivetrain.dynamics import (
     system_modes,
 )
 
+FIRST = "first torsional frequency [Hz]"
+"""Name of the frequency that is asked for most often, as in `dynamics.QUESTIONS`."""
 ELEMENTS = (2, 4, 6)
 """Numbers of elements of each flexible shaft, of which the last is that of the answer."""
 COMPARED = 6
@@ -78,8 +80,8 @@ def compared_levels(
     Returns
     -------
     answers : list of Answer
-        Answers by names such as "mode 1, lateral [Hz]", numbered as at the finest level: the first
-        modes, and the first torsional one.
+        Answers by names such as "mode 1, lateral [Hz]", numbered as at the finest level, and
+        `FIRST`.
     enough : dict of str to str
         Simplest level that is within the tolerance, by the same names.
     """
@@ -93,17 +95,15 @@ def compared_levels(
         )
         if frequency > 0.0
     ]
-    numbers = set(range(1, min(COMPARED, len(kinds)) + 1))
-    if "torsional" in kinds:
-        numbers.add(kinds.index("torsional") + 1)
-    questions = {compared_name(k, kinds[k - 1]): like_mode(finest, k) for k in sorted(numbers)}
+    first = kinds.index("torsional") + 1 if "torsional" in kinds else 0
+    numbers = [first, *(k for k in range(1, min(COMPARED, len(kinds)) + 1) if k != first)]
+    questions = {
+        FIRST if k == first else f"mode {k}, {kinds[k - 1]} [Hz]": like_mode(finest, k)
+        for k in numbers
+        if k
+    }
     answers = ladder(machine, load, rungs, questions, held)
     return answers, {name: needed_level(answers, name, tolerance) for name in questions}
-
-
-def compared_name(number: int, kind: str) -> str:
-    """Name of a mode of the finest level, by its number from 1, where levels are compared."""
-    return f"mode {number}, {kind} [Hz]"
 
 
 def frequency_bands(machine: Machine, level: Level, held: bool, count: int) -> Floats:

@@ -152,7 +152,7 @@ def _of_body(name: str, shafts: set[str]) -> str:
     """Part that a body belongs to: planets of a stage go together, as nodes of a shaft do."""
     shaft, node, _ = name.rpartition(" node ")
     if node and shaft in shafts:
-        return f"shaft {shaft}"
+        return _shaft(shaft)
     return re.sub(r"^(stage \d+ planet) \d+$", r"\1s", name)
 
 
@@ -164,6 +164,11 @@ def _of_spring(name: str, shafts: set[str], bearings: set[str]) -> str:
         return f"bearing {name}"
     name = re.sub(r" (slice|element) \d+$", "", name)
     if name in shafts:
-        return f"shaft {name}"
+        return _shaft(name)
     name = re.sub(r"^(stage \d+) (sun|ring)-planet \d+$", r"\1 \2 meshes", name)
     return re.sub(r"^(stage \d+) pin \d+( .*)?$", r"\1 planet bearings", name)
+
+
+def _shaft(name: str) -> str:
+    """A shaft as a part: with the word before its name, where that has it not."""
+    return name if "shaft" in name.lower() else f"shaft {name}"

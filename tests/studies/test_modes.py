@@ -23,6 +23,9 @@ from fe_drivetrain.dynamics import (
 )
 from fe_drivetrain.pages.mode_shapes import shape_charts
 from fe_drivetrain.procedure import Excitation, drivetrain_excitations, resonances
+from fe_drivetrain.procedure.assessment import needed_of
+from fe_drivetrain.procedure.project import Need
+from fe_drivetrain.report.results import read_results
 from fe_drivetrain.studies.drivetrain_modes import ModesResult, modes
 
 RPM = math.pi / 30.0
@@ -167,7 +170,7 @@ def test_levels_are_those_of_the_ladder() -> None:
     mine = read_drivetrain("nrel_5mw")
     found = modes(mine, level="torsional")
     known = ladder(machine_of(mine), Operation(0.0), questions={"f": torsional_frequency(1)})
-    name = next(name for name in found.enough if "torsional" in name)
+    name = "first torsional frequency [Hz]"
     assert [one.values[name] for one in found.ladder] == pytest.approx(
         [one.values["f"] for one in known]
     )
@@ -177,6 +180,24 @@ def test_levels_are_those_of_the_ladder() -> None:
     # modes that are no turning are not at this level
     assert all(one is None for key, one in found.ladder[0].values.items() if key != name)
     assert found.bands[0] == pytest.approx(found.frequencies[0] - known[-1].values["f"], rel=1e-4)
+
+
+def test_a_project_takes_level_and_margin_of_modes_as_evidence(tmp_path: Path) -> None:
+    with pytest.raises(SystemExit):
+        main(["modes", "nrel_5mw", "--speeds", "6.9:12.1", "--out", str(tmp_path / "out")])
+    results = read_results(tmp_path / "out/results.json")
+    levels, needed = (
+        needed_of(results, results.drivetrains[0], Need(quantity=name, tolerance=tolerance))
+        for name, tolerance in (
+            ("first torsional frequency [Hz]", 0.05),
+            ("mode 1, lateral [Hz]", 0.05),
+        )
+    )
+    assert levels == ([("0", "torsional"), ("1", "rigid bodies"), ("2", "flexible shafts")], 0)
+    assert needed is not None
+    assert needed[1] == 2
+    (margin,) = [one for one in results.answers if "resonance" in one.loads]
+    assert margin.computed == 0.0
 
 
 def test_bands_cover_what_more_elements_change() -> None:
