@@ -264,7 +264,7 @@ def needed_of(
     """
     figures = results.figures
     rows = figures.get("levels")
-    of_modes = bool(rows) and need.quantity in rows[0]
+    of_modes = need.quantity in rows[0] if rows else False
     machine = of_modes or record.kind != "scene"
     if machine and not of_modes:
         rows = figures.get(f"ladder_{record.name}")

@@ -80,13 +80,16 @@ def excited(modes: Modes) -> list[Meeting]:
 
 def crossing_row(one: Meeting, modes: Modes) -> Record:
     """A meeting as a record."""
-    at_rest = one.crossing == np.inf
+    always = one.crossing == np.inf
+    band = band_of(modes, one.mode - 1)
+    share = None if band is None or always else band / float(modes.frequencies[one.mode - 1])
     return {
         "excitation": one.excitation,
         "mode": one.mode,
         "kind": modes.kinds[one.mode - 1],
         "frequency [Hz]": one.frequency,
-        "speed of the rotor [rpm]": None if at_rest else one.crossing * RPM,
+        "speed of the rotor [rpm]": None if always else one.crossing * RPM,
+        "band [rpm]": None if share is None else one.crossing * RPM * share,
         "margin [%]": 100.0 * one.margin,
         "share of the mode's energy [%]": 100.0 * one.share,
         "verdict": one.verdict,

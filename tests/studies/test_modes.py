@@ -20,6 +20,7 @@ from fe_drivetrain.dynamics import (
     machine_system,
     system_modes,
     torsional_frequency,
+    turning_modes,
 )
 from fe_drivetrain.pages.mode_shapes import shape_charts
 from fe_drivetrain.procedure import Excitation, drivetrain_excitations, resonances
@@ -152,6 +153,18 @@ def test_crossings_of_whirling_modes_are_on_their_curves(geared: ModesResult) ->
         on_curve = geared.campbell.at(one.crossing)[one.mode - 1]
         assert one.frequency == pytest.approx(on_curve, rel=1e-9)
         assert orders[one.excitation] * one.crossing / (2 * math.pi) == pytest.approx(on_curve)
+
+
+def test_between_the_speeds_that_are_solved_frequencies_are_known_well(
+    geared: ModesResult,
+) -> None:
+    assert geared.campbell is not None
+    system = machine_system(geared.machine, Level.FLEXIBLE)
+    solved = geared.campbell.speeds
+    between = 0.5 * float(solved[2] + solved[3])
+    exact = turning_modes(system, between).frequencies
+    assert np.sort(geared.campbell.at(between)) == pytest.approx(exact, rel=1e-3)
+    assert geared.campbell.at(float(solved[2])) == pytest.approx(geared.campbell.frequencies[2])
 
 
 def test_without_turning_the_register_is_that_of_the_modes_at_rest() -> None:
