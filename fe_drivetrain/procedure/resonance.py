@@ -231,29 +231,32 @@ def resonances(
     for excitation in excitations:
         shares = _shares(excitation, known)
         for number, m in enumerate(moving, start=1):
-            share = float(shares[m])
             frequency = float(modes.frequencies[m])
             if turning is not None:
                 frequency = _where_met(excitation, m, speeds, turning)
-            crossing = excitation.crossing(frequency)
-            if low <= crossing <= high:
-                margin = 0.0
-            else:
-                nearest = low if crossing < low else high
-                margin = abs(excitation.frequency(nearest) / frequency - 1.0)
-            verdict: Verdict = (
-                "not excited"
-                if share < moved
-                else "resonance"
-                if margin == 0.0
-                else "near"
-                if margin < near
-                else "clear"
-            )
+            crossing, margin = _margin(excitation, frequency, speeds)
+            share = float(shares[m])
+            verdict: Verdict = "resonance" if margin == 0.0 else "clear"
+            if 0.0 < margin < near:
+                verdict = "near"
+            if share < moved:
+                verdict = "not excited"
             found.append(
                 Meeting(excitation.name, number, frequency, crossing, margin, share, verdict)
             )
     return found
+
+
+def _margin(
+    excitation: Excitation, frequency: float, speeds: tuple[float, float]
+) -> tuple[float, float]:
+    """Speed at which an excitation has a frequency, and its least distance in a range of speeds."""
+    low, high = speeds
+    crossing = excitation.crossing(frequency)
+    if low <= crossing <= high:
+        return crossing, 0.0
+    nearest = low if crossing < low else high
+    return crossing, abs(excitation.frequency(nearest) / frequency - 1.0)
 
 
 def _where_met(

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
-from fe_drivetrain.drivetrain_file import Drivetrain
+from fe_drivetrain.drivetrain_file import Drivetrain, Scene
 from fe_drivetrain.dynamics import Level, Machine, machine_of, machine_system, system_modes
 from fe_drivetrain.dynamics.bodies.damping_ratios import with_damping_ratios
 from fe_drivetrain.procedure import Excitation, drivetrain_excitations
@@ -111,20 +111,25 @@ def modes(
     asked = _Asked(named_level(level, machine), generator == "held", tolerance)
     over = _speeds_of(drivetrain) if speeds is None else speeds
     record = _record(drivetrain, machine, asked, acting, over, speed, steps)
+    if asked.level is not Level.TORSIONAL:
+        _note_housings(found, drivetrain)
     state_modes(found, machine, record, SHOWN)
-    options: dict[str, Any] = {
-        "level": level,
-        "generator": generator,
-        "speeds": over,
-        "speed": speed,
-    }
-    options |= {"blades": blades, "excitations": [one.name for one in excitations]}
+    options = {"level": level, "generator": generator, "speeds": over, "speed": speed}
+    others = [one.name for one in excitations]
     return ModesResult(
         drivetrain=drivetrain,
         machine=machine,
         **vars(record),
-        **found.frozen(steps.times, **options, tolerance=tolerance),
+        **found.frozen(
+            steps.times, **options, blades=blades, excitations=others, tolerance=tolerance
+        ),
     )
+
+
+def _note_housings(found: Findings, drivetrain: Drivetrain) -> None:
+    """State that housings of main bearings are left out."""
+    if isinstance(drivetrain, Scene) and drivetrain.bearing_units:
+        found.note("Housings of the main bearings are rigid here: soft ones lower frequencies.")
 
 
 class _Asked(NamedTuple):
