@@ -60,7 +60,8 @@ def campbell_chart(modes: Modes) -> Chart:
     # once a turn at the largest speed is in it
     lowest = min(0.6 * first, 0.4 * modes.speeds[1] / np.pi)
     highest = max([one.frequency(last) for one in modes.excitations], default=0.0)
-    highest = max(highest, 2.0 * first)
+    shown = first if modes.torsional is None else float(modes.frequencies[modes.torsional])
+    highest = max(highest, 1.5 * shown)
     traces = _excitations(modes.excitations, last, lowest, highest)
     traces += _curves(modes, highest)
     traces += _crossings(modes)

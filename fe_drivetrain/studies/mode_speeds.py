@@ -11,6 +11,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Bools, Floats
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics import System, SystemModes, likest_modes, turning_modes
+from fe_drivetrain.dynamics.bodies.modes import Complex
 from fe_drivetrain.procedure import Excitation, Meeting, resonances
 
 MARGIN_BEYOND = 1.2
@@ -138,18 +139,22 @@ def campbell(system: System, modes: SystemModes, speeds: Sequence[float]) -> Cam
         Modes at rest, and those at each speed with the gyroscopic terms of all spinning bodies and
         with the damping of the springs.
     """
+    moving = np.flatnonzero(modes.frequencies > 0.0)
+    shapes: Floats | Complex = modes.shapes[:, moving]
     rows, ratios = [modes.frequencies], [np.zeros_like(modes.frequencies)]
     for speed in speeds:
         turning = turning_modes(system, speed)
-        of = likest_modes(system, modes, turning)
+        of = likest_modes(system, shapes, turning)
         known = of >= 0
         frequencies = np.where(modes.frequencies > 0.0, np.nan, 0.0)
         damping = np.zeros_like(frequencies)
-        frequencies[known] = turning.frequencies[of[known]]
+        frequencies[moving[known]] = turning.frequencies[of[known]]
         if system.damping.any():
-            damping[known] = turning.ratios[of[known]]
+            damping[moving[known]] = turning.ratios[of[known]]
         rows.append(frequencies)
         ratios.append(damping)
+        # from here on each whirl is like itself
+        shapes = np.where(known, turning.shapes[:, of], shapes)
     return Campbell(np.array([0.0, *speeds]), np.array(rows), np.array(ratios))
 
 

@@ -155,6 +155,15 @@ def test_crossings_of_whirling_modes_are_on_their_curves(geared: ModesResult) ->
         assert orders[one.excitation] * one.crossing / (2 * math.pi) == pytest.approx(on_curve)
 
 
+def test_whirls_keep_apart_over_the_speed(geared: ModesResult) -> None:
+    """Of a rotor that bends alike in both planes, one falls and one rises, without a jump."""
+    for found in (geared, modes(read_drivetrain("park_2021"), level="rigid", speeds=RANGE)):
+        assert found.campbell is not None
+        first, second = [k for k in range(4) if found.kinds[k] == "lateral"][:2]
+        assert np.all(np.diff(found.campbell.frequencies[:, first]) < 0.0)
+        assert np.all(np.diff(found.campbell.frequencies[:, second]) > 0.0)
+
+
 def test_between_the_speeds_that_are_solved_frequencies_are_known_well(
     geared: ModesResult,
 ) -> None:
