@@ -304,7 +304,7 @@ class BearingData(Part):
 class Brake(Part):
     """A disc brake."""
 
-    on: str = Field(description="name of the shaft of its disc")
+    shaft: str = Field(description="name of the shaft of its disc")
     torque: float = dimension(of="torque at full size, on its shaft", unit="N m", gt=0, le=1e9)
     rise: float = dimension(
         0.0,

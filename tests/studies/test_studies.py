@@ -302,10 +302,10 @@ def test_a_drivetrain_without_sections_is_checked_by_what_turns() -> None:
     assert found.turning is not None
     # 1 + (a + r_p) / r_s of the planetary stage, and the radii of the two others
     ratio = (1 + 0.43 / 0.11) * 0.29 / 0.095 * 0.185 / 0.08
-    assert found["ratio of all stages"].computed == pytest.approx(ratio, rel=1e-3)
+    assert found.turning.ratio == pytest.approx(ratio, rel=1e-3)
     assert found.turning.degrees == {"torsional": 10, "rigid bodies": 60, "flexible shafts": 60}
     assert len(found.described["Gear stages, from the rotor on"]) == 3
-    assert any("lengths of shafts" in row.why for row in found.assumptions)
+    assert any("lengths of shafts" in row.source for row in found.assumptions)
 
 
 def test_a_figure_is_found_by_its_name(compared: CompareResult) -> None:
