@@ -40,6 +40,7 @@ from .studies import LifeOptions as LifeOptions
 from .studies import LifeResult as LifeResult
 from .studies import LoadOptions as LoadOptions
 from .studies import LoadsResult as LoadsResult
+from .studies import ModesResult as ModesResult
 from .studies import PartResult as PartResult
 from .studies import Result as Result
 from .studies import StudyResult as StudyResult
@@ -52,6 +53,7 @@ from .studies import compare as compare
 from .studies import gears as gears
 from .studies import life as life
 from .studies import loads as loads
+from .studies import modes as modes
 from .studies import part as part
 from .studies import prepare_export as prepare_export
 from .studies import study as study

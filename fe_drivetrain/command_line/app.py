@@ -24,6 +24,7 @@ from fe_drivetrain.command_line.gears import gears_command
 from fe_drivetrain.command_line.history import history_command
 from fe_drivetrain.command_line.life import life_command
 from fe_drivetrain.command_line.loads import loads_command
+from fe_drivetrain.command_line.modes import modes_command
 from fe_drivetrain.command_line.new_scene import new_command
 from fe_drivetrain.command_line.output_options import LOOK, with_shared_options
 from fe_drivetrain.command_line.part import part_command
@@ -60,6 +61,7 @@ _COMMANDS: tuple[tuple[str, str, Callable[..., None]], ...] = (
     (_DESCRIBE, "check", check_command),
     (_STUDY, "study", study_command),
     (_STUDY, "advise", advise_command),
+    (_STUDY, "modes", modes_command),
     (_STUDY, "loads", loads_command),
     (_STUDY, "life", life_command),
     (_STUDY, "gears", gears_command),

@@ -16,6 +16,10 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
         "main_bearing_bonded --quantity main_bearing.My --tolerance 2%",
         "mine.yaml --load hub.My=1e6",
     ),
+    "modes": (
+        "nrel_5mw --speeds 6.9:12.1 --open",
+        "mine.yaml --level torsional --generator held --json",
+    ),
     "loads": (
         "'outputs/*.outb' --site class-II --open",
         "mine.csv --against 'others/*.csv'",

@@ -49,6 +49,7 @@ OPTIONS: Mapping[str, str] = {
     "site": "--site",
     "slices": "--slices",
     "slopes": "--slope",
+    "speeds": "--speeds",
     "spectrum": "--spectrum",
     "step": "--step",
     "supply": "--supply",

@@ -1,9 +1,11 @@
 from .bodies.advice import QUESTIONS as QUESTIONS
 from .bodies.advice import RUNGS as RUNGS
 from .bodies.advice import Answer as Answer
+from .bodies.advice import Asked as Asked
 from .bodies.advice import Operation as Operation
 from .bodies.advice import Rung as Rung
 from .bodies.advice import ladder as ladder
+from .bodies.advice import like_mode as like_mode
 from .bodies.advice import needed_level as needed_level
 from .bodies.advice import pin_loads as pin_loads
 from .bodies.advice import slices_of as slices_of
@@ -77,6 +79,7 @@ from .bodies.modes import TurningModes as TurningModes
 from .bodies.modes import direction_kinds as direction_kinds
 from .bodies.modes import distinct as distinct
 from .bodies.modes import divergence_speeds as divergence_speeds
+from .bodies.modes import likest_modes as likest_modes
 from .bodies.modes import planetary_kinds as planetary_kinds
 from .bodies.modes import system_modes as system_modes
 from .bodies.modes import turning_modes as turning_modes

@@ -8,6 +8,8 @@ from .design_comparison import Varied as Varied
 from .design_comparison import compare as compare
 from .dossier_overview import DossierResult as DossierResult
 from .dossier_overview import dossier as dossier
+from .drivetrain_modes import ModesResult as ModesResult
+from .drivetrain_modes import modes as modes
 from .drivetrain_transient import transient as transient
 from .export_content import ExportResult as ExportResult
 from .export_content import prepare_export as prepare_export

@@ -30,6 +30,7 @@ from fe_drivetrain.pages.check import show_check
 from fe_drivetrain.pages.compare import show_compare
 from fe_drivetrain.pages.life import show_life
 from fe_drivetrain.pages.loads import show_loads
+from fe_drivetrain.pages.modes import show_modes
 from fe_drivetrain.pages.study import show_study
 from fe_drivetrain.pages.transient import show_transient
 from fe_drivetrain.pages.uncertainty import show_uncertainty
@@ -47,6 +48,7 @@ from fe_drivetrain.studies import (
     LifeResult,
     LoadOptions,
     LoadsResult,
+    ModesResult,
     PartResult,
     Result,
     StudyResult,
@@ -58,6 +60,7 @@ from fe_drivetrain.studies import (
     compare,
     life,
     loads,
+    modes,
     part,
     prepare_export,
     study,
@@ -143,6 +146,11 @@ def loaded(tmp_path_factory: pytest.TempPathFactory) -> LoadsResult:
 
 
 @pytest.fixture(scope="module")
+def vibrating() -> ModesResult:
+    return modes(read_drivetrain("park_2021"), level="rigid", speeds=(0.6, 1.2))
+
+
+@pytest.fixture(scope="module")
 def lived(tmp_path_factory: pytest.TempPathFactory) -> LifeResult:
     folder = tmp_path_factory.mktemp("histories")
     for wind in (8.0, 14.0):
@@ -170,14 +178,14 @@ PAGES: dict[str, Callable[[Run, Page, Any], None]] = {
     "lived": show_life,
     "loaded": show_loads,
     "timed": show_transient,
+    "vibrating": show_modes,
 }
 """What shows a result on a page."""
 
 RESULTS = (
     "studied",
     *("checked", "compared", "advised", "uncertain", "validated", "lived", "loaded"),
-    "timed",
-    *("shaped", "condensed", "exported"),
+    *("timed", "vibrating", "shaped", "condensed", "exported"),
 )
 
 

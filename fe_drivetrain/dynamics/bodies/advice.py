@@ -14,7 +14,7 @@ from fe_drivetrain.dynamics.bodies.flexible import Flexible
 from fe_drivetrain.dynamics.bodies.gear_pairs import pitch_contacts
 from fe_drivetrain.dynamics.bodies.levels import Level, machine_system, steady_load, torsional
 from fe_drivetrain.dynamics.bodies.machine import Machine
-from fe_drivetrain.dynamics.bodies.modes import SystemModes, system_modes
+from fe_drivetrain.dynamics.bodies.modes import SystemModes, distinct, system_modes
 from fe_drivetrain.dynamics.bodies.static import Static, load_sharing, static
 from fe_drivetrain.dynamics.bodies.system import System
 from fe_drivetrain.dynamics.torsion.system import natural_modes
@@ -97,11 +97,14 @@ class Asked:
         Level, and what gives.
     operation : Operation
         Loads.
+    held : bool
+        Whether the generator is held in modes, too; in statics it is.
     """
 
     machine: Machine
     rung: Rung
     operation: Operation
+    held: bool = False
 
     @cached_property
     def modes(self) -> SystemModes:
@@ -110,8 +113,13 @@ class Asked:
 
     @cached_property
     def system(self) -> System:
-        """System with the generator free to turn."""
-        return machine_system(self.machine, self.rung.level, flexible=self.rung.flexible)
+        """System of the modes."""
+        return machine_system(
+            self.machine,
+            self.rung.level,
+            held_generator=self.held,
+            flexible=self.rung.flexible,
+        )
 
     @cached_property
     def loaded(self) -> Static | None:
@@ -144,7 +152,7 @@ def torsional_frequency(number: int) -> Question:
     """
 
     def asked(of: Asked) -> float | None:
-        simple = torsional(of.machine)
+        simple = torsional(of.machine, of.held)
         modes = natural_modes(simple)
         chosen = int(np.flatnonzero(modes.frequencies > 0)[number - 1])
         if of.rung.level is Level.TORSIONAL:
@@ -153,6 +161,41 @@ def torsional_frequency(number: int) -> Question:
         likeness = (modes.shapes[:, chosen] * simple.J) @ of.modes.shapes[rows]
         best = int(np.abs(likeness).argmax())
         return float(of.modes.frequencies[best]) if likeness[best] ** 2 > 0.5 else None
+
+    return asked
+
+
+def like_mode(finest: Asked, number: int) -> Question:
+    """Frequency of the mode most like one of the finest level's, counted above zero [Hz].
+
+    Modes within a thousandth of a frequency are taken together: their shapes come in any
+    combination. None where those have less than half of it.
+
+    Parameters
+    ----------
+    finest : Asked
+        Machine at the finest level; all that moves at others moves there.
+    number : int
+        Number of its mode, from 1.
+    """
+
+    def asked(of: Asked) -> float | None:
+        chosen = int(np.flatnonzero(finest.modes.frequencies > 0)[number - 1])
+        if of.rung is finest.rung:
+            return float(finest.modes.frequencies[chosen])
+        rows = [finest.system.place(name) for name in of.system.names]
+        shape = finest.modes.shapes[rows, chosen]
+        shares = (of.modes.shapes.T @ (of.system.mass @ shape)) ** 2
+        shares[of.modes.frequencies == 0.0] = 0.0
+        best: tuple[float, float | None] = (0.5, None)
+        first = 0
+        for _, count in distinct(of.modes.frequencies, 1e-3):
+            group = shares[first : first + count]
+            if group.sum() > best[0]:
+                at = first + int(group.argmax())
+                best = (float(group.sum()), float(of.modes.frequencies[at]))
+            first += count
+        return best[1]
 
     return asked
 
@@ -255,6 +298,7 @@ def ladder(
     operation: Operation,
     rungs: Sequence[Rung] = RUNGS,
     questions: Mapping[str, Question] = QUESTIONS,
+    held: bool = False,
 ) -> list[Answer]:
     """The answers of all levels, from the simplest.
 
@@ -268,11 +312,13 @@ def ladder(
         Rungs, from the simplest level to the finest.
     questions : mapping
         Questions by name.
+    held : bool
+        Whether the generator is held in modes, too.
     """
     found = []
     for rung in rungs:
         start = perf_counter()
-        asked = Asked(machine, rung, operation)
+        asked = Asked(machine, rung, operation, held)
         values = {name: ask(asked) for name, ask in questions.items()}
         size = len(asked.system.names)
         found.append(Answer(rung.name, size, perf_counter() - start, values))

@@ -364,13 +364,20 @@ def _parallel(
     return bodies, springs
 
 
-def torsional(machine: MachineTable) -> Torsional:
+def torsional(machine: MachineTable, held_generator: bool = False) -> Torsional:
     """The machine at the torsional level, for what `dynamics.torsion` does with one.
 
     Windings of meshes are along the lines of action [m/rad], so that their stiffness is in N/m;
     else these are the systems of `gear_masses` of a gear table with the planets' teeth.
+
+    Parameters
+    ----------
+    machine : MachineTable
+        Table of the machine.
+    held_generator : bool
+        Whether the generator does not turn.
     """
-    system = machine_system(machine, Level.TORSIONAL)
+    system = machine_system(machine, Level.TORSIONAL, held_generator=held_generator)
     inertias = [
         Inertia(name.removesuffix(" rx"), float(J))
         for name, J in zip(system.names, system.mass.diagonal(), strict=True)
