@@ -8,7 +8,7 @@ number.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from itertools import islice
 from pathlib import Path
 from typing import Any, ClassVar
@@ -16,14 +16,19 @@ from typing import Any, ClassVar
 import numpy as np
 
 from fe_drivetrain.bearing_life.life.roller_damage import KINDS, LifeRules
+from fe_drivetrain.common.arguments import argument
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.drivetrain_file.without_weight import weightless
+from fe_drivetrain.dynamics.bodies.tables import Machine
 from fe_drivetrain.report.charts import bars
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.studies.gearbox_bearings import MachineBearings, machine_bearings
+from fe_drivetrain.studies.gearbox_findings import assume_reactions, name_unrated, say_levels
 from fe_drivetrain.studies.life_answer import state_answer
 from fe_drivetrain.studies.life_digest import kept_digest
 from fe_drivetrain.studies.life_findings import answers, assumptions, cautions, checks
@@ -31,7 +36,7 @@ from fe_drivetrain.studies.life_options import LifeOptions
 from fe_drivetrain.studies.life_sums import BearingLife, BearingSums
 from fe_drivetrain.studies.life_tables import limit_rows, long_tables, result_tables
 from fe_drivetrain.studies.result import Result
-from fe_drivetrain.studies.rolling_bearings import bearings_of
+from fe_drivetrain.studies.rolling_bearings import OneBearing, bearings_of
 from fe_drivetrain.turbine_loads.histories.sites import Site
 from fe_drivetrain.turbine_loads.hub_loads.recorded import Files, recorded_files, short_name
 
@@ -54,6 +59,8 @@ class LifeResult(Result):
         Whose winds are weighted; None where files repeat for ever.
     rules : LifeRules
         Choices that change lives.
+    not_rated : tuple of str
+        Bearings of the drivetrain without a catalogue entry.
     """
 
     STUDY: ClassVar[str] = "life"
@@ -62,6 +69,7 @@ class LifeResult(Result):
     bearings: Mapping[str, BearingLife]
     site: Site | None
     rules: LifeRules
+    not_rated: tuple[str, ...] = ()
 
     @property
     def lives(self) -> tuple[BearingLife, ...]:
@@ -148,7 +156,9 @@ class DrivetrainBearings:
     options : LifeOptions
         What is asked for.
     bearings : list of OneBearing
-        Its bearings, or the one that is asked for.
+        Its bearings, or the one that is asked for: main bearings, then those of the gearbox.
+    machine : MachineBearings
+        Those of the gearbox, those without a catalogue entry, and the levels of their loads.
 
     Raises
     ------
@@ -156,10 +166,40 @@ class DrivetrainBearings:
         The scene has no rolling bearing or an unknown one.
     """
 
-    def __init__(self, scene: Scene, options: LifeOptions) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        options: LifeOptions,
+        machine: Machine | None = None,
+        entries: Mapping[str, str] | None = None,
+    ) -> None:
         self.scene = scene if options.weight else weightless(scene)
         self.options = options
-        self.bearings = bearings_of(self.scene, options.choices)
+        self.machine = MachineBearings()
+        if machine is None:
+            self.bearings = bearings_of(self.scene, options.choices)
+        else:
+            self.bearings = self._all_bearings(machine, entries or {})
+
+    def _all_bearings(self, machine: Machine, entries: Mapping[str, str]) -> list[OneBearing]:
+        """Main bearings on their rollers where all have an entry, and those by reactions."""
+        choices = self.options.choices
+        units = {unit.bearing.name: unit.catalogue for unit in self.scene.bearing_units}
+        named = {**{n: e for n, e in units.items() if e}, **entries, **choices.named}
+        on_rollers = [name for name in units if all(name in named for name in units)]
+        main: list[OneBearing] = []
+        if on_rollers and choices.only in (None, *on_rollers):
+            of_units = {name: entry for name, entry in named.items() if name in units}
+            main = bearings_of(self.scene, replace(choices, named=of_units))
+        self.machine = machine_bearings(machine, named, choices, self.options.oil, on_rollers)
+        found = [*main, *self.machine.rated]
+        if not found:
+            raise InputError(
+                f"no bearing of {machine.title!r} has an entry of the catalogue: name one under "
+                f"'catalogue' in its file, or with "
+                f"{argument('LifeOptions.bearings', {self.machine.unrated[0].name: 'ENTRY'})}"
+            )
+        return found
 
 
 def lives_under(
@@ -196,17 +236,22 @@ def lives_under(
     found.about(drivetrain.scene)
     with steps.step("load steps"):
         lives = list(_lives(drivetrain, files, site, resume, report))
+    machine = drivetrain.machine
     answers(found, lives, asked.rules, site)
+    say_levels(found, lives, machine)
     cautions(found, drivetrain.scene, lives, asked, limit_rows(lives))
+    name_unrated(found, machine)
     assumptions(found, lives, asked)
+    assume_reactions(found, lives)
     checks(found, lives)
-    state_answer(found, lives, site)
-    for name, table in result_tables(lives).items():
+    state_answer(found, lives, site, len(machine.unrated))
+    for name, table in result_tables(lives, machine).items():
         found.data(name, table)
     return LifeResult(
         bearings={one.name: one for one in lives},
         site=site,
         rules=asked.rules,
+        not_rated=tuple(one.name for one in machine.unrated),
         **found.frozen(steps.times, **_stated(files, site, asked)),
     )
 

@@ -10,11 +10,12 @@ import numpy as np
 
 from fe_drivetrain.bearing.answers import race_pressures
 from fe_drivetrain.bearing.geometry import RollerRow
+from fe_drivetrain.bearing_life.coupled.reaction_paths import ReactionPath
 from fe_drivetrain.bearing_life.life.limits import check_speed
 from fe_drivetrain.bearing_life.life.roller_damage import Damage, LifeRules, damage_of_steps
 from fe_drivetrain.bearing_life.life.steps import Steps
 from fe_drivetrain.common.arguments import argument
-from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.arrays import Floats, chunks
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
@@ -27,6 +28,7 @@ from fe_drivetrain.studies.rolling_bearings import Choices, OneBearing
 from fe_drivetrain.studies.unused import RPM, own_speeds, require_samples
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.turbine_loads.hub_loads.histories import MIN_SAMPLES
+from fe_drivetrain.turbine_loads.hub_loads.point_loads import PointLoads
 from fe_drivetrain.turbine_loads.hub_loads.recorded import Recorded, read_recorded
 from fe_drivetrain.turbine_loads.hub_loads.turbines import vertical_forces
 
@@ -35,6 +37,9 @@ WINDOWS = 60
 
 MAXIMUM = 512
 """Steps at a time, at most."""
+
+LONGEST = 20000
+"""Steps of the hub at a time, at most, where no rollers are solved."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +75,7 @@ class LifeDigest:
     wind : float
         Mean wind speed [m/s]; not a number where the file has none.
     speed : float
-        Mean rotor speed [1/min].
+        Mean speed of one ring against the other [1/min].
     samples : float
         Number of samples that were taken.
     mean_load, peak_load : Floats
@@ -86,6 +91,10 @@ class LifeDigest:
         (2,) least and largest rotor speed that the file states [1/min]; NaN where it has none.
     ratios : Floats
         Damage with other values of what was assumed, see `fe_drivetrain.studies.life_assumptions`.
+    levels : Floats
+        Damage by L10 at each level of `OneBearing.levels`, over that of the load path.
+    flanges : float
+        Largest axial force that rolling elements do not carry [N].
     """
 
     damage: Damage
@@ -100,6 +109,8 @@ class LifeDigest:
     vertical: tuple[float, float]
     own_speeds: Floats
     ratios: Floats
+    levels: Floats
+    flanges: float
 
 
 def content(
@@ -133,7 +144,8 @@ def content(
         "bearing": one.name,
         "rated": repr(one.rated),
         "rollers": {name: repr(b) for name, b in one.path.bearings.items()},
-        "rules": repr(rules),
+        "rules": repr(one.rules(rules)),
+        "reactions": [path.key for path in reactions_of(one)],
         "mapping": reading.names.content(),
         "reading": [reading.skip, reading.every, reading.rotor_speed],
         "scene": whole_content(scene),
@@ -183,23 +195,27 @@ def digest(
     history, speed = found.history, _speed_rpm(file, found, reading)
     require_samples(file, len(history), reading.every, MIN_SAMPLES)
     loads, speed = entering(scene, history)[:: reading.every], speed[:: reading.every]
-    check_speed(one.rated, speed)
+    turns, own = speed * one.path.speed_ratio, one.rules(rules)
+    check_speed(one.rated, turns)
     n, step = len(loads), history.step * reading.every
     sums = _Sums(one)
     chunk = int(np.clip(-(-n // WINDOWS), 1, MAXIMUM))
     done = 0
     for steps in one.path.steps(loads, speed, step, chunk):
-        sums.add(steps, damage_of_steps(steps, one.rated, rules), (done + 0.5 * chunk) * step)
-        done += len(steps.loads)
+        sums.add(steps, damage_of_steps(steps, one.rated, own), (done + 0.5 * chunk) * step)
+        done += len(steps.loads) // one.path.repeats
         report(f"{one.name}, {file.stem}: load steps ({done} of {n})")
     wind = np.nan if found.wind_speed is None else float(found.wind_speed.mean())
-    made = sums.digest(wind, float(np.abs(speed).mean()), float(n))
-    changed = ratios(one, rules, what_ifs(one, rules, choices), loads, speed, sums.weights)
+    made = sums.digest(wind, float(np.abs(turns).mean()), float(n))
+    changed = ratios(one, own, what_ifs(one, own, choices), loads, speed, sums.weights)
+    levels, flanges = by_levels(one, loads, speed)
     return replace(
         made,
         vertical=vertical_forces([history])[history.name],
         own_speeds=own_speeds(found.rotor_speed),
         ratios=changed,
+        levels=levels,
+        flanges=flanges,
     )
 
 
@@ -214,6 +230,44 @@ def _speed_rpm(file: Path, found: Recorded, reading: Reading) -> Floats:
         f"{argument('LifeOptions.rotor_speed_rpm')} in 1/min, or its channel, as in "
         "`ChannelMap(channels={'rotor speed': 'RotSpeed'})`"
     )
+
+
+def reactions_of(one: OneBearing) -> list[ReactionPath]:
+    """All ways of the load to a bearing by reactions: by level, and with other stiffnesses."""
+    return [*one.levels.values(), *(other.path for other in one.others)]
+
+
+def by_levels(one: OneBearing, loads: PointLoads, speed_rpm: Floats) -> tuple[Floats, float]:
+    """Damage by L10 at each level over that of the load path, and force on flanges.
+
+    Parameters
+    ----------
+    one : OneBearing
+        The bearing.
+    loads : PointLoads
+        Load steps as they enter the drivetrain, (n, 6) [N, N m].
+    speed_rpm : Floats
+        Speed (n,) of the rotor [1/min].
+
+    Returns
+    -------
+    levels : Floats
+        One for each of `OneBearing.levels`; 1 where none does damage.
+    flanges : float
+        Largest axial force that rolling elements do not carry [N].
+    """
+    if not isinstance(one.path, ReactionPath):
+        return np.zeros(0), 0.0
+    paths = [one.path, *one.levels.values()]
+    sums, flanges = np.zeros(len(paths)), 0.0
+    for part in chunks(len(loads), LONGEST):
+        for i, path in enumerate(paths):
+            found, beside = path.carried(loads[part])
+            used = one.rated.equivalent_load(found) ** one.rated.exponent
+            each = used.reshape(-1, path.repeats).mean(axis=1)
+            sums[i] += float(each @ np.abs(speed_rpm[part]))
+            flanges = max(flanges, float(beside.max())) if path is one.path else flanges
+    return sums[1:] / sums[0] if sums[0] else np.ones(len(paths) - 1), flanges
 
 
 def kept_digest(
@@ -270,8 +324,8 @@ class _Sums:
 
     @property
     def weights(self) -> Floats:
-        """(n,) of all steps so far, about in proportion to their damage."""
-        return np.concatenate(self._weights)
+        """(n,) of all steps of the hub so far, about in proportion to their damage."""
+        return np.concatenate(self._weights).reshape(-1, self.one.path.repeats).sum(axis=1)
 
     def add(self, steps: Steps, damage: Damage, time: float) -> None:
         rollers = [q.sum(axis=2) for q in steps.laminae]
@@ -315,6 +369,8 @@ class _Sums:
             (np.nan, np.nan),
             own_speeds(None),
             np.zeros(0),
+            np.zeros(0),
+            0.0,
         )
 
 

@@ -124,7 +124,7 @@ def cautions(
             found.note(life.bearing.misfit)
     for life, row in zip(lives, limits, strict=True):
         _beyond_limits(found, life, row)
-    for life in lives:
+    for life in _spoken_of(lives):
         if sentence := in_words(life.name, life.years["L10mr"], life.assumptions):
             found.note(sentence)
     files = [one.file for one in lives[0].files]
@@ -140,6 +140,12 @@ def cautions(
     for unused in choices_not_used(scene, options.choices, [life.bearing for life in lives]):
         found.note(unused, first=True)
     found.note(UNVERIFIED)
+
+
+def _spoken_of(lives: Sequence[BearingLife]) -> list[BearingLife]:
+    """Bearings on rollers in equilibrium with the shaft, and of the others the shortest-lived."""
+    others = sorted((one for one in lives if one.levels), key=lambda one: one.years["L10mr"])
+    return [*(one for one in lives if not one.levels), *others[:1]]
 
 
 def _beyond_limits(found: Findings, life: BearingLife, row: Record) -> None:

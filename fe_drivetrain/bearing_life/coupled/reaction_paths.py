@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from hashlib import sha256
 from typing import NamedTuple
 
@@ -87,6 +87,18 @@ class ReactionPath:
         found = sha256(np.ascontiguousarray(self.by_hub).tobytes())
         found.update(np.ascontiguousarray(self.by_weight).tobytes())
         return f"{found.hexdigest()} {self.speed_ratio!r}"
+
+    def with_bearing(self, bearing: Bearing, rollers: RollerModel) -> ReactionPath:
+        """The path with another clearance or profile of the bearing.
+
+        Parameters
+        ----------
+        bearing : Bearing
+            In its place.
+        rollers : callable
+            How it shares its load.
+        """
+        return replace(self, rated=replace(self.rated, bearing=bearing), rollers=rollers)
 
     def carried(self, hub_loads: PointLoads | ArrayLike) -> Carried:
         """Loads of the bearing, those of the azimuths of a step one after the other.

@@ -134,6 +134,8 @@ class BearingModel:
         stages = range(1, len(machine.stages) + 1)
         self._at = [_Azimuth(machine, level, dict.fromkeys(stages, a), a, flexible) for a in turned]
 
+        self._steady = {name for name, loads in self._loads({}).items() if _same(loads)}
+
     @property
     def degrees(self) -> int:
         """Number of degrees of freedom."""
@@ -164,16 +166,18 @@ class BearingModel:
         """
         for name in factors or {}:
             require_known("bearing", name, self.names)
-        each = [at.loads(factors or {}) for at in self._at]
-        found = {}
+        found, each = {}, self._loads(factors or {})
         for name, ring in self._at[0].rings.items():
-            loads = np.array([of[name] for of in each])
-            if _same(loads):
-                loads = loads[:1]
+            loads = each[name][:1] if name in self._steady else each[name]
             found[name] = Reactions(
                 name, loads[:, :, :6], loads[:, :, 6], ring.speed_ratio, ring.planets
             )
         return found
+
+    def _loads(self, factors: Mapping[str, float]) -> dict[str, Floats]:
+        """(a, 6, 7) loads of all bearings at all azimuths."""
+        each = [at.loads(factors) for at in self._at]
+        return {name: np.array([of[name] for of in each]) for name in self._at[0].rings}
 
 
 def bearing_reactions(
