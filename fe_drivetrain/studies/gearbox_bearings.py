@@ -109,14 +109,16 @@ def machine_bearings(
     main = main_names(machine)
     names = [n for n in models[LEVELS[-1]].names if n not in on_rollers]
     names = [*(n for n in names if n in main), *(n for n in names if n not in main)]
-    _require_bearings(names, entries, on_rollers)
+    _require_bearings((*on_rollers, *names), entries, choices.only)
     known = read_bearing_catalogue(*choices.catalogues)
     rated, unrated = [], []
     for name in names:
         here = {level: of[name] for level, of in loads.items()}
+        if choices.only not in (None, name):
+            continue
         if name not in entries:
             unrated.append(Unrated(name, here[LEVELS[-1]].speed_ratio))
-        elif choices.only in (None, name):
+        else:
             entry = _entry(name, entries[name], known)
             made = _Maker(name, entries[name], entry, choices)
             rated.append(made.bearing(models[LEVELS[-1]], here, None if name in main else oil))
@@ -226,13 +228,22 @@ def _entry(name: str, entry: str, known: Mapping[str, Entry]) -> Entry:
     return known[entry]
 
 
-def _require_bearings(
-    names: Sequence[str], entries: Mapping[str, str], on_rollers: Sequence[str]
-) -> None:
-    """Refuse entries of bearings that there are not."""
+def _require_bearings(names: Sequence[str], entries: Mapping[str, str], only: str | None) -> None:
+    """Refuse names of bearings that there are not, and to ask for one that cannot be rated."""
+    known = f"name one of {', '.join(names)}"
     for name in entries:
-        if name not in (*names, *on_rollers):
+        if name not in names:
             raise InputError(
                 f"{argument('LifeOptions.bearings', {name: entries[name]})}: the drivetrain has no "
-                f"bearing {name!r}; name one of {', '.join((*on_rollers, *names))}"
+                f"bearing {name!r}; {known}"
             )
+    if only is not None and only not in names:
+        raise InputError(
+            f"{argument('LifeOptions.only', only)}: the drivetrain has no such bearing; {known}"
+        )
+    if only is not None and only not in entries:
+        raise InputError(
+            f"{argument('LifeOptions.only', only)}: bearing {only!r} has no entry of the "
+            f"catalogue: name it with {argument('LifeOptions.bearings', {only: 'ENTRY'})}, or "
+            "under 'catalogue' in the drivetrain's file"
+        )
