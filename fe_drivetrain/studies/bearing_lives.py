@@ -40,6 +40,7 @@ from fe_drivetrain.studies.rolling_bearings import OneBearing, bearings_of
 from fe_drivetrain.turbine_loads.histories.sites import Site
 from fe_drivetrain.turbine_loads.hub_loads.recorded import Files, recorded_files, short_name
 
+_SEEN = 4  # bearings of which a chart shows lives of all kinds at one view
 _MANY = 8  # files, each of every bearing, for which it pays to start processes
 
 
@@ -81,15 +82,18 @@ class LifeResult(Result):
         return {**self.tables, **long_tables(self.lives)}
 
     def chart(self) -> Chart:
-        """Lives of all bearings, of each kind; those without end are left out."""
+        """Lives of all bearings, of each kind; of many L10mr alone; those without end left out."""
+        kinds = KINDS if len(self.lives) <= _SEEN else KINDS[-1:]
         ending = {
-            kind: [life for life in self.lives if np.isfinite(life.years[kind])] for kind in KINDS
+            kind: [life for life in self.lives if np.isfinite(life.years[kind])] for kind in kinds
         }
         groups = {
             kind: {life.name: life.years[kind] for life in lives} for kind, lives in ending.items()
         }
         least = min((v for values in groups.values() for v in values.values()), default=1.0)
         caption = "Lives of the bearings"
+        if len(kinds) == 1:
+            caption += f", {kinds[0]}"
         if any(life.bands["L10mr"] is not None for life in self.lives):
             caption += ", ± two standard errors of files of the same wind"
         found = bars(caption, groups, "life [years]", least=least)
@@ -239,8 +243,8 @@ def lives_under(
     machine = drivetrain.machine
     answers(found, lives, asked.rules, site)
     say_levels(found, lives, machine)
-    cautions(found, drivetrain.scene, lives, asked, limit_rows(lives))
     name_unrated(found, machine)
+    cautions(found, drivetrain.scene, lives, asked, limit_rows(lives))
     assumptions(found, lives, asked)
     assume_reactions(found, lives)
     checks(found, lives)

@@ -325,7 +325,8 @@ class _Sums:
     @property
     def weights(self) -> Floats:
         """(n,) of all steps of the hub so far, about in proportion to their damage."""
-        return np.concatenate(self._weights).reshape(-1, self.one.path.repeats).sum(axis=1)
+        each = np.concatenate(self._weights).reshape(-1, self.one.path.repeats)
+        return np.asarray(each.sum(axis=1))
 
     def add(self, steps: Steps, damage: Damage, time: float) -> None:
         rollers = [q.sum(axis=2) for q in steps.laminae]

@@ -124,6 +124,7 @@ def cautions(
             found.note(life.bearing.misfit)
     for life, row in zip(lives, limits, strict=True):
         _beyond_limits(found, life, row)
+    _beyond_limits_together(found, lives, limits)
     for life in _spoken_of(lives):
         if sentence := in_words(life.name, life.years["L10mr"], life.assumptions):
             found.note(sentence)
@@ -148,28 +149,42 @@ def _spoken_of(lives: Sequence[BearingLife]) -> list[BearingLife]:
     return [*(one for one in lives if not one.levels), *others[:1]]
 
 
+BEYOND = {
+    "load above C/2 [% of time]": "the load is above C/2, beyond the range of ISO 281",
+    "kappa below 0.1 [% of time]": "the film is below kappa = 0.1: a_ISO is taken as 0.1",
+    "kappa above 4 [% of time]": "the film is above kappa = 4, a_ISO is taken as that of 4: a "
+    "lubricant that thick may not reach the contacts",
+    "standing [% of time]": "the bearing stands: no life is computed for that time",
+}
+"""What is said of time beyond a limit of the methods, by the column of its share."""
+
+
+def _beyond_limits_together(
+    found: Findings, lives: Sequence[BearingLife], limits: Sequence[Record]
+) -> None:
+    """State the same limits of several bearings of a gearbox in one sentence each."""
+    for key, words in BEYOND.items():
+        shares = {
+            life.name: row[key]
+            for life, row in zip(lives, limits, strict=True)
+            if life.levels and isinstance(row[key], float)
+        }
+        past = {name: share for name, share in shares.items() if share > 0.0}
+        if past:
+            several = "Bearing" if len(past) == 1 else "Bearings"
+            most = f"{'up to ' if len(past) > 1 else ''}{max(past.values()):.3g}"
+            found.note(f"{several} {', '.join(past)}: in {most} % of the time {words}.")
+
+
 def _beyond_limits(found: Findings, life: BearingLife, row: Record) -> None:
     of, name = life.limits, life.name
-    for key, words in (
-        (
-            "S0 below 1 [% of time]",
-            f"static safety is below 1, {of.static_safety:.2g} at least, with "
-            f"{1e-6 * of.max_pressure:,.0f} MPa on a raceway",
-        ),
-        ("load above C/2 [% of time]", "the load is above C/2, beyond the range of ISO 281"),
-        (
-            "above the limiting speed [% of time]",
-            f"it turns faster than its limiting speed, {life.bearing.rated.limiting_speed_rpm} "
-            "1/min",
-        ),
-        ("kappa below 0.1 [% of time]", "the film is below kappa = 0.1: a_ISO is taken as 0.1"),
-        (
-            "kappa above 4 [% of time]",
-            "the film is above kappa = 4, a_ISO is taken as that of 4: a lubricant that thick may "
-            "not reach the contacts",
-        ),
-        ("standing [% of time]", "the bearing stands: no life is computed for that time"),
-    ):
+    own = {
+        "S0 below 1 [% of time]": f"static safety is below 1, {of.static_safety:.2g} at least, "
+        f"with {1e-6 * of.max_pressure:,.0f} MPa on a raceway",
+        "above the limiting speed [% of time]": "it turns faster than its limiting speed, "
+        f"{life.bearing.rated.limiting_speed_rpm} 1/min",
+    }
+    for key, words in (own if life.levels else own | BEYOND).items():
         share = row[key]
         if isinstance(share, float) and share > 0.0:
             found.note(f"Bearing {name}: in {share:.3g} % of the time {words}.")

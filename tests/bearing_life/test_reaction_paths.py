@@ -11,6 +11,7 @@ from fe_drivetrain.bearing.rolling import equilibrium
 from fe_drivetrain.bearing_life.coupled.reaction_paths import (
     ReactionPath,
     carried_loads,
+    damage_of_forces,
     one_sided,
 )
 from fe_drivetrain.bearing_life.life.rated import rated_bearing
@@ -90,6 +91,17 @@ def test_a_single_tapered_row_is_pressed_by_its_own_radial_load() -> None:
     assert 0.4 <= share[0] <= 0.7
     tilt_at_ends = np.abs(solved.displacements[:, 3:]).max() * 0.1
     assert tilt_at_ends < 0.05 * np.abs(solved.displacements[:, :3]).max()
+
+
+def test_forces_of_a_transient_do_the_damage_of_their_steps() -> None:
+    forces = [[0, 0, 1e5, 0, 0, 0], [0, 2e5, 0, 0, 0, 0], [3e4, -1.5e5, 0, 0, 0, 0]]
+    speeds, seconds = [30.0, 40.0, -20.0], [1.0, 0.5, 2.0]
+    damage = damage_of_forces(PLANET, forces, speeds, seconds, LifeRules(turning="outer"))
+    turns = np.abs(speeds) / 60 * seconds
+    used = 1e-6 * turns * (np.array([1e5, 2e5, 1.5e5]) / 1e6) ** (10 / 3)
+    assert damage.totals["L10"] == pytest.approx(used.sum(), rel=1e-12)
+    assert damage.turns == pytest.approx(turns.sum())
+    assert damage.limits.reversals == 1
 
 
 def test_hub_loads_of_another_shape_are_refused() -> None:

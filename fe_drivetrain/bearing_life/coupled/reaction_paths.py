@@ -14,7 +14,14 @@ from fe_drivetrain.bearing.distribution import effective_centre
 from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.bearing.rolling import free_motions
 from fe_drivetrain.bearing_life.life.rated import RatedBearing, of_geometry
-from fe_drivetrain.bearing_life.life.roller_models import CHUNK, RollerModel, balanced, rigid_rings
+from fe_drivetrain.bearing_life.life.roller_damage import Damage, LifeRules, damage_of_history
+from fe_drivetrain.bearing_life.life.roller_models import (
+    CHUNK,
+    RollerModel,
+    balanced,
+    rigid_rings,
+    steps_of,
+)
 from fe_drivetrain.bearing_life.life.steps import Steps
 from fe_drivetrain.common.arrays import Floats, chunks
 from fe_drivetrain.common.errors import InputError
@@ -194,6 +201,38 @@ def _pressed(rated: RatedBearing, loads: Floats) -> Floats:
     found[:, 3] -= centre * found[:, 2]
     found[:, 4] += centre * found[:, 1]
     return found
+
+
+def damage_of_forces(
+    rated: RatedBearing,
+    forces: ArrayLike,
+    speed_rpm: ArrayLike,
+    seconds: ArrayLike,
+    rules: LifeRules,
+) -> Damage:
+    """Damage by forces of a bearing over time, such as those of a transient.
+
+    Parameters
+    ----------
+    rated : RatedBearing
+        The bearing with its ratings.
+    forces : array_like, (n, 6)
+        Load on the inner ring, Fx, Fy, Fz [N], Mx, My, Mz [N m], of which rolling elements carry
+        what `carried_loads` says.
+    speed_rpm, seconds : array_like
+        Speed of one ring against the other [1/min], (n,) or one for all, and duration of each step
+        [s].
+    rules : LifeRules
+        Choices of the rating; of a planet with its outer ring turning.
+
+    Returns
+    -------
+    damage : Damage
+        1 is the end of the life with a reliability of 90 %.
+    """
+    loads = carried_loads(rated, forces).loads
+    steps = steps_of(rigid_rings(rated.bearing), loads, speed_rpm, seconds)
+    return damage_of_history(steps, rated, rules)
 
 
 def one_sided(bearing: Bearing) -> bool:

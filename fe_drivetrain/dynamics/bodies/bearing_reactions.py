@@ -1,9 +1,10 @@
 """Loads on all bearings of a machine under loads on its hub: one linear solve per level.
 
 A machine of springs is linear, so that the load on a bearing's inner ring is a matrix times the
-hub's loads, plus that of the weight. A history of any length is then one matrix product. Planets
-turn with their carrier: a planet's bearing has such a matrix for each azimuth of the carrier, in
-the frame of its pin, on which its inner ring stands.
+hub's loads, plus that of the weight. A history of any length is then one matrix product. Hub loads
+are those of the rotor on its shaft, with the rotor's weight in them. Planets turn with their
+carrier: a planet's bearing has such a matrix for each azimuth of the carrier, in the frame of its
+pin, on which its inner ring stands.
 """
 
 from collections.abc import Mapping
@@ -56,7 +57,7 @@ class Reactions:
         Load (a, 6, 6) on the inner ring [N, N m] under each unit load on the hub: one matrix where
         it is the same at all azimuths, else one for each.
     by_weight : Floats
-        Load (a, 6) under gravity [N, N m].
+        Load (a, 6) under the weight of all but the rotor [N, N m].
     speed_ratio : float
         Speed of one ring against the other over that of the rotor, without a sign.
     planets : int
@@ -81,7 +82,7 @@ class Reactions:
         hub : array_like, (n, 6)
             Forces and moments of the rotor on the hub [N, N m].
         weight : bool
-            Whether bodies have their weight.
+            Whether bodies behind the rotor have their weight.
 
         Returns
         -------
@@ -216,7 +217,7 @@ class _Azimuth:
         built = assembly(machine, level, azimuth, held_generator=True, flexible=flexible)
         # with bodies without mass: springs by which they are eliminated could not change
         self.system = assemble(built.bodies, built.springs, built.superelements)
-        self.load = _unit_loads(self.system)
+        self.load = _unit_loads(self.system, machine.rotor.apart[0])
         static(self.system, self.load[:, 6])  # refuses what moves freely
         self.rings = {**_housing_rings(built), **_planet_rings(machine, built, angle)}
         self._of = [name.rpartition(" ")[0] for name in self.system.spring_names]
@@ -244,10 +245,11 @@ class _Azimuth:
         return found
 
 
-def _unit_loads(system: System) -> Floats:
-    """(n, 7) unit loads on the hub, and gravity."""
+def _unit_loads(system: System, rotor: float) -> Floats:
+    """(n, 7) unit loads on the hub, and gravity on all but the rotor's mass [kg]."""
     hub = [system.load_on("rotor", one) for one in np.eye(6)]
-    return np.column_stack([*hub, system.gravity(np.array([0.0, 0.0, -GRAVITY]))])
+    weight = system.gravity(np.array([0.0, 0.0, -GRAVITY])) + GRAVITY * rotor * hub[2]
+    return np.column_stack([*hub, weight])
 
 
 def _housing_rings(built: Assembly) -> dict[str, _Ring]:
