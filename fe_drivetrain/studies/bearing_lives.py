@@ -1,4 +1,4 @@
-"""Rating lives of the rolling bearings of a scene under load histories: ISO 281 and ISO/TS 16281.
+"""Rating lives of a drivetrain's rolling bearings under load histories: ISO 281, ISO/TS 16281.
 
 Each load step is brought to equilibrium with shaft and rollers; damage adds up step by step and
 file by file, so that memory does not grow with the length of histories, and little with their
@@ -21,13 +21,19 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.drivetrain_file.without_weight import weightless
-from fe_drivetrain.dynamics.bodies.tables import Machine
+from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.report.charts import bars
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
-from fe_drivetrain.studies.gearbox_bearings import MachineBearings, machine_bearings
+from fe_drivetrain.studies.gearbox_bearings import (
+    MachineBearings,
+    catalogue_entries,
+    machine_bearings,
+    machine_with_bearings,
+)
 from fe_drivetrain.studies.gearbox_findings import assume_reactions, name_unrated, say_levels
 from fe_drivetrain.studies.life_answer import state_answer
 from fe_drivetrain.studies.life_digest import kept_digest
@@ -55,7 +61,7 @@ class LifeResult(Result):
     Attributes
     ----------
     bearings : Mapping[str, BearingLife]
-        Life by bearing, in the scene's order.
+        Life by bearing: main bearings, those of the gearbox in the order of the file, planets'.
     site : Site or None
         Whose winds are weighted; None where files repeat for ever.
     rules : LifeRules
@@ -104,7 +110,7 @@ class LifeResult(Result):
 
 
 def life(
-    scene: Scene,
+    drivetrain: Drivetrain,
     files: Files,
     site: Site | None = None,
     options: LifeOptions | None = None,
@@ -112,12 +118,12 @@ def life(
     resume: bool = False,
     report: Progress = silent,
 ) -> LifeResult:
-    """Rating lives of a scene's rolling bearings under hub loads.
+    """Rating lives of a drivetrain's rolling bearings under hub loads.
 
     Parameters
     ----------
-    scene : Scene
-        The drivetrain.
+    drivetrain : Drivetrain
+        The drivetrain: main bearings, and those of its gearbox.
     files : str, path, or sequence of these
         Hub loads: files (.out, .outb of OpenFAST, or .csv), folders, or patterns as
         ``"outputs/*.outb"``.
@@ -133,14 +139,15 @@ def life(
     Raises
     ------
     InputError
-        The scene has no rolling bearing or an unknown one, a file cannot be read, or a site is
-        given and files have no wind speed.
+        The drivetrain has no rolling bearing or an unknown one, a file cannot be read, or a site
+        is given and files have no wind speed.
     """
     asked = LifeOptions() if options is None else options
     paths = recorded_files(files)
     report("bearings")
-    drivetrain = DrivetrainBearings(scene, asked)
-    return lives_under(drivetrain, paths, site, resume=resume, report=report)
+    return lives_under(
+        DrivetrainBearings(drivetrain, asked), paths, site, resume=resume, report=report
+    )
 
 
 class DrivetrainBearings:
@@ -148,54 +155,56 @@ class DrivetrainBearings:
 
     Parameters
     ----------
-    scene : Scene
+    drivetrain : Drivetrain
         The drivetrain.
     options : LifeOptions
         What is asked for.
 
     Attributes
     ----------
-    scene : Scene
+    drivetrain : Drivetrain
         The drivetrain, without its weight where that is asked for.
     options : LifeOptions
         What is asked for.
     bearings : list of OneBearing
         Its bearings, or the one that is asked for: main bearings, then those of the gearbox.
     machine : MachineBearings
-        Those of the gearbox, those without a catalogue entry, and the levels of their loads.
+        Those by statics of the whole, those without a catalogue entry, and the levels of loads.
 
     Raises
     ------
     InputError
-        The scene has no rolling bearing or an unknown one.
+        The drivetrain has no rolling bearing or an unknown one.
     """
 
-    def __init__(
-        self,
-        scene: Scene,
-        options: LifeOptions,
-        machine: Machine | None = None,
-        entries: Mapping[str, str] | None = None,
-    ) -> None:
-        self.scene = scene if options.weight else weightless(scene)
+    def __init__(self, drivetrain: Drivetrain, options: LifeOptions) -> None:
         self.options = options
+        self.drivetrain = drivetrain
+        if isinstance(drivetrain, Scene) and not options.weight:
+            self.drivetrain = weightless(drivetrain)
+        found = machine_with_bearings(drivetrain)
         self.machine = MachineBearings()
-        if machine is None:
-            self.bearings = bearings_of(self.scene, options.choices)
+        if isinstance(found, Machine):
+            self.bearings = self._all_bearings(found)
         else:
-            self.bearings = self._all_bearings(machine, entries or {})
+            assert isinstance(self.drivetrain, Scene)
+            self.machine = MachineBearings(lacks=found)
+            self.bearings = bearings_of(self.drivetrain, options.choices)
 
-    def _all_bearings(self, machine: Machine, entries: Mapping[str, str]) -> list[OneBearing]:
-        """Main bearings on their rollers where all have an entry, and those by reactions."""
-        choices = self.options.choices
-        units = {unit.bearing.name: unit.catalogue for unit in self.scene.bearing_units}
-        named = {**{n: e for n, e in units.items() if e}, **entries, **choices.named}
-        on_rollers = [name for name in units if all(name in named for name in units)]
+    def _all_bearings(self, machine: Machine) -> list[OneBearing]:
+        """Main bearings on their rollers where all have an entry, and those by statics."""
+        choices, drivetrain = self.options.choices, self.drivetrain
+        named = {**catalogue_entries(drivetrain), **choices.named}
         main: list[OneBearing] = []
-        if on_rollers and choices.only in (None, *on_rollers):
-            of_units = {name: entry for name, entry in named.items() if name in units}
-            main = bearings_of(self.scene, replace(choices, named=of_units))
-        self.machine = machine_bearings(machine, named, choices, self.options.oil, on_rollers)
+        on_rollers: list[str] = []
+        if isinstance(drivetrain, Scene):
+            units = [unit.bearing.name for unit in drivetrain.bearing_units]
+            on_rollers = units if all(name in named for name in units) else []
+            if on_rollers and choices.only in (None, *on_rollers):
+                of_units = {name: entry for name, entry in named.items() if name in units}
+                main = bearings_of(drivetrain, replace(choices, named=of_units))
+        oil = self.options.oil(drivetrain.operation)
+        self.machine = machine_bearings(machine, named, choices, oil, on_rollers)
         found = [*main, *self.machine.rated]
         if not found:
             raise InputError(
@@ -237,14 +246,14 @@ def lives_under(
     found, steps = Findings(), Steps(report)
     asked = drivetrain.options
     found.seed = None
-    found.about(drivetrain.scene)
+    found.about(drivetrain.drivetrain)
     with steps.step("load steps"):
         lives = list(_lives(drivetrain, files, site, resume, report))
     machine = drivetrain.machine
     answers(found, lives, asked.rules, site)
     say_levels(found, lives, machine)
     name_unrated(found, machine)
-    cautions(found, drivetrain.scene, lives, asked, limit_rows(lives))
+    cautions(found, drivetrain.drivetrain, lives, asked, limit_rows(lives))
     assumptions(found, lives, asked)
     assume_reactions(found, lives)
     checks(found, lives)
@@ -268,10 +277,10 @@ def _lives(
     report: Progress,
 ) -> Iterator[BearingLife]:
     """Lives of bearings one after the other; digests of files are added up as they come."""
-    options, scene = drivetrain.options, drivetrain.scene
+    options, of = drivetrain.options, drivetrain.drivetrain
     rules, choices, reading = options.rules, options.choices, options.reading
     items = [
-        (file, one, rules, reading, scene, choices, resume)
+        (file, one, rules, reading, of, choices, resume)
         for one in drivetrain.bearings
         for file in files
     ]

@@ -19,9 +19,15 @@ from fe_drivetrain.bearing_life.life.roller_models import rigid_rings
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.strict_yaml import shown
-from fe_drivetrain.dynamics.bodies.bearing_reactions import BearingModel, Reactions
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.dynamics.bodies.bearing_reactions import (
+    BearingModel,
+    Reactions,
+    planet_bearing_name,
+)
 from fe_drivetrain.dynamics.bodies.levels import Level
-from fe_drivetrain.dynamics.bodies.tables import Machine
+from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of
 from fe_drivetrain.studies.rolling_bearings import (
     Choices,
     Oil,
@@ -59,6 +65,9 @@ class MachineBearings:
 
     Attributes
     ----------
+    lacks : str or None
+        Why there is no machine, of a drivetrain with gears whose main bearings are rated all the
+        same, as a sentence.
     rated : tuple of OneBearing
         Those with an entry of a catalogue, ready for lives: main bearings first.
     unrated : tuple of Unrated
@@ -70,6 +79,7 @@ class MachineBearings:
     rated: tuple[OneBearing, ...] = ()
     unrated: tuple[Unrated, ...] = ()
     degrees: Mapping[str, int] = field(default_factory=dict)
+    lacks: str | None = None
 
 
 def machine_bearings(
@@ -124,6 +134,49 @@ def machine_bearings(
             rated.append(made.bearing(models[LEVELS[-1]], here, None if name in main else oil))
     degrees = {level.value: model.degrees for level, model in models.items()}
     return MachineBearings(tuple(rated), tuple(unrated), degrees)
+
+
+def catalogue_entries(drivetrain: Drivetrain) -> dict[str, str]:
+    """Catalogue entries in a drivetrain's file, by bearing; of planets "stage 1 pin upwind".
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        The drivetrain.
+    """
+    found: dict[str, str | None] = {}
+    if isinstance(drivetrain, Scene):
+        found |= {unit.bearing.name: unit.catalogue for unit in drivetrain.bearing_units}
+    found |= {bearing.name: bearing.catalogue for bearing in drivetrain.gearbox.bearings}
+    for number, stage in enumerate(drivetrain.gearbox.stages, start=1):
+        for pin in getattr(stage, "pins", ()):
+            found[planet_bearing_name(number, pin.name)] = pin.catalogue
+    return {name: entry for name, entry in found.items() if entry is not None}
+
+
+def machine_with_bearings(drivetrain: Drivetrain) -> Machine | str | None:
+    """The machine of a drivetrain with gears, or why there is none; None of one without gears.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        The drivetrain.
+
+    Raises
+    ------
+    InputError
+        There is none, and nothing else has bearings.
+    """
+    if isinstance(drivetrain, Scene) and not drivetrain.gearbox.stages:
+        return None
+    try:
+        machine = machine_of(drivetrain)
+        BearingModel(machine, LEVELS[0], 1)
+    except InputError as error:
+        if isinstance(drivetrain, Scene):
+            return str(error)
+        raise
+    return machine
 
 
 def main_names(machine: Machine) -> tuple[str, ...]:

@@ -55,6 +55,8 @@ def name_unrated(found: Findings, machine: MachineBearings) -> None:
     machine : MachineBearings
         Has them.
     """
+    if machine.lacks is not None:
+        found.note(f"Bearings of the gearbox are not rated: {machine.lacks}.")
     if names := [one.name for one in machine.unrated]:
         option = argument("LifeOptions.bearings", {names[0]: "ENTRY"})
         found.note(

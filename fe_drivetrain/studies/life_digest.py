@@ -20,9 +20,11 @@ from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.provenance import file_digest, program_hash
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.entrance import AT_HUB, Entrance
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.shafts.response.cached import whole_content
-from fe_drivetrain.shafts.response.entering import entering
+from fe_drivetrain.shafts.response.entering import Entered, entering
 from fe_drivetrain.studies.life_assumptions import ratios, what_ifs
 from fe_drivetrain.studies.rolling_bearings import Choices, OneBearing
 from fe_drivetrain.studies.unused import RPM, own_speeds, require_samples
@@ -114,7 +116,12 @@ class LifeDigest:
 
 
 def content(
-    file: Path, one: OneBearing, rules: LifeRules, reading: Reading, scene: Scene, choices: Choices
+    file: Path,
+    one: OneBearing,
+    rules: LifeRules,
+    reading: Reading,
+    drivetrain: Drivetrain,
+    choices: Choices,
 ) -> dict[str, Any]:
     """All that a digest depends on.
 
@@ -128,8 +135,8 @@ def content(
         Rules of the life.
     reading : Reading
         How the file is read.
-    scene : Scene
-        The shaft.
+    drivetrain : Drivetrain
+        The drivetrain.
     choices : Choices
         Choices of the model.
 
@@ -148,7 +155,7 @@ def content(
         "reactions": [path.key for path in reactions_of(one)],
         "mapping": reading.names.content(),
         "reading": [reading.skip, reading.every, reading.rotor_speed],
-        "scene": whole_content(scene),
+        "scene": whole_content(drivetrain) if isinstance(drivetrain, Scene) else None,
         "choices": repr(choices),
     }
 
@@ -158,7 +165,7 @@ def digest(
     one: OneBearing,
     rules: LifeRules,
     reading: Reading,
-    scene: Scene,
+    drivetrain: Drivetrain,
     choices: Choices,
     report: Progress = silent,
 ) -> LifeDigest:
@@ -174,7 +181,7 @@ def digest(
         Rules of the life.
     reading : Reading
         How the file is read.
-    scene : Scene
+    drivetrain : Drivetrain
         Says which point of the shaft hub loads are about.
     choices : Choices
         Choices of the model.
@@ -194,7 +201,10 @@ def digest(
     found = read_recorded(file, reading.names, reading.skip)
     history, speed = found.history, _speed_rpm(file, found, reading)
     require_samples(file, len(history), reading.every, MIN_SAMPLES)
-    loads, speed = entering(scene, history)[:: reading.every], speed[:: reading.every]
+    loads, speed = (
+        entering(loaded_at(drivetrain), history)[:: reading.every],
+        speed[:: reading.every],
+    )
     turns, own = speed * one.path.speed_ratio, one.rules(rules)
     check_speed(one.rated, turns)
     n, step = len(loads), history.step * reading.every
@@ -230,6 +240,30 @@ def _speed_rpm(file: Path, found: Recorded, reading: Reading) -> Floats:
         f"{argument('LifeOptions.rotor_speed_rpm')} in 1/min, or its channel, as in "
         "`ChannelMap(channels={'rotor speed': 'RotSpeed'})`"
     )
+
+
+@dataclass(frozen=True)
+class AtFront:
+    """A drivetrain whose main shaft begins where hub loads enter, and whose file says no more.
+
+    Attributes
+    ----------
+    entrance : Entrance
+        Where loads enter.
+    """
+
+    entrance: Entrance = AT_HUB
+
+
+def loaded_at(drivetrain: Drivetrain) -> Entered:
+    """Where the hub loads of a drivetrain enter.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        The drivetrain.
+    """
+    return drivetrain if isinstance(drivetrain, Scene) else AtFront()
 
 
 def reactions_of(one: OneBearing) -> list[ReactionPath]:
@@ -276,7 +310,7 @@ def kept_digest(
     one: OneBearing,
     rules: LifeRules,
     reading: Reading,
-    scene: Scene,
+    drivetrain: Drivetrain,
     choices: Choices,
     resume: bool,
 ) -> LifeDigest:
@@ -294,17 +328,17 @@ def kept_digest(
         Rules of the life.
     reading : Reading
         How the file is read.
-    scene : Scene
+    drivetrain : Drivetrain
         Says which point of the shaft hub loads are about.
     choices : Choices
         Choices of the model.
     resume : bool
         Take what is kept.
     """
-    cache, key = user_cache(), content(file, one, rules, reading, scene, choices)
+    cache, key = user_cache(), content(file, one, rules, reading, drivetrain, choices)
     kept = cache.load_record("life-digests", key, LifeDigest) if resume else None
     if kept is None:
-        kept = digest(file, one, rules, reading, scene, choices, report)
+        kept = digest(file, one, rules, reading, drivetrain, choices, report)
         cache.keep_record("life-digests", key, kept)
     return kept
 

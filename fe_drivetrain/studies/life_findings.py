@@ -11,7 +11,7 @@ from fe_drivetrain.bearing_life.life.limits import centrifugal_load
 from fe_drivetrain.bearing_life.life.reference_life import RINGS
 from fe_drivetrain.bearing_life.life.roller_damage import LifeRules
 from fe_drivetrain.common.arguments import argument
-from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.procedure.failure_modes import TORQUE_AND_BENDING
 from fe_drivetrain.report.number_text import value_with_band
 from fe_drivetrain.report.suite.findings import Findings
@@ -99,7 +99,7 @@ def _takes_longest(life: BearingLife, rules: LifeRules) -> str:
 
 def cautions(
     found: Findings,
-    scene: Scene,
+    drivetrain: Drivetrain,
     lives: Sequence[BearingLife],
     options: LifeOptions,
     limits: Sequence[Record],
@@ -110,7 +110,7 @@ def cautions(
     ----------
     found : Findings
         Takes the sentences.
-    scene : Scene
+    drivetrain : Drivetrain
         The drivetrain.
     lives : sequence of BearingLife
         The bearings.
@@ -138,7 +138,7 @@ def cautions(
     own_speeds = [one.own_speeds for one in lives[0].files]
     if unused := speed_not_used(options.rotor_speed_rpm, own_speeds):
         found.note(unused, first=True)
-    for unused in choices_not_used(scene, options.choices, [life.bearing for life in lives]):
+    for unused in choices_not_used(drivetrain, options.choices, [life.bearing for life in lives]):
         found.note(unused, first=True)
     found.note(UNVERIFIED)
 

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from fe_drivetrain.bearing_life.life.lubricants import Lubricant, Supply
     from fe_drivetrain.bearing_life.life.reference_life import Turning
     from fe_drivetrain.bearing_life.life.roller_damage import LifeRules
+    from fe_drivetrain.drivetrain_file.turning_parts import Operation
     from fe_drivetrain.studies.life_digest import Reading
     from fe_drivetrain.studies.rolling_bearings import Choices, Oil
 
@@ -105,7 +106,7 @@ class LifeOptions(HistoryOptions):
             require_known("an option that is stated", name, ASSUMED)
         if not (isinstance(self.every, int) and self.every >= 1):
             raise InputError(f"every is {self.every}: give a whole number of samples from 1 on")
-        _ = self.rules, self.oil  # checks lubricant, ring and reliability
+        _ = self.rules, self.oil(None)  # checks lubricant, ring and reliability
 
     @property
     def assumed(self) -> tuple[str, ...]:
@@ -129,14 +130,26 @@ class LifeOptions(HistoryOptions):
             reliability=RELIABILITY[self.reliability_percent],
         )
 
-    @property
-    def oil(self) -> Oil:
-        """The oil of the gearbox's bearings."""
+    def oil(self, operation: Operation | None) -> Oil:
+        """The oil of the gearbox's bearings: as asked for, else as the drivetrain's file has it.
+
+        Parameters
+        ----------
+        operation : Operation or None
+            Of the drivetrain.
+
+        Raises
+        ------
+        InputError
+            There is no such lubricant.
+        """
         from fe_drivetrain.studies.gearbox_bearings import gearbox_oil
 
-        return gearbox_oil(
-            self.gearbox_lubricant, self.gearbox_temperature, self.gearbox_cleanliness
-        )
+        grade, temperature = self.gearbox_lubricant, self.gearbox_temperature
+        if operation is not None:
+            grade = operation.lubricant if grade is None else grade
+            temperature = operation.temperature if temperature is None else temperature
+        return gearbox_oil(grade, temperature, self.gearbox_cleanliness)
 
     @property
     def reading(self) -> Reading:

@@ -9,16 +9,18 @@ import pytest
 
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.drivetrain_file.reading import library_scene
-from fe_drivetrain.dynamics.bodies.bearing_reactions import bearing_reactions
+from fe_drivetrain.common.reading import parse_mapping
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
+from fe_drivetrain.drivetrain_file.reading import library_scene, library_text
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.dynamics.bodies.bearing_reactions import BearingModel, bearing_reactions
 from fe_drivetrain.dynamics.bodies.levels import Level
-from fe_drivetrain.dynamics.bodies.tables import Machine, library_machine
-from fe_drivetrain.studies import LifeOptions, LifeResult
-from fe_drivetrain.studies.bearing_lives import DrivetrainBearings, lives_under
+from fe_drivetrain.dynamics.bodies.machine import library_machine, machine_of
+from fe_drivetrain.studies import LifeOptions, LifeResult, life
 from fe_drivetrain.studies.gearbox_bearings import gearbox_oil
 
-SCENE = "nrel_750kw_low_speed_shaft"
-MACHINE = library_machine("nrel_750kw")
+SCENE, GEARS = "nrel_750kw_low_speed_shaft", "nrel_750kw"
 HUB = np.array([3e4, 0.0, -1.2e5, 3.25e5, -1e5, 5e4])
 RPM = 22.0
 ENTRIES = {
@@ -26,6 +28,36 @@ ENTRIES = {
     "ISS-A": "cylindrical_nu2220",
     "LSS-B": "tapered_pair_32948",
 }
+
+
+def with_gears(
+    entries: Mapping[str, str] = ENTRIES, stiffness: Mapping[str, float] | None = None
+) -> Scene:
+    """The main shaft of a scene, with the gearbox of another file behind it.
+
+    Entries of bearings are those alone; factors are on the stiffness of bearings.
+    """
+    data = parse_mapping(library_text(SCENE), SCENE)
+    gears = parse_mapping(library_text(GEARS), GEARS)
+    bearings = []
+    for bearing in gears["gearbox"]["bearings"]:
+        factor = (stiffness or {}).get(bearing["name"], 1.0)
+        own = {**bearing, "stiffness": [factor * float(k) for k in bearing["stiffness"]]}
+        own.pop("catalogue", None)
+        if bearing["name"] in entries:
+            own["catalogue"] = entries[bearing["name"]]
+        if bearing["holds"] != "LSS":
+            bearings.append(own)
+    for pin in gears["gearbox"]["stages"][0]["pins"]:
+        pin.pop("catalogue", None)
+        if f"stage 1 pin {pin['name']}" in entries:
+            pin["catalogue"] = entries[f"stage 1 pin {pin['name']}"]
+    data["gearbox"] |= {**gears["gearbox"], "bearings": bearings}
+    data |= {key: gears[key] for key in ("rotor", "generator")}
+    return Scene.model_validate(data)
+
+
+MACHINE = machine_of(with_gears())
 
 
 @pytest.fixture(scope="module")
@@ -41,18 +73,13 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def lives(
-    file: Path, entries: Mapping[str, str], machine: Machine | None = MACHINE, **options: Any
-) -> LifeResult:
-    asked = LifeOptions(rotor_speed_rpm=RPM, **options)
-    scene = library_scene(SCENE)
-    drivetrain = DrivetrainBearings(scene, asked, machine, entries)
-    return lives_under(drivetrain, [file], None)
+def lives(file: Path, drivetrain: Drivetrain, **options: Any) -> LifeResult:
+    return life(drivetrain, file, options=LifeOptions(rotor_speed_rpm=RPM, **options))
 
 
 @pytest.fixture(scope="module")
 def found(file: Path) -> LifeResult:
-    return lives(file, ENTRIES)
+    return lives(file, with_gears())
 
 
 def test_main_bearings_come_first_and_live_as_without_a_gearbox(
@@ -61,7 +88,7 @@ def test_main_bearings_come_first_and_live_as_without_a_gearbox(
     names = list(found.bearings)
     assert names[0] == "main_bearing"
     assert names[1:] == ["LSS-B", "ISS-A", "stage 1 pin upwind"]
-    alone = lives(file, {}, machine=None)
+    alone = lives(file, library_scene(SCENE))
     assert list(alone.bearings) == ["main_bearing"]
     assert dict(alone.bearings["main_bearing"].years) == found.bearings["main_bearing"].years
     assert "levels" not in alone.tables
@@ -127,15 +154,12 @@ def test_levels_say_what_rigid_bodies_would_do(found: LifeResult) -> None:
     rows = {row["bearing"]: row for row in found.tables["levels"]}
     assert rows["ISS-A"]["enough"] == "rigid bodies"
     assert "main_bearing" not in rows
-    assert any("156 degrees of freedom" in line for line in found.details)
+    size = BearingModel(MACHINE, Level.FLEXIBLE, 1).degrees
+    assert any(f"{size} degrees of freedom" in line for line in found.details)
 
 
 def test_the_stiffness_of_a_bearing_is_an_assumption(file: Path, found: LifeResult) -> None:
-    data = MACHINE.model_dump(exclude_none=True)
-    for bearing in data["bearings"]:
-        if bearing["name"] == "LSS-B":
-            bearing["stiffness"] = [0.5 * k for k in bearing["stiffness"]]
-    softer = lives(file, ENTRIES, Machine.model_validate(data), only="LSS-B")
+    softer = lives(file, with_gears(stiffness={"LSS-B": 0.5}), only="LSS-B")
     assert list(softer.bearings) == ["LSS-B"]
     rows = {
         row.instead: row.years
@@ -149,7 +173,7 @@ def test_the_stiffness_of_a_bearing_is_an_assumption(file: Path, found: LifeResu
 
 
 def test_axial_loads_on_cylindrical_rollers_are_cautioned(file: Path) -> None:
-    flanged = lives(file, {"LSS-B": "cylindrical_sl181856"}, only="LSS-B")
+    flanged = lives(file, with_gears({"LSS-B": "cylindrical_sl181856"}), only="LSS-B")
     axial = abs(bearing_reactions(MACHINE)["LSS-B"].under([HUB])[0, 0, 0])
     assert flanged.bearings["LSS-B"].flanges == pytest.approx(axial, rel=1e-6)
     said = [note for note in flanged.notes if "flanges have it" in note]
@@ -160,29 +184,78 @@ def test_axial_loads_on_cylindrical_rollers_are_cautioned(file: Path) -> None:
 def test_the_gearbox_has_an_oil_of_its_own(file: Path, found: LifeResult) -> None:
     assert gearbox_oil(None, None, None).lubricant.supply == "filtered oil"
     assert gearbox_oil("VG 220", 70.0, "-/15/12").assumed == ()
-    hot = lives(file, ENTRIES, only="ISS-A", gearbox_temperature=80.0)
+    hot = lives(file, with_gears(), only="ISS-A", gearbox_temperature=80.0)
     assert hot.bearings["ISS-A"].years["L10mr"] < found.bearings["ISS-A"].years["L10mr"]
     assert hot.bearings["ISS-A"].years["L10r"] == found.bearings["ISS-A"].years["L10r"]
     assumed = {one.assumed for one in hot.bearings["ISS-A"].assumptions}
     assert "80 degC" not in assumed
     assert "VG 320" in assumed
-    basic = lives(file, ENTRIES, only="ISS-A", lubricant=None)
+    basic = lives(file, with_gears(), only="ISS-A", lubricant=None)
     years = basic.bearings["ISS-A"].years
     assert years["L10mr"] == pytest.approx(years["L10r"])
 
 
+def test_the_oil_of_a_gearbox_is_that_of_the_files_operation(file: Path) -> None:
+    data = with_gears().model_dump(exclude_unset=True)
+    data["operation"] = {"temperature": 80.0, "lubricant": "VG 220"}
+    stated = lives(file, Scene.model_validate(data), only="ISS-A").bearings["ISS-A"]
+    asked = {"gearbox_temperature": 80.0, "gearbox_lubricant": "VG 220"}
+    given = lives(file, with_gears(), only="ISS-A", **asked).bearings["ISS-A"]
+    assert dict(stated.years) == given.years
+    assert {one.assumed for one in stated.assumptions} == {one.assumed for one in given.assumptions}
+
+
+def test_a_main_shaft_without_sections_has_its_bearings_rated_by_statics(file: Path) -> None:
+    """All bearings of the library's 750 kW drivetrain, main bearing first."""
+    whole = lives(file, read_drivetrain(GEARS))
+    names = list(whole.bearings)
+    assert names[0] == "main bearing"
+    assert len(names) == 11
+    assert not whole.not_rated
+    main = whole.bearings["main bearing"]
+    assert main.levels
+    # the main bearing has the lubricant of the options, bearings of the gearbox its oil
+    assert {one.assumed for one in main.assumptions} >= {"VG 460", "50 degC"}
+    load = bearing_reactions(library_machine(GEARS))["main bearing"].under([HUB])[0, :, [0, 1, 2]]
+    P = main.bearing.rated.equivalent_load([[*load.ravel(), 0.0, 0.0]])[0]
+    million = (main.bearing.rated.dynamic / P) ** (10 / 3)
+    assert main.million_revolutions["L10"] == pytest.approx(million, rel=1e-6)
+
+
+def test_main_bearings_without_entries_are_not_rated_beside_a_gearbox(file: Path) -> None:
+    data = with_gears().model_dump(exclude_unset=True)
+    for unit in data["bearing_units"]:
+        unit.pop("catalogue")
+    found = lives(file, Scene.model_validate(data))
+    assert "main_bearing" in found.not_rated
+    assert "main_bearing" not in found.bearings
+    named = lives(file, Scene.model_validate(data), bearings={"main_bearing": "nrel_750kw_main"})
+    assert next(iter(named.bearings)) == "main_bearing"
+    assert not named.bearings["main_bearing"].levels
+
+
+def test_a_gearbox_without_what_statics_need_leaves_main_bearings_rated(file: Path) -> None:
+    data = with_gears().model_dump(exclude_unset=True)
+    del data["rotor"]
+    found = lives(file, Scene.model_validate(data))
+    assert list(found.bearings) == ["main_bearing"]
+    assert any("gearbox are not rated" in note and "rotor" in note for note in found.notes)
+    with pytest.raises(InputError, match="rotor"):
+        lives(file, read_drivetrain(GEARS).model_copy(update={"rotor": None}))
+
+
 @pytest.mark.parametrize(
-    ("entries", "options", "words"),
+    ("bearings", "options", "words"),
     [
         ({"HS-X": "cylindrical_nu2220"}, {}, "no bearing 'HS-X'"),
         ({"ISS-A": "nothing"}, {}, "'nothing' of bearing 'ISS-A' is in no catalogue"),
-        (ENTRIES, {"only": "HS-X"}, "HS-X"),
-        (ENTRIES, {"only": "PLC-A"}, "'PLC-A' has no entry"),
-        (ENTRIES, {"gearbox_lubricant": "honey"}, "VG 460"),
+        ({}, {"only": "HS-X"}, "HS-X"),
+        ({}, {"only": "PLC-A"}, "'PLC-A' has no entry"),
+        ({}, {"gearbox_lubricant": "honey"}, "VG 460"),
     ],
 )
 def test_mistakes_are_named(
-    file: Path, entries: dict[str, str], options: dict[str, Any], words: str
+    file: Path, bearings: dict[str, str], options: dict[str, Any], words: str
 ) -> None:
     with pytest.raises(InputError, match=words):
-        lives(file, entries, **options)
+        lives(file, with_gears(), bearings=bearings, **options)

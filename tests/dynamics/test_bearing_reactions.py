@@ -11,8 +11,8 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.bodies.bearing_reactions import BearingModel, bearing_reactions
 from fe_drivetrain.dynamics.bodies.bodies import assemble
 from fe_drivetrain.dynamics.bodies.levels import Level, assembly, steady_load
+from fe_drivetrain.dynamics.bodies.machine import Machine, library_machine
 from fe_drivetrain.dynamics.bodies.static import static
-from fe_drivetrain.dynamics.bodies.tables import Machine, library_machine
 
 TORQUE = 2e4  # N m
 TORQUE_ALONE = [0.0, 0.0, 0.0, TORQUE, 0.0, 0.0]
@@ -25,7 +25,7 @@ def pair(**changes: object) -> Machine:
     """A gear that drives a pinion, each on two bearings, one of which holds it axially."""
     stage = {
         "kind": "parallel",
-        "radii": [GEAR_RADIUS, PINION_RADIUS],
+        "radii": {"gear": GEAR_RADIUS, "pinion": PINION_RADIUS},
         "helix": 12.0,
         "hand": 1,
         "centre_distance": 0.45,

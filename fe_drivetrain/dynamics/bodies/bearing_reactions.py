@@ -20,6 +20,8 @@ from fe_drivetrain.common.errors import InputError, require_known
 from fe_drivetrain.common.scaling import scaled_solve
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import along_x, wrench_transport
+from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
+from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.dynamics.bodies.bodies import assemble
 from fe_drivetrain.dynamics.bodies.flexible import Flexible
 from fe_drivetrain.dynamics.bodies.levels import (
@@ -29,7 +31,6 @@ from fe_drivetrain.dynamics.bodies.levels import (
     azimuths,
     planetary_set,
 )
-from fe_drivetrain.dynamics.bodies.machine_rows import MachineTable, PlanetaryData
 from fe_drivetrain.dynamics.bodies.static import static
 from fe_drivetrain.dynamics.bodies.system import System
 
@@ -191,6 +192,11 @@ def bearing_reactions(
     return BearingModel(machine, level, count, flexible).reactions()
 
 
+def planet_bearing_name(stage: int, pin: str) -> str:
+    """Name of the bearing of each planet, such as "stage 1 pin upwind"; the pin's may be empty."""
+    return f"stage {stage} pin {pin}".strip()
+
+
 @dataclass(frozen=True)
 class _Ring:
     """Inner ring of a bearing: the springs by which it is held, where it is, and how it turns."""
@@ -276,7 +282,7 @@ def _planet_rings(machine: MachineTable, built: Assembly, angle: float) -> dict[
             at = np.asarray(planets.centre(0)) + along_x(place.offset)
             inner = pin if pin in bodies else carrier
             springs = f"{label} 1 {place.name}".strip()
-            found[f"{label} {place.name}".strip()] = _Ring(
+            found[planet_bearing_name(number, place.name)] = _Ring(
                 springs, inner, at, planets.angles[0], speed, stage.planets
             )
     return found
