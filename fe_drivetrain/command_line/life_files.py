@@ -24,7 +24,9 @@ def write_life(run: Run, page: Page, result: LifeResult) -> None:
     """
     known = result.all_tables()
     tables: dict[str, list[Record]] = {
-        name: known[name] for name in ("lives", "files", "winds", "places", "laminae")
+        name: known[name]
+        for name in ("lives", "levels", "files", "winds", "places", "laminae")
+        if name in known
     }
     facts = {
         "frame": f"{HUB_LOADS.frame}; places of rollers: 0 right, 90 deg on top; of planets "

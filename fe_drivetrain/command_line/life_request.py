@@ -49,8 +49,9 @@ class LifeRequest:
         typer.Option(
             "--bearing",
             metavar="NAME=ENTRY",
-            help="Entry of the bearing catalogue for a bearing of the scene, before what the scene "
-            "says under 'catalogue'. May be repeated.",
+            help="Entry of the bearing catalogue for a bearing of the drivetrain, before what its "
+            "file says under 'catalogue', as in 'stage 1 pin upwind=planet_nj2232'. May be "
+            "repeated.",
         ),
     ] = None
     only: Annotated[

@@ -12,7 +12,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import parse_mapping
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
-from fe_drivetrain.drivetrain_file.reading import library_scene, library_text
+from fe_drivetrain.drivetrain_file.reading import library_text
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.dynamics.bodies.bearing_reactions import BearingModel, bearing_reactions
 from fe_drivetrain.dynamics.bodies.levels import Level
@@ -20,7 +20,7 @@ from fe_drivetrain.dynamics.bodies.machine import library_machine, machine_of
 from fe_drivetrain.studies import LifeOptions, LifeResult, life
 from fe_drivetrain.studies.gearbox_bearings import gearbox_oil
 
-SCENE, GEARS = "nrel_750kw_low_speed_shaft", "nrel_750kw"
+WHOLE, GEARS = "grc_750kw", "nrel_750kw"
 HUB = np.array([3e4, 0.0, -1.2e5, 3.25e5, -1e5, 5e4])
 RPM = 22.0
 ENTRIES = {
@@ -33,27 +33,15 @@ ENTRIES = {
 def with_gears(
     entries: Mapping[str, str] = ENTRIES, stiffness: Mapping[str, float] | None = None
 ) -> Scene:
-    """The main shaft of a scene, with the gearbox of another file behind it.
-
-    Entries of bearings are those alone; factors are on the stiffness of bearings.
-    """
-    data = parse_mapping(library_text(SCENE), SCENE)
-    gears = parse_mapping(library_text(GEARS), GEARS)
-    bearings = []
-    for bearing in gears["gearbox"]["bearings"]:
-        factor = (stiffness or {}).get(bearing["name"], 1.0)
-        own = {**bearing, "stiffness": [factor * float(k) for k in bearing["stiffness"]]}
-        own.pop("catalogue", None)
-        if bearing["name"] in entries:
-            own["catalogue"] = entries[bearing["name"]]
-        if bearing["holds"] != "LSS":
-            bearings.append(own)
-    for pin in gears["gearbox"]["stages"][0]["pins"]:
-        pin.pop("catalogue", None)
-        if f"stage 1 pin {pin['name']}" in entries:
-            pin["catalogue"] = entries[f"stage 1 pin {pin['name']}"]
-    data["gearbox"] |= {**gears["gearbox"], "bearings": bearings}
-    data |= {key: gears[key] for key in ("rotor", "generator")}
+    """The whole 750 kW drivetrain with these entries of its gearbox, and factors on bearings."""
+    data = parse_mapping(library_text(WHOLE), WHOLE)
+    for bearing in data["gearbox"]["bearings"]:
+        name = bearing["name"]
+        factor = (stiffness or {}).get(name, 1.0)
+        bearing["stiffness"] = [factor * float(k) for k in bearing["stiffness"]]
+        bearing["catalogue"] = entries.get(name)
+    for pin in data["gearbox"]["stages"][0]["pins"]:
+        pin["catalogue"] = entries.get(f"stage 1 pin {pin['name']}")
     return Scene.model_validate(data)
 
 
@@ -88,7 +76,9 @@ def test_main_bearings_come_first_and_live_as_without_a_gearbox(
     names = list(found.bearings)
     assert names[0] == "main_bearing"
     assert names[1:] == ["LSS-B", "ISS-A", "stage 1 pin upwind"]
-    alone = lives(file, library_scene(SCENE))
+    data = with_gears().model_dump(exclude_unset=True)
+    data["gearbox"] = {key: data["gearbox"][key] for key in ("stiffness", "weight")}
+    alone = lives(file, Scene.model_validate(data))
     assert list(alone.bearings) == ["main_bearing"]
     assert dict(alone.bearings["main_bearing"].years) == found.bearings["main_bearing"].years
     assert "levels" not in alone.tables
@@ -220,6 +210,13 @@ def test_a_main_shaft_without_sections_has_its_bearings_rated_by_statics(file: P
     P = main.bearing.rated.equivalent_load([[*load.ravel(), 0.0, 0.0]])[0]
     million = (main.bearing.rated.dynamic / P) ** (10 / 3)
     assert main.million_revolutions["L10"] == pytest.approx(million, rel=1e-6)
+
+
+def test_a_file_names_the_bearings_of_which_its_source_has_ratings(file: Path) -> None:
+    found = lives(file, read_drivetrain("nrel_5mw"))
+    assert list(found.bearings) == ["PLC-A", "PLC-B", "stage 1 pin upwind", "stage 1 pin downwind"]
+    assert {"INP-A", "INP-B", "HS-A", "stage 2 pin upwind"} <= set(found.not_rated)
+    assert found.bearings["stage 1 pin upwind"].bearing.rated.dynamic == 5.5e6
 
 
 def test_main_bearings_without_entries_are_not_rated_beside_a_gearbox(file: Path) -> None:
