@@ -253,7 +253,7 @@ class _Maker:
             None,
             rigid_rings,
             oil=oil,
-            turning="outer" if of.planets else "inner",
+            turning="outer" if of.planets else None if oil is None else "inner",
             planets=of.planets,
             levels=paths,
             others=tuple(

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.bearing_life.life.limits import centrifugal_load
+from fe_drivetrain.bearing_life.life.lubricants import Lubricant
 from fe_drivetrain.bearing_life.life.reference_life import RINGS
 from fe_drivetrain.bearing_life.life.roller_damage import LifeRules
 from fe_drivetrain.common.arguments import argument
@@ -132,9 +133,10 @@ def cautions(
     vertical = {short_name(one.file, files): one.vertical for one in lives[0].files}
     if unlike := different_turbines(vertical):
         found.note(unlike, first=True)
-    oil = options.rules.lubricant
-    if oil is not None and oil.caution is not None:
-        found.note(oil.caution)
+    used = [life.bearing.rules(options.rules).lubricant for life in lives]
+    for caution in dict.fromkeys(one.caution for one in used if one is not None):
+        if caution is not None:
+            found.note(caution)
     own_speeds = [one.own_speeds for one in lives[0].files]
     if unused := speed_not_used(options.rotor_speed_rpm, own_speeds):
         found.note(unused, first=True)
@@ -217,14 +219,8 @@ def assumptions(found: Findings, lives: Sequence[BearingLife], options: LifeOpti
     rules = options.rules
     for life in lives:
         _of_entry(found, life, rules)
-    oil = rules.lubricant
-    if oil is not None:
-        found.assume("temperature", oil.temperature, "degC", _option("temperature"))
-        found.assume(
-            "viscosity there", oil.viscosity, "mm2/s", f"{_option('lubricant')}, by ASTM D341"
-        )
-        found.assume("lubrication", oil.supply, "", _option("supply"))
-        found.assume("cleanliness", oil.cleanliness, "", _option("cleanliness"))
+    if rules.lubricant is not None and any(life.bearing.oil is None for life in lives):
+        _of_lubricant(found, rules.lubricant)
     found.assume(
         "lambda nu taken out of C", rules.reduction, "-", "0.83 with a stress riser, else 1"
     )
@@ -233,7 +229,24 @@ def assumptions(found: Findings, lives: Sequence[BearingLife], options: LifeOpti
     )
     share = "C_u over the number of rows" if rules.limit_per_row else "the whole C_u"
     found.assume("fatigue limit of a row", share, "", "loads P_ks are those of a row")
-    found.assume("ring that turns against the load", rules.turning, "", _option("turning"))
+    if any(life.bearing.turning is None for life in lives):
+        found.assume("ring that turns against the load", rules.turning, "", _option("turning"))
+    if not all(life.levels for life in lives):
+        _of_support(found, options)
+    files = len(lives[0].files)
+    found.assume("samples", f"one of {options.every}", "", f"{_option('every')}; {files} files")
+
+
+def _of_lubricant(found: Findings, oil: Lubricant) -> None:
+    """State the lubricant of main bearings."""
+    found.assume("temperature", oil.temperature, "degC", _option("temperature"))
+    found.assume("viscosity there", oil.viscosity, "mm2/s", f"{_option('lubricant')}, by ASTM D341")
+    found.assume("lubrication", oil.supply, "", _option("supply"))
+    found.assume("cleanliness", oil.cleanliness, "", _option("cleanliness"))
+
+
+def _of_support(found: Findings, options: LifeOptions) -> None:
+    """State how shaft and rings are modelled where rollers are in equilibrium with the shaft."""
     words = {
         "rollers": "bearings in equilibrium with the shaft, a beam",
         "pinned": "pinned bearings: no moment on them",
@@ -242,8 +255,6 @@ def assumptions(found: Findings, lives: Sequence[BearingLife], options: LifeOpti
     found.assume(
         "rings", options.rings, "", f"{_option('rings')}; housings are rigid but for 'housing'"
     )
-    files = len(lives[0].files)
-    found.assume("samples", f"one of {options.every}", "", f"{_option('every')}; {files} files")
 
 
 def _option(name: str) -> str:
