@@ -33,6 +33,7 @@ from fe_drivetrain.studies.gearbox_bearings import (
     catalogue_entries,
     machine_bearings,
     machine_with_bearings,
+    mount,
 )
 from fe_drivetrain.studies.gearbox_findings import assume_reactions, name_unrated, say_levels
 from fe_drivetrain.studies.life_answer import state_answer
@@ -204,7 +205,8 @@ class DrivetrainBearings:
                 of_units = {name: entry for name, entry in named.items() if name in units}
                 main = bearings_of(drivetrain, replace(choices, named=of_units))
         oil = self.options.oil(drivetrain.operation)
-        self.machine = machine_bearings(machine, named, choices, oil, on_rollers)
+        on_mount = mount(drivetrain, machine)
+        self.machine = machine_bearings(machine, named, choices, oil, on_rollers, on_mount)
         found = [*main, *self.machine.rated]
         if not found:
             raise InputError(
@@ -255,7 +257,7 @@ def lives_under(
     name_unrated(found, machine)
     cautions(found, drivetrain.drivetrain, lives, asked, limit_rows(lives))
     assumptions(found, lives, asked)
-    assume_reactions(found, lives)
+    assume_reactions(found, lives, machine)
     checks(found, lives)
     state_answer(found, lives, site, len(machine.unrated))
     for name, table in result_tables(lives, machine).items():

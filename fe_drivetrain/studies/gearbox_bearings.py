@@ -17,16 +17,19 @@ from fe_drivetrain.bearing_life.life.lubricants import GRADES, Lubricant
 from fe_drivetrain.bearing_life.life.rated import RatedBearing, rated_from_catalogue
 from fe_drivetrain.bearing_life.life.roller_models import rigid_rings
 from fe_drivetrain.common.arguments import argument
+from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
-from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.drivetrain_file.joint_springs import as_numbers
+from fe_drivetrain.drivetrain_file.scene import RIGID, Scene
 from fe_drivetrain.dynamics.bodies.bearing_reactions import (
     BearingModel,
     Reactions,
     planet_bearing_name,
 )
-from fe_drivetrain.dynamics.bodies.levels import Level
+from fe_drivetrain.dynamics.bodies.flexible import Flexible, Housing
+from fe_drivetrain.dynamics.bodies.levels import Level, assembly
 from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of
 from fe_drivetrain.studies.rolling_bearings import (
     Choices,
@@ -68,6 +71,8 @@ class MachineBearings:
     lacks : str or None
         Why there is no machine, of a drivetrain with gears whose main bearings are rated all the
         same, as a sentence.
+    mounted : bool
+        Whether the gearbox's housing stands on the springs of its mount, not on the ground.
     rated : tuple of OneBearing
         Those with an entry of a catalogue, ready for lives: main bearings first.
     unrated : tuple of Unrated
@@ -80,6 +85,7 @@ class MachineBearings:
     unrated: tuple[Unrated, ...] = ()
     degrees: Mapping[str, int] = field(default_factory=dict)
     lacks: str | None = None
+    mounted: bool = False
 
 
 def machine_bearings(
@@ -88,6 +94,7 @@ def machine_bearings(
     choices: Choices,
     oil: Oil,
     on_rollers: Sequence[str] = (),
+    flexible: Flexible | None = None,
 ) -> MachineBearings:
     """The bearings of a machine by the loads that its statics give them.
 
@@ -103,6 +110,8 @@ def machine_bearings(
         The oil of the gearbox.
     on_rollers : sequence of str
         Bearings that are rated elsewhere, with their rollers in equilibrium with the shaft.
+    flexible : Flexible, optional
+        The gearbox's housing on its mount, see `mount`; rigid on the ground where left out.
 
     Returns
     -------
@@ -114,7 +123,7 @@ def machine_bearings(
     InputError
         An entry is unknown or of no bearing, or the machine has no statics.
     """
-    models = {level: BearingModel(machine, level) for level in LEVELS}
+    models = {level: BearingModel(machine, level, flexible=flexible) for level in LEVELS}
     loads = {level: model.reactions() for level, model in models.items()}
     main = main_names(machine)
     names = [n for n in models[LEVELS[-1]].names if n not in on_rollers]
@@ -133,7 +142,7 @@ def machine_bearings(
             made = _Maker(name, entries[name], entry, choices)
             rated.append(made.bearing(models[LEVELS[-1]], here, None if name in main else oil))
     degrees = {level.value: model.degrees for level, model in models.items()}
-    return MachineBearings(tuple(rated), tuple(unrated), degrees)
+    return MachineBearings(tuple(rated), tuple(unrated), degrees, mounted=flexible is not None)
 
 
 def catalogue_entries(drivetrain: Drivetrain) -> dict[str, str]:
@@ -171,12 +180,37 @@ def machine_with_bearings(drivetrain: Drivetrain) -> Machine | str | None:
         return None
     try:
         machine = machine_of(drivetrain)
-        BearingModel(machine, LEVELS[0], 1)
+        BearingModel(machine, LEVELS[0], 1, mount(drivetrain, machine))
     except InputError as error:
         if isinstance(drivetrain, Scene):
             return str(error)
         raise
     return machine
+
+
+def mount(drivetrain: Drivetrain, machine: Machine) -> Flexible | None:
+    """The gearbox's housing on the springs that a file gives its mount; None where it has none.
+
+    The housing is rigid in itself, and has the gearbox's weight without that of its stages.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        The drivetrain.
+    machine : Machine
+        Its machine, which begins at the front face of the main shaft.
+    """
+    if not isinstance(drivetrain, Scene):
+        return None
+    stiffness = as_numbers(drivetrain.gearbox.stiffness)
+    if not stiffness.any():
+        return None
+    stages = [body for body in assembly(machine, Level.RIGID).bodies if body.name[:5] == "stage"]
+    mass = drivetrain.gearbox.weight / GRAVITY - sum(body.mass for body in stages)
+    K = np.diag(np.where(np.isfinite(stiffness), stiffness, RIGID))
+    at = (drivetrain.shaft.rear - drivetrain.shaft.front, 0.0, 0.0)
+    housing = Housing(at, K, max(mass, 0.0), 0.0, 0.0)
+    return Flexible(housing=housing, outside=frozenset(main_names(machine)))
 
 
 def main_names(machine: Machine) -> tuple[str, ...]:

@@ -65,7 +65,9 @@ def name_unrated(found: Findings, machine: MachineBearings) -> None:
         )
 
 
-def assume_reactions(found: Findings, lives: Sequence[BearingLife]) -> None:
+def assume_reactions(
+    found: Findings, lives: Sequence[BearingLife], machine: MachineBearings
+) -> None:
     """State what the loads of bearings by reactions assume, and what they leave to flanges.
 
     Parameters
@@ -74,6 +76,8 @@ def assume_reactions(found: Findings, lives: Sequence[BearingLife]) -> None:
         Takes assumptions and cautions.
     lives : sequence of BearingLife
         The bearings.
+    machine : MachineBearings
+        Says what the gearbox's housing stands on.
     """
     asked = [life for life in lives if life.levels]
     if not asked:
@@ -85,6 +89,11 @@ def assume_reactions(found: Findings, lives: Sequence[BearingLife]) -> None:
         "",
         f"no accelerations and no clearance; of {names}",
     )
+    stands, source = "rigid, and held by the ground", "the file states no mount"
+    if machine.mounted:
+        stands = "rigid, on the springs of gearbox.stiffness"
+        source = "with the gearbox's weight less its stages'; main bearings stand beside it"
+    found.assume("gearbox housing", stands, "", source)
     found.assume("rings of gearbox bearings", "rigid", "", "no housing gives way")
     for life in asked:
         if life.bearing.planets:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
@@ -14,11 +15,13 @@ from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 from fe_drivetrain.drivetrain_file.reading import library_text
 from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.drivetrain_file.without_weight import weightless
 from fe_drivetrain.dynamics.bodies.bearing_reactions import BearingModel, bearing_reactions
 from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.bodies.machine import library_machine, machine_of
 from fe_drivetrain.studies import LifeOptions, LifeResult, life
-from fe_drivetrain.studies.gearbox_bearings import gearbox_oil
+from fe_drivetrain.studies.gearbox_bearings import gearbox_oil, mount
+from fe_drivetrain.studies.rolling_bearings import bearings_of
 
 WHOLE, GEARS = "grc_750kw", "nrel_750kw"
 HUB = np.array([3e4, 0.0, -1.2e5, 3.25e5, -1e5, 5e4])
@@ -46,6 +49,7 @@ def with_gears(
 
 
 MACHINE = machine_of(with_gears())
+MOUNT = mount(with_gears(), MACHINE)
 
 
 @pytest.fixture(scope="module")
@@ -103,7 +107,7 @@ def test_bearings_without_an_entry_are_named_as_not_rated(found: LifeResult) -> 
 
 def test_basic_life_of_a_shafts_bearing_is_c_over_p_by_hand(found: LifeResult) -> None:
     """(C / P)^(10/3) million turns, P the radial load of the cylindrical bearing."""
-    load = bearing_reactions(MACHINE, Level.FLEXIBLE)["ISS-A"].under([HUB])[0, 0]
+    load = bearing_reactions(MACHINE, Level.FLEXIBLE, flexible=MOUNT)["ISS-A"].under([HUB])[0, 0]
     one = found.bearings["ISS-A"]
     P = float(np.hypot(load[1], load[2]))
     million = (one.bearing.rated.dynamic / P) ** (10 / 3)
@@ -114,7 +118,7 @@ def test_basic_life_of_a_shafts_bearing_is_c_over_p_by_hand(found: LifeResult) -
 
 
 def test_planets_have_the_mean_damage_of_the_azimuths_of_their_carrier(found: LifeResult) -> None:
-    of = bearing_reactions(MACHINE, Level.FLEXIBLE)["stage 1 pin upwind"]
+    of = bearing_reactions(MACHINE, Level.FLEXIBLE, flexible=MOUNT)["stage 1 pin upwind"]
     load = of.under([HUB])[0]
     one = found.bearings["stage 1 pin upwind"]
     used = (np.hypot(load[:, 1], load[:, 2]) / one.bearing.rated.dynamic) ** (10 / 3)
@@ -122,10 +126,28 @@ def test_planets_have_the_mean_damage_of_the_azimuths_of_their_carrier(found: Li
     # the load stands on the inner ring, which is the pin's
     assert one.bearing.turning == "outer"
     assert one.bearing.planets == 3
-    finer = bearing_reactions(MACHINE, Level.FLEXIBLE, count=36)["stage 1 pin upwind"]
+    finer = bearing_reactions(MACHINE, Level.FLEXIBLE, 36, MOUNT)["stage 1 pin upwind"]
     load = finer.under([HUB])[0]
     fine = (np.hypot(load[:, 1], load[:, 2]) / one.bearing.rated.dynamic) ** (10 / 3)
     assert used.mean() == pytest.approx(fine.mean(), rel=2e-3)
+
+
+def test_main_bearing_and_mount_share_the_hub_loads_by_lever_arms() -> None:
+    """The shaft is on two supports; on rollers in equilibrium with it, the bearing has the same."""
+    scene = with_gears()
+    hub = np.array([0.0, 2e4, -1.2e5, 3.25e5, -1e5, 5e4])
+    for level in (Level.RIGID, Level.FLEXIBLE):
+        found = bearing_reactions(MACHINE, level, flexible=MOUNT)["main_bearing"]
+        load = found.under([hub], weight=False)[0, 0]
+        length, at = scene.shaft.rear - scene.shaft.front, -scene.shaft.front
+        across_z = (hub[2] * length + hub[4]) / (length - at)
+        across_y = (hub[1] * length - hub[5]) / (length - at)
+        assert_allclose(load[1:3], [across_y, across_z], rtol=1e-5)
+    choices = LifeOptions(weight=False).choices
+    (one,) = bearings_of(weightless(scene), choices)
+    on_rollers, converged = one.path.bearing_loads(hub)
+    assert converged.all()
+    assert_allclose(load[1:3], on_rollers[0, 1:3], rtol=1e-3)
 
 
 def test_levels_say_what_rigid_bodies_would_do(found: LifeResult) -> None:
@@ -133,7 +155,9 @@ def test_levels_say_what_rigid_bodies_would_do(found: LifeResult) -> None:
         one = found.bearings[name]
         rated = one.bearing.rated
         loads = [
-            bearing_reactions(MACHINE, level)[name].under([HUB])[0, 0][[0, 1, 2, 4, 5]]
+            bearing_reactions(MACHINE, level, flexible=MOUNT)[name].under([HUB])[0, 0][
+                [0, 1, 2, 4, 5]
+            ]
             for level in (Level.RIGID, Level.FLEXIBLE)
         ]
         if name == "ISS-A":
@@ -144,7 +168,7 @@ def test_levels_say_what_rigid_bodies_would_do(found: LifeResult) -> None:
     rows = {row["bearing"]: row for row in found.tables["levels"]}
     assert rows["ISS-A"]["enough"] == "rigid bodies"
     assert "main_bearing" not in rows
-    size = BearingModel(MACHINE, Level.FLEXIBLE, 1).degrees
+    size = BearingModel(MACHINE, Level.FLEXIBLE, 1, MOUNT).degrees
     assert any(f"{size} degrees of freedom" in line for line in found.details)
 
 
@@ -164,7 +188,7 @@ def test_the_stiffness_of_a_bearing_is_an_assumption(file: Path, found: LifeResu
 
 def test_axial_loads_on_cylindrical_rollers_are_cautioned(file: Path) -> None:
     flanged = lives(file, with_gears({"LSS-B": "cylindrical_sl181856"}), only="LSS-B")
-    axial = abs(bearing_reactions(MACHINE)["LSS-B"].under([HUB])[0, 0, 0])
+    axial = abs(bearing_reactions(MACHINE, flexible=MOUNT)["LSS-B"].under([HUB])[0, 0, 0])
     assert flanged.bearings["LSS-B"].flanges == pytest.approx(axial, rel=1e-6)
     said = [note for note in flanged.notes if "flanges have it" in note]
     assert len(said) == 1

@@ -100,12 +100,15 @@ class Flexible:
     rims : Mapping[int, tuple[Rim, tuple[int, ...]]]
         Rims of rings by the number of the planetary stage, and the harmonics that each bends in,
         from 2 on.
+    outside : frozenset[str]
+        Names of bearings that stand on the ground beside the housing, as main bearings do.
     """
 
     carriers: Mapping[int, Condensed] = field(default_factory=dict)
     housing: Housing | ElasticHousing | None = None
     shafts: Mapping[str, Condensed] = field(default_factory=dict)
     rims: Mapping[int, tuple[Rim, tuple[int, ...]]] = field(default_factory=dict)
+    outside: frozenset[str] = frozenset()
 
 
 def carrier_element(

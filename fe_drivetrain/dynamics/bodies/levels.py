@@ -19,9 +19,7 @@ from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.dynamics.bodies.bodies import ALL, Body, Superelement, assemble
 from fe_drivetrain.dynamics.bodies.elastic_ring import Rim, with_rim
 from fe_drivetrain.dynamics.bodies.flexible import (
-    ElasticHousing,
     Flexible,
-    Housing,
     carrier_element,
     held_by,
     housing_bodies,
@@ -153,7 +151,7 @@ def assembly(
     _add_generator(machine, free, held_generator, built)
     ends.append((driving, "generator"))
     _add_shafts(machine, ends, level, elements, gives, built)
-    _add_bearings(machine, gives.housing, built)
+    _add_bearings(machine, gives, built)
     return built
 
 
@@ -232,9 +230,7 @@ def _add_shafts(
     built.bodies[:] = bodies
 
 
-def _add_bearings(
-    machine: MachineTable, housing: Housing | ElasticHousing | None, built: Assembly
-) -> None:
+def _add_bearings(machine: MachineTable, gives: Flexible, built: Assembly) -> None:
     """Add the bearings, each between a body and what holds it."""
     centres = {body.name: body.position for body in built.bodies}
     shafts = {shaft.name for shaft in machine.shafts}
@@ -243,7 +239,8 @@ def _add_bearings(
             c = centres[bearing.holds]
             built.seats[bearing.name] = (bearing.holds, (c[0] + bearing.at, c[1], c[2]))
         body, at = built.seats[bearing.name]
-        holder = held_by(housing, bearing.name, at)
+        inside = bearing.name not in gives.outside
+        holder = held_by(gives.housing, bearing.name, at) if inside else None
         built.holders[bearing.name] = holder
         place = Place(body, centres[body])
         built.springs.extend(bushing(bearing.name, place, holder, at, bearing.stiffness))
