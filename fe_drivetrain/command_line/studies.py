@@ -23,7 +23,7 @@ from fe_drivetrain.command_line.showing import Shown
 from fe_drivetrain.command_line.terminal import as_typed, guarded
 from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
-from fe_drivetrain.drivetrain_file.named_scenes import named_scene
+from fe_drivetrain.drivetrain_file.named_scenes import named_scene, read_drivetrain
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.results import Results
@@ -50,11 +50,11 @@ def check_command(
 
     def work() -> int:
         hold_threads()
-        found = named_scene(scene, parse_settings(set_ or ()))
+        found = read_drivetrain(scene, parse_settings(set_ or ()))
         from fe_drivetrain.pages.check import show_check
         from fe_drivetrain.studies.scene_check import check
 
-        title = f"{found.title}: what the scene is, and what it costs"
+        title = f"{found.title}: what the drivetrain is, and what it costs"
         return run_on_scene(
             "check",
             [scene],

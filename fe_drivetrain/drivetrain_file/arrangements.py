@@ -50,6 +50,14 @@ ARRANGEMENTS: Mapping[str, Arrangement] = MappingProxyType(
         "gearbox-shaft": Arrangement(
             "a stepped shaft inside a gearbox on two spherical bearings", "stepped_shaft"
         ),
+        "geared-one-planetary": Arrangement(
+            "a whole drivetrain: one planetary and two parallel stages, on three points",
+            "grc_750kw",
+        ),
+        "geared-two-planetary": Arrangement(
+            "a whole drivetrain: two planetary stages and a parallel one, two main bearings",
+            "nrel_5mw",
+        ),
         "direct-drive": Arrangement(
             "a wide tube on two bearings without a gearbox", "iea_15mw_main_shaft"
         ),
@@ -63,6 +71,13 @@ ARRANGEMENTS: Mapping[str, Arrangement] = MappingProxyType(
 # Sections of a scene file that may be left out. Each becomes valid by taking the "# " away.
 _OPTIONAL = {
     "hub": "hub: {coupling: averaged}   # how loads enter the front face: averaged or rigid\n",
+    "rotor": (
+        "rotor: {mass: 9.0e4, inertia: 4.0e7}   # at the front face; for modes and transients\n"
+    ),
+    "generator": "generator: {inertia: 500, rated_torque: 4.0e4}   # [kg m^2, N m]\n",
+    "operation": (
+        "operation: {rated_power: 5.0e6, rotor_speed: [0.7, 1.27]}   # [W]; least, rated [rad/s]\n"
+    ),
     "load_points": (
         "load_points:   # where else loads enter the shaft: columns brake.Fz [kN] of a CSV file\n"
         "  - {name: brake, x: -0.23, width: 0.03, weight: 5000}\n"
@@ -114,6 +129,8 @@ def starting_scene(arrangement: str) -> str:
         "# shaft.front: x of the front face, where the hub loads act; sections go from there to\n"
         "# the rear face, where the gearbox is. gearbox.stiffness, along x, y, z [N/m] and about\n"
         "# them [N m/rad]: a number, rigid, or 0 for free. A bearing's x is 0 where left out.\n"
+        "# gearbox.stages, shafts and bearings: what is inside; rotor, generator, operation:\n"
+        "# for modes, gears and transients. What is left out is not modelled.\n"
         "#\n"
         f"{text.rstrip()}\n"
         "\n# What else a scene may have (take the # away):\n#\n"

@@ -53,6 +53,9 @@ _SILENT = frozenset(
     {
         *("title", "mesh", "uncertainty", "materials", "load_points", "parts", "catalogue", "name"),
         *("nose", "stands_on", "source", "smallest_detail", "fillet", "inner_diameter", "held"),
+        # what turns beside the main shaft: studies of it state their assumptions themselves
+        *("sources", "assumed", "rotor", "brake", "generator", "operation", "damping"),
+        *("stages", "shafts", "bearings"),
     }
 )
 

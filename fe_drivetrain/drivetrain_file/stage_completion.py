@@ -20,7 +20,7 @@ from fe_drivetrain.drivetrain_file.gear_stages import (
     RingPlanetSun,
     SunPlanet,
 )
-from fe_drivetrain.drivetrain_file.stage_gears import stage_pairs
+from fe_drivetrain.drivetrain_file.stage_gears import stage_gears, stage_pairs
 from fe_drivetrain.drivetrain_file.turning_parts import STEEL, RotorBody
 from fe_drivetrain.gear.functions import inverse_involute, involute_of
 from fe_drivetrain.gear.iso import iso_gear_stiffness
@@ -29,6 +29,8 @@ from fe_drivetrain.gear.working_angles import transverse_angle, working_angle
 #: Centre distance [m] and face width [m] of a stage without sizes, whose bodies only turn: its
 #: frequencies of torsion do not depend on either.
 NOMINAL_DISTANCE, NOMINAL_FACE = 1.0, 0.1
+#: Addenda of a ring that are tried, from that of its rack on [modules].
+ADDENDA = (1.0, 0.95, 0.9, 0.85, 0.8, 0.75, 0.7, 0.65, 0.6)
 #: Digits of derived inertias and stiffnesses in assumptions.
 DIGITS = ".4g"
 
@@ -224,6 +226,40 @@ def _disc(
     return RotorBody(inertia=inertia, mass=mass)
 
 
+def _with_short_ring(
+    made: PlanetaryData | ParallelData, name: str, data: dict[str, Any], derived: dict[str, str]
+) -> PlanetaryData | ParallelData:
+    """The stage with a ring whose tips do not reach below the planets' involutes.
+
+    A ring's addendum of a module does so at the usual numbers of planets' teeth; makers shorten it.
+    Where tips are given, or no shorter ones help, the stage stays as it is.
+    """
+    if not isinstance(made, PlanetaryData) or made.tips is not None or made.module is None:
+        return made
+    for addendum in ADDENDA:
+        tips = _tips(made, name, addendum)
+        tried = made.model_copy(update={"tips": tips})
+        try:
+            stage_pairs(tried, name)
+        except InputError:
+            continue
+        if addendum < 1.0:
+            data["tips"] = tips
+            derived["tips"] = (
+                f"addendum of a module, of the ring {addendum:g}, whose tips else reach below "
+                "the planets' involutes"
+            )
+            return tried
+        return made
+    return made
+
+
+def _tips(stage: PlanetaryData, name: str, addendum: float) -> RingPlanetSun[float]:
+    """Tip diameters with an addendum of a module, of the ring of so many [m]."""
+    ring, planet, sun = (2 * gear.tip_radius for gear in stage_gears(stage, name))
+    return RingPlanetSun(ring + 2 * (1 - addendum) * float(stage.module or 0.0), planet, sun)
+
+
 def _stiffness(
     stage: PlanetaryStage | ParallelStage,
     name: str,
@@ -257,6 +293,7 @@ def _stiffness(
         made = PlanetaryData.model_validate(data | nominal)
     else:
         made = ParallelData.model_validate(data | nominal)
+    made = _with_short_ring(made, name, data, derived)
     pairs = stage_pairs(made, name)
     data["stiffness_of"] = "line"
     for key in absent:

@@ -22,7 +22,7 @@ def stage_pairs(stage: PlanetaryData | ParallelData, name: str) -> dict[str, Pai
     InputError
         The stage lacks data, or its gears do not fit.
     """
-    gears = _gears(stage, name)
+    gears = stage_gears(stage, name)
     try:
         if isinstance(stage, PlanetaryData):
             ring, planet, sun = gears
@@ -36,8 +36,8 @@ def stage_pairs(stage: PlanetaryData | ParallelData, name: str) -> dict[str, Pai
         raise InputError(f"{name}: {error}") from None
 
 
-def _gears(stage: PlanetaryData | ParallelData, name: str) -> list[Gear]:
-    """Gears of a stage in the order of the teeth."""
+def stage_gears(stage: PlanetaryData | ParallelData, name: str) -> list[Gear]:
+    """Gears of a stage in the order of the teeth; see `stage_pairs`."""
     if stage.teeth is None or stage.module is None or stage.shifts is None:
         raise InputError(f"{name} has no full data of its gears: give teeth, module and shifts")
     count = len(stage.teeth)

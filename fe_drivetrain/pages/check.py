@@ -9,6 +9,7 @@ from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.report.suite.run import Run
 from fe_drivetrain.shafts.response.model import Model
+from fe_drivetrain.studies.drivetrain_layout import LAYOUT, drivetrain_layout
 from fe_drivetrain.studies.scene_check import CheckResult
 
 
@@ -24,9 +25,16 @@ def show_check(run: Run, page: Page, result: CheckResult) -> None:
     result : CheckResult
         What was found.
     """
-    page.section("Scene")
-    _picture(run, page, result.model)
+    page.section("Drivetrain")
+    if result.model is not None:
+        _picture(run, page, result.model)
+    if result.turning is not None:
+        page.add(drivetrain_layout(LAYOUT, result.turning.machine))
+        if result.turning.machine.stages:
+            page.hero(LAYOUT)
     describe(page, result.described)
+    if result.model is None:
+        return
     page.section("Cost")
     page.table(
         "What each level costs: unknowns of its largest system, time, memory",

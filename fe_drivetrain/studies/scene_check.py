@@ -7,10 +7,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import ClassVar
 
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.left_out import left_out
 from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.charts import chart, trace
 from fe_drivetrain.report.number_text import certain_value, formatted
 from fe_drivetrain.report.results import Chart
@@ -18,6 +21,14 @@ from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.shafts.fidelity.level_costs import Forecast, forecast
 from fe_drivetrain.shafts.response.model import Model
+from fe_drivetrain.studies.drivetrain_layout import LAYOUT, drivetrain_layout
+from fe_drivetrain.studies.machine_description import (
+    Turning,
+    ratio_in_words,
+    stated,
+    turning_parts,
+    turning_tables,
+)
 from fe_drivetrain.studies.named_bearings import named_bearings
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.scene_description import description
@@ -27,7 +38,7 @@ from fe_drivetrain.studies.unused import catalogues_not_used
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class CheckResult(Result):
-    """A scene that can be solved.
+    """A drivetrain that can be solved.
 
     Attributes
     ----------
@@ -37,8 +48,11 @@ class CheckResult(Result):
         Parts, bearings and load points, by caption.
     costs : Sequence[Forecast]
         Cost of each model level.
-    model : Model
-        The assembled model, of which pictures are drawn; not part of the JSON.
+    model : Model or None
+        The assembled model of the main shaft, of which pictures are drawn; not part of the JSON.
+        None of a main shaft without sections.
+    turning : Turning or None
+        All that turns, where the file states it; not part of the JSON.
     """
 
     STUDY: ClassVar[str] = "check"
@@ -46,7 +60,8 @@ class CheckResult(Result):
     parts: Mapping[str, float]
     described: Mapping[str, Sequence[Record]]
     costs: Sequence[Forecast]
-    model: Model = field(repr=False)
+    model: Model | None = field(repr=False)
+    turning: Turning | None = field(repr=False)
 
     @property
     def mass(self) -> float:
@@ -59,19 +74,21 @@ class CheckResult(Result):
             trace(f"{one.level} {one.title}", [one.unknowns], [one.seconds], points=True)
             for one in self.costs
         ]
+        if self.model is None and self.turning is not None:
+            return drivetrain_layout(LAYOUT, self.turning.machine)
         caption = "Time of each model level against the unknowns of its largest system"
         return chart(caption, traces, "unknowns", "time [s]", logarithmic=("x", "y"))
 
 
 def check(
-    scene: Scene, catalogues: Sequence[Path] = (), *, report: Progress = silent
+    drivetrain: Drivetrain, catalogues: Sequence[Path] = (), *, report: Progress = silent
 ) -> CheckResult:
-    """Check that a scene can be solved, describe it, and predict what each model level costs.
+    """Check that a drivetrain can be solved, describe it, and predict what each level costs.
 
     Parameters
     ----------
-    scene : Scene
-        The scene.
+    drivetrain : Drivetrain
+        The drivetrain: its main shaft on bearings, and all that turns as far as it is stated.
     catalogues : Sequence[Path]
         Bearing catalogues of the user, beside the program's own.
     report : Progress
@@ -80,9 +97,17 @@ def check(
     Raises
     ------
     InputError
-        The scene cannot be built or is a mechanism, or a bearing that it names is in no catalogue.
+        It cannot be built or is a mechanism, or a bearing that it names is in no catalogue.
     """
     found, steps = Findings(), Steps(report)
+    turning, lacks = turning_parts(drivetrain)
+    if turning is not None:
+        found.assume_all(stated(drivetrain))
+    if not isinstance(drivetrain, Scene):
+        if turning is None:
+            raise InputError(lacks)
+        return _lumped(drivetrain, turning, found, steps)
+    scene = drivetrain
     named = named_bearings(scene, catalogues, {})
     misfits = [one.misfit for one in named.values()]
     for unused in catalogues_not_used(catalogues, {name: one.name for name, one in named.items()}):
@@ -96,13 +121,56 @@ def check(
     with steps.step("levels"):
         costs = forecast(model)
     found.data("levels", [_cost(one) for one in costs])
-    _answer(found, model, costs, list(filter(None, misfits)))
+    _answer(found, model, costs, list(filter(None, misfits)), turning)
     return CheckResult(
         parts=parts,
-        described=description(model),
+        described=description(model) | (turning_tables(turning) if turning else {}),
         costs=costs,
         model=model,
+        turning=turning,
         **found.frozen(steps.times, catalogues=[path.name for path in catalogues]),
+    )
+
+
+def _lumped(drivetrain: Drivetrain, turning: Turning, found: Findings, steps: Steps) -> CheckResult:
+    """Check a drivetrain whose main shaft has no sections: all that turns, and nothing else."""
+    found.about(drivetrain)
+    found.seed = None
+    machine = turning.machine
+    missing = ", ".join(machine.not_given)
+    levels = ", ".join(turning.degrees)
+    found.say(f"{drivetrain.title}: {ratio_in_words(machine)}. Levels: {levels}.")
+    ratio, first = _turning_figures(found, turning)
+    allowed = "It turns and is held" if not machine.not_given else "It turns"
+    found.answer(
+        "Can this drivetrain be solved, and what is stated of it?",
+        f"{allowed}: {len(machine.stages)} stages of ratio {certain_value(ratio)}, first torsional "
+        f"mode at {certain_value(first)}; its main shaft has no sections to solve.",
+        [
+            ratio,
+            first,
+            found.value("levels of dynamics that its data allow", len(turning.degrees)),
+            found.value("degrees of freedom of the finest level", max(turning.degrees.values())),
+        ],
+        cautions=[f"Bodies can only turn, for the file does not state: {missing}."]
+        if missing
+        else [],
+    )
+    return CheckResult(
+        parts={},
+        described=turning_tables(turning),
+        costs=(),
+        model=None,
+        turning=turning,
+        **found.frozen(steps.times, catalogues=[]),
+    )
+
+
+def _turning_figures(found: Findings, turning: Turning) -> tuple[KeyFigure, KeyFigure]:
+    """Ratio and first torsional frequency as figures."""
+    return (
+        found.value("ratio of all stages", turning.ratio),
+        found.value("first torsional frequency, generator free [Hz]", turning.first_torsional),
     )
 
 
@@ -120,7 +188,11 @@ def _held(scene: Scene, n_dofs: int) -> str:
 
 
 def _answer(
-    found: Findings, model: Model, costs: Sequence[Forecast], misfits: Sequence[str]
+    found: Findings,
+    model: Model,
+    costs: Sequence[Forecast],
+    misfits: Sequence[str],
+    turning: Turning | None,
 ) -> None:
     """State whether the scene can be solved, and what its most expensive level costs."""
     scene, top = model.scene, costs[-1]
@@ -128,7 +200,7 @@ def _answer(
     mass = found.value("mass of all parts [t]", float(model.mass.sum()) / 1e3)
     seconds = found.value(f"time of level {top.level} ({top.title}) [s]", top.seconds)
     held = f"{certain_value(mass)} on {count} bearing{'s' if count > 1 else ''}"
-    verdict = f"The scene can be solved: its supports hold {held}; its finest level takes about "
+    verdict = f"It can be solved: its supports hold {held}; its shaft's finest level takes about "
     verdict += f"{formatted(top.seconds, 2)}\u00a0s."
     if not top.fits:
         verdict = f"Its supports hold {held}, but level {top.level}, {top.title}, needs more "
@@ -145,13 +217,15 @@ def _answer(
     if top.bytes is not None:
         name = f"memory of level {top.level} [MiB]"
         figures.append(found.value(name, top.bytes / 2**20))
+    if turning is not None:
+        figures[1:2] = _turning_figures(found, turning)
     if misfits:
         name = "catalogue bearings that do not fit the shaft"
         figures.append(found.value(name, len(misfits), at_most=0))
     elif not top.fits:
         figures.append(found.value("levels without enough memory", 1, at_most=0))
     found.answer(
-        "Can this scene be solved, and what does it cost?",
+        "Can this drivetrain be solved, and what does it cost?",
         verdict,
         figures,
         cautions=[*misfits, *model.warnings],

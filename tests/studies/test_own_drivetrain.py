@@ -88,7 +88,8 @@ def test_what_else_a_scene_may_have_is_valid_once_its_comment_sign_is_gone(name:
     more = re.sub("^# ?", "", rest.partition("\n")[2], flags=re.MULTILINE)
     scene = parse_scene(text + more)
     assert faults(text + more) == []
-    shown = ("load_points", "materials", "mesh", "uncertainty")
+    turning = ("rotor", "generator", "operation")
+    shown = ("load_points", "materials", "mesh", "uncertainty", *turning)
     assert without(scene, *shown) == without(parse_scene(text), *shown)
     assert [point.name for point in scene.load_points] == ["brake"]
     assert scene.uncertainty["shaft.sections.0.outer_diameter"].uniform == 0.001
@@ -230,7 +231,7 @@ def test_check_says_what_a_scene_is(
 ) -> None:
     status, out, _ = invoke("check", "mine.yaml", "--out", "page", *QUICK)
     assert status == 0
-    assert out.startswith("The scene can be solved: its supports hold ")
+    assert out.startswith("It can be solved: its supports hold ")
     folder = tmp_path / "page"
     page = (folder / "results.json").read_text("utf-8")
     assert "a shaft of 4.55 m on 1 bearing" in page

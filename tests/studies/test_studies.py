@@ -19,6 +19,7 @@ from fe_drivetrain import export, pages
 from fe_drivetrain.common import InputError
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.drivetrain_file import change_scene, library_component, library_scene
+from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 from fe_drivetrain.elasticity.mesh import Mesh, cached_mesh
 from fe_drivetrain.elasticity.mesh import write as write_mesh
 from fe_drivetrain.export import Superelement
@@ -279,11 +280,23 @@ def test_words_and_counts_that_no_study_takes_are_refused(tmp_path: Path) -> Non
 
 
 def test_masses_and_costs_are_numbers(checked: CheckResult) -> None:
+    assert checked.model is not None
     assert checked.mass == pytest.approx(float(checked.model.mass.sum()))
     assert [row["unknowns"] for row in checked.tables["levels"]] == [
         one.unknowns for one in checked.costs
     ]
     assert all(math.isfinite(one.seconds) for one in checked.costs)
+
+
+def test_a_drivetrain_without_sections_is_checked_by_what_turns() -> None:
+    found = check(read_drivetrain("park_2021"))
+    assert found.turning is not None
+    # 1 + (a + r_p) / r_s of the planetary stage, and the radii of the two others
+    ratio = (1 + 0.43 / 0.11) * 0.29 / 0.095 * 0.185 / 0.08
+    assert found["ratio of all stages"].computed == pytest.approx(ratio, rel=1e-3)
+    assert found.turning.degrees == {"torsional": 10, "rigid bodies": 60, "flexible shafts": 60}
+    assert len(found.described["Gear stages, from the rotor on"]) == 3
+    assert any("lengths of shafts" in row.why for row in found.assumptions)
 
 
 def test_a_figure_is_found_by_its_name(compared: CompareResult) -> None:

@@ -8,6 +8,7 @@ from pydantic import model_validator
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.left_out import LeftOut
 from fe_drivetrain.drivetrain_file.lumped import LumpedDrivetrain
 from fe_drivetrain.drivetrain_file.machine_gate import check_table
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
@@ -39,6 +40,24 @@ class Machine(MachineTable):
         return type(self).model_validate({**dict(copied), **update}) if update else copied
 
 
+def derived_values(drivetrain: Drivetrain) -> list[LeftOut]:
+    """What was derived or assumed of all that turns, where a drivetrain's file does not state it.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        The drivetrain.
+
+    Raises
+    ------
+    InputError
+        See `machine_of`.
+    """
+    table, derived = _table(drivetrain, None)
+    rows = [LeftOut(name, "derived", "", how) for name, how in derived.items()]
+    return rows + [LeftOut(*row) for row in table.assumptions()]
+
+
 MACHINES = ("nrel_5mw", "nrel_750kw", "synthetic_2mw", "park_2021")
 """Names of the library's drivetrains with a gearbox in three dimensions."""
 
@@ -65,13 +84,20 @@ def machine_of(drivetrain: Drivetrain, supports: Mapping[str, Floats] | None = N
         The file lacks what any model of all that turns needs, and the message names its key; or
         something moves freely.
     """
-    if isinstance(drivetrain, Scene):
-        table, _ = table_of(drivetrain, main_shaft(drivetrain), main_bearings(drivetrain, supports))
-    elif isinstance(drivetrain, LumpedDrivetrain):
-        table, _ = table_of(drivetrain, drivetrain.shaft)
-    else:
-        raise InputError(f"{drivetrain.title!r} has no main shaft: give shaft")
+    table, _ = _table(drivetrain, supports)
     return Machine.model_validate(dict(table))
+
+
+def _table(
+    drivetrain: Drivetrain, supports: Mapping[str, Floats] | None
+) -> tuple[MachineTable, Mapping[str, str]]:
+    """Rows of a drivetrain, and what was derived."""
+    if isinstance(drivetrain, Scene):
+        bearings = main_bearings(drivetrain, supports)
+        return table_of(drivetrain, main_shaft(drivetrain), bearings)
+    if isinstance(drivetrain, LumpedDrivetrain):
+        return table_of(drivetrain, drivetrain.shaft)
+    raise InputError(f"{drivetrain.title!r} has no main shaft: give shaft")
 
 
 def library_machine(name: str) -> Machine:
