@@ -31,9 +31,9 @@ from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.gearbox_bearings import (
     MachineBearings,
     catalogue_entries,
+    gearbox_mount,
     machine_bearings,
     machine_with_bearings,
-    mount,
 )
 from fe_drivetrain.studies.gearbox_findings import assume_reactions, name_unrated, say_levels
 from fe_drivetrain.studies.life_answer import state_answer
@@ -205,7 +205,7 @@ class DrivetrainBearings:
                 of_units = {name: entry for name, entry in named.items() if name in units}
                 main = bearings_of(drivetrain, replace(choices, named=of_units))
         oil = self.options.oil(drivetrain.operation)
-        on_mount = mount(drivetrain, machine)
+        on_mount = gearbox_mount(drivetrain, machine)
         self.machine = machine_bearings(machine, named, choices, oil, on_rollers, on_mount)
         found = [*main, *self.machine.rated]
         if not found:

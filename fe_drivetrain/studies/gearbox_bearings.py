@@ -111,7 +111,7 @@ def machine_bearings(
     on_rollers : sequence of str
         Bearings that are rated elsewhere, with their rollers in equilibrium with the shaft.
     flexible : Flexible, optional
-        The gearbox's housing on its mount, see `mount`; rigid on the ground where left out.
+        The gearbox's housing on its mount, see `gearbox_mount`; rigid on the ground where left out.
 
     Returns
     -------
@@ -180,7 +180,7 @@ def machine_with_bearings(drivetrain: Drivetrain) -> Machine | str | None:
         return None
     try:
         machine = machine_of(drivetrain)
-        BearingModel(machine, LEVELS[0], 1, mount(drivetrain, machine))
+        BearingModel(machine, LEVELS[0], 1, gearbox_mount(drivetrain, machine))
     except InputError as error:
         if isinstance(drivetrain, Scene):
             return str(error)
@@ -188,7 +188,7 @@ def machine_with_bearings(drivetrain: Drivetrain) -> Machine | str | None:
     return machine
 
 
-def mount(drivetrain: Drivetrain, machine: Machine) -> Flexible | None:
+def gearbox_mount(drivetrain: Drivetrain, machine: Machine) -> Flexible | None:
     """The gearbox's housing on the springs that a file gives its mount; None where it has none.
 
     The housing is rigid in itself, and has the gearbox's weight without that of its stages.

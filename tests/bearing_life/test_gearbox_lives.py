@@ -20,7 +20,7 @@ from fe_drivetrain.dynamics.bodies.bearing_reactions import BearingModel, bearin
 from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.bodies.machine import library_machine, machine_of
 from fe_drivetrain.studies import LifeOptions, LifeResult, life
-from fe_drivetrain.studies.gearbox_bearings import gearbox_oil, mount
+from fe_drivetrain.studies.gearbox_bearings import gearbox_mount, gearbox_oil
 from fe_drivetrain.studies.rolling_bearings import bearings_of
 
 WHOLE, GEARS = "grc_750kw", "nrel_750kw"
@@ -49,7 +49,7 @@ def with_gears(
 
 
 MACHINE = machine_of(with_gears())
-MOUNT = mount(with_gears(), MACHINE)
+MOUNT = gearbox_mount(with_gears(), MACHINE)
 
 
 @pytest.fixture(scope="module")
