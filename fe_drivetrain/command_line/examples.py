@@ -28,6 +28,7 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
     "life": (
         "two_bearings --loads 'outputs/*.outb' --site class-II",
         "mine.yaml --loads outputs --bearing front=240/630",
+        "grc_750kw --loads outputs --gearbox-temperature 65",
     ),
     "gears": (
         "nrel_5mw --open",

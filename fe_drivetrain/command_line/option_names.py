@@ -29,6 +29,9 @@ OPTIONS: Mapping[str, str] = {
     "cleanliness": "--cleanliness",
     "duration": "--duration",
     "every": "--every",
+    "gearbox_cleanliness": "--gearbox-cleanliness",
+    "gearbox_lubricant": "--gearbox-lubricant",
+    "gearbox_temperature": "--gearbox-temperature",
     "held": "--held",
     "high": "--winds",
     "hours": "--hours",
@@ -74,7 +77,7 @@ WORDS: Mapping[tuple[str, object], str] = {
 }
 """What is typed for a value of an argument that is no option with the value behind it."""
 
-_BETWEEN = {"at": ",", "held": ",", "low": ":", "lubricant": ","}
+_BETWEEN = {"at": ",", "held": ",", "low": ":", "lubricant": ",", "gearbox_lubricant": ","}
 """What stands between items of one option; others are repeated."""
 
 

@@ -229,6 +229,7 @@ def _works(asked: ReportRequest, scene: Scene, own: StudyLoads) -> dict[str, Wor
     from fe_drivetrain.pages.study import show_study
     from fe_drivetrain.studies.bearing_lives import life
     from fe_drivetrain.studies.dossier_overview import extremes_of
+    from fe_drivetrain.studies.gearbox_bearings import catalogue_entries
     from fe_drivetrain.studies.level_advice import advise
     from fe_drivetrain.studies.life_options import LifeOptions
     from fe_drivetrain.studies.load_digest import LoadOptions
@@ -276,7 +277,7 @@ def _works(asked: ReportRequest, scene: Scene, own: StudyLoads) -> dict[str, Wor
         "model": Shown(lambda run: advise(scene, first, TOLERANCE, report=run.report), show_advise),
         "check": Shown(lambda run: check(scene, catalogues, report=run.report), show_check),
     }
-    if not any(unit.catalogue for unit in scene.bearing_units):
+    if not catalogue_entries(scene):
         del works["life"]
     return works
 

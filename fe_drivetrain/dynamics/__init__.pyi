@@ -10,6 +10,9 @@ from .bodies.advice import needed_level as needed_level
 from .bodies.advice import pin_loads as pin_loads
 from .bodies.advice import slices_of as slices_of
 from .bodies.advice import torsional_frequency as torsional_frequency
+from .bodies.bearing_reactions import BearingModel as BearingModel
+from .bodies.bearing_reactions import Reactions as Reactions
+from .bodies.bearing_reactions import bearing_reactions as bearing_reactions
 from .bodies.bodies import ALL as ALL
 from .bodies.bodies import PLANE as PLANE
 from .bodies.bodies import Body as Body
