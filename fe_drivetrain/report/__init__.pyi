@@ -8,6 +8,8 @@ from .charts import mark_events as mark_events
 from .charts import marked as marked
 from .charts import trace as trace
 from .environment import environment as environment
+from .error_chart import Difference as Difference
+from .error_chart import difference_chart as difference_chart
 from .history import PastRun as PastRun
 from .history import past_runs as past_runs
 from .index import write_index as write_index
