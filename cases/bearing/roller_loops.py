@@ -175,9 +175,7 @@ def answer(page: Page, ranges: dict[str, float], zones: tuple[float, float]) -> 
         if of_mean
         else "as in the thesis, varying stiffness narrows"
     )
-    verdict = (
-        f"Rows carry on opposite sides in at least {opposite:.0f}\u00a0% of steps; {cause} "
-    )
+    verdict = f"Rows carry on opposite sides in at least {opposite:.0f}\u00a0% of steps; {cause} "
     verdict += "the force range."
     page.answer(
         "What do the rollers of a main bearing feel while its moment runs in loops?",
