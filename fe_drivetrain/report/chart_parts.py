@@ -13,7 +13,7 @@ from fe_drivetrain.common.arrays import rounded
 _GREY = "#767676"  # seen on white and on black
 _STRIP = 0.24  # share of the height that the strip of differences takes
 _GAP = 0.08
-_STRIP_HEIGHT = 130  # pixels that the chart grows for it
+_STRIP_HEIGHT = 90  # pixels that the chart grows for it
 _PLAIN_HEIGHT = 460
 
 
