@@ -9,9 +9,9 @@ from .drivetrain_file import library_names as library_names
 from .drivetrain_file import read_drivetrain as read_drivetrain
 from .drivetrain_file import scene_text as scene_text
 from .dynamics import library_machine as library_machine
+from .dynamics import machine_of as machine_of
 from .dynamics import machine_pairs as machine_pairs
 from .dynamics import machine_system as machine_system
-from .dynamics import read_machine as read_machine
 from .dynamics import system_modes as system_modes
 from .elasticity.mesh import Mesh as Mesh
 from .export import Superelement as Superelement

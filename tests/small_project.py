@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.dynamics.bodies.tables import library_machine
+from fe_drivetrain.dynamics.bodies.machine import library_machine
 from fe_drivetrain.procedure.certainty import TABLE_4_7
 from fe_drivetrain.procedure.channels import write_channels
 from fe_drivetrain.procedure.motions import band_torque

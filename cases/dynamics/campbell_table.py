@@ -10,7 +10,6 @@ from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.common import InputError
 from fe_drivetrain.dynamics import (
     Crossing,
-    check_assembly,
     crossings,
     equal_angles,
     excited_motion,
@@ -22,7 +21,7 @@ from fe_drivetrain.dynamics.torsion import (
     mesh_orders,
     natural_modes,
 )
-from fe_drivetrain.gear import equally_spaced, sequence, sun_phases
+from fe_drivetrain.gear import check_assembly, equally_spaced, sequence, sun_phases
 from fe_drivetrain.report import Chart, chart, crosses, mark_events, trace
 from fe_drivetrain.report.suite import Page, Record, Run
 

@@ -10,6 +10,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.cases.references.machine_rungs import more_rungs
 from fe_drivetrain.common import InputError
+from fe_drivetrain.drivetrain_file import read_drivetrain
 from fe_drivetrain.dynamics import (
     QUESTIONS,
     RUNGS,
@@ -20,8 +21,8 @@ from fe_drivetrain.dynamics import (
     direction_kinds,
     ladder,
     library_machine,
+    machine_of,
     machine_system,
-    named_machine,
     needed_level,
     system_modes,
     torsional,
@@ -60,7 +61,7 @@ def run(run: Run, page: Page) -> None:
     needed: list[Record] = []
     ladders: list[tuple[Machine, Sequence[Answer]]] = []
     for name, operation in operations(run).items():
-        machine = named_machine(name)
+        machine = machine_of(read_drivetrain(name))
         page.about(machine, name)
         rungs = [*RUNGS, *more_rungs(run, name)]
         with run.step(f"ladder of {name}"):

@@ -16,8 +16,9 @@ from fe_drivetrain.dynamics.bodies.planetary import (
     equal_angles,
     springs_of,
 )
-from fe_drivetrain.dynamics.bodies.springs import Mesh, Place, bushing
+from fe_drivetrain.dynamics.bodies.springs import Place, bushing
 from fe_drivetrain.dynamics.bodies.static import Static, static
+from fe_drivetrain.gear.working_angles import Mesh
 
 
 def shared_load(

@@ -11,14 +11,15 @@ from fe_drivetrain.comparison import (
     peak_between,
     round_off,
 )
+from fe_drivetrain.drivetrain_file import read_drivetrain
 from fe_drivetrain.dynamics import (
     Level,
     Machine,
     assemble,
     assembly,
     damped_by_ratio,
+    machine_of,
     machine_system,
-    named_machine,
     system_modes,
     torsional,
 )
@@ -68,7 +69,7 @@ MAXIMUM, MINIMUM = (
 def run(run: Run, page: Page) -> None:
     """One value for each gap, of the machine that the page states."""
     name = str(run.settings.get("machine", DEFAULT))
-    machine = named_machine(name)
+    machine = machine_of(read_drivetrain(name))
     page.about(machine, name)
     page.subject = machine.title
     if name != DEFAULT:

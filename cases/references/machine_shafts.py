@@ -5,8 +5,8 @@ from typing import Any
 from fe_drivetrain.common import InputError
 from fe_drivetrain.common.reading import validated
 from fe_drivetrain.drivetrain_file import Scene
+from fe_drivetrain.drivetrain_file.turning_parts import STEEL
 from fe_drivetrain.dynamics import Machine
-from fe_drivetrain.dynamics.bodies.machine_parts import STEEL
 
 #: Of a seat, over the shaft's diameter.
 SEAT = 0.2

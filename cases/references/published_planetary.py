@@ -19,8 +19,9 @@ from fe_drivetrain.dynamics.bodies.planetary import (
     equal_angles,
     springs_of,
 )
-from fe_drivetrain.dynamics.bodies.springs import Mesh, Place, Spring, bushing
+from fe_drivetrain.dynamics.bodies.springs import Place, Spring, bushing
 from fe_drivetrain.dynamics.bodies.system import System
+from fe_drivetrain.gear.working_angles import Mesh
 
 LIN_PARKER = "Lin and Parker 1999, J. Vib. Acoust. 121, 316, Table 2, as in a public program"
 COOLEY_PARKER = "Cooley and Parker 2012, J. Vib. Acoust. 134, 061014, as in a public program"

@@ -10,9 +10,10 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import min_eigenvalue, symmetry_error
+from fe_drivetrain.drivetrain_file.gear_stages import ParallelData, PlanetaryData
+from fe_drivetrain.drivetrain_file.machine_table import MachineTable
+from fe_drivetrain.drivetrain_file.turning_parts import STEEL, RotorBody
 from fe_drivetrain.dynamics.bodies.levels import Level, machine_system
-from fe_drivetrain.dynamics.bodies.machine_parts import STEEL, RotorBody
-from fe_drivetrain.dynamics.bodies.machine_rows import MachineTable, ParallelData, PlanetaryData
 from fe_drivetrain.dynamics.bodies.modes import system_modes
 from fe_drivetrain.dynamics.bodies.static import static
 from fe_drivetrain.dynamics.bodies.system import System

@@ -17,7 +17,15 @@ from fe_drivetrain.cases.verification.machine_facts import (
     tried,
 )
 from fe_drivetrain.cases.verification.mutated_tables import mutated
-from fe_drivetrain.dynamics import MACHINES, Machine, MachineTable, library_machine, parse_machine
+from fe_drivetrain.common.reading import validated
+from fe_drivetrain.drivetrain_file import (
+    Drivetrain,
+    LumpedDrivetrain,
+    MachineTable,
+    parse_drivetrain,
+    read_drivetrain,
+)
+from fe_drivetrain.dynamics import MACHINES, Machine, library_machine, machine_of
 from fe_drivetrain.dynamics.torsion import GearTable, parse_gear_table
 from fe_drivetrain.report import bars
 from fe_drivetrain.report.suite import Page, Record, Run
@@ -49,7 +57,7 @@ def run(run: Run, page: Page) -> None:
     for name, given, count, attempt in (
         (
             "machines",
-            [plain(library_machine(name)) for name in MACHINES],
+            [plain(read_drivetrain(name)) for name in MACHINES],
             run.count("machines", QUICK if run.quick else MACHINES_TRIED, least=FEWEST),
             try_machine,
         ),
@@ -123,7 +131,7 @@ def slips(
     return rows
 
 
-def plain(table: Machine | GearTable) -> dict[str, Any]:
+def plain(table: Drivetrain | Machine | GearTable) -> dict[str, Any]:
     """Mappings, lists and values, as in a file."""
     return table.model_dump(mode="json", exclude_none=True)
 
@@ -135,9 +143,13 @@ def as_text(data: dict[str, Any]) -> str:
 
 def try_machine(data: dict[str, Any], text: bool) -> Outcome:
     """A machine from data, or from text."""
-    if text:
-        return tried(partial(parse_machine, as_text(data)), machine_facts)
-    return tried(partial(Machine.model_validate, data), machine_facts)
+
+    def made() -> Machine:
+        if text:
+            return machine_of(parse_drivetrain(as_text(data)))
+        return machine_of(validated(LumpedDrivetrain, data, "drivetrain"))
+
+    return tried(made, machine_facts)
 
 
 def try_table(data: dict[str, Any], text: bool) -> Outcome:

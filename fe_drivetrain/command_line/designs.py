@@ -23,7 +23,7 @@ from fe_drivetrain.command_line.showing import Shown
 from fe_drivetrain.command_line.studies import OutFolder, run_on_scene
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import hold_threads
-from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
+from fe_drivetrain.drivetrain_file.named_scenes import named_scene
 
 if TYPE_CHECKING:
     from fe_drivetrain.drivetrain_file.scene import Scene
@@ -167,7 +167,7 @@ def _designs(
         if len(scenes) > 1:
             raise InputError("--vary changes one scene: give one, or leave --vary out")
         return {
-            f"{value:g}": read_drivetrain(scenes[0], {**changes, varied.key: value})
+            f"{value:g}": named_scene(scenes[0], {**changes, varied.key: value})
             for value in varied.values
         }
     if len(scenes) < 2:
@@ -182,4 +182,4 @@ def _designs(
     names = stems if unique else list(scenes)
     if len(set(names)) < len(names):
         raise InputError(f"{' and '.join(names)}: one scene is given twice; give each of them once")
-    return {name: read_drivetrain(one, changes) for name, one in zip(names, scenes, strict=True)}
+    return {name: named_scene(one, changes) for name, one in zip(names, scenes, strict=True)}

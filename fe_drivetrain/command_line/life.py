@@ -15,7 +15,7 @@ from fe_drivetrain.command_line.showing import Shown
 from fe_drivetrain.command_line.terminal import as_typed
 from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
-from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
+from fe_drivetrain.drivetrain_file.named_scenes import named_scene
 
 
 @with_options(LifeRequest, kept="files that are done are kept: run again with --resume")
@@ -32,7 +32,7 @@ def life_command(context: typer.Context, asked: LifeRequest) -> int:
     from fe_drivetrain.report.suite.ownership import check_result_folder
 
     check_result_folder(asked.folder)
-    scene = read_drivetrain(asked.scene, parse_settings(asked.set_ or ()))
+    scene = named_scene(asked.scene, parse_settings(asked.set_ or ()))
     from fe_drivetrain.command_line.life_files import write_life
     from fe_drivetrain.pages.life import show_life
     from fe_drivetrain.report.suite.case import Case

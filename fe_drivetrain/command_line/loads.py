@@ -59,7 +59,7 @@ def loads_command(context: typer.Context, asked: LoadsRequest) -> int:
 def _study(context: typer.Context, asked: LoadsRequest) -> tuple[int, Callable[[Run], LoadsResult]]:
     """How many files there are, and the study that was asked for; every mistake is found here."""
     from fe_drivetrain.command_line.option_values import parse_transients, parse_winds
-    from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
+    from fe_drivetrain.drivetrain_file.named_scenes import named_scene
     from fe_drivetrain.studies.load_histories import loads
     from fe_drivetrain.turbine_loads.hub_loads.recorded import recorded_files
 
@@ -67,7 +67,7 @@ def _study(context: typer.Context, asked: LoadsRequest) -> tuple[int, Callable[[
     place = asked.place(context)
     events = parse_transients(asked.transient or ())
     level = asked.scene_level(context)
-    scene = None if asked.scene is None else read_drivetrain(asked.scene, {})
+    scene = None if asked.scene is None else named_scene(asked.scene, {})
     files = recorded_files(asked.files)
     others = recorded_files(asked.against or [])
 

@@ -40,7 +40,7 @@ def new_command(
         from fe_drivetrain.drivetrain_file.arrangements import (
             ARRANGEMENTS,
             SCHEMA_FILE,
-            scene_schema,
+            drivetrain_schema,
             starting_scene,
         )
 
@@ -58,7 +58,7 @@ def new_command(
             raise InputError(f"{file} must end in {' or '.join(SUFFIXES)}: name it as in my.yaml")
         texts = {
             file: starting_scene(arrangement),
-            file.with_name(SCHEMA_FILE): scene_schema(),
+            file.with_name(SCHEMA_FILE): drivetrain_schema(),
         }
         write_all(texts, overwrite)
         if wants_json():

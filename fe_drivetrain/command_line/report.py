@@ -26,7 +26,7 @@ from fe_drivetrain.command_line.showing import Shown
 from fe_drivetrain.command_line.terminal import as_typed
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.common.threads import hold_threads
-from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
+from fe_drivetrain.drivetrain_file.named_scenes import named_scene
 from fe_drivetrain.report.suite.ownership import check_result_folder
 
 if TYPE_CHECKING:
@@ -127,7 +127,7 @@ def report_command(context: typer.Context, asked: ReportRequest) -> int:
     The exit status is 0 if every check passes.
     """
     hold_threads()
-    scene = read_drivetrain(asked.scene, parse_settings(asked.set_ or ()))
+    scene = named_scene(asked.scene, parse_settings(asked.set_ or ()))
     from fe_drivetrain.command_line.printing import browser
     from fe_drivetrain.studies.study_loads import own_loads
 

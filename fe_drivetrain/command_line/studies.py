@@ -23,7 +23,7 @@ from fe_drivetrain.command_line.showing import Shown
 from fe_drivetrain.command_line.terminal import as_typed, guarded
 from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
-from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
+from fe_drivetrain.drivetrain_file.named_scenes import named_scene
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.results import Results
@@ -50,7 +50,7 @@ def check_command(
 
     def work() -> int:
         hold_threads()
-        found = read_drivetrain(scene, parse_settings(set_ or ()))
+        found = named_scene(scene, parse_settings(set_ or ()))
         from fe_drivetrain.pages.check import show_check
         from fe_drivetrain.studies.scene_check import check
 
@@ -100,7 +100,7 @@ def advise_command(
 
     def work() -> int:
         hold_threads()
-        found = read_drivetrain(scene, parse_settings(set_ or ()))
+        found = named_scene(scene, parse_settings(set_ or ()))
         from fe_drivetrain.pages.advise import show_advise
         from fe_drivetrain.shafts.fidelity.quantity import Quantity
         from fe_drivetrain.shafts.response.model import scene_loads

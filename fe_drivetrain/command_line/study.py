@@ -22,7 +22,7 @@ from fe_drivetrain.command_line.showing import Shown
 from fe_drivetrain.command_line.studies import OutFolder, run_on_scene
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import hold_threads
-from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
+from fe_drivetrain.drivetrain_file.named_scenes import named_scene
 from fe_drivetrain.report.suite.ownership import check_result_folder
 
 if TYPE_CHECKING:
@@ -115,7 +115,7 @@ def study_command(context: typer.Context, asked: StudyRequest) -> int:
     """
     hold_threads()
     check_result_folder(asked.out or Path("reports", "study", Path(asked.scene).stem))
-    scene = read_drivetrain(asked.scene, parse_settings(asked.set_ or ()))
+    scene = named_scene(asked.scene, parse_settings(asked.set_ or ()))
     from fe_drivetrain.command_line.study_files import write_study
     from fe_drivetrain.pages.study import show_study
     from fe_drivetrain.studies.scene_study import study

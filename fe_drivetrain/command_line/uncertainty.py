@@ -20,7 +20,7 @@ from fe_drivetrain.command_line.showing import Shown
 from fe_drivetrain.command_line.studies import OutFolder, run_on_scene
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import hold_threads
-from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
+from fe_drivetrain.drivetrain_file.named_scenes import named_scene
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.suite.run import Run
@@ -91,7 +91,7 @@ def uncertainty_command(context: typer.Context, asked: UncertaintyRequest) -> in
     The exit status is 0 if the level is known to be within the tolerance, 1 if not.
     """
     hold_threads()
-    scene = read_drivetrain(asked.scene, parse_settings(asked.set_ or ()))
+    scene = named_scene(asked.scene, parse_settings(asked.set_ or ()))
     from fe_drivetrain.pages.uncertainty import show_uncertainty
     from fe_drivetrain.shafts.response.model import scene_loads
     from fe_drivetrain.studies.input_uncertainty import uncertainty

@@ -5,14 +5,17 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+from pydantic import TypeAdapter
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.drivetrain_file.reading import library_text
+from fe_drivetrain.drivetrain_file.lumped import LumpedDrivetrain
+from fe_drivetrain.drivetrain_file.reading import BY_STIFFNESS, library_text
 from fe_drivetrain.drivetrain_file.scene import Scene
 
-SCHEMA_FILE = "scene.schema.json"
-"""Name of the schema file beside a scene, and under ``docs/``."""
+SCHEMA_FILE = "drivetrain.schema.json"
+"""Name of the schema file beside a drivetrain's file, and under ``docs/``."""
 
 
 class Arrangement(NamedTuple):
@@ -118,6 +121,44 @@ def starting_scene(arrangement: str) -> str:
     )
 
 
-def scene_schema() -> str:
-    """The JSON schema (draft 2020-12) of scene files, for editors; ends with a line break."""
-    return json.dumps(Scene.model_json_schema(), indent=1, ensure_ascii=False) + "\n"
+def drivetrain_schema() -> str:
+    """The JSON schema (draft 2020-12) of drivetrains' files for editors; ends with a line break.
+
+    What the main shaft has decides which of both kinds a file is, so that faults are found in it.
+    """
+    kinds = TypeAdapter(Scene | LumpedDrivetrain).json_schema()
+    by_stiffness = [{"required": [key]} for key in BY_STIFFNESS]
+    content = {
+        "$defs": kinds["$defs"],
+        "type": "object",
+        "if": {"required": ["shaft"], "properties": {"shaft": {"anyOf": by_stiffness}}},
+        "then": {"$ref": "#/$defs/LumpedDrivetrain"},
+        "else": {"$ref": "#/$defs/Scene"},
+    }
+    return json.dumps(_with_named_gears(content), indent=1, ensure_ascii=False) + "\n"
+
+
+def _with_named_gears(content: dict[str, Any]) -> dict[str, Any]:
+    """The schema with values of gears by name, which pydantic describes as arrays."""
+    renamed: dict[str, str] = {}
+    definitions: dict[str, Any] = {}
+    for key, value in content["$defs"].items():
+        parts = value.get("prefixItems")
+        if not parts:
+            definitions[key] = value
+            continue
+        names = [part.pop("title").lower() for part in parts]
+        kind = key.partition("_")[0]
+        short = f"{kind}{sum(name.startswith(kind) for name in definitions) + 1}"
+        renamed[f"#/$defs/{key}"] = f"#/$defs/{short}"
+        definitions[short] = {
+            "type": "object",
+            "properties": dict(zip(names, parts, strict=True)),
+            "required": names,
+            "additionalProperties": False,
+        }
+    text = json.dumps(content | {"$defs": definitions})
+    for old, new in renamed.items():
+        text = text.replace(json.dumps(old), json.dumps(new))
+    found: dict[str, Any] = json.loads(text)
+    return found

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from fe_drivetrain.drivetrain_file.component import Component
+    from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
     from fe_drivetrain.drivetrain_file.scene import Scene
 
 
-def read_drivetrain(name: str | Path, changes: Mapping[str, Any] | None = None) -> Scene:
-    """Read a drivetrain: the scene of a file, or one that comes with the package.
+def read_drivetrain(name: str | Path, changes: Mapping[str, Any] | None = None) -> Drivetrain:
+    """Read a drivetrain from a file, or one that comes with the package.
 
     Parameters
     ----------
@@ -23,19 +24,37 @@ def read_drivetrain(name: str | Path, changes: Mapping[str, Any] | None = None) 
 
     Returns
     -------
-    Scene
-        The drivetrain, checked.
+    Drivetrain
+        The drivetrain, checked: a `Scene` where its main shaft has sections, else a
+        `LumpedDrivetrain`.
 
     Raises
     ------
     InputError
         There is no such scene, it is a component, or a value is wrong.
     """
-    from fe_drivetrain.drivetrain_file.reading import library_text, parse_scene, read_scene
+    from fe_drivetrain.drivetrain_file.reading import (
+        drivetrain_of_file,
+        library_text,
+        parse_drivetrain,
+    )
 
     if _is_file(name):
-        return read_scene(name, changes)
-    return parse_scene(library_text(str(name)), changes, str(name))
+        return drivetrain_of_file(name, changes)
+    return parse_drivetrain(library_text(str(name)), changes, str(name))
+
+
+def named_scene(name: str | Path, changes: Mapping[str, Any] | None = None) -> Scene:
+    """Read a drivetrain whose main shaft has sections; see `read_drivetrain`.
+
+    Raises
+    ------
+    InputError
+        Its main shaft is given by one diameter or its torsional stiffness alone, too.
+    """
+    from fe_drivetrain.drivetrain_file.reading import with_sections
+
+    return with_sections(read_drivetrain(name, changes), str(name))
 
 
 def named_scene_or_component(
@@ -53,7 +72,7 @@ def named_scene_or_component(
     of_file = _is_file(name)
     text = read_text(name, "scene") if of_file else library_text(name)
     if not is_component(text):
-        return read_drivetrain(name, changes)
+        return named_scene(name, changes)
     return read_component(name, changes) if of_file else parse_component(text, changes, name)
 
 

@@ -18,9 +18,14 @@ from fe_drivetrain.common.reading import (
     validated,
 )
 from fe_drivetrain.drivetrain_file.component import COMPONENTS, Component, SomeComponent
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.gate import check_files
+from fe_drivetrain.drivetrain_file.lumped import LumpedDrivetrain
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.geometry import Bearing
+
+BY_STIFFNESS = ("torsion", "outer", "kind")
+"""Keys of a main shaft that is given without sections."""
 
 
 def read_scene(path: str | Path, changes: Mapping[str, Any] | None = None) -> Scene:
@@ -45,35 +50,74 @@ def read_scene(path: str | Path, changes: Mapping[str, Any] | None = None) -> Sc
         The file cannot be read, is not such YAML, does not describe a scene, or a file that it
         names is not there.
     """
+    return with_sections(drivetrain_of_file(path, changes), str(path))
+
+
+def drivetrain_of_file(path: str | Path, changes: Mapping[str, Any] | None = None) -> Drivetrain:
+    """Read a drivetrain from a YAML file, its main shaft with sections or not; see `read_scene`."""
     data = _changed_mapping(read_text(path, "scene"), changes, str(path))
     _beside(Path(path).parent, data.get("bearing_units"))
-    scene = _scene(data, str(path))
-    check_files(scene.bearing_units)
-    return scene
+    found = _drivetrain(data, str(path))
+    if isinstance(found, Scene):
+        check_files(found.bearing_units)
+    return found
+
+
+def with_sections(drivetrain: Drivetrain, source: str) -> Scene:
+    """The drivetrain as a scene.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        The drivetrain.
+    source : str
+        Where it comes from, for messages.
+
+    Raises
+    ------
+    InputError
+        Its main shaft is given by one diameter or its torsional stiffness alone.
+    """
+    if isinstance(drivetrain, Scene):
+        return drivetrain
+    raise InputError(
+        f"{source}: the main shaft has no sections, which this needs: give shaft.front and "
+        "shaft.sections, bearing_units and gearbox.stiffness, as fe-drivetrain new writes them"
+    )
 
 
 def parse_scene(
     text: str, changes: Mapping[str, Any] | None = None, source: str = "scene"
 ) -> Scene:
     """A scene from YAML text; see `read_scene`."""
-    return _scene(_changed_mapping(text, changes, source), source)
+    return with_sections(parse_drivetrain(text, changes, source), source)
 
 
-def _scene(data: dict[str, Any], source: str) -> Scene:
+def parse_drivetrain(
+    text: str, changes: Mapping[str, Any] | None = None, source: str = "drivetrain"
+) -> Drivetrain:
+    """A drivetrain from YAML text, its main shaft with sections or not; see `read_scene`."""
+    return _drivetrain(_changed_mapping(text, changes, source), source)
+
+
+def _drivetrain(data: dict[str, Any], source: str) -> Drivetrain:
     for kind in COMPONENTS:
         if kind in data:
             raise InputError(
                 f"{source} is a component, for it has {kind!r}, and no scene of a shaft: "
                 "components can be exported, and have cases of their own"
             )
+    shaft = data.get("shaft")
+    if isinstance(shaft, dict) and any(key in shaft for key in BY_STIFFNESS):
+        return validated(LumpedDrivetrain, data, source)
     return validated(Scene, data, source)
 
 
-def scene_text(scene: Scene) -> str:
-    """A scene as a file: plain YAML that `parse_scene` reads as the same scene."""
+def scene_text(drivetrain: Drivetrain) -> str:
+    """A drivetrain as a file: plain YAML that `parse_drivetrain` reads as the same."""
     import yaml
 
-    data = scene.model_dump(mode="json", exclude_unset=True)
+    data = drivetrain.model_dump(mode="json", exclude_unset=True)
     return yaml.safe_dump(data, sort_keys=False, allow_unicode=True)
 
 

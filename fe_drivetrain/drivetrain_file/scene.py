@@ -3,20 +3,26 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
+import numpy as np
 from pydantic import (
     Field,
     model_validator,
 )
 
+from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import value_by_key
 from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.drivetrain_file.bearing_unit import BearingUnit, Keys, Springs
+from fe_drivetrain.drivetrain_file.drivetrain import MAIN_SHAFT, Drivetrain, Gears
 from fe_drivetrain.drivetrain_file.entrance import Entrance
 from fe_drivetrain.drivetrain_file.gate import check_scene
+from fe_drivetrain.drivetrain_file.joint_springs import as_numbers, joint_stiffness
 from fe_drivetrain.drivetrain_file.materials import MATERIALS, Material, known_materials
 from fe_drivetrain.drivetrain_file.nose import Nose, NoseBearing
 from fe_drivetrain.drivetrain_file.shared_parts import coupled_units
+from fe_drivetrain.drivetrain_file.turning_gate import check_turning
+from fe_drivetrain.drivetrain_file.turning_parts import BearingData, ShaftRow
 from fe_drivetrain.geometry import Band, Housing, MeshSizes, Shaft, within_walls
 
 #: How a reference point holds its face: as its mean motion (RBE3) or as a rigid body (RBE2).
@@ -43,8 +49,8 @@ class Hub(Keys):
     )
 
 
-class Gearbox(Keys):
-    """Springs to ground and a weight, at the centre of the shaft's rear face."""
+class Gearbox(Gears):
+    """Springs to ground and a weight at the centre of the shaft's rear face, and what is inside."""
 
     stiffness: Springs
     weight: float = Field(default=0.0, ge=0, le=HEAVIEST, description="weight [N], along -z")
@@ -94,14 +100,13 @@ class Spread(Keys):
         return self
 
 
-class Scene(Keys):
+class Scene(Drivetrain):
     """A drivetrain: one shaft on any number of bearing units, or round a nose; a hub, a gearbox.
 
     Whatever is to be done with a scene, it is sound from the start: see
     `fe_drivetrain.drivetrain_file.gate.check_scene`.
     """
 
-    title: str
     shaft: Shaft
     bearing_units: tuple[BearingUnit, ...] = ()
     nose: Nose | None = None
@@ -116,6 +121,7 @@ class Scene(Keys):
     def _consistent(self) -> "Scene":
         check_scene(self, self.gearbox.stiffness, [point.name for point in self.load_points])
         check_spreads(self)
+        check_turning(self, main_shaft(self), main_bearings(self))
         return self
 
     def __repr__(self) -> str:
@@ -209,6 +215,66 @@ class Scene(Keys):
         """Diameter of the shaft under the bearing of a unit [m]: all that the unit knows of it."""
         bearing = self.bearing_unit(name).bearing
         return self.shaft.seat_diameter(bearing.x, bearing.width, name)
+
+
+#: A joint or a mount that holds rigidly, as a spring [N/m, N m/rad]: a hundred times and more what
+#: bearings and housings of the largest turbines have.
+RIGID = 1e12
+
+
+def main_shaft(scene: Scene) -> ShaftRow:
+    """The scene's main shaft as a row beside the shafts of its gearbox, the flange a section."""
+    return ShaftRow(
+        name=MAIN_SHAFT, sections=scene.shaft.pieces, material=scene.material_of("shaft")
+    )
+
+
+def main_bearings(
+    scene: Scene, supports: Mapping[str, Floats] | None = None
+) -> tuple[BearingData, ...]:
+    """Bearings of the scene's main shaft as rows beside those of its gearbox.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    supports : mapping of str to ndarray (6, 6), optional
+        Stiffness of bearings with their housings, at the bearing's centre [N/m, N, N m/rad]; others
+        are the joint alone, in a rigid housing. Without a gearbox the shaft's rear is held by the
+        springs of ``gearbox.stiffness``.
+    """
+    given = supports or {}
+    held = {
+        unit.bearing.name: (unit.bearing.x, joint_stiffness(unit)) for unit in scene.bearing_units
+    }
+    held |= {b.name: (b.x, np.diag(as_numbers(b.stiffness))) for b in scene.nose_bearings}
+    if not scene.gearbox.stages:
+        held["gearbox"] = (scene.shaft.rear, np.diag(as_numbers(scene.gearbox.stiffness)))
+    found = []
+    for name, (x, joint) in held.items():
+        K = np.array(given.get(name, joint), dtype=float)
+        K[~np.isfinite(K)] = RIGID
+        K[3] = K[:, 3] = 0.0  # a bearing lets its shaft turn
+        if not K.any():
+            continue
+        coupled = np.abs(K - np.diag(K.diagonal())).max() > 0
+        stiffness = tuple(map(tuple, K.tolist())) if coupled else tuple(K.diagonal().tolist())
+        at = min(max(x - scene.shaft.front, 0.0), scene.shaft.length)
+        entry = _entry_of(scene, name)
+        found.append(
+            BearingData.model_validate(
+                {"name": name, "holds": MAIN_SHAFT, "at": at, "stiffness": stiffness, **entry}
+            )
+        )
+    return tuple(found)
+
+
+def _entry_of(scene: Scene, name: str) -> dict[str, str]:
+    """The catalogue entry of a bearing unit, where it has one."""
+    for unit in scene.bearing_units:
+        if unit.bearing.name == name and unit.catalogue is not None:
+            return {"catalogue": unit.catalogue}
+    return {}
 
 
 def with_materials(scene: Scene) -> Scene:

@@ -47,7 +47,10 @@ from .bodies.levels import machine_system as machine_system
 from .bodies.levels import planetary_set as planetary_set
 from .bodies.levels import steady_load as steady_load
 from .bodies.levels import torsional as torsional
-from .bodies.machine_rows import MachineTable as MachineTable
+from .bodies.machine import MACHINES as MACHINES
+from .bodies.machine import Machine as Machine
+from .bodies.machine import library_machine as library_machine
+from .bodies.machine import machine_of as machine_of
 from .bodies.mesh_errors import MeshError as MeshError
 from .bodies.mesh_errors import error_of_slices as error_of_slices
 from .bodies.mesh_errors import harmonic_error as harmonic_error
@@ -68,7 +71,6 @@ from .bodies.planetary import Inertias as Inertias
 from .bodies.planetary import PinBearing as PinBearing
 from .bodies.planetary import PlanetarySet as PlanetarySet
 from .bodies.planetary import bodies_of as bodies_of
-from .bodies.planetary import check_assembly as check_assembly
 from .bodies.planetary import equal_angles as equal_angles
 from .bodies.planetary import excited_motion as excited_motion
 from .bodies.planetary import springs_of as springs_of
@@ -86,14 +88,12 @@ from .bodies.roller_seats import planet_seats as planet_seats
 from .bodies.roller_seats import seat as seat
 from .bodies.roller_seats import static_on_rollers as static_on_rollers
 from .bodies.roller_seats import without_bearings as without_bearings
-from .bodies.springs import Mesh as Mesh
 from .bodies.springs import Place as Place
 from .bodies.springs import Spring as Spring
 from .bodies.springs import bushing as bushing
 from .bodies.springs import directed as directed
 from .bodies.springs import gear_mesh as gear_mesh
 from .bodies.springs import line_of_action as line_of_action
-from .bodies.springs import uniform_shaft as uniform_shaft
 from .bodies.static import Static as Static
 from .bodies.static import Turn as Turn
 from .bodies.static import load_sharing as load_sharing
@@ -106,12 +106,6 @@ from .bodies.system import System as System
 from .bodies.system import with_proportional_damping as with_proportional_damping
 from .bodies.system import with_stiffness as with_stiffness
 from .bodies.system import without_massless as without_massless
-from .bodies.tables import MACHINES as MACHINES
-from .bodies.tables import Machine as Machine
-from .bodies.tables import library_machine as library_machine
-from .bodies.tables import named_machine as named_machine
-from .bodies.tables import parse_machine as parse_machine
-from .bodies.tables import read_machine as read_machine
 from .time.base_motion import BaseMotion as BaseMotion
 from .time.base_motion import base_motion as base_motion
 from .time.base_motion import on_base as on_base

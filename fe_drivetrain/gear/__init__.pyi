@@ -68,6 +68,7 @@ from .pair_stiffness import parabolic_law as parabolic_law
 from .pair_stiffness import parabolic_mean as parabolic_mean
 from .path import ContactPath as ContactPath
 from .planets import assembly_positions as assembly_positions
+from .planets import check_assembly as check_assembly
 from .planets import equally_spaced as equally_spaced
 from .planets import ring_after_sun as ring_after_sun
 from .planets import ring_phases as ring_phases
@@ -110,3 +111,7 @@ from .strength import roughness_factor as roughness_factor
 from .strength import size_factor as size_factor
 from .strength import surface_factor as surface_factor
 from .strength import velocity_factor as velocity_factor
+from .working_angles import Mesh as Mesh
+from .working_angles import base_helix as base_helix
+from .working_angles import transverse_angle as transverse_angle
+from .working_angles import working_angle as working_angle

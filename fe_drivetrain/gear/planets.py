@@ -39,6 +39,23 @@ def equally_spaced(sun: int, ring: int, planets: int) -> bool:
     return (sun + ring) % planets == 0
 
 
+def check_assembly(name: str, sun_teeth: int, ring_teeth: int, planets: int) -> None:
+    """Refuse a stage whose planets cannot be put in at equal angles.
+
+    Raises
+    ------
+    InputError
+        (z_s + z_r) / N is no integer.
+    """
+    if not equally_spaced(sun_teeth, ring_teeth, planets):
+        total = sun_teeth + ring_teeth
+        raise InputError(
+            f"{name}: {planets} planets cannot be put in at equal angles, since the teeth of sun "
+            f"and ring, {sun_teeth} + {ring_teeth} = {total}, must be a multiple of {planets} "
+            f"(remainder {total % planets}): change the teeth"
+        )
+
+
 def assembly_positions(sun: int, ring: int, planets: int) -> Floats:
     """Angles nearest to equal spacing at which planets can be assembled.
 

@@ -23,7 +23,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.bodies.bodies import assemble
 from fe_drivetrain.dynamics.bodies.levels import Level, assembly
-from fe_drivetrain.dynamics.bodies.tables import Machine
+from fe_drivetrain.dynamics.bodies.machine import Machine
 
 _SMALL = 1e-9
 

@@ -9,9 +9,9 @@ from typing import ClassVar
 
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
-from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
+from fe_drivetrain.drivetrain_file.named_scenes import named_scene, read_drivetrain
 from fe_drivetrain.drivetrain_file.scene import Scene
-from fe_drivetrain.dynamics.bodies.tables import Machine, named_machine
+from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of
 from fe_drivetrain.procedure.assessment import Measured, StepState, assessed, claims_of
 from fe_drivetrain.procedure.channels import missing_file
 from fe_drivetrain.procedure.evidence import (
@@ -217,7 +217,7 @@ def _drivetrain(project: Project, folder: Path) -> Scene | Machine | None:
     name = project.model.scene or project.model.machine
     file = folder / name
     given = str(file) if file.is_file() else name
-    return read_drivetrain(given, {}) if project.model.scene else named_machine(given)
+    return named_scene(given) if project.model.scene else machine_of(read_drivetrain(given))
 
 
 def _evidence(

@@ -16,8 +16,8 @@ from fe_drivetrain.common import regular_files
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.provenance import file_digest
 from fe_drivetrain.common.regular_files import NotRegularError, TooLargeError, opened, text_of
+from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 from fe_drivetrain.drivetrain_file.reading import read_component, read_scene
-from fe_drivetrain.dynamics.bodies.tables import read_machine
 from fe_drivetrain.dynamics.torsion.gear_table import read_gear_table
 from fe_drivetrain.export.calculix_results import read_dat
 from fe_drivetrain.export.formats import (
@@ -46,7 +46,7 @@ from fe_drivetrain.turbine_loads.hub_loads.wind_boxes import read_bts, read_hawc
 READERS: list[tuple[str, Callable[[Path], Any]]] = [
     (".yaml", read_scene),
     (".yaml", read_component),
-    (".yaml", read_machine),
+    (".yaml", read_drivetrain),
     (".yaml", read_gear_table),
     (".yaml", read_project),
     (".yaml", read_measurement_cases),

@@ -25,10 +25,10 @@ from fe_drivetrain.dynamics.bodies.levels import (
     planetary_set,
     steady_load,
 )
+from fe_drivetrain.dynamics.bodies.machine import library_machine
 from fe_drivetrain.dynamics.bodies.modes import system_modes
 from fe_drivetrain.dynamics.bodies.static import Turn, over_a_turn, static
 from fe_drivetrain.dynamics.bodies.system import System
-from fe_drivetrain.dynamics.bodies.tables import library_machine
 from fe_drivetrain.elasticity.solve.condensation import Condensed
 from fe_drivetrain.shafts.fidelity.component_frames import carrier_frame
 

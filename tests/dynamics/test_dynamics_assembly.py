@@ -6,18 +6,19 @@ import pytest
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import point_motions, wrench_transport
 from fe_drivetrain.drivetrain_file.materials import Material
+from fe_drivetrain.drivetrain_file.turning_parts import ShaftData
 from fe_drivetrain.dynamics.bodies.bodies import Body, Superelement, assemble, disc
+from fe_drivetrain.dynamics.bodies.machine_shafts import Slice, in_series, shaft_slices
 from fe_drivetrain.dynamics.bodies.springs import (
-    Mesh,
     Place,
     Spring,
     bushing,
     directed,
     gear_mesh,
     line_of_action,
-    uniform_shaft,
 )
 from fe_drivetrain.dynamics.bodies.system import System, with_stiffness
+from fe_drivetrain.gear.working_angles import Mesh
 from fe_drivetrain.shafts.beam.frame import (
     Member,
     SpatialFrame,
@@ -51,9 +52,15 @@ def all_kinds() -> list[Spring]:
         *bushing("full", ONE, TWO, (0.3, 0, 1), A @ A.T),
         *gear_mesh("external", ONE, TWO, (0.4, 0.1, 0.1), PAIR, 1e9, slices=3),
         *gear_mesh("back", ONE, TWO, (0.4, 0.1, 0.1), PAIR, 1e9, flank=-1),
-        *uniform_shaft("shaft", ONE, TWO, ((0, 0, 0), (0.5, 0, 0)), section, STEEL),
+        *shaft_springs((ONE, TWO), [Slice(0.25, 0.5, section)]),
         directed("line", ONE, TWO, (0, 1, 0), np.array([0.6, 0, 0.8, 0, 0, 0]), 5.0),
     ]
+
+
+def shaft_springs(places: tuple[Place, Place], slices: list[Slice]) -> list[Spring]:
+    """A shaft along x from the origin, at its elastic centre."""
+    centre, k = in_series(slices, STEEL)
+    return bushing("shaft", *places, (centre, 0, 0), k)
 
 
 def test_a_common_rigid_motion_stretches_no_spring() -> None:
@@ -93,10 +100,36 @@ def test_a_matrix_of_a_spring_must_be_one() -> None:
 def test_a_shaft_as_springs_is_the_timoshenko_beam() -> None:
     section, length = round_section(0.3, 0.3, 0.1), 0.8
     places = Place("one", (0, 0, 0)), Place("two", (length, 0, 0))
-    springs = uniform_shaft("shaft", *places, ((0, 0, 0), (length, 0, 0)), section, STEEL)
+    springs = shaft_springs(places, [Slice(length / 2, length, section)])
     found = assemble([Body("one"), Body("two", (length, 0, 0))], springs).K
     exact = beam_stiffness(section, length, STEEL)
     assert np.abs(found - exact).max() < 1e-12 * np.abs(exact).max()
+
+
+def test_a_stepped_shaft_as_six_springs_is_its_beams_condensed() -> None:
+    sections = [(0.3, round_section(0.4, 0.3)), (0.9, round_section(0.25, 0.3, 0.1))]
+    K, begin = np.zeros((18, 18)), 0.0
+    slices = []
+    for i, (length, section) in enumerate(sections):
+        K[6 * i : 6 * i + 12, 6 * i : 6 * i + 12] += beam_stiffness(section, length, STEEL)
+        slices.append(Slice(begin + length / 2, length, section))
+        begin += length
+    ends, inner = np.r_[0:6, 12:18], np.arange(6, 12)
+    between = np.linalg.solve(K[np.ix_(inner, inner)], K[np.ix_(inner, ends)])
+    exact = K[np.ix_(ends, ends)] - K[np.ix_(ends, inner)] @ between
+    places = Place("one", (0, 0, 0)), Place("two", (begin, 0, 0))
+    found = assemble([Body("one"), Body("two", (begin, 0, 0))], shaft_springs(places, slices)).K
+    assert np.abs(found - exact).max() < 1e-11 * np.abs(exact).max()
+
+
+def test_a_tapered_shaft_is_cut_into_slices_that_converge() -> None:
+    taper = {"length": 1.0, "outer_diameter": 0.4, "outer_diameter_end": 0.2}
+    shaft = ShaftData.model_validate({"name": "cone", "length": 1.0, "sections": [taper]})
+    centre, k = in_series(shaft_slices(shaft, 0.0, 1.0), shaft.material)
+    # G J / L of a cone: the integral of 32 / (pi G d^4) over its length (Timoshenko 1955)
+    twist = 32 / np.pi / shaft.material.shear_modulus * (0.2**-3 - 0.4**-3) / (3 * 0.2)
+    assert k[3] == pytest.approx(1 / twist, rel=1e-2)
+    assert 0.5 < centre < 1.0
 
 
 def test_external_gears_press_apart_and_turn_by_their_base_radii() -> None:

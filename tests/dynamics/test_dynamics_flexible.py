@@ -11,15 +11,15 @@ from fe_drivetrain.cases.references.machine_shafts import shaft_scene
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import point_motions
+from fe_drivetrain.drivetrain_file.turning_parts import STEEL
 from fe_drivetrain.dynamics.bodies.advice import Operation, Rung, ladder
 from fe_drivetrain.dynamics.bodies.elastic_ring import Rim
 from fe_drivetrain.dynamics.bodies.flexible import ElasticHousing, Flexible, Housing
 from fe_drivetrain.dynamics.bodies.levels import Level, assembly, machine_system, steady_load
-from fe_drivetrain.dynamics.bodies.machine_parts import STEEL
+from fe_drivetrain.dynamics.bodies.machine import library_machine
 from fe_drivetrain.dynamics.bodies.modes import system_modes
 from fe_drivetrain.dynamics.bodies.roller_seats import machine_seat
 from fe_drivetrain.dynamics.bodies.static import static
-from fe_drivetrain.dynamics.bodies.tables import library_machine
 from fe_drivetrain.dynamics.time.travelling import travelling
 from fe_drivetrain.elasticity.solve.condensation import Condensed
 from fe_drivetrain.shafts.fidelity.shafts import beam_shaft, meridian_shaft

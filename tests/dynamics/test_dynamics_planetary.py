@@ -36,14 +36,13 @@ from fe_drivetrain.dynamics.bodies.modes import (
 )
 from fe_drivetrain.dynamics.bodies.planetary import (
     bodies_of,
-    check_assembly,
     equal_angles,
     excited_motion,
     springs_of,
 )
 from fe_drivetrain.dynamics.bodies.response import frequency_response
 from fe_drivetrain.dynamics.bodies.springs import Place, bushing
-from fe_drivetrain.gear.planets import sun_phases
+from fe_drivetrain.gear.planets import check_assembly, sun_phases
 
 CENTRAL = ("carrier", "ring", "sun")
 

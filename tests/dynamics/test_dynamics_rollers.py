@@ -16,6 +16,7 @@ from fe_drivetrain.drivetrain_file import CarrierComponent, library_component
 from fe_drivetrain.dynamics.bodies.bodies import Body, assemble
 from fe_drivetrain.dynamics.bodies.flexible import Flexible
 from fe_drivetrain.dynamics.bodies.levels import assembly, machine_system, steady_load
+from fe_drivetrain.dynamics.bodies.machine import library_machine
 from fe_drivetrain.dynamics.bodies.roller_seats import (
     OnRollers,
     machine_seat,
@@ -26,7 +27,6 @@ from fe_drivetrain.dynamics.bodies.roller_seats import (
 from fe_drivetrain.dynamics.bodies.springs import Place, bushing
 from fe_drivetrain.dynamics.bodies.static import static
 from fe_drivetrain.dynamics.bodies.system import System
-from fe_drivetrain.dynamics.bodies.tables import library_machine
 from fe_drivetrain.shafts.fidelity.component_frames import carrier_frame
 
 AT = (0.3, 0.1, -0.2)

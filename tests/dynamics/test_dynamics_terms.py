@@ -13,6 +13,7 @@ from test_travelling import plane
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.drivetrain_file.materials import Material
+from fe_drivetrain.drivetrain_file.turning_parts import BearingData
 from fe_drivetrain.dynamics.bodies.bodies import Body, Superelement, assemble
 from fe_drivetrain.dynamics.bodies.elastic_ring import Rim
 from fe_drivetrain.dynamics.bodies.equations import (
@@ -25,7 +26,7 @@ from fe_drivetrain.dynamics.bodies.equations import (
     varying,
 )
 from fe_drivetrain.dynamics.bodies.levels import Level, assembly, machine_system
-from fe_drivetrain.dynamics.bodies.machine_parts import BearingData
+from fe_drivetrain.dynamics.bodies.machine import library_machine
 from fe_drivetrain.dynamics.bodies.mesh_errors import harmonic_error
 from fe_drivetrain.dynamics.bodies.meshing import Meshing, varying_equations
 from fe_drivetrain.dynamics.bodies.modes import system_modes
@@ -35,7 +36,6 @@ from fe_drivetrain.dynamics.bodies.springs import Place, bushing
 from fe_drivetrain.dynamics.bodies.static import static
 from fe_drivetrain.dynamics.bodies.steady_state import wind_up
 from fe_drivetrain.dynamics.bodies.system import System
-from fe_drivetrain.dynamics.bodies.tables import library_machine
 from fe_drivetrain.dynamics.time.integration import integrate
 from fe_drivetrain.dynamics.time.mechanism import mechanism_of
 from fe_drivetrain.dynamics.time.motion import State

@@ -19,13 +19,13 @@ from fe_drivetrain.dynamics.bodies.equations import (
     steady,
 )
 from fe_drivetrain.dynamics.bodies.levels import Level, machine_system
+from fe_drivetrain.dynamics.bodies.machine import library_machine
 from fe_drivetrain.dynamics.bodies.mesh_errors import MeshError, error_of_slices, harmonic_error
 from fe_drivetrain.dynamics.bodies.meshing import Meshing, machine_meshing, varying_equations
 from fe_drivetrain.dynamics.bodies.response import mesh_response
-from fe_drivetrain.dynamics.bodies.springs import Mesh, Place, gear_mesh
+from fe_drivetrain.dynamics.bodies.springs import Place, gear_mesh
 from fe_drivetrain.dynamics.bodies.steady_state import errors_at, restoring, waves_at, wind_up
 from fe_drivetrain.dynamics.bodies.system import System
-from fe_drivetrain.dynamics.bodies.tables import library_machine
 from fe_drivetrain.dynamics.time.integration import integrate
 from fe_drivetrain.dynamics.time.motion import Motion, State
 from fe_drivetrain.gear.involute import Gear, meshing_without_backlash
@@ -33,6 +33,7 @@ from fe_drivetrain.gear.loaded_error import TransmissionError, transmission_erro
 from fe_drivetrain.gear.meshes import StiffnessTable, mesh_stiffness
 from fe_drivetrain.gear.pair_stiffness import parabolic_law
 from fe_drivetrain.gear.slices import Modifications, SlicedMesh
+from fe_drivetrain.gear.working_angles import Mesh
 
 M, K, C, A, HZ, LOAD = 2.0, 800.0, 4.0, 1e-3, 2.2, 1.5
 

@@ -16,6 +16,7 @@ from fe_drivetrain.dynamics.bodies.bodies import Body, assemble
 from fe_drivetrain.dynamics.bodies.equations import equations_of, steady
 from fe_drivetrain.dynamics.bodies.gear_pairs import contact_ratios
 from fe_drivetrain.dynamics.bodies.levels import machine_system, steady_load
+from fe_drivetrain.dynamics.bodies.machine import library_machine
 from fe_drivetrain.dynamics.bodies.meshing import Meshing, machine_meshing, varying_equations
 from fe_drivetrain.dynamics.bodies.modes import system_modes
 from fe_drivetrain.dynamics.bodies.roller_seats import (
@@ -26,7 +27,6 @@ from fe_drivetrain.dynamics.bodies.roller_seats import (
 )
 from fe_drivetrain.dynamics.bodies.springs import Place, bushing
 from fe_drivetrain.dynamics.bodies.system import System, with_proportional_damping
-from fe_drivetrain.dynamics.bodies.tables import library_machine
 from fe_drivetrain.dynamics.time.integration import integrate
 from fe_drivetrain.dynamics.time.motion import Motion, State
 from fe_drivetrain.dynamics.time.rolling_bearings import rolling_bearings

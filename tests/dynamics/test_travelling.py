@@ -20,6 +20,7 @@ from fe_drivetrain.dynamics.bodies.bodies import Body, assemble
 from fe_drivetrain.dynamics.bodies.elastic_ring import Rim, with_rim
 from fe_drivetrain.dynamics.bodies.equations import equations_of, steady
 from fe_drivetrain.dynamics.bodies.levels import Level, azimuths, machine_system, steady_load
+from fe_drivetrain.dynamics.bodies.machine import library_machine
 from fe_drivetrain.dynamics.bodies.meshing import Meshing, varying_equations
 from fe_drivetrain.dynamics.bodies.modes import system_modes
 from fe_drivetrain.dynamics.bodies.planetary import PlanetarySet, bodies_of, springs_of
@@ -27,7 +28,6 @@ from fe_drivetrain.dynamics.bodies.roller_seats import planet_seats, static_on_r
 from fe_drivetrain.dynamics.bodies.springs import Spring
 from fe_drivetrain.dynamics.bodies.static import Turn, over_a_turn
 from fe_drivetrain.dynamics.bodies.system import System
-from fe_drivetrain.dynamics.bodies.tables import library_machine
 from fe_drivetrain.dynamics.time.integration import integrate
 from fe_drivetrain.dynamics.time.motion import State
 from fe_drivetrain.dynamics.time.schemes import generalised_alpha

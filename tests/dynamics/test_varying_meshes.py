@@ -13,6 +13,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.bodies.equations import equations_of, steady
 from fe_drivetrain.dynamics.bodies.levels import Level, machine_system
+from fe_drivetrain.dynamics.bodies.machine import library_machine
 from fe_drivetrain.dynamics.bodies.meshing import (
     Meshing,
     contact_wave,
@@ -22,7 +23,6 @@ from fe_drivetrain.dynamics.bodies.meshing import (
 )
 from fe_drivetrain.dynamics.bodies.steady_state import wind_up
 from fe_drivetrain.dynamics.bodies.system import System
-from fe_drivetrain.dynamics.bodies.tables import library_machine
 from fe_drivetrain.dynamics.time.integration import integrate
 from fe_drivetrain.dynamics.time.motion import State
 from fe_drivetrain.gear.meshes import StiffnessTable

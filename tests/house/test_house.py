@@ -24,8 +24,10 @@ FACES = sorted(house.faces().keys() - {""})
 FLOORS = (
     {"common"},
     {"geometry", "comparison", "plots"},
-    {"bearing", "drivetrain_file", "turbine_loads"},
-    {"elasticity", "gear"},
+    {"bearing", "turbine_loads"},
+    {"gear"},
+    {"drivetrain_file"},
+    {"elasticity"},
     {"foreign"},
     {"shafts"},
     {"bearing_life", "dynamics", "report"},

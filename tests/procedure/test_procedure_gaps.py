@@ -10,7 +10,7 @@ from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.drivetrain_file.materials import Material
 from fe_drivetrain.dynamics.bodies.bodies import assemble
 from fe_drivetrain.dynamics.bodies.levels import Level, assembly
-from fe_drivetrain.dynamics.bodies.tables import library_machine
+from fe_drivetrain.dynamics.bodies.machine import library_machine
 from fe_drivetrain.dynamics.torsion.gear_table import (
     GENERATOR,
     gear_masses,

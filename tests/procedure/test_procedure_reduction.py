@@ -6,10 +6,10 @@ import pytest
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.bodies.bodies import Body, Superelement, assemble
 from fe_drivetrain.dynamics.bodies.levels import Level, machine_system
+from fe_drivetrain.dynamics.bodies.machine import library_machine
 from fe_drivetrain.dynamics.bodies.modes import system_modes
 from fe_drivetrain.dynamics.bodies.springs import Place, directed
 from fe_drivetrain.dynamics.bodies.system import System, with_proportional_damping, with_stiffness
-from fe_drivetrain.dynamics.bodies.tables import library_machine
 from fe_drivetrain.dynamics.torsion.system import Inertia, chain
 from fe_drivetrain.procedure.motions import driven_motions
 from fe_drivetrain.procedure.reduction import (

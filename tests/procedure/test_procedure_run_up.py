@@ -8,9 +8,9 @@ from scipy.special import fresnel
 from fe_drivetrain.cases.procedure.swept_modes import Sweep, run_up_peak, swept_response
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.bodies.levels import machine_system
+from fe_drivetrain.dynamics.bodies.machine import library_machine
 from fe_drivetrain.dynamics.bodies.modes import system_modes
 from fe_drivetrain.dynamics.bodies.response import crossings
-from fe_drivetrain.dynamics.bodies.tables import library_machine
 from fe_drivetrain.dynamics.torsion.orders import mesh_orders
 from fe_drivetrain.dynamics.torsion.system import Inertia, chain
 from fe_drivetrain.procedure.motions import driven_motions

@@ -27,7 +27,7 @@ from tiny_case import Result
 from fe_drivetrain.command_line.validate_commands import ready_commands
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.reading import change_scene, library_scene
-from fe_drivetrain.dynamics.bodies.tables import library_machine
+from fe_drivetrain.dynamics.bodies.machine import library_machine
 from fe_drivetrain.procedure.answers import answer_of
 from fe_drivetrain.procedure.channels import write_channels
 from fe_drivetrain.procedure.failure_modes import (

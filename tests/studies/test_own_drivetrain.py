@@ -22,7 +22,7 @@ from fe_drivetrain.common.reading import parse_mapping
 from fe_drivetrain.drivetrain_file.arrangements import (
     ARRANGEMENTS,
     SCHEMA_FILE,
-    scene_schema,
+    drivetrain_schema,
     starting_scene,
 )
 from fe_drivetrain.drivetrain_file.reading import (
@@ -56,7 +56,7 @@ pytestmark = pytest.mark.usefixtures("kept_between_runs")
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text("utf-8")
-SCHEMA = json.loads(scene_schema())
+SCHEMA = json.loads(drivetrain_schema())
 LIBRARY = {
     path.name.removesuffix(".yaml"): path.read_text("utf-8")
     for path in sorted((files("fe_drivetrain.geometry") / "library").iterdir(), key=str)
@@ -98,7 +98,7 @@ def test_what_else_a_scene_may_have_is_valid_once_its_comment_sign_is_gone(name:
 
 
 def test_published_schema_of_scenes_is_that_of_the_program() -> None:
-    assert (ROOT / "docs" / SCHEMA_FILE).read_text("utf-8") == scene_schema()
+    assert (ROOT / "docs" / SCHEMA_FILE).read_text("utf-8") == drivetrain_schema()
 
 
 @pytest.mark.parametrize("name", [name for name in LIBRARY if not is_component(LIBRARY[name])])

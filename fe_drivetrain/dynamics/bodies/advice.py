@@ -9,14 +9,14 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.gear_stages import ParallelData, PlanetaryData
 from fe_drivetrain.dynamics.bodies.flexible import Flexible
 from fe_drivetrain.dynamics.bodies.gear_pairs import pitch_contacts
 from fe_drivetrain.dynamics.bodies.levels import Level, machine_system, steady_load, torsional
-from fe_drivetrain.dynamics.bodies.machine_rows import ParallelData, PlanetaryData
+from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.dynamics.bodies.modes import SystemModes, system_modes
 from fe_drivetrain.dynamics.bodies.static import Static, load_sharing, static
 from fe_drivetrain.dynamics.bodies.system import System
-from fe_drivetrain.dynamics.bodies.tables import Machine
 from fe_drivetrain.dynamics.torsion.system import natural_modes
 
 

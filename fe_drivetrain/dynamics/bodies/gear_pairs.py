@@ -4,10 +4,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import cos, sin
 
-from fe_drivetrain.dynamics.bodies.machine_rows import OF_TEETH, ParallelData, PlanetaryData
-from fe_drivetrain.dynamics.bodies.springs import Mesh
-from fe_drivetrain.dynamics.bodies.stage_gears import stage_pairs
-from fe_drivetrain.dynamics.bodies.tables import Machine
+from fe_drivetrain.drivetrain_file.gear_stages import OF_TEETH, ParallelData, PlanetaryData
+from fe_drivetrain.drivetrain_file.stage_gears import stage_pairs
+from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.gear.flank_stress import LineContact, reduced_modulus
 from fe_drivetrain.gear.involute import Pair
 from fe_drivetrain.gear.iso import iso_gear_stiffness
@@ -17,6 +16,7 @@ from fe_drivetrain.gear.pair_stiffness import Law
 from fe_drivetrain.gear.rating import ContactStress, RootStress, contact_stress, root_stress
 from fe_drivetrain.gear.root_geometry import Cutter
 from fe_drivetrain.gear.strength import GearMaterial
+from fe_drivetrain.gear.working_angles import Mesh
 
 STEELS = (GearMaterial("case-hardened", 1500e6, 430e6),) * 2
 """Case-hardened gears of quality MQ, ISO 6336-5."""

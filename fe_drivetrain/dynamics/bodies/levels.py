@@ -14,6 +14,8 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.gear_stages import ParallelData, PlanetaryData
+from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.dynamics.bodies.bodies import ALL, Body, Superelement, assemble
 from fe_drivetrain.dynamics.bodies.elastic_ring import Rim, with_rim
 from fe_drivetrain.dynamics.bodies.flexible import (
@@ -24,7 +26,6 @@ from fe_drivetrain.dynamics.bodies.flexible import (
     held_by,
     housing_bodies,
 )
-from fe_drivetrain.dynamics.bodies.machine_rows import MachineTable, ParallelData, PlanetaryData
 from fe_drivetrain.dynamics.bodies.machine_shafts import beam_shaft, solid_shaft
 from fe_drivetrain.dynamics.bodies.planetary import (
     Inertias,
@@ -126,6 +127,11 @@ def assembly(
     flexible: Flexible | None = None,
 ) -> Assembly:
     """Bodies and springs of a machine; arguments as in `machine_system`."""
+    if level is not Level.TORSIONAL and machine.not_given:
+        raise InputError(
+            f"{machine.title!r} at level {level.value!r} needs what its file does not state: "
+            f"{', '.join(machine.not_given)}: add it, or take level 'torsional'"
+        )
     free = TURNS if level is Level.TORSIONAL else ALL
     gives = flexible or Flexible()
     if level is Level.TORSIONAL:

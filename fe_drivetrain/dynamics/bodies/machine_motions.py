@@ -10,9 +10,10 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.free_motions import described_motion, null_space, sparsest
+from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
+from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.dynamics.bodies.bodies import assemble
 from fe_drivetrain.dynamics.bodies.levels import Assembly, Level, assembly
-from fe_drivetrain.dynamics.bodies.machine_rows import MachineTable, PlanetaryData
 from fe_drivetrain.dynamics.bodies.modes import spring_frequencies, system_modes
 from fe_drivetrain.dynamics.bodies.system import System, without_massless
 from fe_drivetrain.dynamics.torsion.system import resolved

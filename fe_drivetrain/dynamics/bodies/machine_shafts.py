@@ -1,17 +1,105 @@
 """Shafts of a machine between the bodies that they hold: beams of several elements, or solids."""
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
+from math import ceil, fsum, pi
 
 import numpy as np
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.machine_table import MachineTable
+from fe_drivetrain.drivetrain_file.materials import Material
+from fe_drivetrain.drivetrain_file.turning_parts import STEEL, ShaftData
 from fe_drivetrain.dynamics.bodies.bodies import Body, Superelement
 from fe_drivetrain.dynamics.bodies.flexible import PLACED, shaft_element
-from fe_drivetrain.dynamics.bodies.machine_parts import STEEL, ShaftData
-from fe_drivetrain.dynamics.bodies.machine_rows import MachineTable
-from fe_drivetrain.dynamics.bodies.springs import Place, Spring, bushing, uniform_shaft
+from fe_drivetrain.dynamics.bodies.springs import Place, Spring, bushing
 from fe_drivetrain.elasticity.solve.condensation import Condensed
+from fe_drivetrain.shafts.beam.frame import CrossSection, round_section
+
+#: Uniform slices of a tapered section.
+SLICES = 8
+
+
+@dataclass(frozen=True)
+class Slice:
+    """A uniform length of a shaft.
+
+    Attributes
+    ----------
+    middle, length : float
+        x of its middle from where the shaft begins, and its length [m].
+    section : CrossSection
+        Its cross-section.
+    """
+
+    middle: float
+    length: float
+    section: CrossSection
+
+
+def shaft_slices(shaft: ShaftData, start: float, stop: float) -> list[Slice]:
+    """Uniform slices of a shaft between two places; a taper is cut into eight a section.
+
+    Parameters
+    ----------
+    shaft : ShaftData
+        The shaft; one of a torsional stiffness alone is the solid steel bar that has it.
+    start, stop : float
+        x from where the shaft begins [m].
+    """
+    nu = shaft.material.poisson_ratio
+    if shaft.sections is None:
+        if shaft.outer is not None:
+            section = round_section(shaft.outer, nu, shaft.inner)
+        else:
+            area = float(shaft.torsion or 0.0) * shaft.length / STEEL.shear_modulus
+            section = round_section((32 * area / pi) ** 0.25, STEEL.poisson_ratio)
+        return [Slice((start + stop) / 2, stop - start, section)]
+    found, begin = [], 0.0
+    for piece in shaft.sections:
+        end = begin + piece.length
+        low, high = max(begin, start), min(end, stop)
+        if high - low > 1e-9 * piece.length:
+            tapered = piece.end_diameter != piece.outer_diameter
+            count = max(1, ceil(SLICES * (high - low) / piece.length)) if tapered else 1
+            edges = np.linspace(low, high, count + 1)
+            for one, two in pairwise(edges.tolist()):
+                at = (one + two) / 2
+                share = (at - begin) / piece.length
+                outer = piece.outer_diameter + share * (piece.end_diameter - piece.outer_diameter)
+                found.append(Slice(at, two - one, round_section(outer, nu, piece.inner_diameter)))
+        begin = end
+    return found
+
+
+def in_series(
+    slices: Sequence[Slice], material: Material
+) -> tuple[float, tuple[float, float, float, float, float, float]]:
+    """Elastic centre of slices in series [m], and their six stiffnesses there.
+
+    About the middle of a uniform beam its six deformations do no work on each other (Przemieniecki
+    1968, section 5.6); in series flexibilities add, and about the centre of bending a transverse
+    force does not turn the ends against each other, so that six springs are exact for any steps.
+
+    Parameters
+    ----------
+    slices : sequence of Slice
+        Slices from one end to the other.
+    material : Material
+        Their material.
+    """
+    E, G = material.youngs_modulus, material.shear_modulus
+    along = fsum(s.length / (E * s.section.area) for s in slices)
+    twist = fsum(s.length / (G * s.section.torsion) for s in slices)
+    bent = [s.length / (E * s.section.inertias[0]) for s in slices]
+    centre = fsum(f * s.middle for f, s in zip(bent, slices, strict=True)) / fsum(bent)
+    sheared = fsum(s.length / (G * s.section.shear_areas[0]) for s in slices)
+    across = sheared + fsum(
+        f * (s.length**2 / 12 + (s.middle - centre) ** 2) for f, s in zip(bent, slices, strict=True)
+    )
+    bending = 1 / fsum(bent)
+    return centre, (1 / along, 1 / across, 1 / across, 1 / twist, bending, bending)
 
 
 def beam_shaft(
@@ -29,7 +117,8 @@ def beam_shaft(
     on = [b for b in machine.bearings if b.holds == shaft.name]
     stations = [0.0, shaft.length]
     if bends and shaft.kind == "shaft":
-        own = {*np.linspace(0.0, shaft.length, elements + 1), *(b.at for b in on)}
+        steps = () if shaft.sections is None else np.cumsum([s.length for s in shaft.sections])
+        own = {*np.linspace(0.0, shaft.length, elements + 1), *(b.at for b in on), *steps}
         inside = [s for s in own if 0 <= s <= shaft.length]
         stations = sorted({round(s, 9) for s in inside} | {0.0, shaft.length})
     names = [ends[0], *(f"{shaft.name} node {i}" for i in range(1, len(stations) - 1)), ends[1]]
@@ -54,11 +143,11 @@ def beam_shaft(
     for i, (start, stop) in enumerate(pairwise(stations)):
         pair = names[i], names[i + 1]
         label = shaft.name if len(stations) == 2 else f"{shaft.name} element {i + 1}"
-        springs += _element(label, shaft, pair, (x + start, x + stop), (y, z), bodies, index)
+        springs += _element(label, shaft, pair, (start, stop), (x, y, z), bodies, index)
         if shaft.has_mass:
             for name in pair:
                 place = index[name]
-                bodies[place] = _heavier(bodies[place], shaft, stop - start)
+                bodies[place] = _heavier(bodies[place], shaft, (start, stop))
     for bearing in on:
         where = x + bearing.at
         nearest = min(range(len(stations)), key=lambda i: abs(stations[i] - bearing.at))
@@ -86,10 +175,10 @@ def solid_shaft(
     along = np.sort(body.positions[:, 0]) - body.positions[:, 0].min()
     if shaft.has_mass and element.mass is None:
         index = {one.name: i for i, one in enumerate(bodies)}
-        for pair, length in zip(pairwise(points), np.diff(along), strict=True):
+        for pair, span in zip(pairwise(points), pairwise(along.tolist()), strict=True):
             for point in pair:
                 place = index[point.body]
-                bodies[place] = _heavier(bodies[place], shaft, float(length))
+                bodies[place] = _heavier(bodies[place], shaft, span)
     for bearing in machine.bearings:
         if bearing.holds == shaft.name:
             nearest = int(np.abs(along - bearing.at).argmin())
@@ -108,34 +197,32 @@ def _element(
     shaft: ShaftData,
     pair: tuple[str, str],
     span: tuple[float, float],
-    axis: tuple[float, float],
+    begin: tuple[float, float, float],
     bodies: list[Body],
     index: dict[str, int],
 ) -> list[Spring]:
-    ends = ((span[0], *axis), (span[1], *axis))
+    """Springs of a shaft between two of its stations, at their elastic centre."""
     places = [Place(name, bodies[index[name]].position) for name in pair]
-    found = uniform_shaft(label, places[0], places[1], ends, shaft.section, STEEL)
-    torsion = shaft.section.torsion * STEEL.shear_modulus / (span[1] - span[0])
+    x, y, z = begin
+    centre, k = in_series(shaft_slices(shaft, *span), shaft.material)
+    length = span[1] - span[0]
     if shaft.kind == "coupling":
-        middle = ((span[0] + span[1]) / 2, *axis)
-        return bushing(label, places[0], places[1], middle, (0, 0, 0, torsion, 0, 0))
-    if shaft.bending is not None:
+        k = (0.0, 0.0, 0.0, k[3], 0.0, 0.0)
+    elif shaft.bending is not None:
         # a hinge of given stiffness at the middle, between links that are rigid
-        length = span[1] - span[0]
         bent = shaft.bending * shaft.length / length
-        stiff = [s.stiffness for s in found]
-        k = (stiff[0], stiff[1], stiff[2], torsion, bent, bent)
-        middle = ((span[0] + span[1]) / 2, *axis)
-        return bushing(label, places[0], places[1], middle, k)
-    return found
+        k = (*k[:4], bent, bent)
+    whole = in_series(shaft_slices(shaft, 0.0, shaft.length), shaft.material)[1][3]
+    damping = (0.0, 0.0, 0.0, shaft.damping * k[3] / whole, 0.0, 0.0)
+    return bushing(label, places[0], places[1], (x + centre, y, z), k, damping)
 
 
-def _heavier(body: Body, shaft: ShaftData, length: float) -> Body:
+def _heavier(body: Body, shaft: ShaftData, span: tuple[float, float]) -> Body:
     """A body with half of an element of the shaft on it."""
-    section, half = shaft.section, STEEL.density * length / 2
+    slices, half = shaft_slices(shaft, *span), shaft.material.density / 2
     return replace(
         body,
-        mass=body.mass + half * section.area,
-        polar=body.polar + half * section.torsion,
-        transverse=body.transverse + half * section.inertias[0],
+        mass=body.mass + half * fsum(s.length * s.section.area for s in slices),
+        polar=body.polar + half * fsum(s.length * s.section.torsion for s in slices),
+        transverse=body.transverse + half * fsum(s.length * s.section.inertias[0] for s in slices),
     )

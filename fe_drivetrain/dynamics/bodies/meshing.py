@@ -15,17 +15,17 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.dynamics.bodies.equations import (
     Equations,
     equations_of_motion,
     spring_laws,
     wave_table,
 )
-from fe_drivetrain.dynamics.bodies.machine_rows import PlanetaryData
+from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.dynamics.bodies.mesh_errors import MeshError
 from fe_drivetrain.dynamics.bodies.planetary import equal_angles
 from fe_drivetrain.dynamics.bodies.system import System, springs_named
-from fe_drivetrain.dynamics.bodies.tables import Machine
 from fe_drivetrain.gear.meshes import MeshStiffness, StiffnessTable, square_wave_series
 from fe_drivetrain.gear.planets import ring_phases, sun_phases
 

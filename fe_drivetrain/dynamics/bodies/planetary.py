@@ -15,8 +15,8 @@ from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import along_x
 from fe_drivetrain.dynamics.bodies.bodies import ALL, Body
-from fe_drivetrain.dynamics.bodies.springs import Mesh, Place, Spring, directed, gear_mesh
-from fe_drivetrain.gear.planets import equally_spaced
+from fe_drivetrain.dynamics.bodies.springs import Place, Spring, directed, gear_mesh
+from fe_drivetrain.gear.working_angles import Mesh
 
 RIGHT_HAND, SPUR, LEFT_HAND = 1, 0, -1
 """Hands of a sun's teeth."""
@@ -290,23 +290,6 @@ def _handed(mesh: Mesh, hand: int) -> Mesh:
     return Mesh(mesh.pressure_angle, hand * mesh.base_helix, mesh.face_width)
 
 
-def check_assembly(name: str, sun_teeth: int, ring_teeth: int, planets: int) -> None:
-    """Refuse a stage whose planets cannot be put in at equal angles.
-
-    Raises
-    ------
-    InputError
-        (z_s + z_r) / N is no integer.
-    """
-    if not equally_spaced(sun_teeth, ring_teeth, planets):
-        total = sun_teeth + ring_teeth
-        raise InputError(
-            f"{name}: {planets} planets cannot be put in at equal angles, since the teeth of sun "
-            f"and ring, {sun_teeth} + {ring_teeth} = {total}, must be a multiple of {planets} "
-            f"(remainder {total % planets}): change the teeth"
-        )
-
-
 def excited_motion(teeth: int, planets: int, harmonic: int = 1) -> str:
     """Effect of a harmonic of the mesh on a sun with equal, equally spaced planets.
 
@@ -328,46 +311,3 @@ def excited_motion(teeth: int, planets: int, harmonic: int = 1) -> str:
     """
     k = (harmonic * teeth) % planets
     return "torque" if k == 0 else "force" if k in (1, planets - 1) else "nothing"
-
-
-def working_angle(
-    module: float, teeth: int, centre_distance: float, pressure_angle: float, helix: float
-) -> float:
-    """Working transverse pressure angle [rad] of two gears.
-
-    Parameters
-    ----------
-    module : float
-        Normal [m].
-    teeth : int
-        Sum of an external pair, difference of an internal one.
-    centre_distance : float
-        Centre distance [m].
-    pressure_angle : float
-        Normal, of the rack [rad].
-    helix : float
-        Helix angle at the reference circle [rad].
-
-    Raises
-    ------
-    InputError
-        The base circles do not leave room for a line of action.
-    """
-    transverse = transverse_angle(pressure_angle, helix)
-    cosine = module * teeth / (2 * cos(helix)) * cos(transverse) / centre_distance
-    if not 0 < cosine < 1:
-        raise InputError(
-            f"centre distance {centre_distance:g} m is too small for {teeth} teeth of module "
-            f"{module:g} m: the working pressure angle must have a cosine below 1, not {cosine:g}"
-        )
-    return float(np.arccos(cosine))
-
-
-def transverse_angle(pressure_angle: float, helix: float) -> float:
-    """Transverse pressure angle at the reference circle [rad], of the normal one and the helix."""
-    return float(np.arctan(np.tan(pressure_angle) / cos(helix)))
-
-
-def base_helix(helix: float, pressure_angle: float) -> float:
-    """Helix angle at the base circle [rad], of those at the reference circle (normal angle)."""
-    return float(np.arcsin(sin(helix) * cos(pressure_angle)))

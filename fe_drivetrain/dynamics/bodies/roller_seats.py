@@ -24,10 +24,10 @@ from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.bodies.flexible import Flexible
 from fe_drivetrain.dynamics.bodies.levels import Assembly, planetary_set
+from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.dynamics.bodies.springs import Place, Spring, directed
 from fe_drivetrain.dynamics.bodies.static import Static, gaps_and_contacts, static
 from fe_drivetrain.dynamics.bodies.system import System, with_stiffness
-from fe_drivetrain.dynamics.bodies.tables import Machine
 
 TOLERANCE = 1e-9
 """Residual over load, both on a unit diagonal of the stiffness."""

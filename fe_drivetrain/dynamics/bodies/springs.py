@@ -16,8 +16,7 @@ from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
 from fe_drivetrain.common.spatial import along_x, wrench_transport
-from fe_drivetrain.drivetrain_file.materials import Material
-from fe_drivetrain.shafts.beam.frame import CrossSection
+from fe_drivetrain.gear.working_angles import Mesh
 
 
 @dataclass(frozen=True)
@@ -154,68 +153,6 @@ def bushing(
         for i, value in enumerate(values)
         if value > 1e-12 * values[-1]
     ]
-
-
-def uniform_shaft(
-    name: str,
-    one: Place,
-    other: Place,
-    ends: tuple[ArrayLike, ArrayLike],
-    section: CrossSection,
-    material: Material,
-) -> list[Spring]:
-    """A round Timoshenko beam along x as six springs at its middle, which is exact.
-
-    About the middle of a uniform beam, stretching, twisting, a constant moment and a constant shear
-    force with its antisymmetric moment do no work on each other: E A / L, G J / L, E I / L, and
-    12 E I / (L^3 (1 + Phi)) with Phi = 12 E I / (G A_s L^2) (Przemieniecki 1968, section 5.6).
-
-    Parameters
-    ----------
-    name : str
-        Springs are called after it.
-    one, other : Place
-        Bodies that its ends are fixed to.
-    ends : tuple of array_like, (3,)
-        Points where it begins and ends [m], along x.
-    section : CrossSection
-        Cross-section with the same stiffness about y and z.
-    material : Material
-        Material of the shaft.
-
-    Raises
-    ------
-    InputError
-        The ends are not on a line along x.
-    """
-    begin, end = (np.asarray(at, dtype=float) for at in ends)
-    length = float(end[0] - begin[0])
-    if length == 0 or np.abs((end - begin)[1:]).max() > 1e-9 * abs(length):
-        raise InputError(f"shaft {name!r} must lie along x and have a length: correct its ends")
-    L, E, G = abs(length), material.youngs_modulus, material.shear_modulus
-    bending, shear = E * section.inertias[0], G * section.shear_areas[0]
-    across = 12 * bending / (L**3 * (1 + 12 * bending / (shear * L**2)))
-    k = [E * section.area / L, across, across, G * section.torsion / L, bending / L, bending / L]
-    return bushing(name, one, other, (begin + end) / 2, k)
-
-
-@dataclass(frozen=True)
-class Mesh:
-    """Contact of two gears with axes along x.
-
-    Attributes
-    ----------
-    pressure_angle : float
-        Transverse, working [rad].
-    base_helix : float
-        Base helix angle [rad]; positive where the first gear has right-hand teeth.
-    face_width : float
-        Face width in contact [m]; slices are spread over it.
-    """
-
-    pressure_angle: float
-    base_helix: float = 0.0
-    face_width: float = 0.0
 
 
 def line_of_action(mesh: Mesh, to_pitch: ArrayLike, flank: int = 1) -> Floats:

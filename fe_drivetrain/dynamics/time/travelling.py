@@ -26,9 +26,10 @@ from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
+from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.dynamics.bodies.flexible import Flexible
 from fe_drivetrain.dynamics.bodies.levels import Level, machine_system
-from fe_drivetrain.dynamics.bodies.machine_rows import PlanetaryData
+from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.dynamics.bodies.roller_seats import (
     Seat,
     planet_seats,
@@ -36,7 +37,6 @@ from fe_drivetrain.dynamics.bodies.roller_seats import (
     without_bearings,
 )
 from fe_drivetrain.dynamics.bodies.system import System
-from fe_drivetrain.dynamics.bodies.tables import Machine
 
 EXACT = 1e-9
 """Allowed error of the coefficients at another azimuth, over the maximum entry of the system."""

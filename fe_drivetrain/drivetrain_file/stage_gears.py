@@ -3,7 +3,7 @@
 from math import radians
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.dynamics.bodies.machine_rows import ParallelData, PlanetaryData
+from fe_drivetrain.drivetrain_file.gear_stages import ParallelData, PlanetaryData
 from fe_drivetrain.gear.involute import Gear, Pair, Rack
 
 

@@ -1,24 +1,20 @@
-"""The gate of machines: geometry that fits, bearings where they can be, bodies that can be.
+"""The gate of all that turns: geometry that fits, bearings where they can be, bodies that can be.
 
-Called as a `Machine` is made, from a file or in Python. What a table does not state it is not held
-to: a stage of radii has no teeth to be checked, and one of teeth without a module no sizes.
+Called as a drivetrain or a machine is made, from a file or in Python. What a table does not state
+it is not held to: a stage of radii has no teeth to be checked, and one of teeth without a module no
+sizes.
 """
 
 from collections.abc import Sequence
 from math import degrees, pi, radians, sin, sqrt, tan
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.dynamics.bodies.machine_motions import check_held
-from fe_drivetrain.dynamics.bodies.machine_parts import RotorBody
-from fe_drivetrain.dynamics.bodies.machine_rows import (
-    GearData,
-    MachineTable,
-    ParallelData,
-    PlanetaryData,
-)
-from fe_drivetrain.dynamics.bodies.planetary import transverse_angle
-from fe_drivetrain.dynamics.bodies.stage_gears import stage_pairs
+from fe_drivetrain.drivetrain_file.gear_stages import ParallelData, PlanetaryData, mesh_of
+from fe_drivetrain.drivetrain_file.machine_table import MachineTable
+from fe_drivetrain.drivetrain_file.stage_gears import stage_pairs
+from fe_drivetrain.drivetrain_file.turning_parts import RotorBody, diagonal
 from fe_drivetrain.gear.functions import involute_of
+from fe_drivetrain.gear.working_angles import transverse_angle
 
 #: Distance of radii of three digits from the centre distance, over it, that is allowed.
 ROUNDED = 1e-3
@@ -36,26 +32,28 @@ ROTOR_GYRATION, GENERATOR_GYRATION = 150.0, 20.0
 RESERVED = ("rotor", "generator", "grid", "housing")
 
 
-def check_machine(machine: MachineTable) -> None:
-    """Refuse a machine that does not fit.
+def check_table(machine: MachineTable) -> None:
+    """Refuse a machine whose rows do not fit.
 
     Raises
     ------
     InputError
         Names are not unique; teeth, radii, module, profile shifts and centre distance of a stage
         are of two geometries, planets overlap, or teeth lose contact; a bearing is on nothing or
-        far away, or holds what turns; a body cannot have its inertia; or one moves freely.
+        far away, or holds what turns; or a body cannot have its inertia.
     """
     check_names(machine)
     for number, stage in enumerate(machine.stages, start=1):
+        if any(key.startswith(f"stage {number}:") for key in machine.not_given):
+            continue
         name = f"stage {number}" + (f" ({stage.name})" if stage.name else "")
         if isinstance(stage, PlanetaryData):
             check_planetary(stage, name)
         else:
             check_parallel(stage, name)
-    check_bodies(machine)
+    if not machine.not_given:
+        check_bodies(machine)
     check_bearings(machine)
-    check_held(machine)
 
 
 def check_names(machine: MachineTable) -> None:
@@ -105,10 +103,10 @@ def check_planetary(stage: PlanetaryData, name: str) -> None:
                 f"{name}: pin {pin.name!r} is {pin.offset:g} m from the planet's middle but must "
                 f"be within a face width, {stage.face_width:g} m: correct its offset"
             )
-        if pin.stiffness[3] > 0:
+        if diagonal(pin.stiffness)[3] > 0:
             raise InputError(
                 f"{name}: pin {pin.name!r} holds the planet against turning about its own axis, "
-                f"with {pin.stiffness[3]:g} N m/rad: make the fourth of its stiffnesses 0"
+                f"with {diagonal(pin.stiffness)[3]:g} N m/rad: make the fourth of its stiffnesses 0"
             )
 
 
@@ -131,7 +129,7 @@ def _check_radii(radii: tuple[float, float] | None, distance: float, name: str, 
         )
 
 
-def _check_face(stage: GearData, radius: float, name: str) -> None:
+def _check_face(stage: PlanetaryData | ParallelData, radius: float, name: str) -> None:
     if stage.face_width > 2 * WIDEST * radius:
         raise InputError(
             f"{name}: face width is {stage.face_width:g} m but must be at most {WIDEST:g} "
@@ -139,13 +137,13 @@ def _check_face(stage: GearData, radius: float, name: str) -> None:
         )
 
 
-def _check_distance(stage: GearData, teeth: int, name: str) -> None:
+def _check_distance(stage: PlanetaryData | ParallelData, teeth: int, name: str) -> None:
     """Whether the centre distance fits the numbers of teeth, negative of an internal pair."""
     if stage.module is None:
         return
     helix, normal = radians(stage.helix), radians(stage.pressure_angle)
     try:
-        working = stage.mesh(abs(teeth)).pressure_angle
+        working = mesh_of(stage, abs(teeth)).pressure_angle
     except InputError as error:
         raise InputError(f"{name}: {error}: correct the teeth, module, helix or distance") from None
     opened = float(involute_of(working)) - float(involute_of(transverse_angle(normal, helix)))
@@ -232,12 +230,13 @@ def check_bearings(machine: MachineTable) -> None:
                 f"{name} holds {bearing.holds!r}, which is no shaft or body in the housing: use "
                 f"one of {', '.join((*shafts, *bodies))}"
             )
-        if bearing.stiffness[3] > 0:
+        against = diagonal(bearing.stiffness)[3]
+        if against > 0:
             raise InputError(
-                f"{name} holds {bearing.holds} against turning, with {bearing.stiffness[3]:g} N "
-                "m/rad about x: make the fourth of its stiffnesses 0"
+                f"{name} holds {bearing.holds} against turning, with {against:g} N m/rad about x: "
+                "make the fourth of its stiffnesses 0"
             )
-        if not any(bearing.stiffness):
+        if not any(diagonal(bearing.stiffness)):
             raise InputError(f"{name} has no stiffness: give one, or remove the bearing")
         if bearing.holds == "generator" and machine.generator.mass is None:
             raise InputError(
@@ -247,6 +246,8 @@ def check_bearings(machine: MachineTable) -> None:
         shaft = shafts.get(bearing.holds)
         if shaft is not None and "at" not in bearing.model_fields_set:
             raise InputError(f"{name} on shaft {shaft.name!r} has no place: give at, x in m")
+        if shaft is not None and f"shaft {shaft.name!r}: length" in machine.not_given:
+            continue
         low, high = (-whole, whole) if shaft is None else (0.0, shaft.length)
         if not low <= bearing.at <= high:
             of = "the length of all shafts" if shaft is None else "its shaft"

@@ -1,0 +1,117 @@
+"""The rows of a machine from a drivetrain's file, and the gate of all that turns.
+
+Every drivetrain passes it as it is made. What its file does not state is not checked: `table_of`
+says which key a model of the whole needs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.machine_gate import check_table
+from fe_drivetrain.drivetrain_file.machine_table import MachineTable
+from fe_drivetrain.drivetrain_file.stage_completion import NotGivenError, completed
+from fe_drivetrain.drivetrain_file.turning_parts import BearingData, ShaftData, ShaftRow
+
+#: Length of a shaft that is not given [m]: of bodies that only turn it does not matter.
+NOMINAL_LENGTH = 1.0
+
+
+def table_of(
+    drivetrain: Drivetrain, main: ShaftRow, bearings: Sequence[BearingData] = ()
+) -> tuple[MachineTable, Mapping[str, str]]:
+    """Rows of a drivetrain from the rotor to the generator, and what was derived.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        The drivetrain.
+    main : ShaftRow
+        Its main shaft.
+    bearings : sequence of BearingData
+        Bearings of the main shaft; those of the gearbox come after them.
+
+    Returns
+    -------
+    table : MachineTable
+        The rows.
+    derived : mapping of str to str
+        What was derived and how, by its name, as in "stage 1: centre_distance".
+
+    Raises
+    ------
+    NotGivenError
+        The file lacks a value; the message names its key.
+    InputError
+        What is given contradicts itself.
+    """
+    if drivetrain.rotor is None:
+        raise NotGivenError(_lacks(drivetrain, "rotor", "{mass: ..., inertia: ...}"))
+    if drivetrain.generator is None:
+        raise NotGivenError(_lacks(drivetrain, "generator", "{inertia: ...}"))
+    derived: dict[str, str] = {}
+    lost = [] if drivetrain.rotor.mass is not None else ["rotor: mass"]
+    stages = []
+    for number, stage in enumerate(drivetrain.gearbox.stages, start=1):
+        found = completed(stage, f"stage {number}")
+        stages.append(found.stage)
+        derived |= {f"stage {number}: {key}": how for key, how in found.derived.items()}
+        lost += [f"stage {number}: {key}" for key in found.not_given]
+    shafts = []
+    for row in (main, *drivetrain.gearbox.shafts):
+        if row.own_length is None:
+            lost.append(f"shaft {row.name!r}: length")
+        given = {key: getattr(row, key) for key in row.model_fields_set}
+        shafts.append(ShaftData(**{**given, "length": row.own_length or NOMINAL_LENGTH}))
+    table = MachineTable(
+        title=drivetrain.title,
+        sources=drivetrain.sources,
+        assumed=drivetrain.assumed,
+        rotor=drivetrain.rotor,
+        shafts=tuple(shafts),
+        stages=tuple(stages),
+        generator=drivetrain.generator,
+        bearings=(*bearings, *drivetrain.gearbox.bearings),
+        not_given=tuple(lost),
+    )
+    return table, derived
+
+
+def check_turning(
+    drivetrain: Drivetrain, main: ShaftRow, bearings: Sequence[BearingData] = ()
+) -> None:
+    """Refuse a drivetrain of which something that turns does not fit; see `check_table`.
+
+    Raises
+    ------
+    InputError
+        See above, or a brake is on no shaft, or there are shafts without stages.
+    """
+    gears = drivetrain.gearbox
+    if len(gears.shafts) != len(gears.stages):
+        raise InputError(
+            f"gearbox has {len(gears.stages)} stages and {len(gears.shafts)} shafts behind the "
+            "main shaft but must have one behind each stage, the last to the generator: add or "
+            "remove some"
+        )
+    names = [main.name, *(shaft.name for shaft in gears.shafts)]
+    if drivetrain.brake is not None and drivetrain.brake.on not in names:
+        raise InputError(
+            f"brake is on {drivetrain.brake.on!r}, which is no shaft: use one of {', '.join(names)}"
+        )
+    if not gears.stages and drivetrain.generator is None:
+        return
+    try:
+        table, _ = table_of(drivetrain, main, bearings)
+    except NotGivenError:
+        return
+    check_table(table)
+
+
+def _lacks(drivetrain: Drivetrain, key: str, example: str) -> str:
+    return (
+        f"{drivetrain.title!r} does not state its {key}, which a model of all that turns needs: "
+        f"add {key}: {example}"
+    )
