@@ -17,6 +17,7 @@ from .junit import write_junit as write_junit
 from .maps import LEVELS as LEVELS
 from .maps import dashed as dashed
 from .maps import map_traces as map_traces
+from .mode_shapes import shape_chart as shape_chart
 from .number_text import formatted as formatted
 from .page import write_page as write_page
 from .pictures import NoPictureError as NoPictureError

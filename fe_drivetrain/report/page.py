@@ -24,7 +24,7 @@ from fe_drivetrain.common.manifest import MANIFEST
 from fe_drivetrain.plots.style import is_number
 from fe_drivetrain.report.answer import MAX_CAUTIONS, KeyFigure
 from fe_drivetrain.report.bundle import place_plotly, plotly_file
-from fe_drivetrain.report.chart_style import chart_height, figure_as_json, script_json
+from fe_drivetrain.report.chart_style import SWING, chart_height, figure_as_json, script_json
 from fe_drivetrain.report.headline import answer_sentence, headline, values_found
 from fe_drivetrain.report.history import FILE, Point, points_over_runs, tolerated
 from fe_drivetrain.report.number_text import (
@@ -111,7 +111,13 @@ def render(results: Results, folder: Path, shared: Path) -> str:
     items = [item for section in results.sections for item in section.items]
     has_charts = any(isinstance(item, Chart) for item in items)
     has_solids = any(isinstance(item, Solid) for item in items)
-    names = ("page.js", *(("charts.js",) * has_charts), *(("solid.js",) * has_solids))
+    swings = any(isinstance(item, Chart) and SWING in item.figure for item in items)
+    names = (
+        "page.js",
+        *(("charts.js",) * has_charts),
+        *(("swing.js",) * swings),
+        *(("solid.js",) * has_solids),
+    )
     scripts = [read_template(name) for name in names]
     words = words_in(_sentences(results))
     above = Markup(quote(os.path.relpath(shared, folder)))
