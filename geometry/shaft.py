@@ -19,6 +19,9 @@ FINEST = 1e-5
 part, and too near to that of the CAD kernel, which fails at 1e-7."""
 
 
+MAIN_SHAFT = "main shaft"
+"""Name of a drivetrain's main shaft, where its file gives no other."""
+
 _NAMED = 3  # cylindrical lengths that a message names, those nearest to a bearing
 
 
@@ -74,6 +77,7 @@ class Flange(Part):
 class Shaft(Part):
     """A shaft along x: an optional front flange, then the sections from front to rear."""
 
+    name: str = Field(default=MAIN_SHAFT, description="name among the shafts of a drivetrain")
     front: float = dimension(of="x of the front face")
     sections: tuple[Section, ...] = Field(
         min_length=1, description="sections from front to rear, at least one"

@@ -5,7 +5,6 @@ from typing import Any
 from fe_drivetrain.common import InputError
 from fe_drivetrain.common.reading import validated
 from fe_drivetrain.drivetrain_file import Scene
-from fe_drivetrain.drivetrain_file.turning_parts import STEEL
 from fe_drivetrain.dynamics import Machine
 
 #: Of a seat, over the shaft's diameter.
@@ -34,22 +33,24 @@ def shaft_scene(machine: Machine, name: str, size: float = 0.2) -> Scene:
     InputError
         There is no such shaft.
     """
-    given = {shaft.name: shaft for shaft in machine.shafts if shaft.outer is not None}
+    given = {shaft.name: shaft for shaft in machine.shafts if shaft.has_mass}
     if name not in given:
         raise InputError(f"no shaft {name!r} with a diameter: use one of {', '.join(given)}")
     shaft = given[name]
-    d = float(shaft.outer or 0.0)
+    sections = [section.model_dump(exclude_none=True) for section in shaft.sections or ()]
+    if shaft.outer is not None:
+        size_of = {"outer_diameter": shaft.outer, "inner_diameter": shaft.inner}
+        sections = [{"length": shaft.length, **size_of}]
+    d = max(section["outer_diameter"] for section in sections)
     return validated(
         Scene,
         {
             "title": f"{name} of {machine.title}",
-            "materials": {"shaft_steel": STEEL.model_dump()},
+            "materials": {"shaft_steel": shaft.material.model_dump()},
             "shaft": {
                 "front": 0.0,
                 "material": "shaft_steel",
-                "sections": [
-                    {"length": shaft.length, "outer_diameter": d, "inner_diameter": shaft.inner}
-                ],
+                "sections": sections,
             },
             "bearing_units": units_of(machine, name, d),
             "gearbox": {"stiffness": [1e6] * 6},

@@ -12,7 +12,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import min_eigenvalue, symmetry_error
 from fe_drivetrain.drivetrain_file.gear_stages import ParallelData, PlanetaryData
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
-from fe_drivetrain.drivetrain_file.turning_parts import STEEL, RotorBody
+from fe_drivetrain.drivetrain_file.turning_parts import RotorBody, ShaftData
 from fe_drivetrain.dynamics.bodies.levels import Level, machine_system
 from fe_drivetrain.dynamics.bodies.modes import system_modes
 from fe_drivetrain.dynamics.bodies.static import static
@@ -108,14 +108,21 @@ def own_motion(machine: MachineTable, names: tuple[str, ...]) -> Floats:
     return q
 
 
+def _uniform_lengths(shaft: ShaftData) -> list[tuple[float, float, float]]:
+    """Length, outer and inner diameter of each uniform part of a shaft that has a mass [m]."""
+    if shaft.sections is not None:
+        return [(s.length, s.outer_diameter, s.inner_diameter) for s in shaft.sections]
+    return [] if shaft.outer is None else [(shaft.length, shaft.outer, shaft.inner)]
+
+
 def own_energy(machine: MachineTable) -> float:
     """Kinetic energy [J] at 1 rad/s of the rotor: sum of J (ratio w)^2 / 2, planets' paths."""
     ratios = own_ratios(machine)
     twice = machine.rotor.inertia + machine.generator.inertia * ratios[-1] ** 2
     for shaft, speed in zip(machine.shafts, ratios, strict=True):
-        if shaft.outer is not None:
-            polar = pi / 32 * (shaft.outer**4 - shaft.inner**4)
-            twice += STEEL.density * shaft.length * polar * speed**2
+        for length, outer, inner in _uniform_lengths(shaft):
+            polar = pi / 32 * (outer**4 - inner**4)
+            twice += shaft.material.density * length * polar * speed**2
     for stage, front, rear in zip(machine.stages, ratios, ratios[1:], strict=False):
         if isinstance(stage, ParallelData):
             twice += stage.gear.inertia * front**2 + stage.pinion.inertia * rear**2

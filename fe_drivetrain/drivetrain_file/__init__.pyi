@@ -10,7 +10,6 @@ from .component import Component as Component
 from .component import HousingComponent as HousingComponent
 from .component import SomeComponent as SomeComponent
 from .component import material_of as material_of
-from .drivetrain import MAIN_SHAFT as MAIN_SHAFT
 from .drivetrain import Drivetrain as Drivetrain
 from .entrance import AT_HUB as AT_HUB
 from .entrance import Entrance as Entrance

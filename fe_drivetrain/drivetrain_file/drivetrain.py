@@ -21,9 +21,6 @@ from fe_drivetrain.drivetrain_file.turning_parts import (
 )
 from fe_drivetrain.geometry.part import in_its_field, rows_of
 
-MAIN_SHAFT = "main shaft"
-"""Name of a scene's main shaft among the other shafts, in results and in `holds`."""
-
 
 class Gears(Keys):
     """What is inside a gearbox: stages, the shafts behind the main shaft, and their bearings."""

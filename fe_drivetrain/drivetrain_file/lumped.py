@@ -6,10 +6,11 @@ from typing import Any
 
 from pydantic import field_validator, model_validator
 
-from fe_drivetrain.drivetrain_file.drivetrain import MAIN_SHAFT, Drivetrain
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.turning_gate import check_turning
 from fe_drivetrain.drivetrain_file.turning_parts import ShaftRow
 from fe_drivetrain.geometry.part import in_its_field
+from fe_drivetrain.geometry.shaft import MAIN_SHAFT
 
 
 class LumpedDrivetrain(Drivetrain):

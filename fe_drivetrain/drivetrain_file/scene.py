@@ -14,7 +14,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import value_by_key
 from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.drivetrain_file.bearing_unit import BearingUnit, Keys, Springs
-from fe_drivetrain.drivetrain_file.drivetrain import MAIN_SHAFT, Drivetrain, Gears
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain, Gears
 from fe_drivetrain.drivetrain_file.entrance import Entrance
 from fe_drivetrain.drivetrain_file.gate import check_scene
 from fe_drivetrain.drivetrain_file.joint_springs import as_numbers, joint_stiffness
@@ -225,7 +225,7 @@ RIGID = 1e12
 def main_shaft(scene: Scene) -> ShaftRow:
     """The scene's main shaft as a row beside the shafts of its gearbox, the flange a section."""
     return ShaftRow(
-        name=MAIN_SHAFT, sections=scene.shaft.pieces, material=scene.material_of("shaft")
+        name=scene.shaft.name, sections=scene.shaft.pieces, material=scene.material_of("shaft")
     )
 
 
@@ -263,7 +263,7 @@ def main_bearings(
         entry = _entry_of(scene, name)
         found.append(
             BearingData.model_validate(
-                {"name": name, "holds": MAIN_SHAFT, "at": at, "stiffness": stiffness, **entry}
+                {"name": name, "holds": scene.shaft.name, "at": at, "stiffness": stiffness, **entry}
             )
         )
     return tuple(found)

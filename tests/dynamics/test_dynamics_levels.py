@@ -83,7 +83,8 @@ def test_profile_shifted_planets_of_the_5_mw_gearbox_have_their_own_teeth() -> N
     # 19, 17 and 56 teeth: 17 is not half of 56 - 19
     data = with_light_planets(FIVE_MW).model_dump(exclude_none=True)
     for shaft, given in zip(data["shafts"], FIVE_MW.shafts, strict=True):
-        del shaft["outer"]
+        shaft.pop("outer", None)
+        shaft.pop("sections", None)
         shaft["torsion"] = (
             8.0e10 * shaft_slices(given, 0.0, given.length)[0].section.torsion / given.length
         )
