@@ -154,6 +154,8 @@ def _sentences(results: Results) -> list[str]:
     """What the page says in sentences, captions and names, of which words are explained."""
     answer = results.answer
     said = [answer.question, *(figure.name for figure in answer.figures)] if answer else []
+    if answer and any(figure.band for figure in answer.figures):
+        said.append("band")  # which stands behind ±
     said += [verdict_sentence(results), *results.details, *cautions_of(results)]
     for item in (item for section in results.sections for item in section.items):
         said += [item.text] if isinstance(item, Text) else [item.caption]
