@@ -30,6 +30,7 @@ from fe_drivetrain.pages.check import show_check
 from fe_drivetrain.pages.compare import show_compare
 from fe_drivetrain.pages.life import show_life
 from fe_drivetrain.pages.loads import show_loads
+from fe_drivetrain.pages.modes import show_modes
 from fe_drivetrain.pages.study import show_study
 from fe_drivetrain.pages.transient import show_transient
 from fe_drivetrain.pages.uncertainty import show_uncertainty
@@ -47,6 +48,7 @@ from fe_drivetrain.studies import (
     LifeResult,
     LoadOptions,
     LoadsResult,
+    ModesResult,
     PartResult,
     Result,
     StudyResult,
@@ -58,6 +60,7 @@ from fe_drivetrain.studies import (
     compare,
     life,
     loads,
+    modes,
     part,
     prepare_export,
     study,
@@ -143,6 +146,11 @@ def loaded(tmp_path_factory: pytest.TempPathFactory) -> LoadsResult:
 
 
 @pytest.fixture(scope="module")
+def vibrating() -> ModesResult:
+    return modes(read_drivetrain("park_2021"), level="rigid", speeds=(0.6, 1.2))
+
+
+@pytest.fixture(scope="module")
 def lived(tmp_path_factory: pytest.TempPathFactory) -> LifeResult:
     folder = tmp_path_factory.mktemp("histories")
     for wind in (8.0, 14.0):
@@ -170,14 +178,14 @@ PAGES: dict[str, Callable[[Run, Page, Any], None]] = {
     "lived": show_life,
     "loaded": show_loads,
     "timed": show_transient,
+    "vibrating": show_modes,
 }
 """What shows a result on a page."""
 
 RESULTS = (
     "studied",
     *("checked", "compared", "advised", "uncertain", "validated", "lived", "loaded"),
-    "timed",
-    *("shaped", "condensed", "exported"),
+    *("timed", "vibrating", "shaped", "condensed", "exported"),
 )
 
 
@@ -304,10 +312,10 @@ def test_a_drivetrain_without_sections_is_checked_by_what_turns() -> None:
     assert found.turning is not None
     # 1 + (a + r_p) / r_s of the planetary stage, and the radii of the two others
     ratio = (1 + 0.43 / 0.11) * 0.29 / 0.095 * 0.185 / 0.08
-    assert found["ratio of all stages"].computed == pytest.approx(ratio, rel=1e-3)
+    assert found.turning.ratio == pytest.approx(ratio, rel=1e-3)
     assert found.turning.degrees == {"torsional": 10, "rigid bodies": 60, "flexible shafts": 60}
     assert len(found.described["Gear stages, from the rotor on"]) == 3
-    assert any("lengths of shafts" in row.why for row in found.assumptions)
+    assert any("lengths of shafts" in row.source for row in found.assumptions)
 
 
 def test_a_figure_is_found_by_its_name(compared: CompareResult) -> None:
