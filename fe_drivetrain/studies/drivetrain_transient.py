@@ -247,7 +247,7 @@ def _of_file(drivetrain: Drivetrain, event: str) -> dict[str, float | str]:
     brake = drivetrain.brake
     if event != "stop" or brake is None:
         return {}
-    return {"on": brake.shaft, "brake_torque": brake.torque, "rise": brake.rise}
+    return {"shaft": brake.shaft, "brake_torque": brake.torque, "rise": brake.rise}
 
 
 def _happened(asked: _Asked, steps: Steps) -> TransientResult:

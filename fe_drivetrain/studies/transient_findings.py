@@ -281,7 +281,7 @@ def _cautions(event: str, run: LevelRun, files: Mapping[str, FileDigest]) -> lis
         said.append("Meshes vary as square waves of their contact ratio, without tip relief.")
     absent = sorted({one.absent for one in files.values() if one.absent})
     if absent:
-        said.append(f"Histories have no {' and no '.join(absent)}: counted as zero.")
+        said.append(f"Histories have no {' and no '.join(absent)}: their torque acts alone.")
     if any(not one.own_generator for one in files.values()):
         said.append("A file has no torque of its generator: a line of slip stands for it.")
     if run.level is not Level.TORSIONAL:

@@ -82,9 +82,9 @@ def test_assumed_values_of_the_event_are_stated_and_given_ones_are_not(
 
 
 def test_the_brake_of_the_file_is_the_one_that_stops() -> None:
-    braked = two_masses(brake={"on": "shaft", "torque": 3e6, "rise": 0.1})
-    found = transient(braked, "stop", {"on": "generator"}, duration=8.0)
-    assert found.options["values"] == {"on": "generator", "brake_torque": 3e6, "rise": 0.1}
+    braked = two_masses(brake={"shaft": "shaft", "torque": 3e6, "rise": 0.1})
+    found = transient(braked, "stop", {"shaft": "generator"}, duration=8.0)
+    assert found.options["values"] == {"shaft": "generator", "brake_torque": 3e6, "rise": 0.1}
     still = (ROTOR + GENERATOR) * SPEED / 3e6
     assert 3.0 < found.marks["disc stands"] < 3.0 + still + 1.0
 
