@@ -9,7 +9,7 @@ import pytest
 import yaml
 from answer_rules import broken_rules
 from numpy.testing import assert_allclose
-from small_drivetrain import GENERATOR, ROTOR, SPEED, TORQUE, two_mass_file, two_masses
+from small_drivetrain import GENERATOR, ROTOR, SPEED, STIFFNESS, TORQUE, two_mass_file, two_masses
 from tiny_case import Result
 
 from fe_drivetrain.common import InputError
@@ -70,6 +70,23 @@ def test_a_stop_has_the_extremes_of_its_samples_and_its_band(stopped: TransientR
     still = (ROTOR + GENERATOR) * SPEED / (2.0 * TORQUE) + 0.5
     assert abs(stopped.marks["disc stands"] - still) < 1.0
     assert "bodies only turn" in stopped.notes[0].lower()
+
+
+def test_the_peak_of_a_stop_is_one_of_those_by_the_instant_of_the_brake(
+    stopped: TransientResult,
+) -> None:
+    """Over a period of the first mode; at no delay it is that of the stop itself."""
+    found = stopped.by_instant
+    assert found is not None
+    reduced = ROTOR * GENERATOR / (ROTOR + GENERATOR)
+    assert_allclose(found.period, 2 * np.pi * np.sqrt(reduced / STIFFNESS), rtol=1e-9)
+    assert len(found.delays) == len(found.peaks) == 8
+    later = stopped.samples.times >= 0.5
+    first = stopped.samples.times < 0.5 + 2.5 * found.period
+    own = stopped.samples.of("torque of shaft")[later & first].max() / TORQUE
+    assert_allclose(found.peaks[0], own, rtol=1e-4)
+    # undamped, the swing that the brake meets adds to its own or takes from it
+    assert max(found.peaks) > 1.2 * min(found.peaks)
 
 
 def test_assumed_values_of_the_event_are_stated_and_given_ones_are_not(
