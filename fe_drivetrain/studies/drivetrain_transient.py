@@ -267,11 +267,11 @@ def _happened(asked: _Asked, steps: Steps) -> TransientResult:
     found = _findings(asked)
     runs, number = _compared(asked, asked.levels(event.levels), at, asked.step, steps)
     run = runs[number]
-    last = next((n for n, one in reversed(run.extremes.items()) if one.kind == "torque"), None)
+    torques = [name for name, one in run.extremes.items() if one.kind == "torque"]
     instants = None
-    if last is not None and asked.event == "stop":
+    if torques and asked.event == "stop":
         with steps.step("instants of the brake"):
-            instants = by_instant(made[run.level], event, last, run.step)
+            instants = by_instant(made[run.level], event, torques[-1], run.step)
     return _result(asked, found, steps, runs, number, run.extremes, run.samples, {}, {}, instants)
 
 
