@@ -13,7 +13,7 @@ from fe_drivetrain.studies.project_validation import ValidateResult
 _MADE_AGAIN = frozenset({"missing", "edited", "stale", "quick", "of another drivetrain"})
 """States of evidence that a run may change."""
 
-_ON_SCENES = ("advise", "check", "study", "uncertainty")
+_ON_SCENES = ("advise", "check", "modes", "study", "uncertainty")
 """Commands whose only argument is a scene."""
 
 
