@@ -23,10 +23,22 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
     "loads": (
         "'outputs/*.outb' --site class-II --open",
         "mine.csv --against 'others/*.csv'",
+        "torque.csv --channel 'Mx=Main shaft torque' --rotor-speed 12",
     ),
     "life": (
         "two_bearings --loads 'outputs/*.outb' --site class-II",
         "mine.yaml --loads outputs --bearing front=240/630",
+        "grc_750kw --loads outputs --gearbox-temperature 65",
+    ),
+    "gears": (
+        "nrel_5mw --open",
+        "mine.yaml --torque 4e6 --load hub.My=1e6 --hours 50000",
+        "mine.yaml --loads 'outputs/*.outb' --site class-II",
+    ),
+    "transient": (
+        "mine.yaml stop --value braked=2.5 --open",
+        "mine.yaml operation --loads 'outputs/*.outb' --level rigid",
+        "mine.yaml dip --value depth=0.9 --value length=0.25 --json",
     ),
     "compare": (
         "mine.yaml stiffer.yaml",

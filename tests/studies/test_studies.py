@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from answer_rules import broken_by, broken_rules
 from coarse_scenes import coarse_scene
+from small_drivetrain import two_masses
 from small_project import OWN, Content, small_project
 from test_commands_life import write_history
 from test_scene_study import HISTORIES
@@ -31,6 +32,7 @@ from fe_drivetrain.pages.life import show_life
 from fe_drivetrain.pages.loads import show_loads
 from fe_drivetrain.pages.modes import show_modes
 from fe_drivetrain.pages.study import show_study
+from fe_drivetrain.pages.transient import show_transient
 from fe_drivetrain.pages.uncertainty import show_uncertainty
 from fe_drivetrain.pages.validate import show_validate
 from fe_drivetrain.procedure import Project
@@ -50,6 +52,7 @@ from fe_drivetrain.studies import (
     PartResult,
     Result,
     StudyResult,
+    TransientResult,
     UncertaintyResult,
     ValidateResult,
     advise,
@@ -61,6 +64,7 @@ from fe_drivetrain.studies import (
     part,
     prepare_export,
     study,
+    transient,
     uncertainty,
     validate,
 )
@@ -155,6 +159,11 @@ def lived(tmp_path_factory: pytest.TempPathFactory) -> LifeResult:
 
 
 @pytest.fixture(scope="module")
+def timed() -> TransientResult:
+    return transient(two_masses(), "grid_loss", {"off": 0.1}, duration=0.6)
+
+
+@pytest.fixture(scope="module")
 def studied() -> StudyResult:
     return study(coarse_scene("bonded"), HISTORIES, slopes=(4.0,))
 
@@ -168,6 +177,7 @@ PAGES: dict[str, Callable[[Run, Page, Any], None]] = {
     "validated": show_validate,
     "lived": show_life,
     "loaded": show_loads,
+    "timed": show_transient,
     "vibrating": show_modes,
 }
 """What shows a result on a page."""
@@ -175,7 +185,7 @@ PAGES: dict[str, Callable[[Run, Page, Any], None]] = {
 RESULTS = (
     "studied",
     *("checked", "compared", "advised", "uncertain", "validated", "lived", "loaded"),
-    *("vibrating", "shaped", "condensed", "exported"),
+    *("timed", "vibrating", "shaped", "condensed", "exported"),
 )
 
 

@@ -48,14 +48,40 @@ class Rung:
         Carriers and housing that give.
     name : str
         Name of the rung, in words.
+    neglects : tuple[str, ...]
+        What the model leaves out.
+    assumes : tuple[str, ...]
+        Values that no file gives, and why so.
+    seconds : float
+        Time that it took to condense what gives, beyond the rung before [s].
     """
 
     level: Level
     flexible: Flexible
     name: str
+    neglects: tuple[str, ...] = ()
+    assumes: tuple[str, ...] = ()
+    seconds: float = 0.0
 
 
-RUNGS = tuple(Rung(level, Flexible(), level.value) for level in Level)
+#: What models without anything condensed leave out.
+UNCONDENSED = (
+    "housings of main bearings that give",
+    "a gearbox housing that moves",
+    "carriers that give",
+    "what steps, ends and rings of bearings do to the sections of the main shaft",
+    "clearance and rollers of bearings",
+)
+#: What each level leaves out beside it.
+_LEVELS = {
+    Level.TORSIONAL: ("every motion but turning: loads of bearings, uneven sharing",),
+    Level.RIGID: ("shafts that bend between their bearings",),
+    Level.FLEXIBLE: (),
+}
+
+RUNGS = tuple(
+    Rung(level, Flexible(), level.value, (*_LEVELS[level], *UNCONDENSED)) for level in Level
+)
 """The levels without flexible carriers or housing, from the simplest."""
 
 
@@ -189,10 +215,7 @@ def pin_loads(found: Static, stage: PlanetaryData, number: int) -> dict[str, flo
         for k in range(stage.planets)
         for pin in stage.pins
     ]
-    return {
-        name: float(np.hypot(found.force(f"{name} uy"), found.force(f"{name} uz")))
-        for name in names
-    }
+    return {name: found.radial(name) for name in names}
 
 
 def planet_sharing(of: Asked) -> float | None:

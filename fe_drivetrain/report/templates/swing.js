@@ -50,10 +50,12 @@
     if (swing && typeof Plotly !== "undefined") shapes.push({ place, ...start(place, swing), seen: false });
   }
   // the first that comes into view moves by itself, so that a reader sees that they can
-  document.addEventListener("toggle", () => {
+  function begin() {
     const first = shapes.find(({ place }) => !place.closest("details:not([open])"));
     if (!first || first.seen || STILL.matches) return;
     first.seen = true;
     setTimeout(first.go, 400);
-  }, true);
+  }
+  document.addEventListener("toggle", begin, true);
+  begin();
 })();
