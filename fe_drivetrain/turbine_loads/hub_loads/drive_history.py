@@ -17,11 +17,7 @@ from fe_drivetrain.turbine_loads.hub_loads.channels import MOMENT_UNITS, Channel
 from fe_drivetrain.turbine_loads.hub_loads.csv_columns import csv_channels
 from fe_drivetrain.turbine_loads.hub_loads.histories import require_all_loads, require_even
 from fe_drivetrain.turbine_loads.hub_loads.openfast_output import openfast_channels
-from fe_drivetrain.turbine_loads.hub_loads.recorded import (
-    OWN_NAMES,
-    SPEED_UNITS,
-    read_recorded,
-)
+from fe_drivetrain.turbine_loads.hub_loads.recorded import OWN_NAMES, SPEED_UNITS, read_recorded
 
 TORQUE, SPEED = "GenTq", "GenSpeed"
 """Names of the generator's torque and speed in files of OpenFAST, and in tables."""
