@@ -5,7 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import typer
 from typer.core import TyperCommand
+
+# typer has its own copy of click, of which it shows this alone
+_UsageError: Any = typer.BadParameter.__base__
 
 
 class WithFiles(TyperCommand):
@@ -25,15 +29,13 @@ class WithFiles(TyperCommand):
         -------
         list of str
         """
-        from click import UsageError
-
         try:
             return super().parse_args(ctx, args)
-        except UsageError as error:
-            left = error.message.partition("extra argument")[2]
+        except _UsageError as error:
+            left = str(error).partition("extra argument")[2]
             if left and any(Path(word).exists() and word in left for word in args):
-                error.message += (
-                    ": put a pattern in quotes, as in --loads 'outputs/*.outb', give the folder, "
-                    "or repeat the option before each file"
+                ctx.fail(
+                    f"{error}: put a pattern in quotes, as in --loads 'outputs/*.outb', give the "
+                    "folder, or repeat the option before each file"
                 )
             raise
