@@ -28,7 +28,7 @@ from fe_drivetrain.dynamics import (
     turning_modes,
 )
 from fe_drivetrain.dynamics.torsion import GearTable, gear_masses, natural_modes, static_stiffness
-from fe_drivetrain.report import marked
+from fe_drivetrain.report import Chart, chart, mark_events, marked, trace
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.report.suite.chosen import SETTING
 
@@ -39,6 +39,8 @@ OPERATIONS = {
     "synthetic_2mw": Operation(1.055e6, 1.0e6),
 }
 TOLERANCE = 0.05
+LEAST = 1e-6  # %, of a difference that is drawn
+BY_QUESTION = "{}: difference of each level from the finest; left of the line it is enough"
 AGAINST_TIME = "{}: difference from the finest level against the time that a level takes"
 FIRST = "first torsional frequency [Hz]"
 
@@ -132,7 +134,7 @@ def state_needed(
                 by="finest level",
             ),
         ],
-        AGAINST_TIME.format(machine.title),
+        BY_QUESTION.format(machine_name),
         [f"The finest level here is {finest.name}; errors are against it."],
     )
 
@@ -157,6 +159,7 @@ def show_ladder(page: Page, name: str, machine: Machine, answers: Sequence[Answe
         rows.append(row)
     page.table("Answers, and their differences from the finest level", rows)
     page.data(f"ladder_{name}", rows)
+    page.add(by_question(BY_QUESTION.format(machine.title.partition(" (")[0]), answers))
     page.chart(
         AGAINST_TIME.format(machine.title),
         error_curves(answers),
@@ -216,11 +219,29 @@ def error_curves(answers: Sequence[Answer]) -> list[dict[str, Any]]:
             for answer in answers[:-1]
             if finest and (value := answer.values[question]) is not None
         ]
-        shown = [(t, e) for t, e in points if e > 1e-6]
+        shown = [(t, e) for t, e in points if e > LEAST]
         curves.append(
             marked(question.partition(" [")[0], [t for t, _ in shown], [e for _, e in shown])
         )
     return curves
+
+
+def by_question(caption: str, answers: Sequence[Answer]) -> Chart:
+    """The difference of each level from the finest, one line a question, and what is enough."""
+    finest = answers[-1].values
+    traces = []
+    for answer in answers[:-1]:
+        found = {
+            question.partition(" [")[0]: 100 * abs(value / best - 1)
+            for question, best in finest.items()
+            if best and (value := answer.values[question]) is not None
+        }
+        shown = {name: error for name, error in found.items() if error > LEAST}
+        points = trace(answer.name, list(shown.values()), [0.0] * len(shown), True)
+        traces.append(points | {"y": list(shown), "marker": {"size": 11}})
+    drawn = chart(caption, traces, "difference from the finest level [%]", "", "x")
+    drawn.figure["layout"]["yaxis"] = {"autorange": "reversed", "automargin": True}
+    return mark_events(drawn, {f"enough: {100 * TOLERANCE:g} %": 100 * TOLERANCE})
 
 
 def recover(run: Run, page: Page) -> None:

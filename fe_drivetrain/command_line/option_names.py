@@ -20,15 +20,22 @@ OPTIONS: Mapping[str, str] = {
     "ChannelMap": "--mapping",
     "against": "--against",
     "at": "--at",
+    "azimuths": "--azimuths",
     "bearings": "--bearing",
     "bore": "--bore",
     "catalogues": "--catalogue",
     "changes": "--set",
     "channels": "--channel",
     "cleanliness": "--cleanliness",
+    "duration": "--duration",
     "every": "--every",
+    "gearbox_cleanliness": "--gearbox-cleanliness",
+    "gearbox_lubricant": "--gearbox-lubricant",
+    "gearbox_temperature": "--gearbox-temperature",
     "held": "--held",
     "high": "--winds",
+    "hours": "--hours",
+    "hub": "--load",
     "level": "--level",
     "loads": "--loads",
     "low": "--winds",
@@ -36,19 +43,26 @@ OPTIONS: Mapping[str, str] = {
     "modes": "--modes",
     "only": "--only",
     "profile": "--profile",
+    "quantity": "--quantity",
     "reliability_percent": "--reliability",
     "residue": "--residue",
     "rings": "--rings",
     "riser": "--riser",
     "rotor_speed_rpm": "--rotor-speed",
     "site": "--site",
+    "slices": "--slices",
     "slopes": "--slope",
+    "speeds": "--speeds",
+    "spectrum": "--spectrum",
+    "step": "--step",
     "supply": "--supply",
     "support": "--support",
     "temperature": "--temperature",
     "tolerance": "--tolerance",
+    "torque": "--torque",
     "transients": "--transient",
     "turning": "--turning",
+    "values": "--value",
     "what": "--what",
     "windows": "--target",
     "winds": "--winds",
@@ -63,7 +77,7 @@ WORDS: Mapping[tuple[str, object], str] = {
 }
 """What is typed for a value of an argument that is no option with the value behind it."""
 
-_BETWEEN = {"at": ",", "held": ",", "low": ":", "lubricant": ","}
+_BETWEEN = {"at": ",", "held": ",", "low": ":", "lubricant": ",", "gearbox_lubricant": ","}
 """What stands between items of one option; others are repeated."""
 
 

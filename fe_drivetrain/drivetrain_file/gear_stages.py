@@ -18,6 +18,7 @@ from pydantic import (
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file import stage_fields
+from fe_drivetrain.drivetrain_file.gear_strength import GearStrength
 from fe_drivetrain.drivetrain_file.stage_fields import (
     NAMED,
     Fillet,
@@ -29,6 +30,7 @@ from fe_drivetrain.drivetrain_file.stage_fields import (
 from fe_drivetrain.drivetrain_file.turning_parts import (
     MAX_GEAR,
     MAX_STIFFNESS,
+    CarrierBody,
     PinData,
     Radius,
     RotorBody,
@@ -111,11 +113,16 @@ class GearStage(Part):
             "source": "assumed: each mesh in one point, without stiffness against tilt",
         },
     )
+    strength: GearStrength | None = Field(
+        default=None, description="steels, roughness and accuracy of the gears, for their ratings"
+    )
     stiffness_of: Literal["line", "axis"] | None = Field(
         default=None,
         description="line: meshes in N/m and N s/m along the line of action; axis: in N m/rad and "
         "N m s/rad about the planet's, or the gear's, axis",
     )
+
+    _strength = field_validator("strength", mode="wrap")(in_its_field)
 
     @model_validator(mode="after")
     def _helix_has_a_hand(self) -> Self:
@@ -142,7 +149,8 @@ class GearStage(Part):
         ------
         InputError
             More or fewer than one of teeth, radii and ratio are given, or a module without teeth,
-            profile shifts without a module, or a face narrower than the contact.
+            profile shifts without a module, a face narrower than the contact, or the strength of
+            other gears.
         """
         kind = "planetary" if isinstance(self, PlanetaryStage) else "parallel"
         radii = getattr(self, "radii", None)
@@ -156,6 +164,12 @@ class GearStage(Part):
             raise InputError(
                 f"a module of {self.module:g} m needs the teeth: give them in place of radii or "
                 "ratio, or remove the module"
+            )
+        gears = ("ring", "planet", "sun") if kind == "planetary" else ("gear", "pinion")
+        if self.strength is not None and set(self.strength.gears) != set(gears):
+            raise InputError(
+                f"strength has the gears {', '.join(self.strength.gears)} but a {kind} stage has "
+                f"{', '.join(gears)}: name these"
             )
         if self.shifts is not None and self.module is None:
             raise InputError("profile shifts need a module: give it, or remove the shifts")
@@ -212,7 +226,7 @@ class PlanetaryStage(GearStage):
     faces: Annotated[RingPlanetSun[Radius] | None, *NAMED] = stage_fields.faces()
     fillets: Annotated[RingPlanetSun[Fillet] | None, *NAMED] = stage_fields.fillets()
     planets: int = Field(ge=1, le=50, description="number of planets")
-    carrier: RotorBody | None = Field(default=None, description="carrier, planets left out")
+    carrier: CarrierBody | None = Field(default=None, description="carrier, planets left out")
     planet: RotorBody | None = Field(
         default=None, description="one planet; a disc of steel where left out"
     )
@@ -311,7 +325,7 @@ class PlanetaryData(PlanetaryStage):
     centre_distance: float = dimension(of="centre distance", gt=0, le=MAX_GEAR)
     face_width: float = dimension(of="face width in contact", gt=0, le=MAX_GEAR)
     stiffness_of: Literal["line", "axis"] = Field(description="line or axis")
-    carrier: RotorBody = Field(description="carrier, planets left out")
+    carrier: CarrierBody = Field(description="carrier, planets left out")
     planet: RotorBody = Field(description="one planet")
     sun: RotorBody = Field(description="sun")
     sun_planet: float = dimension(of="mesh stiffness", unit="N m/rad", gt=0, le=MAX_STIFFNESS)
