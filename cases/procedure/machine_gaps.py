@@ -88,7 +88,8 @@ def run(run: Run, page: Page) -> None:
 
 def answer(page: Page, speeds: tuple[float, float], torque: float, offset: float) -> None:
     """State the margin to resonance, and what dips and offsets load."""
-    margin = page.judged(MARGIN, f"least margin to a resonance, {speeds[0]:.4g} to {speeds[1]:.4g} rpm")
+    low, high = speeds
+    margin = page.judged(MARGIN, f"least margin to a resonance, {low:.4g} to {high:.4g} rpm")
     most = page.judged(MAXIMUM, "largest torque of the main shaft in a dip")
     least = page.judged(MINIMUM, "least torque of the main shaft in a dip")
     over = page.judged(
