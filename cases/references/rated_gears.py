@@ -18,17 +18,12 @@ import yaml
 from fe_drivetrain.comparison.tolerances import digit
 from fe_drivetrain.gear.involute import Gear, Pair, Rack
 from fe_drivetrain.gear.load_factors import (
-    Deviations,
     LoadFactors,
-    dynamic_factor,
     reduced_mass,
     relative_mass,
     resonance_speed,
-    root_face_factor,
-    running_in,
-    running_in_relief,
-    transverse_factors,
 )
+from fe_drivetrain.gear.pair_factors import RunningPair, method_b_factors
 from fe_drivetrain.gear.rating import (
     Running,
     contact_stress,
@@ -132,28 +127,16 @@ def with_dynamics(mesh: RatedMesh) -> LoadFactors:
     LoadFactors
         K_Fbeta always follows from K_Hbeta.
     """
-    pair, given, running = mesh.pair, mesh.factors, mesh.running
-    c_single, c_mesh = mesh.stiffness
-    speed = running.speed * pair.first.reference_radius
-    pitch, profile = mesh.deviations
-
-    def lost(deviation: float) -> float:
-        return 0.5 * sum(running_in(m, deviation, speed) for m in mesh.materials)
-
-    load = pair.tangential_force(running.torque) * given.K_A * given.K_gamma / pair.face_width
-    K_v = given.K_v
-    if mesh.computed_dynamics[0]:
-        ratio = running.speed / resonance_speed(c_mesh, mesh.mass, pair.first.teeth)
-        relief = running_in_relief(*mesh.materials)
-        stays = Deviations(pitch - lost(pitch), profile - lost(profile), relief)
-        K_v = dynamic_factor(ratio, load, c_single, pair.contact_ratio, stays)
-    K_H, K_F = given.K_Halpha, given.K_Falpha
-    if mesh.computed_dynamics[1]:
-        # the report takes the larger deviation, and the running in of the pitch
-        worst = max(mesh.deviations) - lost(pitch)
-        K_H, K_F = transverse_factors(pair, c_mesh, worst, load * K_v * given.K_Hbeta)
-    K_Fbeta = root_face_factor(given.K_Hbeta, pair.face_width, mesh.tooth_height)
-    return LoadFactors(given.K_A, given.K_gamma, K_v, given.K_Hbeta, K_Fbeta, K_H, K_F)
+    running = RunningPair(
+        mesh.pair,
+        mesh.materials,
+        mesh.running,
+        mesh.stiffness,
+        mesh.mass,
+        mesh.deviations,
+        mesh.tooth_height,
+    )
+    return method_b_factors(running, mesh.factors, *mesh.computed_dynamics)
 
 
 def tolerance(mesh: RatedMesh, quantity: str, printed: str) -> float:

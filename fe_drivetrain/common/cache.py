@@ -33,7 +33,9 @@ CACHE_VARIABLE = "FE_DRIVETRAIN_CACHE"
 LIMIT = 2 * 1024**3
 """Bytes; beyond it, what was used longest ago is dropped."""
 
-Kind = Literal["figures", "hub-loads", "life-digests", "load-digests", "meshes", "solutions"]
+Kind = Literal[
+    "figures", "gear-spectra", "hub-loads", "life-digests", "load-digests", "meshes", "solutions"
+]
 """What may be kept; each kind has a folder of its own."""
 
 _OFF = ("off", "0", "no", "false")

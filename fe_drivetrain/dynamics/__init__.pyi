@@ -1,9 +1,11 @@
 from .bodies.advice import QUESTIONS as QUESTIONS
 from .bodies.advice import RUNGS as RUNGS
 from .bodies.advice import Answer as Answer
+from .bodies.advice import Asked as Asked
 from .bodies.advice import Operation as Operation
 from .bodies.advice import Rung as Rung
 from .bodies.advice import ladder as ladder
+from .bodies.advice import like_mode as like_mode
 from .bodies.advice import needed_level as needed_level
 from .bodies.advice import pin_loads as pin_loads
 from .bodies.advice import slices_of as slices_of
@@ -17,6 +19,12 @@ from .bodies.bodies import Body as Body
 from .bodies.bodies import Superelement as Superelement
 from .bodies.bodies import assemble as assemble
 from .bodies.bodies import disc as disc
+from .bodies.catalogue_seats import catalogued as catalogued
+from .bodies.catalogue_seats import on_catalogue as on_catalogue
+from .bodies.condensed_rungs import SOFT_SEATS as SOFT_SEATS
+from .bodies.condensed_rungs import STIFF_SEATS as STIFF_SEATS
+from .bodies.condensed_rungs import Rungs as Rungs
+from .bodies.condensed_rungs import rungs_of as rungs_of
 from .bodies.elastic_ring import Rim as Rim
 from .bodies.elastic_ring import with_rim as with_rim
 from .bodies.equations import Equations as Equations
@@ -42,6 +50,10 @@ from .bodies.gear_pairs import mesh_courses as mesh_courses
 from .bodies.gear_pairs import mesh_stresses as mesh_stresses
 from .bodies.gear_pairs import pitch_contacts as pitch_contacts
 from .bodies.gear_pairs import with_iso_stiffness as with_iso_stiffness
+from .bodies.gearbox_mount import gearbox_housing as gearbox_housing
+from .bodies.housing_bounds import Between as Between
+from .bodies.housing_bounds import HousingBounds as HousingBounds
+from .bodies.housing_bounds import housing_bounds as housing_bounds
 from .bodies.levels import Assembly as Assembly
 from .bodies.levels import Level as Level
 from .bodies.levels import assembly as assembly
@@ -57,6 +69,9 @@ from .bodies.machine import machine_of as machine_of
 from .bodies.mesh_errors import MeshError as MeshError
 from .bodies.mesh_errors import error_of_slices as error_of_slices
 from .bodies.mesh_errors import harmonic_error as harmonic_error
+from .bodies.mesh_loads import MeshLoads as MeshLoads
+from .bodies.mesh_loads import MeshResponses as MeshResponses
+from .bodies.mesh_loads import mesh_springs as mesh_springs
 from .bodies.meshing import Meshing as Meshing
 from .bodies.meshing import contact_wave as contact_wave
 from .bodies.meshing import machine_meshing as machine_meshing
@@ -67,6 +82,7 @@ from .bodies.modes import TurningModes as TurningModes
 from .bodies.modes import direction_kinds as direction_kinds
 from .bodies.modes import distinct as distinct
 from .bodies.modes import divergence_speeds as divergence_speeds
+from .bodies.modes import likest_modes as likest_modes
 from .bodies.modes import planetary_kinds as planetary_kinds
 from .bodies.modes import system_modes as system_modes
 from .bodies.modes import turning_modes as turning_modes
@@ -109,6 +125,7 @@ from .bodies.system import System as System
 from .bodies.system import with_proportional_damping as with_proportional_damping
 from .bodies.system import with_stiffness as with_stiffness
 from .bodies.system import without_massless as without_massless
+from .bodies.torsional_table import gear_table as gear_table
 from .time.base_motion import BaseMotion as BaseMotion
 from .time.base_motion import base_motion as base_motion
 from .time.base_motion import on_base as on_base

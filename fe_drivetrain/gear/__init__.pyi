@@ -1,3 +1,5 @@
+from .accuracy import Tolerances as Tolerances
+from .accuracy import gear_tolerances as gear_tolerances
 from .coupled_slices import Coupling as Coupling
 from .coupled_slices import loaded_with_coupling as loaded_with_coupling
 from .damage import ParallelStage as ParallelStage
@@ -59,6 +61,8 @@ from .meshes import mesh_stiffness as mesh_stiffness
 from .meshes import planet_meshes as planet_meshes
 from .meshes import square_wave as square_wave
 from .meshes import square_wave_series as square_wave_series
+from .pair_factors import RunningPair as RunningPair
+from .pair_factors import method_b_factors as method_b_factors
 from .pair_stiffness import Law as Law
 from .pair_stiffness import cai_law as cai_law
 from .pair_stiffness import constant_law as constant_law

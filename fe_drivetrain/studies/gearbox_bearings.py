@@ -210,7 +210,7 @@ def gearbox_mount(drivetrain: Drivetrain, machine: Machine) -> Flexible | None:
     K = np.diag(np.where(np.isfinite(stiffness), stiffness, RIGID))
     at = (drivetrain.shaft.rear - drivetrain.shaft.front, 0.0, 0.0)
     housing = Housing(at, K, max(mass, 0.0), 0.0, 0.0)
-    return Flexible(housing=housing, outside=frozenset(main_names(machine)))
+    return Flexible(housing=housing, apart=frozenset(main_names(machine)))
 
 
 def main_names(machine: Machine) -> tuple[str, ...]:

@@ -28,7 +28,14 @@ from fe_drivetrain.geometry import MeshSizes
 from fe_drivetrain.report.results import AssumptionRow, Table, Text
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.shafts.fidelity.assembly_bands import finer_mesh
-from fe_drivetrain.studies import CaptureTarget, LifeOptions, LoadOptions, check, prepare_export
+from fe_drivetrain.studies import (
+    CaptureTarget,
+    GearOptions,
+    LifeOptions,
+    LoadOptions,
+    check,
+    prepare_export,
+)
 from fe_drivetrain.studies.load_winds import winds_not_used
 from fe_drivetrain.studies.rolling_bearings import bearings_of
 from fe_drivetrain.studies.unused import require_samples
@@ -38,6 +45,7 @@ SCENE = "main_bearing_spherical"
 LIBRARY = Path(fe_drivetrain.__file__).parent
 
 OWNERS = {
+    "GearOptions": GearOptions,
     "LifeOptions": LifeOptions,
     "LoadOptions": LoadOptions,
     "CaptureTarget": CaptureTarget,

@@ -1,0 +1,130 @@
+"""How each level of a drivetrain's model spreads the load of its meshes over planets and face."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.short_repr import short_repr
+from fe_drivetrain.drivetrain_file.machine_table import MachineTable
+from fe_drivetrain.dynamics.bodies.levels import Level
+from fe_drivetrain.dynamics.bodies.mesh_loads import MeshResponses, mesh_springs
+from fe_drivetrain.studies.gear_stresses import SHARING, MeshStresses, spread_at_ends
+
+LEAST = 0.01
+"""Share of the reference torque below which loads are spread as at that share."""
+
+
+@dataclass(frozen=True, eq=False)
+class Spread:
+    """How a mesh spreads its load.
+
+    Attributes
+    ----------
+    azimuths : ndarray, (a,)
+        Azimuths of the rotor [rad].
+    share : ndarray, (a, p)
+        Load of each planet over the mean of all.
+    face : ndarray, (a, p, s)
+        Load per face width over the planet's mean, from the end at the smallest x to the other;
+        with the share that the helix deviation of the accuracy grade adds.
+    mean : float
+        Mean force of a planet's mesh by statics, normal to the flanks [N]; NaN without statics.
+    """
+
+    azimuths: Floats
+    share: Floats
+    face: Floats
+    mean: float = float("nan")
+
+    __repr__ = short_repr
+
+    @property
+    def sharing(self) -> float:
+        """K_gamma: the largest load of a planet over the mean."""
+        return float(self.share.max())
+
+    @property
+    def face_load(self) -> float:
+        """K_Hbeta: the largest load per face width over its planet's mean."""
+        return float(self.face.max())
+
+    @property
+    def halves(self) -> tuple[Spread, Spread]:
+        """The same at every other azimuth, from the first and from the second."""
+        first, second = (
+            Spread(self.azimuths[k::2], self.share[k::2], self.face[k::2], self.mean)
+            if len(self.azimuths) > 1
+            else self
+            for k in (0, 1)
+        )
+        return first, second
+
+
+class LoadSpread:
+    """Spread of the loads of all meshes, at one level.
+
+    Parameters
+    ----------
+    machine : MachineTable
+        The machine.
+    stresses : mapping of str to MeshStresses
+        Meshes that are rated, by name.
+    level : Level
+        Torsional: planets and face share by formula; else by statics.
+    count : int
+        Number of azimuths.
+    slices : int
+        Number of slices of each mesh.
+    weight : bool
+        Whether the rotor has its weight.
+    reference : float
+        Reference torque of the rotor [N m].
+    """
+
+    def __init__(
+        self,
+        machine: MachineTable,
+        stresses: Mapping[str, MeshStresses],
+        level: Level,
+        count: int,
+        slices: int,
+        weight: bool,
+        reference: float,
+    ) -> None:
+        self._stresses, self._least = stresses, LEAST * abs(reference)
+        self._planets = {name: len(springs) for name, springs in mesh_springs(machine).items()}
+        self._responses = None
+        if level is not Level.TORSIONAL:
+            self._responses = MeshResponses(machine, level, count, slices, weight)
+
+    def under(self, torque: float, hub: Floats) -> dict[str, Spread]:
+        """Spread of all meshes under a torque of the rotor [N m] and other loads of the hub.
+
+        A torque of the other sense, or hardly any, is spread as one of the driving sense.
+        """
+        size = max(abs(torque), self._least)
+        if self._responses is None:
+            return {name: self._by_formula(name, size) for name in self._planets}
+        loads = self._responses.under(size, hub)
+        return {
+            name: self._by_statics(name, size, loads.azimuths, forces)
+            for name, forces in loads.slices.items()
+        }
+
+    def _by_formula(self, name: str, torque: float) -> Spread:
+        sharing, face = SHARING.get(self._planets[name], SHARING[7]), 1.0
+        if name in self._stresses:
+            sharing, face = self._stresses[name].formula(torque)
+        return Spread(np.zeros(1), np.full((1, 1), sharing), np.full((1, 1, 1), face))
+
+    def _by_statics(self, name: str, torque: float, azimuths: Floats, forces: Floats) -> Spread:
+        each = forces.sum(axis=2)
+        share = each / each.mean(axis=1, keepdims=True)
+        mean = np.where(each > 0.0, each, 1.0)[..., None] / forces.shape[2]
+        face = np.where(each[..., None] > 0.0, spread_at_ends(forces) / mean, 1.0)
+        added = self._stresses[name].misaligned(torque) - 1.0 if name in self._stresses else 0.0
+        return Spread(azimuths, share, face + added, float(each.mean()))

@@ -1,0 +1,104 @@
+"""What a drivetrain's file states for a rating of its gears, and which keys it lacks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from fe_drivetrain.common.arguments import argument
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.entrance import Entrance
+from fe_drivetrain.drivetrain_file.gear_strength import GearStrength
+from fe_drivetrain.drivetrain_file.machine_table import MachineTable
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.dynamics.bodies.machine import machine_of
+from fe_drivetrain.studies.gear_options import GearOptions
+from fe_drivetrain.studies.gear_stresses import Conditions
+
+RPM = 0.10471975511965977
+
+
+@dataclass(frozen=True)
+class GearTrain:
+    """A machine whose gears are rated.
+
+    Attributes
+    ----------
+    machine : MachineTable
+        Bodies, shafts and stages.
+    strengths : dict of int to GearStrength
+        Strength of stages by their number, from 1.
+    conditions : Conditions
+        Rated speed of the rotor, and oil.
+    torque : float
+        Reference torque of the rotor [N m].
+    entrance : Entrance or None
+        Where hub loads enter; None of a main shaft without sections.
+    stated : str
+        Where the torque comes from.
+    missing : tuple of str
+        Keys that every rating needs and the file lacks.
+    """
+
+    machine: MachineTable
+    strengths: dict[int, GearStrength]
+    conditions: Conditions
+    torque: float
+    entrance: Entrance | None
+    stated: str
+    missing: tuple[str, ...]
+
+
+def gear_train(drivetrain: Drivetrain, options: GearOptions, torque: float | None) -> GearTrain:
+    """What a rating needs of a drivetrain.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        The drivetrain, with a rotor, stages and a generator.
+    options : GearOptions
+        What is given beside the file.
+    torque : float or None
+        Torque of the rotor [N m]; None takes that of the file's rated power.
+
+    Raises
+    ------
+    InputError
+        The file has no gears, or no torque is known.
+    """
+    if not drivetrain.gearbox.stages:
+        raise InputError(f"{drivetrain.title!r} has no gears: give gearbox.stages")
+    machine, operation = machine_of(drivetrain), drivetrain.operation
+    speed, oil = None, None
+    if operation is not None:
+        speed = None if operation.rotor_speed is None else operation.rotor_speed[1]
+        oil = None if operation.lubricant is None else 1e-6 * float(operation.lubricant.split()[1])
+    if options.rotor_speed_rpm:
+        speed = options.rotor_speed_rpm * RPM
+    if options.lubricant is not None:
+        oil = 1e-6 * options.lubricant
+    stated = "as asked"
+    if torque is None:
+        torque = None if operation is None else operation.rated_torque
+        stated = "operation: rated_power over rotor_speed, without losses"
+    if torque is None:
+        raise InputError(
+            f"{drivetrain.title!r} states no torque: give operation.rated_power and "
+            f"operation.rotor_speed in the file, or {argument('torque')} in N m"
+        )
+    if not 0.0 < torque < 1e10:
+        raise InputError(
+            f"torque of the rotor is {torque:g} N m but must be above 0 and below 1e10 N m: "
+            "give that which drives the gears"
+        )
+    strengths = {
+        number: stage.strength
+        for number, stage in enumerate(machine.stages, start=1)
+        if stage.strength is not None
+    }
+    where = drivetrain.entrance if isinstance(drivetrain, Scene) else None
+    missing = ["operation.rotor_speed"] if speed is None else []
+    missing += ["operation.lubricant"] if oil is None else []
+    return GearTrain(
+        machine, strengths, Conditions(speed, oil), torque, where, stated, tuple(missing)
+    )

@@ -1,0 +1,89 @@
+"""What is asked of ``gears`` beside the drivetrain and its loads, with all defaults."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from fe_drivetrain.common.errors import InputError, require_known
+from fe_drivetrain.studies.history_options import HistoryOptions, require_between
+
+if TYPE_CHECKING:
+    from fe_drivetrain.dynamics.bodies.levels import Level
+
+LEVELS = ("torsional", "rigid bodies", "flexible shafts")
+"""Levels of the ladder, from the simplest."""
+
+HOURS = 175200.0
+"""Hours of twenty years, of a torque without a site."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class GearOptions(HistoryOptions):
+    """Choices of a rating of gears, each with its default.
+
+    Attributes
+    ----------
+    channels, rotor_speed_rpm, skip
+        How files are read, see `HistoryOptions`; the rotor speed is that of the rating, too, where
+        the drivetrain states none.
+    level : str
+        One of `LEVELS`, by which gears are rated.
+    tolerance : float
+        Relative difference in contact stress within which a cheaper level is enough.
+    azimuths : int
+        Positions over a turn of the rotor; even, so that every other one gives their band.
+    slices : int
+        Slices of each mesh over the face.
+    classes : int
+        Classes of torque up to the reference torque.
+    hours : float or None
+        Hours of the life asked for, without a site; None takes 175200, twenty years.
+    lubricant : float or None
+        Kinematic viscosity of the oil at 40 degC [mm2/s], where the drivetrain states none.
+
+    Raises
+    ------
+    InputError
+        A value is out of its range.
+    """
+
+    level: Literal["torsional", "rigid bodies", "flexible shafts"] = "flexible shafts"
+    tolerance: float = 0.05
+    azimuths: int = 24
+    slices: int = 9
+    classes: int = 40
+    hours: float | None = None
+    lubricant: float | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_known("level of a rating of gears", self.level, LEVELS)
+        for name, low, high in (("azimuths", 4, 720), ("slices", 3, 99), ("classes", 4, 1000)):
+            value = getattr(self, name)
+            if not (isinstance(value, int) and low <= value <= high):
+                raise InputError(
+                    f"rating of gears: {name} is {value} but must be a whole number from {low} to "
+                    f"{high}: change it"
+                )
+        if self.azimuths % 2:
+            raise InputError(
+                f"rating of gears: azimuths is {self.azimuths} but must be even, so that every "
+                "other one tells how many are enough: change it"
+            )
+        for name, unit, most in (("tolerance", "", 1.0), ("hours", "h", 1e7)):
+            value = getattr(self, name)
+            if value is not None and not 0.0 < value <= most:
+                raise InputError(
+                    f"rating of gears: {name} is {value:g} {unit} but must be above 0 and at most "
+                    f"{most:g}: change it"
+                )
+        if self.lubricant is not None:
+            require_between("viscosity of the oil", self.lubricant, "mm2/s", 1.0, 2000.0)
+
+    @property
+    def ladder(self) -> tuple[Level, ...]:
+        """Levels from the simplest to the finest."""
+        from fe_drivetrain.dynamics.bodies.levels import Level
+
+        return tuple(Level(name) for name in LEVELS)

@@ -1,0 +1,373 @@
+"""Ratings of the gears of a drivetrain: by hand, against printed ones, and what is refused."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from math import cos, pi, radians, sqrt, tan
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fe_drivetrain.cases.references.rated_gears import rated_meshes
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
+from fe_drivetrain.studies.gear_options import GearOptions
+from fe_drivetrain.studies.gear_ratings import GearsResult, gears
+from fe_drivetrain.turbine_loads.histories.sites import Site
+
+SMALL = """\
+title: A small gearbox of one planetary stage, the same in all directions
+rotor: {inertia: 1.0, mass: 1.0e-3}
+shaft: {length: 0.5, torsion: 1.0e7}
+gearbox:
+  stages:
+    - kind: planetary
+      planets: 3
+      teeth: {ring: 72, planet: 24, sun: 24}
+      module: 0.01
+      shifts: {ring: 0.0, planet: 0.0, sun: 0.0}
+      tips: {ring: 0.706, planet: 0.26, sun: 0.26}
+      centre_distance: 0.24
+      face_width: 0.1
+      stiffness_of: line
+      cutter: 30
+      carrier: {inertia: 1.0e-4, mass: 1.0e-3}
+      planet: {inertia: 1.0e-5, mass: 1.0e-3}
+      sun: {inertia: 1.0e-5, mass: 1.0e-3}
+      ring_planet: 1.4e9
+      sun_planet: 1.2e9
+      pins:
+        - {name: upwind, offset: -0.02, stiffness: [1.0e8, 1.0e9, 1.0e9, 0, 0, 0]}
+        - {name: downwind, offset: 0.02, stiffness: [1.0e8, 1.0e9, 1.0e9, 0, 0, 0]}
+      strength:
+        gears:
+          ring: {steel: through-hardened, contact_limit: 7.0e8, root_limit: 2.9e8,
+                 yield_strength: 1.0e9, brinell: 240}
+          planet: {steel: case-hardened, contact_limit: 1.5e9, root_limit: 4.3e8}
+          sun: {steel: case-hardened, contact_limit: 1.5e9, root_limit: 4.3e8}
+  shafts:
+    - {name: HSS, length: 0.3, torsion: 1.0e6, kind: coupling}
+  bearings:
+    - {name: front, holds: main shaft, at: 0.1, stiffness: [1.0e8, 1.0e9, 1.0e9, 0, 1.0e6, 1.0e6]}
+    - {name: carrier, holds: stage 1 carrier, stiffness: [1.0e8, 1.0e9, 1.0e9, 0, 1.0e6, 1.0e6]}
+    - {name: sun, holds: stage 1 sun, stiffness: [1.0e8, 1.0e6, 1.0e6, 0, 1.0e5, 1.0e5]}
+generator: {inertia: 10}
+operation: {rated_power: 1.0e5, rotor_speed: [1.0, 2.0], lubricant: VG 320}
+"""
+TORQUE, SPEED = 5e4, 2.0  # N m, rad/s
+FEW = {"azimuths": 6, "slices": 3}
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory: pytest.TempPathFactory) -> Drivetrain:
+    return read_drivetrain(_file(tmp_path_factory.mktemp("gears")))
+
+
+def _file(folder: Path, **changed: str) -> Path:
+    text = SMALL
+    for old, new in changed.items():
+        assert old in text
+        text = text.replace(old, new)
+    (folder / "small.yaml").write_text(text)
+    return folder / "small.yaml"
+
+
+def _rated(drivetrain: Drivetrain, torque: float | None = None, **options: Any) -> GearsResult:
+    return gears(drivetrain, torque, options=GearOptions(**{**FEW, **options}))
+
+
+def test_planets_share_equally_where_nothing_is_uneven(small: Drivetrain) -> None:
+    """No weight to speak of, bearings the same in all directions, spur teeth."""
+    for level in ("rigid bodies", "flexible shafts"):
+        found = _rated(small, level=level)
+        for mesh in found.meshes.values():
+            assert mesh.spread.share == pytest.approx(np.ones((6, 3)), abs=1e-6)
+            assert mesh.spread.face == pytest.approx(np.ones((6, 3, 5)), abs=1e-6)
+            assert mesh.balance == pytest.approx(1.0, rel=1e-9)
+        teeth = found.gears["stage 1 ring"].life
+        assert teeth is not None
+        assert np.ptp(teeth.of_teeth) == pytest.approx(0.0, abs=1e-3 * teeth.of_teeth.max())
+
+
+def test_force_and_contact_stress_of_a_pair_by_hand(small: Drivetrain) -> None:
+    """Sun and planet: F_t of torque and radius, sigma_H0 by its formula, printed factors."""
+    found = _rated(small)
+    torque = TORQUE / (1.0 + 72.0 / 24.0) / 3.0  # of the sun, over three planets
+    force = torque / 0.12  # 24 teeth of 10 mm
+    mesh = found.meshes["stage 1 sun-planet"]
+    assert mesh.torque == pytest.approx(torque, rel=1e-12)
+    assert mesh.force == pytest.approx(force, rel=1e-12)
+    tip, base = 0.13, 0.12 * cos(radians(20))
+    reach = 2.0 * sqrt(tip**2 - base**2) - 0.24 * tan(radians(20)) * cos(radians(20))
+    ratio = reach / (pi * 0.01 * cos(radians(20)))
+    assert mesh.pair is not None
+    assert mesh.pair.transverse_ratio == pytest.approx(ratio, rel=1e-9)
+    Z_H = sqrt(2.0 / (cos(radians(20)) ** 2 * tan(radians(20))))
+    Z_E, Z_epsilon = 189.812e3, sqrt((4.0 - ratio) / 3.0)
+    nominal = Z_H * Z_E * Z_epsilon * sqrt(force / (0.24 * 0.1) * 2.0)
+    # from the pitch point to the inner point of single contact, the same for equal gears
+    from_end = sqrt(tip**2 - base**2) - pi * 0.01 * cos(radians(20))
+    pitch = 0.12 * 2.0 * tan(radians(20)) * cos(radians(20)) / 2.0
+    single = sqrt(pitch**2 / (from_end * (2.0 * pitch - from_end)))
+    sun = found.gears["stage 1 sun"]
+    assert sun.contact_stress == pytest.approx(nominal * max(single, 1.0), rel=1e-5)
+
+
+@pytest.fixture(scope="module")
+def printed() -> GearsResult:
+    """The NREL 5 MW gearbox with the factors that a user of KISSsoft typed in."""
+    return _rated(read_drivetrain("nrel_5mw"), level="torsional")
+
+
+@pytest.mark.parametrize(
+    ("mesh", "flanks"),
+    [
+        ("stage 1, sun and planet", ("stage 1 sun", "stage 1 planet, flank to sun")),
+        ("stage 1, planet and ring", ("stage 1 planet, flank to ring", "stage 1 ring")),
+        ("stage 2, sun and planet", ("stage 2 sun", "stage 2 planet, flank to sun")),
+        ("stage 2, planet and ring", ("stage 2 planet, flank to ring", "stage 2 ring")),
+        ("stage 3", ("stage 3 pinion", "stage 3 gear")),
+    ],
+)
+def test_safeties_of_the_nrel_5mw_gears_are_those_that_kisssoft_prints(
+    printed: GearsResult, mesh: str, flanks: tuple[str, str]
+) -> None:
+    """Two decimals; K_v of the file's inertias, and tooth heights as cut, change 0.5 % at most."""
+    of = rated_meshes()[f"NREL 5 MW, {mesh}"].printed
+    for number, name in enumerate(flanks):
+        found = printed.gears[name]
+        S_H, S_F = float(of["S_H"][number]), float(of["S_F"][number])
+        assert found.contact_safety == pytest.approx(S_H, abs=0.005 + 0.005 * S_H), name
+        assert found.root_safety == pytest.approx(S_F, abs=0.005 + 0.005 * S_F), name
+
+
+def test_the_ring_lasts_as_long_as_kisssoft_prints(printed: GearsResult) -> None:
+    """1005 h with S_H = 1.25, where K_v was typed in; half of the last digit, rounded shifts."""
+    assert printed.gears["stage 1 ring"].life_hours == pytest.approx(1005.0, abs=1.0)
+    assert printed.answer.verdict.endswith("lasts 1\u202f005\u00a0h.")
+    assert printed.answer.status == "bad"
+
+
+def test_damage_of_two_torques_by_hand(small: Drivetrain) -> None:
+    """Hours at each over what the line from 5e7 to 1e10 loads endures, by Miner's rule."""
+    torques, hours = (2.2e5, 1.9e5), (300.0, 900.0)
+    name, loads = "stage 1 sun", 3.0 * 3.0  # planets, and turns against the carrier per turn
+    fall = np.log(1.0 / 0.85) / np.log(1e10 / 5e7)
+    expected = 0.0
+    for torque, time in zip(torques, hours, strict=True):
+        alone = _rated(small, torque, level="torsional", hours=time).gears[name]
+        cycles = time * 3600.0 * SPEED / (2.0 * pi) * loads
+        # stress endured at the knee, from what S_H says of these cycles before it
+        first, static = 1e5, 1.6 * 1500e6
+        assert alone.contact_safety is not None
+        endured = alone.contact_safety * alone.contact_stress
+        slope = np.log(cycles / first) / np.log(5e7 / first)
+        knee = static * (endured / static) ** (1.0 / slope)
+        stress = 1.25 * alone.contact_stress
+        if stress <= knee:
+            lasts = 5e7 * (knee / stress) ** (1.0 / fall)
+        else:
+            lasts = first * (static / stress) ** (np.log(5e7 / first) / np.log(static / knee))
+        expected += cycles / lasts
+    rows = list(zip(torques, hours, strict=True))
+    options = GearOptions(**{**FEW, "level": "torsional"})
+    found = gears(small, 2e5, options=options, spectrum=rows).gears[name]
+    assert found.life is not None
+    assert expected > 1e-3
+    assert found.life.damage.flank == pytest.approx(expected, rel=1e-6)
+    assert found.life_hours == pytest.approx(sum(hours) / expected, rel=1e-6)
+
+
+def test_the_safety_over_a_spectrum_just_brings_failure(small: Drivetrain) -> None:
+    """All stresses times that factor, which is the torque times its square, and damage is 1."""
+    rows = [(2.2e5, 3000.0), (1.9e5, 9000.0)]
+    options = GearOptions(**{**FEW, "level": "torsional"})
+    first = gears(small, 2e5, options=options, spectrum=rows).gears["stage 1 sun"].life
+    assert first is not None
+    scale = (first.contact_safety / 1.25) ** 2
+    more = [(scale * torque, time) for torque, time in rows]
+    found = gears(small, 2e5, options=options, spectrum=more).gears["stage 1 sun"].life
+    assert found is not None
+    assert found.damage.flank == pytest.approx(1.0, rel=1e-3)
+
+
+def test_a_negative_torque_uses_up_the_other_flank(small: Drivetrain) -> None:
+    options = GearOptions(**{**FEW, "level": "torsional"})
+    forth, back = (
+        gears(small, 2e5, options=options, spectrum=[(sign * 2.2e5, 900.0)]) for sign in (1, -1)
+    )
+    for name in forth.gears:
+        one, other = forth.gears[name].life, back.gears[name].life
+        assert one is not None
+        assert other is not None
+        assert (one.damage.flank, one.damage.back) == (other.damage.back, other.damage.flank)
+    assert any("Negative torques" in note for note in back.notes)
+
+
+def test_a_moment_on_the_hub_loads_the_ends_of_the_face(small: Drivetrain) -> None:
+    still = _rated(small, level="rigid bodies")
+    options = GearOptions(**{**FEW, "level": "rigid bodies"})
+    tilted = gears(small, options=options, hub={"My": 2e5})
+    name = "stage 1 ring-planet"
+    assert tilted.meshes[name].spread.face_load > 1.01 * still.meshes[name].spread.face_load
+    ring = tilted.gears["stage 1 ring"].life
+    assert ring is not None
+    assert len(ring.of_teeth) == 6
+
+
+def test_the_ladder_says_which_level_is_enough(small: Drivetrain) -> None:
+    found = _rated(small)
+    assert [one.name for one in found.levels] == ["torsional", "rigid bodies", "flexible shafts"]
+    torsional = found.levels[0]
+    assert torsional.factors["stage 1 sun-planet"] == (1.10, 1.0)
+    # of equal planets the formula is sqrt(1.1) - 1 too high
+    assert torsional.difference == pytest.approx(sqrt(1.1) - 1.0, abs=1e-6)
+    assert found.enough == "torsional"
+    assert _rated(small, tolerance=0.04).enough == "rigid bodies"
+
+
+def test_what_is_not_stated_is_named_and_not_rated(tmp_path: Path) -> None:
+    without = read_drivetrain(_file(tmp_path, **{", lubricant: VG 320": ""}))
+    found = _rated(without)
+    assert all(one.contact_safety is None for one in found.gears.values())
+    assert "operation.lubricant" in found.notes[0]
+    assert found.answer.verdict.startswith("The largest contact stress is ")
+    assert _rated(without, lubricant=320.0).gears["stage 1 sun"].contact_safety is not None
+
+
+def test_the_750kw_gears_have_stresses_and_no_safety() -> None:
+    """Their materials are not public."""
+    found = _rated(read_drivetrain("nrel_750kw"), 3.2e5, level="torsional", rotor_speed_rpm=22.0)
+    assert all(one.contact_safety is None and one.life is None for one in found.gears.values())
+    assert all(0.0 < one.contact_stress < 3e9 for one in found.gears.values())
+    assert "strength of stage 1, stage 2, stage 3" in found.notes[0]
+
+
+def _write(path: Path, torque: float, wind: float, tail: str = "") -> None:
+    rows = [
+        f"{0.5 * k},0,0,0,{torque},0,0,19.0985932,{wind + 0.1 * (k % 3 - 1)}" for k in range(60)
+    ]
+    head = "time [s],Fx [N],Fy [N],Fz [N],Mx [N m],My [N m],Mz [N m],rotor speed [rpm],"
+    path.write_text("\n".join([f"{head}wind speed [m/s]", *rows, tail]).strip() + "\n")
+
+
+def test_files_make_the_spectrum_and_a_site_weights_them(small: Drivetrain, tmp_path: Path) -> None:
+    """At the site each wind has its share of twenty years, and its own torque."""
+    _write(tmp_path / "a.csv", 1.9e5, 8.0)
+    _write(tmp_path / "b.csv", 2.2e5, 12.0)
+    site = Site(mean_wind=8.5)
+    options = GearOptions(**{**FEW, "level": "torsional"})
+    found = gears(small, 2e5, str(tmp_path / "*.csv"), site, options)
+    assert found.spectrum is not None
+    hours = site.hours([6.0, 10.0, 14.0])
+    assert found.spectrum.torques == pytest.approx([1.9e5, 2.2e5])
+    assert found.spectrum.seconds / 3600.0 == pytest.approx(hours)
+    assert found.spectrum.turns == pytest.approx(3600.0 * hours * SPEED / (2.0 * pi), rel=1e-6)
+    rows = list(zip((1.9e5, 2.2e5), hours.tolist(), strict=True))
+    stated = gears(small, 2e5, options=options, spectrum=rows)
+    for name, one in found.gears.items():
+        life, other = one.life, stated.gears[name].life
+        assert life is not None
+        assert other is not None
+        assert life.damage.flank == pytest.approx(other.damage.flank, rel=1e-5)
+        assert one.life_hours == pytest.approx(20.0 * 8760.0 / life.damage.largest)
+    assert found.hours == 20.0 * 8760.0
+    again = gears(small, 2e5, str(tmp_path / "*.csv"), site, options, resume=True)
+    assert again.spectrum is not None
+    assert again.spectrum.turns == pytest.approx(found.spectrum.turns, rel=1e-15)
+
+
+def test_moments_of_files_are_moved_to_where_loads_enter(tmp_path: Path) -> None:
+    """From a metre upwind of the shaft's front: M + r x F with r = (-1, 0, 0) m."""
+    scene = read_drivetrain("nrel_5mw", {"hub.loads_at": -1.333})
+    _write(tmp_path / "a.csv", 4e6, 8.0)
+    text = (tmp_path / "a.csv").read_text().replace(",0,0,0,4000000.0", ",0,0,-1e6,4000000.0")
+    (tmp_path / "a.csv").write_text(text)
+    options = GearOptions(**{**FEW, "level": "torsional"})
+    found = gears(scene, loads=tmp_path / "a.csv", options=options)
+    assert found.hub == pytest.approx([0.0, 0.0, -1e6, 0.0, -1e6, 0.0])
+
+
+def test_the_command_writes_a_page_and_tables(
+    tmp_path: Path, invoke: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = _file(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "spectrum.csv").write_text("torque [kNm],time [h]\n220,300\n190,900\n")
+    words = ("--spectrum", "spectrum.csv", "--torque", "2e5", "--azimuths", "6", "--slices", "3")
+    status, out, _ = invoke("gears", str(file), *words, "--json", "--out", "found")
+    assert status == 0
+    plain = json.loads(out)
+    assert plain["schema"] == "fe-drivetrain/gears/1"
+    assert len(plain["answer"]["verdict"].split(" ")) <= 25
+    assert {row["gear"] for row in plain["tables"]["gears"]} == {
+        "stage 1 sun",
+        "stage 1 planet, flank to sun",
+        "stage 1 planet, flank to ring",
+        "stage 1 ring",
+    }
+    written = {path.name for path in (tmp_path / "found").glob("*.csv")}
+    assert {"gears.csv", "meshes.csv", "levels.csv", "sharing.csv", "face.csv"} <= written
+    assert (tmp_path / "found" / "report.html").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("--torque", "-3"), "torque of the rotor is -3 N m but must be above 0"),
+        (("--site", "II"), "--site weights files of hub loads: give --loads, too"),
+        (("--level", "solid"), "level"),
+        (("--azimuths", "7"), "azimuths is 7 but must be even"),
+        (("--slices", "1"), "slices is 1 but must be a whole number from 3"),
+        (("--hours", "0"), "hours is 0 h but must be above 0"),
+        (("--load", "hub.Mx=1"), "--load 'hub.Mx' is unknown"),
+        (("--lubricant", "thick"), "--lubricant thick: give a grade"),
+        (("--spectrum", "none.csv"), "none.csv"),
+        (("--loads", "none.csv"), "none.csv"),
+    ],
+)
+def test_a_mistake_ends_with_one_sentence_and_leaves_nothing(
+    tmp_path: Path,
+    invoke: Any,
+    monkeypatch: pytest.MonkeyPatch,
+    words: tuple[str, ...],
+    sentence: str,
+) -> None:
+    file = _file(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    status, _, error = invoke("gears", str(file), *words, "--out", "found")
+    assert status == 2
+    assert sentence in error
+    assert not (tmp_path / "found").exists()
+
+
+@pytest.mark.parametrize(
+    ("changed", "sentence"),
+    [
+        ({"operation: {rated_power: 1.0e5,": "operation: {"}, "states no torque: give operation"),
+        (
+            {"          ring: {steel: t": "          wheel: {steel: t"},
+            "has the gears wheel, planet",
+        ),
+    ],
+)
+def test_a_file_that_lacks_what_is_needed_is_refused(
+    tmp_path: Path, changed: Mapping[str, str], sentence: str
+) -> None:
+    with pytest.raises(InputError, match=sentence):
+        _rated(read_drivetrain(_file(tmp_path, **changed)))
+
+
+def test_arguments_that_contradict_each_other_are_refused(small: Drivetrain) -> None:
+    with pytest.raises(InputError, match="is no load of the hub beside its torque"):
+        gears(small, hub={"Mx": 1.0})
+    with pytest.raises(InputError, match="has no class"):
+        gears(small, spectrum=[])
+    with pytest.raises(InputError, match="class 1 of the torque spectrum is"):
+        gears(small, spectrum=[(1e5, -1.0)])
+    with pytest.raises(InputError, match="lasts 0 h"):
+        gears(small, spectrum=[(1e5, 0.0)])
