@@ -288,7 +288,7 @@ class _Maker:
                 OtherPath(
                     "the stiffness of this bearing as stated",
                     words,
-                    self._path(rated, model.reactions({self.name: factor})[self.name]),
+                    self._path(rated, model.reactions({self.name: factor}, {self.name})[self.name]),
                 )
                 for factor, words in FACTORS
             ),
