@@ -26,16 +26,23 @@ UNREAD = (
 _ROUND_OFF = 1e-6
 
 
-def gear_chart(gears: Mapping[str, GearAnswer], varies: bool) -> Chart:
-    """Safety factors of all gears over the least that is asked for; stresses without strength.
+def gear_chart(
+    gears: Mapping[str, GearAnswer], meshes: Mapping[str, MeshAnswer], varies: bool
+) -> Chart:
+    """Safety factors of all gears over those required; stresses, or loads, without what they need.
 
     Parameters
     ----------
     gears : mapping of str to GearAnswer
         All flanks.
+    meshes : mapping of str to MeshAnswer
+        All meshes.
     varies : bool
         Whether safety is over a spectrum.
     """
+    if not gears:
+        loads = {name: float(one.along.max()) for name, one in meshes.items()}
+        return bars("Largest local load of each mesh", {"load": loads}, "load over the mean [-]")
     rated = {name: safeties(one, varies) for name, one in gears.items() if one.required}
     if not rated:
         stress = {name: one.contact_stress / 1e6 for name, one in gears.items()}

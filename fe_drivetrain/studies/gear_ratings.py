@@ -77,7 +77,7 @@ class GearsResult(Result):
 
     def chart(self) -> Chart:
         """Safety factors of all gears with their limits; contact stresses without strength."""
-        return gear_chart(self.gears, self.varies)
+        return gear_chart(self.gears, self.meshes, self.varies)
 
 
 def gears(

@@ -247,6 +247,14 @@ def test_the_750kw_gears_have_stresses_and_no_safety() -> None:
     assert "strength of stage 1, stage 2, stage 3" in found.notes[0]
 
 
+def test_gears_without_teeth_have_loads_alone() -> None:
+    found = _rated(read_drivetrain("park_2021"), 1e6, level="rigid bodies")
+    assert not found.gears
+    assert found.chart().figure["data"][0]["x"]
+    assert "teeth, module, shifts of stage 1, stage 2, stage 3" in found.notes[0]
+    assert found.meshes["stage 1 ring-planet"].spread.sharing >= 1.0
+
+
 def _write(path: Path, torque: float, wind: float, tail: str = "") -> None:
     rows = [
         f"{0.5 * k},0,0,0,{torque},0,0,19.0985932,{wind + 0.1 * (k % 3 - 1)}" for k in range(60)
