@@ -17,7 +17,8 @@ from sphinx.domains.python import PythonDomain
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE))
 
-import formulas  # noqa: E402 - beside this file
+import dossier_pages  # noqa: E402 - beside this file
+import formulas  # noqa: E402
 import notebook_runs  # noqa: E402
 import result_pages  # noqa: E402
 import written_pages  # noqa: E402
@@ -139,6 +140,23 @@ def compile_once() -> None:
     docscrape_sphinx.SandboxedEnvironment = environment
 
 
+DOSSIER = HERE.parent / "build" / "dossier"
+
+
+def begin_dossier(app: Sphinx) -> None:
+    """Make the dossier while pages are read and written."""
+    if app.builder.format == "html":
+        making = dossier_pages.begun(DOSSIER)
+
+        def copy_dossier(app: Sphinx, error: Exception | None) -> None:
+            if error is None:
+                dossier_pages.finish(making, DOSSIER, Path(app.outdir))
+            else:
+                making.terminate()
+
+        app.connect("build-finished", copy_dossier)
+
+
 def copy_results(app: Sphinx, error: Exception | None) -> None:
     """Put the pages of the last run beside those of the site."""
     if error is None and app.builder.format == "html":
@@ -152,5 +170,6 @@ def setup(app: Sphinx) -> dict[str, bool]:
     app.connect("autodoc-process-docstring", as_plain_text, priority=100)
     app.connect("autodoc-process-signature", by_their_names)
     app.connect("source-read", to_docstrings)
+    app.connect("builder-inited", begin_dossier)
     app.connect("build-finished", copy_results)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

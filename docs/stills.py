@@ -13,7 +13,7 @@ import tempfile
 from pathlib import Path
 
 from fe_drivetrain.common import InputError
-from fe_drivetrain.drivetrain_file import Component, Scene, library_component, library_scene
+from fe_drivetrain.drivetrain_file import Component, Scene, library_component, read_drivetrain
 
 FOLDER = Path(__file__).parent / "gallery"
 HASHES = FOLDER / "scenes.json"
@@ -24,17 +24,22 @@ SIZE = (720, 310)
 
 
 def library() -> dict[str, Scene | Component]:
-    """All scenes and components of the library by name, in order."""
+    """All components of the library and all drivetrains with solid parts, by name, in order."""
+    found: dict[str, Scene | Component] = {}
     files = (Path(__file__).parents[1] / "geometry" / "library").glob("*.yaml")
-    return {
-        name: library_component(name) if name in COMPONENTS else library_scene(name)
-        for name in sorted(file.stem for file in files)
-    }
+    for name in sorted(file.stem for file in files):
+        if name in COMPONENTS:
+            found[name] = library_component(name)
+        elif isinstance(drivetrain := read_drivetrain(name), Scene):
+            found[name] = drivetrain
+    return found
 
 
 def hash_of(scene: Scene | Component) -> str:
-    """SHA-256 of all values."""
-    return hashlib.sha256(scene.model_dump_json().encode()).hexdigest()
+    """SHA-256 of all values that a picture shows."""
+    turning = {"rotor", "generator", "brake", "operation", "damping", "sources", "assumed"}
+    values = scene.model_dump_json(exclude=turning, exclude_unset=True)
+    return hashlib.sha256(values.encode()).hexdigest()
 
 
 def draw(name: str, scene: Scene | Component, file: Path) -> None:

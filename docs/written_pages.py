@@ -17,6 +17,7 @@ from pathlib import Path
 from types import ModuleType
 
 import house
+from dossier_pages import dossier_page
 from face_examples import examples
 from result_pages import answer_of, cards_of_cases, limits_page, of_the_run, plain, results
 from sphinx.errors import PycodeError
@@ -43,6 +44,7 @@ def write_all(folder: Path) -> None:
     pages["api.rst"] = api_index(rooms)
     for room in rooms:
         pages[f"api/{room}.rst"] = api_of(room)
+    pages["dossier.md"] = dossier_page()
     pages["limits.md"] = limits_page(found)
     pages["gallery.md"] = gallery(library(), cards_of_cases(found, folder / "pictures"))
     for old in (*folder.glob("*.*"), *folder.glob("api/*.*")):

@@ -8,7 +8,6 @@ from .drivetrain_file import change_scene as change_scene
 from .drivetrain_file import library_names as library_names
 from .drivetrain_file import read_drivetrain as read_drivetrain
 from .drivetrain_file import scene_text as scene_text
-from .dynamics import library_machine as library_machine
 from .dynamics import machine_of as machine_of
 from .dynamics import machine_pairs as machine_pairs
 from .dynamics import machine_system as machine_system
@@ -41,9 +40,11 @@ from .studies import LifeOptions as LifeOptions
 from .studies import LifeResult as LifeResult
 from .studies import LoadOptions as LoadOptions
 from .studies import LoadsResult as LoadsResult
+from .studies import ModesResult as ModesResult
 from .studies import PartResult as PartResult
 from .studies import Result as Result
 from .studies import StudyResult as StudyResult
+from .studies import TransientResult as TransientResult
 from .studies import UncertaintyResult as UncertaintyResult
 from .studies import ValidateResult as ValidateResult
 from .studies import advise as advise
@@ -52,9 +53,11 @@ from .studies import compare as compare
 from .studies import gears as gears
 from .studies import life as life
 from .studies import loads as loads
+from .studies import modes as modes
 from .studies import part as part
 from .studies import prepare_export as prepare_export
 from .studies import study as study
+from .studies import transient as transient
 from .studies import uncertainty as uncertainty
 from .studies import validate as validate
 from .turbine_loads.histories import Site as Site

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.dynamics.bodies.machine import library_machine
+from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 from fe_drivetrain.procedure.certainty import TABLE_4_7
 from fe_drivetrain.procedure.channels import write_channels
 from fe_drivetrain.procedure.motions import band_torque
@@ -16,8 +16,8 @@ from fe_drivetrain.report.seal import drivetrain_record, sealed
 
 REVERSALS = "torque oscillation with reversals of the high-speed shaft"
 MACHINE = "nrel_750kw"
-OWN = drivetrain_record(library_machine(MACHINE), MACHINE)
-OTHER = drivetrain_record(library_machine("park_2021"), "park_2021")
+OWN = drivetrain_record(read_drivetrain(MACHINE), MACHINE)
+OTHER = drivetrain_record(read_drivetrain("park_2021"), "park_2021")
 Content = dict[str, Any]
 
 
@@ -100,7 +100,7 @@ def small_project(folder: Path) -> Content:
         },
         "model": {
             "decision": "rigid",
-            "machine": MACHINE,
+            "drivetrain": MACHINE,
             "level": "rigid bodies",
             "needs": [{"quantity": "frequency [Hz]", "tolerance": 0.05}],
             "evidence": [{"case": "group/levels"}],

@@ -14,15 +14,17 @@ from fe_drivetrain.bearing_life.rings import housing_races, housing_solid
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.bearing.gap_springs import PART, calculix_rollers
 from fe_drivetrain.cases.bearing.peak_rollers import (
-    COMBINED,
     CROWN,
+    ERROR,
     FIVE,
     LOADS,
-    PEAK_CHART,
+    TIME,
+    WORST_CHART,
     Rung,
     Solve,
     closed_form,
     error_against_time,
+    largest_of_loads,
     peak_row,
     peaks,
     timed_rungs,
@@ -97,7 +99,7 @@ def run(run: Run, page: Page) -> None:
             exact = float(on_races(C, ALL)(finest, loads[:1])[0])
             rows += timed_rungs(kind, rungs(C), "bearing_s_o20", loads, exact)
             rows += _springs(run, kind, C, size, exact)
-    check(page, {(r["load"], r["model"]): r["error [%]"] for r in rows})
+    check(page, {(r["load"], r["model"]): r[ERROR] for r in rows})
     answer(page, rows, condensed)
     error_against_time(page, rows, CHOSEN)
     page.assume_all(ASSUMED_HOUSING)
@@ -110,11 +112,9 @@ def run(run: Run, page: Page) -> None:
 
 def answer(page: Page, rows: list[Record], condensed: float) -> None:
     """State the error and the time of the model to choose, beside rigid rings."""
-    worst = {
-        name: max(row["error [%]"] for row in rows if row["model"] == name)
-        for name in (RIGID, PROFILED, FEW, CHOSEN)
-    }
-    micro = max(row["time per load case [µs]"] for row in rows if row["model"] == CHOSEN)
+    of_model = {row["model"]: row for row in largest_of_loads(rows)}
+    worst = {name: of_model[name][ERROR] for name in (RIGID, PROFILED, FEW, CHOSEN)}
+    micro = of_model[CHOSEN][TIME]
     short = {RIGID: "rigid rings, straight rollers", PROFILED: "rigid rings with profile"}
     short |= {FEW: "40 shapes, straight rollers", CHOSEN: "40 shapes with profile"}
     page.answer(
@@ -127,7 +127,7 @@ def answer(page: Page, rows: list[Record], condensed: float) -> None:
             *(page.value(f"worst error, {short[n]} [%]", worst[n]) for n in reversed(worst)),
             page.value("time to condense the housing, once [s]", condensed),
         ],
-        PEAK_CHART.format(COMBINED),
+        WORST_CHART,
         [
             f"Errors are against all {ALL} shapes with {REFERENCE_LAMINAE} laminae, of the same "
             "solid: they have no error of its mesh."

@@ -28,7 +28,7 @@ from fe_drivetrain.cases.references.thesis_beam import (
     radial,
 )
 from fe_drivetrain.common import Floats
-from fe_drivetrain.report import density_chart, rolling_elements, trace
+from fe_drivetrain.report import bars, density_chart, mark_events, rolling_elements, trace
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.beam import torsional_spring_model
 from fe_drivetrain.turbine_loads.hub_loads import (
@@ -47,6 +47,11 @@ WINDOW = 2.0
 LOADED = 0.02
 
 CONSTANT, ALONE, HOUSED = "constant K_R, 145 MN m/rad", "rollers", "rollers, housing in series"
+
+OPPOSITE = "zones of the rows opposite [% of time]"
+RANGE = "force, least to largest [kN]"
+ZONES = "Share of steps in which the load zones of both rows are opposite, by wind file"
+RANGES = "Range of the radial force at 24 m/s: varying rollers, a constant, both in a housing"
 
 THESIS = {
     12.0: "500, 1000, < 100, 1500, 400 kN m; roller 220, > 450, 100, 380, < 50 kN, other row < 50",
@@ -104,8 +109,8 @@ def run(run: Run, page: Page) -> None:
     loop_table(page, loops, float(hub.time[-1]))
     with run.step("rollers"):
         zones = zones_and_edges(page, laminae, loads[ALONE], every=1 if run.quick else 10)
-        hero = follow(page, laminae, hub.time, loads[ALONE], loops[ALONE])
-    answer(page, ranges, zones, hero)
+        follow(page, laminae, hub.time, loads[ALONE], loops[ALONE])
+    answer(page, ranges, zones)
     check(page, laminae, loads[ALONE][0])
     page.section("Other controller")
     page.text(
@@ -127,7 +132,7 @@ def directions(page: Page, loads: dict[str, Floats]) -> dict[str, float]:
                 {
                     "bearing": name,
                     "wind [m/s]": speed,
-                    "force, least to largest [kN]": float(np.ptp(force)),
+                    RANGE: float(np.ptp(force)),
                     "force, 1 to 99 % of the time [kN]": float(
                         np.ptp(np.quantile(force, (0.01, 0.99)))
                     ),
@@ -141,7 +146,8 @@ def directions(page: Page, loads: dict[str, Floats]) -> dict[str, float]:
     page.table("Range of the radial force, and size and shape of the moment's cloud", rows)
     page.data("directions", rows)
     last = {row["bearing"]: row for row in rows if row["wind [m/s]"] == WIND_SPEEDS[-1]}
-    key = "force, least to largest [kN]"
+    ranges = {str(name): float(row[RANGE]) for name, row in last.items()}
+    page.add(bars(RANGES, {"computed": ranges}, "range of the radial force [kN]"))
     page.text(
         "The thesis puts the smaller range of the force down to the varying stiffness. It is the "
         "mean stiffness: rollers alone are ten times as stiff as the 145 MN m/rad of the housing, "
@@ -154,10 +160,10 @@ def directions(page: Page, loads: dict[str, Floats]) -> dict[str, float]:
             for word, part, unit in (("force", one[:, 1:3], "kN"), ("moment", one[:, 3:], "kN m")):
                 caption = f"Radial {word} at {speed:g} m/s, rollers alone, looking downwind"
                 page.add(density_chart(caption, -1e-3 * part[:, 0], 1e-3 * part[:, 1], unit))
-    return {name: row[key] for name, row in last.items()}
+    return ranges
 
 
-def answer(page: Page, ranges: dict[str, float], zones: tuple[float, float], hero: str) -> None:
+def answer(page: Page, ranges: dict[str, float], zones: tuple[float, float]) -> None:
     """State how rollers follow the moment, and what makes the range of the force [kN] smaller."""
     opposite, follows = zones
     page.found("range of the radial force at 24 m/s, rollers alone [kN]", ranges[ALONE])
@@ -165,12 +171,12 @@ def answer(page: Page, ranges: dict[str, float], zones: tuple[float, float], her
     of_mean = abs(ranges[HOUSED] - ranges[CONSTANT]) < abs(ranges[HOUSED] - ranges[ALONE])
     of_zones = opposite > 50.0
     cause = (
-        "contrary to the thesis, the rigid housing, not varying stiffness, makes"
+        "contrary to the thesis, a rigid housing, not varying stiffness, narrows"
         if of_mean
-        else "as in the thesis, varying stiffness makes"
+        else "as in the thesis, varying stiffness narrows"
     )
-    verdict = f"Both rows carry opposite each other in {opposite:.0f}\u00a0% of steps; {cause} "
-    verdict += "the force range smaller."
+    verdict = f"Rows carry on opposite sides in at least {opposite:.0f}\u00a0% of steps; {cause} "
+    verdict += "the force range."
     page.answer(
         "What do the rollers of a main bearing feel while its moment runs in loops?",
         verdict,
@@ -189,7 +195,7 @@ def answer(page: Page, ranges: dict[str, float], zones: tuple[float, float], her
             page.value("range of force, rollers and housing [kN]", ranges[HOUSED]),
             page.value("range of force, constant 145 MN m/rad [kN]", ranges[CONSTANT]),
         ],
-        hero,
+        ZONES,
         [
             "The range of force is smaller on rollers alone since they are ten times as stiff as "
             "the housing, not since they vary; the thesis prints under 200 kN, against 800 kN."
@@ -257,7 +263,7 @@ def zones_and_edges(page: Page, bearing: Bearing, loads: Floats, every: int) -> 
         rows.append(
             {
                 "wind [m/s]": speed,
-                "zones of the rows opposite [% of time]": opposite(bearing, found.displacements),
+                OPPOSITE: opposite(bearing, found.displacements),
                 "peak roller with |M|, correlation": float(
                     np.corrcoef(moment, peaks.max(axis=1))[0, 1]
                 ),
@@ -280,7 +286,11 @@ def zones_and_edges(page: Page, bearing: Bearing, loads: Floats, every: int) -> 
         "larger share at rollers that are hardly loaded. An even load is 3.3 % on each lamina."
     )
     page.data("rollers", rows)
-    least = min(row["zones of the rows opposite [% of time]"] for row in rows)
+    shares = {f"{row['wind [m/s]']:g} m/s": row[OPPOSITE] for row in rows}
+    drawn = bars(ZONES, {"computed": shares}, "share of steps [%]")
+    drawn.figure["layout"]["xaxis"]["range"] = [0.0, 100.0]
+    page.add(mark_events(drawn, {"most of the time: 50 %": 50.0}))
+    least = min(row[OPPOSITE] for row in rows)
     page.holds(
         "load zones of the two rows are on opposite sides in more than half of the steps",
         least > 50.0,
@@ -290,11 +300,8 @@ def zones_and_edges(page: Page, bearing: Bearing, loads: Floats, every: int) -> 
     return least, min(r["peak roller with |M|, correlation"] for r in rows)
 
 
-def follow(page: Page, bearing: Bearing, time: Floats, loads: Floats, loops: list[Loops]) -> str:
-    """The loop of each wind file that changes most, and the roller that feels it most.
-
-    Returns the caption of the last file's chart.
-    """
+def follow(page: Page, bearing: Bearing, time: Floats, loads: Floats, loops: list[Loops]) -> None:
+    """The loop of each wind file that changes most, and the roller that feels it most."""
     rows: list[Record] = []
     page.section("Rollers in a loop")
     for speed, one, of in zip(WIND_SPEEDS, loads, loops, strict=True):
@@ -318,7 +325,7 @@ def follow(page: Page, bearing: Bearing, time: Floats, loads: Floats, loops: lis
                 "over load [%]": 100.0 * float(share.max()),
             }
         )
-        caption = draw(page, speed, example)
+        draw(page, speed, example)
     page.table(
         "The moment's loop of largest range in each wind file, and the roller that changes most in "
         f"the {WINDOW:g} s about it",
@@ -332,7 +339,6 @@ def follow(page: Page, bearing: Bearing, time: Floats, loads: Floats, loops: lis
         "together has a simple reason: it is the tilt of the inner ring about the tangent at that "
         "place, which both rows share. Its size goes as one over the number of laminae."
     )
-    return caption
 
 
 def _span(values: Floats) -> str:
@@ -353,8 +359,8 @@ def in_window(bearing: Bearing, time: Floats, loads: Floats, rotor_speed: float)
     return Example(time, 1e-3 * loads[:, 3:], Q[:, roller], ends[:, roller], roller + 1, at)
 
 
-def draw(page: Page, speed: float, example: Example) -> str:
-    """Draw what figures 4.15 and 4.16 show; the caption of the roller's chart."""
+def draw(page: Page, speed: float, example: Example) -> None:
+    """Draw what figures 4.15 and 4.16 show."""
     right, up = -example.moment[:, 0], example.moment[:, 1]
     page.chart(
         f"Moment at {speed:g} m/s, looking downwind: right is that of the rotor's weight",
@@ -384,7 +390,6 @@ def draw(page: Page, speed: float, example: Example) -> str:
         "time [s]",
         "load [kN]",
     )
-    return caption
 
 
 def check(page: Page, bearing: Bearing, loads: Floats) -> None:

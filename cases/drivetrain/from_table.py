@@ -1,4 +1,4 @@
-"""Any drivetrain from its table: ``--set table=mine.yaml``."""
+"""Any drivetrain in torsion, of its file: ``--set drivetrain=mine.yaml``."""
 
 import numpy as np
 
@@ -7,22 +7,18 @@ from fe_drivetrain.cases.drivetrain.printed import check_count, show_energy, sho
 from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.cases.references.independent_torsion import certified
 from fe_drivetrain.comparison import round_off
+from fe_drivetrain.dynamics import gear_table
 from fe_drivetrain.dynamics.torsion import (
     GENERATOR,
     ROTOR,
     GearTable,
-    GeneratorRow,
     Modes,
-    ParallelStage,
-    PlanetaryStage,
-    ShaftRow,
     Torsional,
     damped_modes,
     gear_masses,
     gear_speeds,
     modal_damping,
     natural_modes,
-    read_gear_table,
     stage_masses,
     static_stiffness,
     two_masses,
@@ -50,15 +46,15 @@ def frequency_rows(model: str, system: Torsional, modes: Modes, state: str) -> l
 
 
 @case(
-    "Torsional frequencies of any drivetrain from its table",
+    "Torsional frequencies of any drivetrain from its file",
     source="Al-Hamadani 2018, Eq 4.8-4.38; the default is drivetrain D of Table 4.2",
-    settings={"table": "FILE (otherwise drivetrain D)"},
+    settings={"drivetrain": "FILE, or a name of the library (otherwise drivetrain D)"},
 )
 def run(run: Run, page: Page) -> None:
     """Frequencies, shapes, shares of energy and damping at three levels of detail."""
-    given = run.settings.get("table")
-    table = published.table("nrel_750kw") if given is None else read_gear_table(str(given))
-    page.about(table)
+    chosen = run.drivetrain(published.drivetrain("nrel_750kw"))
+    chosen.state(page)
+    table = gear_table(chosen.drivetrain)
     states = [s for s in published.STATES if s == "free" or table.generator.stiffness > 0]
     rows: list[Record] = []
     found = {}
@@ -73,7 +69,7 @@ def run(run: Run, page: Page) -> None:
     shapes = f"Mode shapes with a mass for each gear, generator {states[0]}, seen from the rotor's "
     shapes += "shaft"
     answer(page, first, whole, 1 - whole / rigid, shapes)
-    page.say(f"The table: {table.title}.")
+    page.say(f"The drivetrain: {table.title}.")
     page.section("Modes")
     page.table("Undamped natural frequencies, and damping ratios of first order", rows)
     gears, last = gear_masses(table, states[0]), found[GEARS, states[0]]
@@ -93,7 +89,6 @@ def run(run: Run, page: Page) -> None:
         shown,
     )
     page.assume_all(table.assumptions())
-    show_keys(page, table)
     page.data(
         "frequencies",
         {f"{name}, {state}": modes.frequencies for (name, state), modes in found.items()},
@@ -105,7 +100,7 @@ def run(run: Run, page: Page) -> None:
 def answer(page: Page, first: list[float], whole: float, meshes: float, hero: str) -> None:
     """State what the drivetrain swings at first [Hz], its stiffness, and the meshes' share."""
     page.answer(
-        "At which torsional frequency does the drivetrain of the table swing first?",
+        "At which torsional frequency does the drivetrain swing first?",
         f"With every gear a mass the drivetrain first swings at {value_text(first[2], 'Hz')}, as "
         f"two masses at {value_text(first[0], 'Hz')}; meshes make {percent_text(meshes)} of its "
         "compliance.",
@@ -148,33 +143,3 @@ def check_gears_and_stages(page: Page, table: GearTable) -> tuple[float, float]:
         source="sum of compliances",
     )
     return static_stiffness(gears, ROTOR, GENERATOR), rigid
-
-
-def show_keys(page: Page, table: GearTable) -> None:
-    """How a drivetrain is described."""
-    page.section("The table")
-    page.text(
-        "A drivetrain is one YAML file, in SI, each value about the part's own axis; `--set "
-        "table=mine.yaml` reads another one. One shaft more than stages; a stage has either its "
-        "ratio or its teeth."
-    )
-    page.table(
-        "Keys of the file",
-        [
-            {
-                "of": owner,
-                "key": key,
-                "what": field.description or "",
-                "needed": field.is_required() or key == "kind",
-            }
-            for owner, model in (
-                ("drivetrain", GearTable),
-                ("each of shafts", ShaftRow),
-                ("stage of kind planetary", PlanetaryStage),
-                ("stage of kind parallel", ParallelStage),
-                ("generator", GeneratorRow),
-            )
-            for key, field in model.model_fields.items()
-        ],
-    )
-    page.text(f"Read here: {table.model_dump_json(exclude_none=True)}")

@@ -7,7 +7,7 @@ import numpy as np
 from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.comparison import digit
 from fe_drivetrain.dynamics.torsion import Modes
-from fe_drivetrain.report import chart, trace
+from fe_drivetrain.report import shape_chart
 from fe_drivetrain.report.suite import Page, Record, Target
 
 ROUNDING = (
@@ -66,15 +66,11 @@ def show_shapes(
     """Mode shapes seen from the rotor's shaft (angles over the speed ratio), largest 1."""
     seen = modes.shapes / np.array([[speeds[name]] for name in modes.names])
     seen = seen / np.abs(seen).max(axis=0)
-    at, hz, text = np.arange(len(modes.names)), modes.frequencies, list(modes.names)
-    curves = [
-        trace(f"{hz[m]:.4g} Hz", at, seen[:, m], mode="lines+markers", text=text) for m in chosen
-    ]
-    x, y = "inertia, from the rotor to the generator", "angle over speed ratio, largest 1"
-    drawn = chart(caption, curves, x, y)
-    named = {"tickmode": "array", "tickvals": at.tolist(), "ticktext": text, "tickangle": -30}
-    drawn.figure["layout"]["xaxis"] |= {**named, "automargin": True}
-    page.add(drawn)
+    words = [f"{modes.frequencies[m]:.4g} Hz" for m in chosen]
+    # the first that is no free turning is what an engineer asks for
+    first = int(np.argmax(modes.frequencies[chosen] > 0.0))
+    axis = "angle over speed ratio, largest 1"
+    page.add(shape_chart(caption, modes.names, seen[:, chosen], words, axis, first))
 
 
 def show_energy(page: Page, caption: str, springs: Sequence[str], modes: Modes, at: Ints) -> None:

@@ -13,6 +13,8 @@ from fe_drivetrain.dynamics import (
     crossings,
     equal_angles,
     excited_motion,
+    gear_table,
+    machine_of,
 )
 from fe_drivetrain.dynamics.torsion import (
     Toothed,
@@ -23,7 +25,9 @@ from fe_drivetrain.dynamics.torsion import (
 )
 from fe_drivetrain.gear import check_assembly, equally_spaced, sequence, sun_phases
 from fe_drivetrain.report import Chart, chart, crosses, mark_events, trace
+from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.report.suite.chosen import SETTING
 
 TABLE_4_8 = {"A": ("146", "730"), "B": ("154", "707.259", "2419.575"), "C": ("174", "648", "2664")}
 RPM = np.pi / 30.0
@@ -76,9 +80,13 @@ def trains() -> dict[str, Train]:
 @case(
     "Mesh orders of drivetrains A to D, as printed and right, and all their crossings",
     source="Al-Hamadani 2018, Tables 4.1, 4.7, 4.8, 6.1 and 6.4, section 6.2.2",
+    settings={"drivetrain": "FILE, or a name of the library (otherwise A to D of the thesis)"},
 )
 def run(run: Run, page: Page) -> None:
     """What Table 4.8 is, what it should be, and which crossings change with it."""
+    if SETTING in run.settings:
+        own(run, page)
+        return
     found = trains()
     rows: list[Record] = []
     for letter, train in found.items():
@@ -113,6 +121,49 @@ def run(run: Run, page: Page) -> None:
     counts = show_crossings(page, found)
     refused = show_assembly(page, found)
     answer(page, rows, over, counts, refused)
+
+
+def own(run: Run, page: Page) -> None:
+    """Mesh orders of a user's drivetrain, and what they cross in its range of speeds."""
+    chosen = run.drivetrain("")
+    chosen.state(page)
+    table, speeds = gear_table(chosen.drivetrain), chosen.rotor_speeds()
+    stages = [Toothed(*meshing) for meshing in machine_of(chosen.drivetrain).meshing]
+    modes = natural_modes(gear_masses(table, "free"))
+    computed = tuple(float(f) for f in modes.frequencies[published.observable(modes)][1:])
+    right = mesh_orders(stages)
+    check_orders(page, chosen.title, Train(stages, computed, computed), right, {})
+    met = crossings(computed, right, speeds)
+    low, high = (speed / RPM for speed in speeds)
+    rows: list[Record] = [
+        {
+            "stage": one.order,
+            "harmonic": one.harmonic,
+            "frequency [Hz]": one.frequency,
+            "speed [rpm]": speed(one),
+        }
+        for one in met
+    ]
+    page.section("Crossings")
+    if rows:
+        page.table(f"Crossings between {low:.4g} and {high:.4g} rpm", rows)
+    else:
+        page.text("No crossing within the range of speeds.")
+    page.data("crossings", rows)
+    page.add(campbell(chosen.title, Train(stages, computed, computed), met, (low, high, high)))
+    words = f"cross torsional modes {len(met)} times" if met else "cross no torsional mode"
+    page.answer(
+        "Where do the meshes cross torsional natural frequencies?",
+        f"From {low:.3g} to {high:.3g}\u00a0rpm three harmonics of the meshes {words}; the first "
+        f"mode is at {value_text(computed[0], 'Hz')}.",
+        [
+            page.value("crossings of three harmonics", len(met)),
+            *(page.value(f"mesh order, {name}", order) for name, order in right.items()),
+            page.value("first torsional frequency [Hz]", computed[0]),
+        ],
+        CAMPBELL.format(chosen.title),
+        ["Natural frequencies are those of torsion, with the generator free."],
+    )
 
 
 def answer(
@@ -221,13 +272,15 @@ def show_crossings(page: Page, found: dict[str, Train]) -> dict[str, list[int]]:
         else:
             page.text("No crossing within the range of speeds.")
         page.data(f"crossings_{letter}", rows)
-        page.add(campbell(letter, train, right))
+        page.add(campbell(letter, train, right, SPEEDS[letter]))
     return counts
 
 
-def campbell(letter: str, train: Train, right: Sequence[Crossing]) -> Chart:
+def campbell(
+    letter: str, train: Train, right: Sequence[Crossing], speeds: tuple[float, float, float]
+) -> Chart:
     """Right mesh orders and natural frequencies over the speed range, crossings marked."""
-    low, rated, high = SPEEDS[letter]
+    low, rated, high = speeds
     met = [c.speed / RPM for c in right]
     traces = []
     for name, turns in mesh_orders(train.stages).items():

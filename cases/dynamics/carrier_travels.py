@@ -28,7 +28,7 @@ from fe_drivetrain.dynamics import (
     varying_equations,
 )
 from fe_drivetrain.dynamics.bodies.static import Turn
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked, trace
 from fe_drivetrain.report.suite import Page, Run, check_in_time
 
 NAME, TORQUE, MOMENT, SPEED = "nrel_750kw", 3.25e5, -3e5, 2.31  # N m, N m, rad/s
@@ -124,11 +124,12 @@ def show_turn(page: Page, moving: Turn, still: Turn, count: int) -> None:
     page.chart(
         TURNING,
         [
-            trace("in time", angles, moving.resultant(PIN) / 1e3, True),
+            marked("in time", angles, moving.resultant(PIN) / 1e3),
             trace("at rest", angles, still.resultant(PIN) / 1e3),
         ],
         "azimuth of the carrier [deg]",
         "radial load [kN]",
+        beside="at rest",
     )
 
 
@@ -182,7 +183,8 @@ def a_turn(machine: Machine, count: int, steps: int) -> tuple[Turn, float]:
     )
     assert found.converged
     second = slice(count, 2 * count)
-    turn = Turn(found.azimuth[second], carriers.system.spring_names, found.forces[second])
+    of = carriers.system
+    turn = Turn(found.azimuth[second], of.spring_names, found.forces[second], of.directions)
     return turn, found.relative_imbalance
 
 

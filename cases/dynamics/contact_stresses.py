@@ -5,9 +5,12 @@ from math import sqrt
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.drivetrain_file import read_drivetrain
 from fe_drivetrain.dynamics import (
     Level,
+    Machine,
     library_machine,
+    machine_of,
     machine_pairs,
     machine_system,
     pitch_contacts,
@@ -16,7 +19,9 @@ from fe_drivetrain.dynamics import (
 )
 from fe_drivetrain.gear import reduced_modulus, tooth_contact
 from fe_drivetrain.report import Chart, bars
+from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.report.suite.chosen import SETTING
 
 TORQUES = {"synthetic_2mw": 1.055e6, "nrel_5mw": 3.946e6}  # N m, rated, of the rotor
 STEEL = reduced_modulus()
@@ -31,18 +36,22 @@ DERIVED = {"ring-planet": 332, "sun-planet": 743, "stage 2": 794, "stage 3": 985
 @case(
     "Contact stresses of gears and their depths: 2 MW and 5 MW gearboxes at rated torque",
     source="Al-Hamadani 2018, sections 5.3, 7.4 and 7.5; Hertz",
+    settings={"drivetrain": "FILE, or a name of the library (otherwise synthetic_2mw, nrel_5mw)"},
 )
 def run(run: Run, page: Page) -> None:
     """Forces of meshes by statics in three dimensions, cylinders at the pitch point, ratios."""
+    if SETTING in run.settings:
+        own(run, page)
+        return
     rows: list[Record] = []
     for name, torque in TORQUES.items():
         with run.step(name):
-            rows += rows_of(name, torque)
+            rows += rows_of(name, library_machine(name), torque)
     two = {str(row["mesh"]): row for row in rows if row["machine"] == "synthetic_2mw"}
     pressures = {key: float(str(two[mesh_of(key)]["pressure [MPa]"])) for key in DERIVED}
     check(page, rows, pressures)
     page.section("Meshes")
-    page.add(pressure_chart(rows))
+    page.add(pressure_chart(rows, {"synthetic_2mw": "2 MW", "nrel_5mw": "5 MW"}))
     page.table("Contact at the pitch point, one pair of teeth, the whole face", rows)
     page.data("contacts", rows)
     page.table("Printed, ours, verdict", verdicts(pressures, two))
@@ -59,6 +68,40 @@ def run(run: Run, page: Page) -> None:
     answer(page, pressures)
     for text in library_machine("synthetic_2mw").assumed:
         page.assume(text.partition(":")[0][:60], "", "", text)
+
+
+def own(run: Run, page: Page) -> None:
+    """Contacts of a user's drivetrain at the torque of its rated power."""
+    chosen = run.drivetrain("")
+    chosen.state(page)
+    machine = machine_of(chosen.drivetrain)
+    with run.step("contacts"):
+        rows = rows_of(chosen.name, machine, chosen.rated_torque())
+    check_radii(page, chosen.title, rows, machine)
+    page.section("Meshes")
+    page.add(pressure_chart(rows, {chosen.name: chosen.title}))
+    page.table("Contact at the pitch point, one pair of teeth, the whole face", rows)
+    page.data("contacts", rows)
+    highest = max(rows, key=lambda row: float(str(row["pressure [MPa]"])))
+    depth = float(str(highest["depth of it [mm]"]))
+    page.answer(
+        "How high are the contact stresses of the gears at rated torque?",
+        f"{highest['mesh']} has the highest contact pressure, "
+        f"{value_text(float(str(highest['pressure [MPa]'])), 'MPa')}; its largest shear stress is "
+        f"{depth:.2g}\u00a0mm deep.",
+        [
+            *(
+                page.value(f"pressure, {row['mesh']} [MPa]", float(str(row["pressure [MPa]"])))
+                for row in sorted(rows, key=lambda row: -float(str(row["pressure [MPa]"])))[:4]
+            ),
+            page.value("depth of the largest shear stress [mm]", depth),
+        ],
+        PRESSURES,
+        ["One pair of teeth carries the whole force, along the whole face: no load factors."],
+    )
+    for text in machine.assumed:
+        page.assume(text.partition(":")[0][:60], "", "", text)
+    page.assume_all(machine.assumptions())
 
 
 def answer(page: Page, pressures: dict[str, float]) -> None:
@@ -99,9 +142,8 @@ def answer(page: Page, pressures: dict[str, float]) -> None:
     )
 
 
-def pressure_chart(rows: list[Record]) -> Chart:
-    """Pressure of each mesh of both gearboxes."""
-    machines = {"synthetic_2mw": "2 MW", "nrel_5mw": "5 MW"}
+def pressure_chart(rows: list[Record], machines: dict[str, str]) -> Chart:
+    """Pressure of each mesh of gearboxes, by their titles."""
     groups = {
         title: {
             str(row["mesh"]): float(str(row["pressure [MPa]"]))
@@ -115,7 +157,7 @@ def pressure_chart(rows: list[Record]) -> Chart:
 
 def check(page: Page, rows: list[Record], pressures: dict[str, float]) -> None:
     """Check pressures against Hertz's formula, and radii against the gears' own pairs."""
-    page.about(library_machine("synthetic_2mw"), "synthetic_2mw")
+    page.about(read_drivetrain("synthetic_2mw"), "synthetic_2mw")
     for key, expected in DERIVED.items():
         page.equals(
             f"2 MW, {mesh_of(key)}: pressure [MPa]",
@@ -133,17 +175,24 @@ def check(page: Page, rows: list[Record], pressures: dict[str, float]) -> None:
         why="round-off of the forces",
         source="Hertz: root of 5 for 29, 58 and 145 teeth",
     )
-    page.about(library_machine("nrel_5mw"), "nrel_5mw")
+    page.about(read_drivetrain("nrel_5mw"), "nrel_5mw")
+    five = [row for row in rows if str(row["machine"]) == "nrel_5mw"]
+    check_radii(page, "5 MW", five, library_machine("nrel_5mw"))
+
+
+def check_radii(page: Page, title: str, rows: list[Record], machine: Machine) -> None:
+    """Check radii of cylinders against those of the gears' own pairs."""
+    pairs = machine_pairs(machine)
     for row in rows:
-        if str(row["machine"]) == "nrel_5mw":
-            page.equals(
-                f"5 MW, {row['mesh']}: radius against that of the gears' own pair [mm]",
-                float(str(row["radius [mm]"])),
-                pair_radius(str(row["mesh"])),
-                within=1e-9,
-                why="round-off: two ways to the same cylinders",
-                source="Pair.curvatures at the pitch point",
-            )
+        pair = pairs[str(row["mesh"]).removesuffix(" 1")]
+        page.equals(
+            f"{title}, {row['mesh']}: radius against that of the gears' own pair [mm]",
+            float(str(row["radius [mm]"])),
+            1e3 * tooth_contact(pair, pair.path.pitch, 1.0, STEEL).radius,
+            within=1e-9,
+            why="round-off: two ways to the same cylinders",
+            source="Pair.curvatures at the pitch point",
+        )
 
 
 def mesh_of(key: str) -> str:
@@ -151,9 +200,8 @@ def mesh_of(key: str) -> str:
     return f"stage 1 {key} 1" if "planet" in key else f"{key} mesh"
 
 
-def rows_of(name: str, torque: float) -> list[Record]:
+def rows_of(name: str, machine: Machine, torque: float) -> list[Record]:
     """All meshes of a machine, the first planet's of planetary stages."""
-    machine = library_machine(name)
     system = machine_system(machine, Level.TORSIONAL, held_generator=True)
     found = static(system, steady_load(machine, system, torque, np.zeros(6)))
     rows: list[Record] = []
@@ -174,12 +222,6 @@ def rows_of(name: str, torque: float) -> list[Record]:
             }
         )
     return rows
-
-
-def pair_radius(mesh: str) -> float:
-    """Radius of relative curvature [mm] of the 5 MW gearbox by its gears."""
-    pair = machine_pairs(library_machine("nrel_5mw"))[mesh.removesuffix(" 1")]
-    return 1e3 * tooth_contact(pair, pair.path.pitch, 1.0, STEEL).radius
 
 
 def verdicts(pressures: dict[str, float], two: dict[str, Record]) -> list[Record]:

@@ -10,7 +10,6 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.cases.references.machine_rungs import more_rungs
 from fe_drivetrain.common import InputError
-from fe_drivetrain.drivetrain_file import read_drivetrain
 from fe_drivetrain.dynamics import (
     QUESTIONS,
     RUNGS,
@@ -29,8 +28,9 @@ from fe_drivetrain.dynamics import (
     turning_modes,
 )
 from fe_drivetrain.dynamics.torsion import GearTable, gear_masses, natural_modes, static_stiffness
-from fe_drivetrain.report import marked
+from fe_drivetrain.report import Chart, chart, mark_events, marked, trace
 from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.report.suite.chosen import SETTING
 
 #: Machines with torque of the rotor and tilting moment of the hub [N m], and where it is from.
 OPERATIONS = {
@@ -39,6 +39,8 @@ OPERATIONS = {
     "synthetic_2mw": Operation(1.055e6, 1.0e6),
 }
 TOLERANCE = 0.05
+LEAST = 1e-6  # %, of a difference that is drawn
+BY_QUESTION = "{}: difference of each level from the finest; left of the line it is enough"
 AGAINST_TIME = "{}: difference from the finest level against the time that a level takes"
 FIRST = "first torsional frequency [Hz]"
 
@@ -47,20 +49,22 @@ FIRST = "first torsional frequency [Hz]"
     "Levels of one drivetrain: torsional, rigid bodies, flexible shafts",
     source="Al-Hamadani 2018, chapters 4 and 5; Nejad et al. 2016 for the 5 MW gearbox",
     settings={
-        "machine": "FILE, or a name of the library (otherwise three of these)",
-        "torque": "NUMBER (kN m, of the rotor of a machine of one's own)",
-        "moment": "NUMBER (kN m, about y at its hub)",
-        "speed": "NUMBER (rpm, of its rotor)",
+        "drivetrain": "FILE, or a name of the library (otherwise three of these)",
+        "torque": "NUMBER (kN m, of the rotor of your own drivetrain; otherwise its rated one)",
+        "moment": "NUMBER (kN m, about y at its hub; otherwise as large as the torque)",
+        "speed": "NUMBER (rpm, of its rotor; otherwise its rated one)",
     },
 )
 def run(run: Run, page: Page) -> None:
     """Tables recovered, answers of each level beside its cost, and which level is needed."""
-    recover(run, page)
+    if SETTING not in run.settings:
+        recover(run, page)
     needed: list[Record] = []
     ladders: list[tuple[Machine, Sequence[Answer]]] = []
     for name, operation in operations(run).items():
-        machine = machine_of(read_drivetrain(name))
-        page.about(machine, name)
+        chosen = run.drivetrain(name)
+        machine = machine_of(chosen.drivetrain)
+        page.about(chosen.drivetrain, name)
         rungs = [*RUNGS, *more_rungs(run, name)]
         with run.step(f"ladder of {name}"):
             answers = ladder(machine, operation, rungs)
@@ -77,14 +81,20 @@ def run(run: Run, page: Page) -> None:
             source="Rayleigh's principle of constraints",
         )
         show_modes(page, machine)
-        show_turning(page, name, machine, RPM.get(name) or run.positive("speed"))
+        show_turning(page, name, machine, rotor_speed(run, name))
         if name == "nrel_5mw":
             stiffness_of_5mw(page)
         assume(page, name, machine)
+        if name not in OPERATIONS and "moment" not in run.settings:
+            words = "no source: as large as the torque"
+            page.assume(f"{name}: moment on the hub", operation.moment / 1e3, "kN m", words)
     show_needed(page, needed)
     of_first = [row for row in needed if row["drivetrain"] == needed[0]["drivetrain"]]
     state_needed(page, of_first, *ladders[0])
-    page.say("All levels are one assembly: the torsional tables come back to round-off from it.")
+    if SETTING not in run.settings:
+        page.say(
+            "All levels are one assembly: the torsional tables come back to round-off from it."
+        )
 
 
 def state_needed(
@@ -124,7 +134,7 @@ def state_needed(
                 by="finest level",
             ),
         ],
-        AGAINST_TIME.format(machine.title),
+        BY_QUESTION.format(machine_name),
         [f"The finest level here is {finest.name}; errors are against it."],
     )
 
@@ -149,6 +159,7 @@ def show_ladder(page: Page, name: str, machine: Machine, answers: Sequence[Answe
         rows.append(row)
     page.table("Answers, and their differences from the finest level", rows)
     page.data(f"ladder_{name}", rows)
+    page.add(by_question(BY_QUESTION.format(machine.title.partition(" (")[0]), answers))
     page.chart(
         AGAINST_TIME.format(machine.title),
         error_curves(answers),
@@ -184,15 +195,17 @@ def show_needed(page: Page, needed: list[Record]) -> None:
 
 
 def operations(run: Run) -> dict[str, Operation]:
-    """Machines and their loads: those of the case, or the one that the user names."""
-    name = str(run.settings.get("machine", ""))
+    """Drivetrains and their loads: those of the case, or the one that the user names."""
+    name = str(run.settings.get(SETTING, ""))
     if name and name not in OPERATIONS:
-        return {name: Operation(1e3 * run.positive("torque"), 1e3 * run.positive("moment"))}
+        given = None if "torque" in run.settings else run.drivetrain("").rated_torque() / 1e3
+        torque = run.positive("torque", given)
+        return {name: Operation(1e3 * torque, 1e3 * run.positive("moment", torque))}
     for key in ("torque", "moment", "speed"):
         if key in run.settings:
             raise InputError(
                 f"{key} = {run.settings[key]} is not used: {', '.join(OPERATIONS)} have an "
-                f"operation of their own: leave {key} out, or name your own machine under machine"
+                f"operation of their own: leave {key} out, or name your own under {SETTING}"
             )
     return {name: OPERATIONS[name]} if name else OPERATIONS
 
@@ -206,11 +219,29 @@ def error_curves(answers: Sequence[Answer]) -> list[dict[str, Any]]:
             for answer in answers[:-1]
             if finest and (value := answer.values[question]) is not None
         ]
-        shown = [(t, e) for t, e in points if e > 1e-6]
+        shown = [(t, e) for t, e in points if e > LEAST]
         curves.append(
             marked(question.partition(" [")[0], [t for t, _ in shown], [e for _, e in shown])
         )
     return curves
+
+
+def by_question(caption: str, answers: Sequence[Answer]) -> Chart:
+    """The difference of each level from the finest, one line a question, and what is enough."""
+    finest = answers[-1].values
+    traces = []
+    for answer in answers[:-1]:
+        found = {
+            question.partition(" [")[0]: 100 * abs(value / best - 1)
+            for question, best in finest.items()
+            if best and (value := answer.values[question]) is not None
+        }
+        shown = {name: error for name, error in found.items() if error > LEAST}
+        points = trace(answer.name, list(shown.values()), [0.0] * len(shown), True)
+        traces.append(points | {"y": list(shown), "marker": {"size": 11}})
+    drawn = chart(caption, traces, "difference from the finest level [%]", "", "x")
+    drawn.figure["layout"]["yaxis"] = {"autorange": "reversed", "automargin": True}
+    return mark_events(drawn, {f"enough: {100 * TOLERANCE:g} %": 100 * TOLERANCE})
 
 
 def recover(run: Run, page: Page) -> None:
@@ -265,6 +296,14 @@ def with_teeth(table: GearTable) -> GearTable:
 RPM = {"nrel_5mw": 12.1, "nrel_750kw": 22.1, "synthetic_2mw": 18.1}
 
 
+def rotor_speed(run: Run, name: str) -> float:
+    """Speed of the rotor [rpm]: of the case, or the rated one of the drivetrain."""
+    if name in RPM:
+        return RPM[name]
+    given = None if "speed" in run.settings else run.drivetrain(name).rotor_speeds()[1]
+    return run.positive("speed", None if given is None else given * 30 / np.pi)
+
+
 def show_turning(page: Page, name: str, machine: Machine, rpm: float) -> None:
     """What spinning adds to the frequencies at rated speed, by the gyroscopic terms."""
     system = machine_system(machine, Level.RIGID)
@@ -285,7 +324,7 @@ def show_modes(page: Page, machine: Machine) -> None:
     modes = system_modes(system)
     kinds = direction_kinds(system, modes)
     rows: list[Record] = []
-    for number in range(14):
+    for number in range(min(14, len(modes.frequencies))):
         kinetic, strain = modes.kinetic_shares[:, number], modes.strain_shares[:, number]
         rows.append(
             {

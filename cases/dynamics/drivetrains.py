@@ -1,11 +1,15 @@
-"""The four drivetrains of the thesis with rated power and speed, for the cases in time."""
+"""The four drivetrains of the thesis, or a user's own, with rated power and speed."""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from fe_drivetrain.cases.references import published_drivetrains as published
+from fe_drivetrain.drivetrain_file import Drivetrain
+from fe_drivetrain.dynamics import gear_table
 from fe_drivetrain.dynamics.torsion import GearTable
+from fe_drivetrain.report.suite import Page, Run
+from fe_drivetrain.report.suite.chosen import SETTING
 
 #: Damping ratios of shafts and of meshes (Al-Hamadani 2018, section 4.1).
 RATIOS = (0.006, 0.1)
@@ -14,9 +18,10 @@ RATIOS = (0.006, 0.1)
 class Rated(NamedTuple):
     """A drivetrain, its rated power [W] and its rotor's rated speed [1/min].
 
-    ``table`` is of `published_drivetrains`, ``ratios`` are damping ratios where its table has no
-    dampers, ``peak`` is the printed peak of the torque's spectrum in a shutdown [Hz], ``held`` what
-    two masses swing at with the generator's shaft held [Hz].
+    ``table`` is of `published_drivetrains` or of a user's file, ``ratios`` are damping ratios where
+    it has no dampers, ``peak`` is the printed peak of the torque's spectrum in a shutdown [Hz],
+    ``held`` what two masses swing at with the generator's shaft held [Hz], ``brake`` the torque of
+    a brake at the generator over the generator's rated one.
     """
 
     letter: str
@@ -27,6 +32,17 @@ class Rated(NamedTuple):
     peak: float
     held: float
     tripped: float
+    brake: float | None = None
+
+    @property
+    def slow(self) -> str:
+        """Name of the shaft at the rotor."""
+        return self.table.shafts[0].name
+
+    @property
+    def fast(self) -> str:
+        """Name of the shaft at the generator."""
+        return self.table.shafts[-1].name
 
     @property
     def speed(self) -> float:
@@ -47,3 +63,47 @@ def drivetrains() -> list[Rated]:
         Rated("C", published.table("drivetrain_c"), 2e6, 18.1, RATIOS, 2.503, 0.814, -0.795),
         Rated("D", published.table("nrel_750kw"), 750e3, 22.1, None, 2.61, 0.945, -0.720),
     ]
+
+
+def own_or_published(run: Run, page: Page) -> list[Rated]:
+    """The drivetrain that the user names, or A to D; a page of the former says that it is.
+
+    Raises
+    ------
+    InputError
+        The user's file does not state its rated power and the speed of its rotor.
+    """
+    if SETTING not in run.settings:
+        return drivetrains()
+    chosen = run.drivetrain("")
+    chosen.state(page)
+    table = gear_table(chosen.drivetrain)
+    torque, speed = chosen.rated_torque(), chosen.rotor_speeds()[1]
+    damped = any(part.damping > 0 for part in table.shafts)
+    if not damped:
+        page.assume(
+            "damping ratios of shafts and meshes",
+            f"{RATIOS[0]} and {RATIOS[1]}",
+            "",
+            "no damping in the file; Al-Hamadani 2018, section 4.1",
+        )
+    ratios = None if damped else RATIOS
+    front, rear = table.rotor, table.speeds[-1] ** 2 * table.generator.inertia
+    tripped = (rear - front) / (front + rear)
+    nan = float("nan")
+    per_minute = speed * 30.0 / np.pi
+    of_brake = brake_over_rated(chosen.drivetrain, table, torque)
+    own = Rated(
+        chosen.title, table, torque * speed, per_minute, ratios, nan, nan, tripped, of_brake
+    )
+    return [own]
+
+
+def brake_over_rated(drivetrain: Drivetrain, table: GearTable, torque: float) -> float | None:
+    """Torque of the file's brake at the generator, over the generator's rated one."""
+    brake = drivetrain.brake
+    if brake is None:
+        return None
+    # over the rated torque of its own shaft, which is the same share at the generator's
+    speeds = dict(zip((shaft.name for shaft in table.shafts), table.speeds, strict=True))
+    return brake.torque * speeds[brake.on] / torque

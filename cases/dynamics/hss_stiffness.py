@@ -3,20 +3,22 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.dynamics.drivetrains import Rated, drivetrains
+from fe_drivetrain.cases.dynamics.drivetrains import Rated, own_or_published
 from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import InTime, converge_in_time, decades, peak_between
 from fe_drivetrain.dynamics import StopSequence, shutdown
 from fe_drivetrain.dynamics.torsion import (
+    GearTable,
     Torsional,
     changed,
     gear_masses,
     natural_modes,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.report.number_text import formatted
+from fe_drivetrain.report.number_text import formatted, value_text
 from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
+from fe_drivetrain.report.suite.chosen import SETTING
 
 FACTOR = "stiffness of the high-speed shaft over the tabled one"
 #: A generator's spring over its inertia, of drivetrain D: that of A is not printed.
@@ -30,34 +32,65 @@ MOVING = "{}: frequencies that move by more than 0.1 %"
     "Stiffness of the high-speed shaft from 10 to 1000 %: frequencies and torque after a loss of "
     "the generator",
     source="Al-Hamadani 2018, section 6.2.4, Figure 6.20, Tables 4.2 and 4.3",
+    settings={"drivetrain": "FILE, or a name of the library (otherwise A to D of the thesis)"},
 )
 def run(run: Run, page: Page) -> None:
-    """Sweep the shaft of all four drivetrains; A with the generator's spring, too."""
+    """Sweep the shaft of all drivetrains; A with the generator's spring, too."""
     factors = decades(-1.0, 1.0, 8 if run.quick else 40)
+    own, trains = SETTING in run.settings, own_or_published(run, page)
     with run.step("frequencies"):
-        fixed = published.with_values(
-            drivetrains()[0].table,
-            {"generator.stiffness": SPRING * drivetrains()[0].table.generator.inertia},
+        systems = (
+            {} if own else {"A, generator fixed": (gear_masses(sprung(trains[0]), "fixed"), "HSS")}
         )
-        systems = {"A, generator fixed": gear_masses(fixed, "fixed")}
         systems |= {
-            f"{one.letter}, generator free": gear_masses(one.table, "free") for one in drivetrains()
+            f"{one.letter}, generator free": (gear_masses(one.table, "free"), one.fast)
+            for one in trains
         }
-        rows = [sweep(page, name, system, factors) for name, system in systems.items()]
+        rows = [sweep(page, name, *given, factors) for name, given in systems.items()]
     with run.step("torque"):
         page.section("Loss of the generator in time")
-        torques = torque_rows(page, run.quick)
-    answer(page, rows[0], torques[0])
-    page.assume(
-        "generator's spring of A",
-        "as that of D for its inertia",
-        "",
-        "the thesis does not print it",
-    )
+        torques = torque_rows(page, trains, run.quick)
+    if own:
+        own_answer(page, rows[0], torques[0])
+    else:
+        answer(page, rows[0], torques[0])
+        page.assume(
+            "generator's spring of A",
+            "as that of D for its inertia",
+            "",
+            "the thesis does not print it",
+        )
     page.section("What moves")
     page.table("Frequencies of a shaft ten times as stiff over those of a tenth", rows)
     page.section("Torque after a loss of the generator")
     page.table("Least torque of the high-speed shaft over rated", torques)
+
+
+def sprung(one: Rated) -> GearTable:
+    """A table with a generator's spring in proportion to its inertia."""
+    spring = SPRING * one.table.generator.inertia
+    return published.with_values(one.table, {"generator.stiffness": spring})
+
+
+def own_answer(page: Page, first: Record, torque: Record) -> None:
+    """State what the stiffness moves of a user's drivetrain."""
+    most, lowest = first["by [%]"], first["lowest rises by [%]"]
+    hz = value_text(first["rises most, as tabled [Hz]"], "Hz")
+    page.answer(
+        "Which frequencies does the stiffness of the high-speed shaft move?",
+        f"From 10 to 1000\u00a0% of its stiffness the mode of {hz} rises by {most:.0f}\u00a0%, "
+        f"the lowest by {lowest:.2g}\u00a0%.",
+        [
+            page.value("largest rise of a mode [%]", most),
+            page.value("rise of the lowest mode [%]", lowest),
+            page.value("rise of the highest mode [%]", first["highest rises by [%]"]),
+            *(
+                page.value(f"least torque after loss of the generator, {k} stiffness", torque[k])
+                for k in (f"{100 * factor:g} %" for factor in FACTORS)
+            ),
+        ],
+        MOVING.format(first["drivetrain"]),
+    )
 
 
 def answer(page: Page, first: Record, torque: Record) -> None:
@@ -89,10 +122,10 @@ def answer(page: Page, first: Record, torque: Record) -> None:
     )
 
 
-def sweep(page: Page, name: str, system: Torsional, factors: Floats) -> Record:
+def sweep(page: Page, name: str, system: Torsional, shaft: str, factors: Floats) -> Record:
     """Frequencies over the stiffness, monotone, with slopes of half the energy share."""
-    tabled = next(e.stiffness for e in system.elements if e.name == "HSS")
-    f = np.array([natural_modes(changed(system, {"HSS": k * tabled})).frequencies for k in factors])
+    tabled = next(e.stiffness for e in system.elements if e.name == shaft)
+    f = np.array([natural_modes(changed(system, {shaft: k * tabled})).frequencies for k in factors])
     page.holds(
         f"{name}: no frequency falls when the shaft is stiffened",
         bool((np.diff(f, axis=0) >= -1e-9 * f.max()).all()),
@@ -101,11 +134,11 @@ def sweep(page: Page, name: str, system: Torsional, factors: Floats) -> Record:
     )
     step = 1e-4
     up, down = (
-        natural_modes(changed(system, {"HSS": (1.0 + s) * tabled})).frequencies
+        natural_modes(changed(system, {shaft: (1.0 + s) * tabled})).frequencies
         for s in (step, -step)
     )
     modes = natural_modes(system)
-    place = [e.name for e in system.elements].index("HSS")
+    place = [e.name for e in system.elements].index(shaft)
     swings = modes.frequencies > 0.0
     slope = np.log(up[swings] / down[swings]) / (2.0 * step)
     page.vanishes(
@@ -135,12 +168,12 @@ def sweep(page: Page, name: str, system: Torsional, factors: Floats) -> Record:
     }
 
 
-def torque_rows(page: Page, quick: bool) -> list[Record]:
+def torque_rows(page: Page, trains: list[Rated], quick: bool) -> list[Record]:
     """Least torque after loss of the generator, for three stiffnesses."""
 
     def run(dt: float, _: int) -> InTime:
         values, lost = {}, 0.0
-        for one in drivetrains():
+        for one in trains:
             for factor in FACTORS:
                 least, error = min_torque(one, factor, dt)
                 values[f"{one.letter}, {100 * factor:g} %: least torque over rated"] = least
@@ -167,7 +200,7 @@ def torque_rows(page: Page, quick: bool) -> list[Record]:
                 for factor in FACTORS
             },
         }
-        for one in drivetrains()
+        for one in trains
     ]
 
 
@@ -178,5 +211,5 @@ def min_torque(one: Rated, factor: float, dt: float) -> tuple[float, float]:
     k = factor * one.table.shafts[last].stiffness
     table = published.with_values(one.table, {f"shafts.{last}.stiffness": k})
     found = shutdown(table, one.torque, one.speed, 0.0, when, dt=dt, ratios=one.ratios)
-    least = -peak_between(-found.ratio("HSS"))
+    least = -peak_between(-found.ratio(one.fast))
     return least, found.motion.relative_imbalance

@@ -16,7 +16,7 @@ from fe_drivetrain.dynamics import (
     spring_laws,
     steady,
 )
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked, trace
 from fe_drivetrain.report.number_text import percent_text
 from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
 
@@ -142,11 +142,12 @@ def show(
     page.chart(
         TONGUE.format(depth),
         [
-            trace("time integration", at, ours, True),
+            marked("time integration", at, ours),
             trace("Floquet", at, exact),
             trace("first order", at, low, line={"dash": "dot"}),
         ],
         "frequency of the mesh over the natural frequency",
         "growth [1/s]",
+        beside="Floquet",
     )
     page.data("tongue", {"W": at, "growth": ours, "exact": exact})

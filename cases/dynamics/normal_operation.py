@@ -3,7 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.dynamics.drivetrains import Rated, drivetrains
+from fe_drivetrain.cases.dynamics.drivetrains import Rated, own_or_published
 from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import InTime, converge_in_time
 from fe_drivetrain.dynamics import (
@@ -29,68 +29,118 @@ from fe_drivetrain.dynamics.torsion import (
     natural_modes,
 )
 from fe_drivetrain.report import Cell, chart, mark_events, trace
-from fe_drivetrain.report.number_text import percent_text
+from fe_drivetrain.report.number_text import percent_text, value_text
 from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
+from fe_drivetrain.report.suite.chosen import SETTING
 
 PRINTED, LIMIT = 1.26, 1.35
 """Largest torque over rated in normal operation, drivetrain B; limit of the design loads."""
+APART = "low-speed over high-speed shaft, torques over their mean: largest difference"
 ORDERS = (1, 3, 6)
 """Of the rotor's speed."""
 SLIP = 0.01
 SAME = 0.005
 RESPONSE = "Swing of the high-speed shaft's torque over its mean, of the rotor's as 1"
 LASTING = 20.0  # s
-SHAFTS = {"LSS": ("LSS",), "ISS1": ("shaft 1-2", "IS1"), "HSS": ("HSS",)}
+SHAFTS = {"LSS": 0, "ISS1": 1, "HSS": -1}
+"""Places of shafts among those from the rotor on."""
 
 
 @case(
     "Normal operation of drivetrains A to D: torque of each shaft over that of the rotor",
     source="Al-Hamadani 2018, section 6.2.2, Figure 6.17",
+    settings={"drivetrain": "FILE, or a name of the library (otherwise A to D of the thesis)"},
 )
 def run(run: Run, page: Page) -> None:
     """Swings of the rotor's torque at 1P, 3P and 6P, in time and by frequency response."""
     rows: list[Record] = []
+    trains = own_or_published(run, page)
     page.section("In time")
-    for one in drivetrains():
+    for one in trains:
         with run.step(f"drivetrain {one.letter}"):
             rows += rows_of(page, one, 1e-2 if run.quick else 2e-3)
-    of_b = [row for row in rows if row["drivetrain"] == "B"]
     apart = max(abs(float(str(row["LSS"])) / float(str(row["HSS"])) - 1) for row in rows)
+    if SETTING in run.settings:
+        page.found(APART, apart)
+    else:
+        check_apart(page, apart)
+    page.section("Swing of each shaft's torque over its mean, of the rotor's one as 1")
+    page.table("Generator on a slip line", rows)
+    thrice = {
+        str(row["drivetrain"]): float(str(row["LSS"])) for row in rows if row["order"] == "3P"
+    }
+    if SETTING in run.settings:
+        own_answer(page, rows, apart, trains[0])
+    else:
+        beside_thesis(page, rows, apart, trains)
+        answer(page, apart, thrice)
+    with run.step("frequency response"):
+        show_response(page, trains, 60 if run.quick else 200)
+    page.assume(
+        "generator", f"slip of {100 * SLIP:g} % at rated torque", "", "controls not printed"
+    )
+
+
+def check_apart(page: Page, apart: float) -> None:
+    """All shafts of the thesis's drivetrains swing alike."""
     page.at_most(
-        "low-speed over high-speed shaft, torques over their mean: largest difference",
+        APART,
         apart,
         0.01,
         why="inertias between the shafts are small against those of rotor and generator",
         source=f"{PRINTED} of LSS, ISS1 and HSS of drivetrain B",
     )
-    page.section("Swing of each shaft's torque over its mean, of the rotor's one as 1")
-    page.table("Generator on a slip line", rows)
-    largest = max(float(str(row["LSS"])) for row in of_b)
-    least = min(float(str(row["LSS"])) for row in of_b)
-    thrice = {
-        str(row["drivetrain"]): float(str(row["LSS"])) for row in rows if row["order"] == "3P"
-    }
+
+
+def beside_thesis(page: Page, rows: list[Record], apart: float, trains: list[Rated]) -> None:
+    """Show printed statements on drivetrains B, C and D beside ours."""
+    swings = [float(str(row["LSS"])) for row in rows if row["drivetrain"] == "B"]
+    least, largest = min(swings), max(swings)
     page.table(
         "Printed, ours, verdict",
         verdicts(apart, least, largest),
         ["statement", "printed", "ours", "verdict"],
     )
-    first = {one.letter: first_held(one) for one in drivetrains()}
+    first = {one.letter: first_held(one) for one in trains}
     page.text(
         f"C and D have their first mode, with the generator held, at {first['C']:.2f} and "
         f"{first['D']:.2f} Hz, next to 3P; what damps it there is the slip of the generator. "
         "The thesis puts the measured torque of a 2 MW turbine on the rotor of A and B, too, "
         "scaled by their diameters."
     )
-    answer(page, apart, thrice)
     page.say(
         "Up to 6P the shafts of B follow the torque of the rotor within "
         f"{100 * max(abs(largest - 1), abs(least - 1)):.0f} %.",
     )
-    with run.step("frequency response"):
-        show_response(page, 60 if run.quick else 200)
-    page.assume(
-        "generator", f"slip of {100 * SLIP:g} % at rated torque", "", "controls not printed"
+
+
+def own_answer(page: Page, rows: list[Record], apart: float, one: Rated) -> None:
+    """State how much more than the rotor's the shafts of a user's drivetrain swing."""
+    most = max(rows, key=lambda row: float(str(row["HSS"])))
+    first = first_held(one)
+    page.answer(
+        "How much more than the rotor's does the torque of the shafts swing in operation?",
+        f"Shafts swing up to {float(str(most['HSS'])):.2f} times as much as the rotor's torque, at "
+        f"{most['order']}; the first mode with the generator held is at "
+        f"{value_text(first, 'Hz')}.",
+        [
+            page.judged(
+                APART,
+                "largest difference between shafts",
+                unit="%",
+            ),
+            *(
+                page.judged(
+                    f"drivetrain {one.letter}, {row['order']}: swing of the HSS in time, of the "
+                    "rotor's as 1",
+                    f"swing at {row['order']}",
+                    "frequency response",
+                )
+                for row in rows
+            ),
+            page.value("first mode, generator held [Hz]", first),
+        ],
+        RESPONSE,
     )
 
 
@@ -105,7 +155,7 @@ def answer(page: Page, apart: float, thrice: dict[str, float]) -> None:
         "rotor's torque.",
         [
             page.judged(
-                "low-speed over high-speed shaft, torques over their mean: largest difference",
+                APART,
                 "largest difference between shafts",
                 unit="%",
             ),
@@ -127,14 +177,14 @@ def answer(page: Page, apart: float, thrice: dict[str, float]) -> None:
     )
 
 
-def show_response(page: Page, count: int) -> None:
+def show_response(page: Page, trains: list[Rated], count: int) -> None:
     """Swing of the high-speed shafts over the order of the rotor's speed."""
     orders = np.linspace(0.2, 7.0, count)
     traces = []
-    for one in drivetrains():
+    for one in trains:
         system = damped_masses(one)
         generator = float(gear_speeds(one.table)["generator"])
-        k = [e.name for e in system.elements].index("HSS")
+        k = [e.name for e in system.elements].index(one.fast)
         swings = [amplified(system, one, generator, n * one.speed)[k] for n in orders.tolist()]
         traces.append(trace(f"drivetrain {one.letter}", orders, swings))
     page.section("Between the orders")
@@ -192,7 +242,7 @@ def rows_of(page: Page, one: Rated, dt: float) -> list[Record]:
     generator = float(gear_speeds(one.table)["generator"])
     names = [e.name for e in system.elements]
     rows: list[Record] = []
-    k = names.index("HSS")
+    k = names.index(one.fast)
     keys = {order: f"{order}P: swing of the HSS" for order in ORDERS}
 
     def run(step: float, _: int) -> InTime:
@@ -225,8 +275,9 @@ def rows_of(page: Page, one: Rated, dt: float) -> list[Record]:
             source="frequency response of the same masses",
         )
         row: Record = {"drivetrain": one.letter, "order": f"{order}P", "[Hz]": w / (2 * np.pi)}
-        for shaft, known in SHAFTS.items():
-            at = next((names.index(name) for name in known if name in names), None)
+        shafts = one.table.shafts
+        for shaft, place in SHAFTS.items():
+            at = names.index(shafts[place].name) if place < len(shafts) else None
             row[shaft] = None if at is None else float(exact[at])
         rows.append(row)
     return rows

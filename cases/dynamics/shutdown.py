@@ -1,11 +1,12 @@
 """Four drivetrains that are stopped: blades pitched, generator off, disc brake, standstill."""
 
+from math import isnan
 from typing import Any
 
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.dynamics.drivetrains import RATIOS, Rated, drivetrains
+from fe_drivetrain.cases.dynamics.drivetrains import RATIOS, Rated, own_or_published
 from fe_drivetrain.cases.dynamics.shutdown_runs import (
     PEAK,
     SEQUENCE,
@@ -13,15 +14,16 @@ from fe_drivetrain.cases.dynamics.shutdown_runs import (
     check_backlash,
     check_dips,
     check_peaks,
+    peak_of,
     stop,
     stopped_by,
 )
-from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import ConvergenceInTime, InTime, converge_in_time, peak_between
 from fe_drivetrain.dynamics import StopSequence
 from fe_drivetrain.dynamics.torsion import changed, natural_modes, two_masses
 from fe_drivetrain.report import chart, mark_events, trace
 from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.report.suite.chosen import SETTING
 
 NORMAL = 0.237
 """Range of torque in normal operation over rated: 250 kN m of 1.055 MN m, measured (chapter 3)."""
@@ -33,19 +35,23 @@ STEP, QUICK_STEP = 1.25e-4, 5e-4
 @case(
     "Shutdown of drivetrains A to D: torque over rated torque, reversal, what rings",
     source="Al-Hamadani 2018, sections 4.5, 6.1.4 and 6.2.2-6.2.3, Tables 4.2 and 4.3",
+    settings={"drivetrain": "FILE, or a name of the library (otherwise A to D of the thesis)"},
 )
 def run(run: Run, page: Page) -> None:
     """Stop each drivetrain with a brake that gives the printed peak; what follows from it."""
     dt = QUICK_STEP if run.quick else STEP
+    trains = own_or_published(run, page)
     stopped = []
-    for one in drivetrains():
+    for one in trains:
         with run.step(f"drivetrain {one.letter}"):
             stopped.append(stop(one, dt))
-    with run.step("instants of the brake"):
-        page.section("Instants of the brake")
-        instants = check_instants(page, run.quick)
+    own = SETTING in run.settings
+    if not own:
+        with run.step("instants of the brake"):
+            page.section("Instants of the brake")
+            instants = check_instants(page, trains, run.quick)
     with run.step("loss of the generator"):
-        losses = check_losses(page, dt / 4.0)
+        losses = check_losses(page, trains, dt / 4.0)
     rows = [row_of(each) for each in stopped]
     swings = [check_frequencies(page, each) for each in stopped]
     with run.step("convergence of the shutdowns"):
@@ -53,16 +59,56 @@ def run(run: Run, page: Page) -> None:
         check_stops(page, stopped, dt)
     with run.step("dips of the grid"):
         page.section("A dip of the grid")
-        dips = check_dips(page, 5e-5 if run.quick else 2.5e-5)
+        dips = check_dips(page, trains, 5e-5 if run.quick else 2.5e-5)
     with run.step("backlash"):
         page.section("With backlash")
         knocks = check_backlash(page, stopped, run.quick)
-    answer(page, rows, instants[2], losses, swings)
-    assume(page)
-    show_shutdown(page, losses, rows, instants)
+    if own:
+        own_answer(page, stopped[0], rows[0], losses[0], swings[0])
+    else:
+        answer(page, rows, instants[2], losses, swings)
+        assume(page)
+        show_shutdown(page, losses, rows, instants)
     for each in stopped:
         show(page, each)
     show_others(page, dips, knocks, swings)
+
+
+def own_answer(page: Page, one: Stopped, row: Record, loss: Record, swing: Record) -> None:
+    """State the torques of a user's drivetrain in a shutdown."""
+    least = loss["all gears, HSS"]
+    turns = "reverses it" if least < 0.0 else "does not reverse it"
+    page.answer(
+        "How high do torques go when the drivetrain is shut down, and do they reverse?",
+        f"The fast shaft comes to {row['HSS, peak over rated']:.2f} of rated torque when the brake "
+        f"holds; losing the generator {turns}, {least:.2f} at least.",
+        [
+            page.value("peak over rated, fast shaft", row["HSS, peak over rated"]),
+            page.value("peak over rated, main shaft", row["LSS, peak over rated"]),
+            page.value(
+                "least torque of the main shaft in the shutdown, over rated", row["LSS, least"]
+            ),
+            page.value("least torque after loss of the generator, over rated", least),
+            page.value(
+                "ringing with the brake on [Hz]",
+                swing["spectrum [Hz]"],
+                0.5 * swing["its resolution [Hz]"],
+                beside=swing["first mode [Hz]"],
+                by="first mode",
+            ),
+            page.value("brake over the generator's rated torque", one.brake),
+        ],
+        SHUTDOWN.format(one.of.letter),
+    )
+    page.assume("sequence", "generator off at 1 s, brake at 3 s", "", "of the case")
+    page.assume("aerodynamic torque", "from rated to 0 in 2 s, evenly", "", "of the case")
+    page.assume("generator", "slip of 1 % at rated torque", "", "of the case")
+    if one.of.brake is None:
+        words = "the file states no brake; the printed peak of drivetrain B of Al-Hamadani 2018"
+        page.assume("brake", f"so large that the main shaft reaches {PEAK} of rated", "", words)
+    page.section("Shutdown, in numbers")
+    page.table("Torques over rated, a mass for each gear", [row])
+    page.table("Least torque over rated after loss of the generator", [loss])
 
 
 def answer(
@@ -192,12 +238,12 @@ def show_others(page: Page, dips: list[Record], knocks: list[Record], swings: li
     )
 
 
-def check_instants(page: Page, quick: bool) -> list[Record]:
+def check_instants(page: Page, trains: list[Rated], quick: bool) -> list[Record]:
     """Peaks of the high-speed shaft with brakes that come at other points of the first swing."""
     shares = (0.0, 0.5) if quick else tuple(np.arange(8) / 8.0)
     dt = QUICK_STEP if quick else STEP
     sized: dict[str, list[tuple[float, Stopped]]] = {}
-    for one in drivetrains():
+    for one in trains:
         period = 1.0 / float(natural_modes(two_masses(one.table, "free")).frequencies[1])
         lates = [float(share) * period for share in shares]
         sized[one.letter] = [
@@ -213,7 +259,7 @@ def check_instants(page: Page, quick: bool) -> list[Record]:
                 when = StopSequence(SEQUENCE.off, SEQUENCE.pitched, 0.0, braked, braked + 1.0)
                 found = stopped_by(one.of, one.brake, when, step)
                 motion = found.motion
-                peaks.append(peak_between(found.ratio("HSS")[motion.times >= braked]))
+                peaks.append(peak_between(found.ratio(one.of.fast)[motion.times >= braked]))
                 lost = max(lost, motion.relative_imbalance)
             values[f"{letter}, HSS: least peak over rated"] = min(peaks)
             values[f"{letter}, HSS: largest peak over rated"] = max(peaks)
@@ -243,8 +289,8 @@ def check_stops(page: Page, stopped: list[Stopped], dt: float) -> None:
             when = StopSequence(SEQUENCE.off, SEQUENCE.pitched, 0.0, braked, braked + 2.0)
             found = stopped_by(one.of, one.brake, when, step)
             motion = found.motion
-            for shaft in ("LSS", "HSS"):
-                after = found.ratio(shaft)[motion.times >= braked]
+            for shaft, own in (("LSS", one.of.slow), ("HSS", one.of.fast)):
+                after = found.ratio(own)[motion.times >= braked]
                 values[f"{one.of.letter}, {shaft}: peak over rated"] = peak_between(after)
                 values[f"{one.of.letter}, {shaft}: least over rated"] = -peak_between(-after)
             lost = max(lost, motion.relative_imbalance)
@@ -254,7 +300,7 @@ def check_stops(page: Page, stopped: list[Stopped], dt: float) -> None:
     check_peaks(page, "shutdown", found)
 
 
-def check_losses(page: Page, dt: float) -> list[Record]:
+def check_losses(page: Page, trains: list[Rated], dt: float) -> list[Record]:
     """Least torque of two masses against the closed form, and of all gears."""
     when = StopSequence(off=0.2, pitched=1e3, left=1.0, end=1.2)
     kinds: dict[str, dict[str, Any]] = {
@@ -265,10 +311,10 @@ def check_losses(page: Page, dt: float) -> list[Record]:
 
     def run(step: float, _: int) -> InTime:
         values, lost = {}, 0.0
-        for one in drivetrains():
+        for one in trains:
             for kind, given in kinds.items():
                 found = stopped_by(one, 0.0, when, step, **given)
-                torque = found.ratio("shafts" if "lumped" in given else "HSS")
+                torque = found.ratio("shafts" if "lumped" in given else one.fast)
                 values[f"{one.letter}, {kind}: least over rated"] = -peak_between(-torque)
                 lost = max(lost, found.motion.relative_imbalance)
         return InTime(values, lost)
@@ -276,7 +322,7 @@ def check_losses(page: Page, dt: float) -> list[Record]:
     found = converge_in_time(run, dt)
     page.section("Loss of the generator's torque, the rotor's held")
     check_peaks(page, "loss of the generator", found)
-    return [check_loss(page, one, found) for one in drivetrains()]
+    return [check_loss(page, one, found) for one in trains]
 
 
 def check_loss(page: Page, one: Rated, found: ConvergenceInTime) -> Record:
@@ -316,7 +362,7 @@ def check_loss(page: Page, one: Rated, found: ConvergenceInTime) -> Record:
 def row_of(one: Stopped) -> Record:
     """Peaks and ranges of a shutdown."""
     t = one.done.motion.times
-    low, high = one.done.ratio("LSS"), one.done.ratio("HSS")
+    low, high = one.done.ratio(one.of.slow), one.done.ratio(one.of.fast)
     after = t >= SEQUENCE.braked
     return {
         "drivetrain": one.of.letter,
@@ -381,7 +427,7 @@ def verdicts(rows: list[Record], instants: list[Record]) -> list[Record]:
 def check_frequencies(page: Page, one: Stopped) -> Record:
     """Spectra while the brake slips and while it holds, against modes."""
     t = one.done.motion.times
-    torque = one.done.ratio("HSS")
+    torque = one.done.ratio(one.of.fast)
     first = one.done.motion.braking.events[0][0]
     ringing, resolution = peak_of(t, torque, SEQUENCE.braked, first)
     mode = float(natural_modes(one.done.system).frequencies[1])
@@ -411,22 +457,21 @@ def check_frequencies(page: Page, one: Stopped) -> Record:
         "spectrum [Hz]": ringing,
         "its resolution [Hz]": resolution,
         "first mode [Hz]": mode,
-        "printed [Hz]": one.of.peak,
-        "printed over ours - 1 [%]": 100.0 * (one.of.peak / ringing - 1.0),
+        **printed_peak(one.of, ringing),
         "brake holds [Hz]": swinging,
         "its mode [Hz]": held,
-        "two masses [Hz]": one.of.held,
+        **({} if isnan(one.of.held) else {"two masses [Hz]": one.of.held}),
     }
 
 
-def peak_of(t: Floats, values: Floats, begin: float, end: float) -> tuple[float, float]:
-    """Highest peak of a spectrum with Hann's window [Hz], and its resolution."""
-    grid = np.linspace(begin, end, 4096)
-    y = np.interp(grid, t, values)
-    y = (y - y.mean()) * np.hanning(len(y))
-    lines = np.abs(np.fft.rfft(y, 16 * len(y)))
-    lines[: 16 * 2] = 0.0
-    return float(lines.argmax() / (16.0 * (end - begin))), 1.0 / (end - begin)
+def printed_peak(one: Rated, ringing: float) -> Record:
+    """The printed peak of a spectrum [Hz] beside ours; nothing of a drivetrain without one."""
+    if isnan(one.peak):
+        return {}
+    return {
+        "printed [Hz]": one.peak,
+        "printed over ours - 1 [%]": 100.0 * (one.peak / ringing - 1.0),
+    }
 
 
 def show(page: Page, one: Stopped) -> None:
@@ -438,7 +483,7 @@ def show(page: Page, one: Stopped) -> None:
     events[f"disc {what}"] = first
     drawn = chart(
         SHUTDOWN.format(one.of.letter),
-        [trace(name, t[every], one.done.ratio(name)[every]) for name in ("LSS", "HSS")],
+        [trace(name, t[every], one.done.ratio(name)[every]) for name in (one.of.slow, one.of.fast)],
         "time [s]",
         "torque over rated",
     )

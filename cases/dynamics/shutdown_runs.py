@@ -3,9 +3,11 @@
 from collections.abc import Collection
 from typing import NamedTuple
 
+import numpy as np
 from scipy.optimize import newton
 
-from fe_drivetrain.cases.dynamics.drivetrains import Rated, drivetrains
+from fe_drivetrain.cases.dynamics.drivetrains import Rated
+from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import ConvergenceInTime, InTime, converge_in_time, peak_between
 from fe_drivetrain.dynamics import Shutdown, StopSequence, shutdown
 from fe_drivetrain.report.suite import Page, Record, check_in_time
@@ -34,7 +36,7 @@ class Stopped(NamedTuple):
 
 
 def stop(one: Rated, dt: float, late: float = 0.0, end: float = SEQUENCE.end) -> Stopped:
-    """With a brake so large that the low-speed shaft reaches the printed peak.
+    """With its own brake, or one so large that the low-speed shaft reaches the printed peak.
 
     Parameters
     ----------
@@ -52,8 +54,10 @@ def stop(one: Rated, dt: float, late: float = 0.0, end: float = SEQUENCE.end) ->
     def excess(brake: float) -> float:
         found = done(brake, braked + 1.0)
         after = found.motion.times >= braked
-        return peak_between(found.ratio("LSS")[after]) - PEAK
+        return peak_between(found.ratio(one.slow)[after]) - PEAK
 
+    if one.brake is not None:
+        return Stopped(one, one.brake, done(one.brake, end))
     # the peak goes with the torque of the brake, as long as the disc turns
     brake = float(newton(excess, 1.0, x1=3.0, tol=1e-6))
     return Stopped(one, brake, done(brake, end))
@@ -100,17 +104,17 @@ def stopped_by(
     )
 
 
-def check_dips(page: Page, dt: float) -> list[Record]:
+def check_dips(page: Page, trains: list[Rated], dt: float) -> list[Record]:
     """Peaks after dips of several lengths."""
     ends = {"largest": 1.0, "least": -1.0}
 
     def run(step: float, _: int) -> InTime:
         values, lost = {}, 0.0
-        for one in drivetrains():
+        for one in trains:
             for length in DIPS:
                 when = StopSequence(off=0.2, pitched=1e3, left=1.0, end=0.9, back=0.2 + length)
                 found = stopped_by(one, 0.0, when, step)
-                fast, name = found.ratio("HSS"), f"{one.letter}, off for {length} s"
+                fast, name = found.ratio(one.fast), f"{one.letter}, off for {length} s"
                 for end, sign in ends.items():
                     values[f"{name}: {end} over rated"] = sign * peak_between(sign * fast)
                 values[f"{name}: at the end over rated"] = float(fast[-1])
@@ -130,7 +134,7 @@ def check_dips(page: Page, dt: float) -> list[Record]:
                 for end in (*ends, "at the end")
             },
         }
-        for one in drivetrains()
+        for one in trains
         for length in DIPS
     ]
 
@@ -147,10 +151,10 @@ def check_backlash(page: Page, stopped: list[Stopped], quick: bool) -> list[Reco
             for backlash in (0.0, BACKLASH):
                 found = stopped_by(one.of, one.brake, when, step, backlash=backlash)
                 name = f"{one.of.letter}, backlash of {1e3 * backlash:g} mrad"
-                for shaft in ("LSS", "HSS"):
-                    peak = peak_between(found.ratio(shaft))
+                for shaft, own in (("LSS", one.of.slow), ("HSS", one.of.fast)):
+                    peak = peak_between(found.ratio(own))
                     values[f"{name}, {shaft}: peak over rated"] = peak
-                low = -peak_between(-found.ratio("LSS"))
+                low = -peak_between(-found.ratio(one.of.slow))
                 values[f"{name}, LSS: least over rated"] = low
                 parted[name] = time_parted(one.of, found)
                 motion = found.motion
@@ -194,3 +198,13 @@ def time_parted(one: Rated, found: Shutdown) -> float:
     shafts = {shaft.name for shaft in one.table.shafts}
     meshes = [i for i, e in enumerate(found.system.elements) if e.name not in shafts]
     return 100.0 * float((found.motion.forces[:, meshes] == 0.0).any(axis=1).mean())
+
+
+def peak_of(t: Floats, values: Floats, begin: float, end: float) -> tuple[float, float]:
+    """Highest peak of a spectrum with Hann's window [Hz], and its resolution."""
+    grid = np.linspace(begin, end, 4096)
+    y = np.interp(grid, t, values)
+    y = (y - y.mean()) * np.hanning(len(y))
+    lines = np.abs(np.fft.rfft(y, 16 * len(y)))
+    lines[: 16 * 2] = 0.0
+    return float(lines.argmax() / (16.0 * (end - begin))), 1.0 / (end - begin)

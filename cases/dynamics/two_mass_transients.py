@@ -1,9 +1,11 @@
 """Two masses on a shaft: loss of the generator, a brake, a step of torque, against exact motion."""
 
+from functools import partial
+
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.dynamics.drivetrains import Rated, drivetrains
+from fe_drivetrain.cases.dynamics.drivetrains import Rated, own_or_published
 from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import InTime, converge_in_time, peak_between
 from fe_drivetrain.dynamics import (
@@ -21,14 +23,14 @@ from fe_drivetrain.dynamics import (
     transient,
     wind_up,
 )
-from fe_drivetrain.dynamics.torsion import two_masses
+from fe_drivetrain.dynamics.torsion import natural_modes, two_masses
 from fe_drivetrain.report import chart, mark_events, trace
 from fe_drivetrain.report.number_text import percent_text
 from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
 
 PER_PERIOD = (20, 40, 80, 160)
 QUICK = (20, 40)
-BRAKED = "Drivetrain D as two masses, stopped by a brake of 1.2 times rated torque"
+BRAKED = "Drivetrain {} as two masses, stopped by a brake of 1.2 times rated torque"
 BRAKE = 1.2
 """Friction of the brake over rated torque."""
 
@@ -36,11 +38,13 @@ BRAKE = 1.2
 @case(
     "Exact transients of two masses: loss of the generator, brake and stick, torque step",
     source="Al-Hamadani 2018, Tables 4.2 and 4.3, as two masses; closed forms",
+    settings={"drivetrain": "FILE, or a name of the library (otherwise A to D of the thesis)"},
 )
 def run(run: Run, page: Page) -> None:
     """Four drivetrains, two schemes, ever shorter steps."""
     rows: list[Record] = []
-    for one in drivetrains():
+    trains = own_or_published(run, page)
+    for one in trains:
         with run.step(f"drivetrain {one.letter}"):
             system = two_masses(one.table, "free")
             J, k = system.J, float(system.k[0])
@@ -54,16 +58,16 @@ def run(run: Run, page: Page) -> None:
     page.section("Error over the step")
     page.table("Two masses", rows)
     page.data("transients", rows)
-    show(page)
-    answer(page, finest)
+    show(page, trains[-1])
+    answer(page, trains[-1], finest)
 
 
-def answer(page: Page, finest: list[Record]) -> None:
+def answer(page: Page, last: Rated, finest: list[Record]) -> None:
     """State how exact torques are with the shortest steps, and what the brake does."""
     key = "error of the torque, loss [%]"
     worst = max(row[key] for row in finest)
     wound = page.judged(
-        "drivetrain D, brake of 1.2 rated: largest torque of the shaft over rated",
+        f"drivetrain {last.letter}, brake of 1.2 rated: largest torque of the shaft over rated",
         "largest torque of the braked shaft, over rated",
         "twice the mean",
     )
@@ -84,12 +88,12 @@ def answer(page: Page, finest: list[Record]) -> None:
             ),
             wound,
             page.judged(
-                "drivetrain D, disc held: frequency of the rotor",
+                f"drivetrain {last.letter}, disc held: frequency of the rotor",
                 "frequency of the rotor, disc held",
                 "closed form",
             ),
         ],
-        BRAKED,
+        BRAKED.format(last.letter),
     )
     page.say(
         "The brake step winds the shaft up to twice its mean, and where the disc stands it holds "
@@ -157,9 +161,8 @@ def transients(
     return row
 
 
-def braked(dt: float) -> Motion:
-    """Drivetrain D with a brake that slips, sticks and lets go."""
-    one = drivetrains()[3]
+def braked(one: Rated, dt: float) -> Motion:
+    """A drivetrain with a brake that slips, sticks and lets go."""
     system = two_masses(one.table, "free")
     J, k = system.J, float(system.k[0])
     shaft = equations_of_motion(J, spring_laws([[1.0, -1.0]], k))
@@ -170,9 +173,9 @@ def braked(dt: float) -> Motion:
     return transient([Phase(16.0, shaft, [brake])], dt, State(zero, speed, zero))
 
 
-def of_brake(dt: float, _: int) -> InTime:
+def of_brake(one: Rated, dt: float, _: int) -> InTime:
     """Torques over rated, and when the disc stops."""
-    found, rated = braked(dt), drivetrains()[3].torque
+    found, rated = braked(one, dt), one.torque
     shaft = found.forces[:, 0] / rated
     stops = found.braking.events[0][0]
     values = {
@@ -183,26 +186,26 @@ def of_brake(dt: float, _: int) -> InTime:
     return InTime(values, found.relative_imbalance)
 
 
-def show(page: Page) -> None:
+def show(page: Page, one: Rated) -> None:
     """Checks and charts of the brake."""
-    one = drivetrains()[3]
     system = two_masses(one.table, "free")
     J, k = system.J, float(system.k[0])
-    series = converge_in_time(of_brake, 2e-3)
+    step = min(2e-3, 1 / (190 * float(natural_modes(system).frequencies[1])))
+    series = converge_in_time(partial(of_brake, one), step)
     page.section("A brake that slips, sticks and lets go")
     check_in_time(
         page,
-        "drivetrain D, brake of 1.2 rated",
+        f"drivetrain {one.letter}, brake of 1.2 rated",
         series,
         dict.fromkeys(series.finest.values, 1e-2),
         energy=1e-9,
         why="average acceleration conserves the energy of a linear system, and events end steps",
     )
-    motion = braked(2e-3)
+    motion = braked(one, step)
     check_brake(page, motion, J, k, one)
     first, what = motion.braking.events[0]
     drawn = chart(
-        BRAKED,
+        BRAKED.format(one.letter),
         [
             trace("shaft", motion.times, motion.forces[:, 0] / one.torque),
             trace("brake", motion.times, motion.braking.torque[:, 0] / one.torque),
@@ -221,7 +224,7 @@ def check_brake(page: Page, motion: Motion, J: Floats, k: float, one: Rated) -> 
     torque, held = motion.braking.torque[:, 0], motion.braking.held[:, 0]
     slipping = (motion.times > 0.5) & (motion.times < motion.braking.events[0][0])
     page.equals(
-        "drivetrain D, brake of 1.2 rated: largest torque of the shaft over rated",
+        f"drivetrain {one.letter}, brake of 1.2 rated: largest torque of the shaft over rated",
         float(motion.forces[slipping].max() / one.torque),
         2.0 * BRAKE * J[0] / J.sum(),
         within=1e-3,
@@ -229,14 +232,14 @@ def check_brake(page: Page, motion: Motion, J: Floats, k: float, one: Rated) -> 
         source="twice the mean T_b J1 / (J1 + J2)",
     )
     page.vanishes(
-        "drivetrain D: torque of the brake that holds less that of the shaft, over rated",
+        f"drivetrain {one.letter}: torque of the brake that holds less the shaft's, over rated",
         float(np.abs(torque + motion.forces[:, 0])[held].max() / one.torque),
         within=1e-7,
         why="round-off of a step in which the disc stops",
         source="equilibrium of a disc that stands",
     )
     page.at_most(
-        "drivetrain D: largest torque of the brake over its friction",
+        f"drivetrain {one.letter}: largest torque of the brake over its friction",
         float(np.abs(torque).max() / (BRAKE * one.torque)),
         1.0 + 1e-7,
         why="the instant of slipping is found to a billionth of a step",
@@ -247,7 +250,7 @@ def check_brake(page: Page, motion: Motion, J: Floats, k: float, one: Rated) -> 
     after = motion.times > motion.braking.events[-1][0]
     turned = motion.times[after][1:][np.diff(np.sign(motion.velocity[after, 0])) != 0]
     page.equals(
-        "drivetrain D, disc held: frequency of the rotor [Hz]",
+        f"drivetrain {one.letter}, disc held: frequency of the rotor [Hz]",
         float(0.5 / np.diff(turned).mean()),
         float(held),
         within=1e-3,

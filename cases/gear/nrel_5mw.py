@@ -5,6 +5,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.gear.rows import mesh_row, stiffness_row
 from fe_drivetrain.cases.references.published_gears import NREL_5MW_PRINTED, nrel_5mw
+from fe_drivetrain.dynamics import machine_of, machine_pairs
 from fe_drivetrain.gear import (
     constant_law,
     iso_gear_stiffness,
@@ -13,8 +14,10 @@ from fe_drivetrain.gear import (
     sequence,
     sun_phases,
 )
-from fe_drivetrain.report import gear_pair, trace
+from fe_drivetrain.report import bars, gear_pair, trace
+from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run, Target
+from fe_drivetrain.report.suite.chosen import SETTING
 
 REPORTS = "KISSsoft 03/2017 reports of the gearbox, ISO 6336:2006 method B"
 DIGITS = "half a unit of the last printed digit"
@@ -24,9 +27,13 @@ BLANK = "the factor of the gear blank is printed with three digits"
 @case(
     "NREL 5 MW reference gearbox: five meshes against printed geometry and stiffness",
     source="Nejad, Guo, Gao, Moan 2016, Wind Energy 19, 10.1002/we.1884; KISSsoft 03/2017 reports",
+    settings={"drivetrain": "FILE, or a name of the library (otherwise the gears as printed)"},
 )
 def run(run: Run, page: Page) -> None:
     """Compute contact ratios, forces and ISO 6336-1 stiffness; phases of both planetary stages."""
+    if SETTING in run.settings:
+        own(run, page)
+        return
     pairs = nrel_5mw()
     rows: list[Record] = []
     for name, pair in pairs.items():
@@ -68,6 +75,46 @@ def run(run: Run, page: Page) -> None:
     page.image("Sun and planet of stage 1", run.sketch(*gear_pair(pairs["sun 1"])))
 
 
+def own(run: Run, page: Page) -> None:
+    """Geometry and stiffness of all meshes of a user's drivetrain, from its teeth."""
+    chosen = run.drivetrain("")
+    chosen.state(page)
+    machine = machine_of(chosen.drivetrain)
+    pairs = machine_pairs(machine)
+    rows: list[Record] = []
+    stiffness: dict[str, float] = {}
+    for name, pair in pairs.items():
+        stage = machine.stages[int(name.split()[1]) - 1]
+        found = run.timed(name, iso_gear_stiffness, pair, blank=stage.blank)
+        stiffness[name] = found.mesh * pair.face_width / 1e9
+        backlash = {"backlash [µm]": 1e6 * pair.backlash}
+        rows.append(mesh_row(name, pair) | backlash | stiffness_row(found))
+        if pair.second.teeth > 0:
+            page.at_least(
+                f"{name}: transverse contact ratio",
+                pair.transverse_ratio,
+                1.0,
+                why="below 1 teeth part before the next ones touch",
+                source="kinematics",
+            )
+    page.section("Meshes")
+    page.add(bars(OWN, {chosen.title: stiffness}, "mesh stiffness [GN/m]"))
+    page.table("All meshes, from their teeth", rows)
+    softest = min(stiffness, key=lambda name: stiffness[name])
+    page.answer(
+        "How stiff are the meshes of the gearbox by their teeth?",
+        f"By ISO 6336-1 {softest} is the softest mesh, of "
+        f"{value_text(stiffness[softest], 'GN/m')} along its line of action.",
+        [
+            page.value(f"mesh stiffness, {name} [GN/m]", value)
+            for name, value in list(stiffness.items())[:6]
+        ],
+        OWN,
+    )
+    page.assume_all(machine.assumptions())
+
+
+OWN = "Mesh stiffness by ISO 6336-1, along the line of action"
 HERO = "Mesh stiffness and tangential force: difference from the printed reports"
 
 

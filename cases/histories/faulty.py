@@ -69,8 +69,8 @@ def answer(page: Page, sampled: list[Record], spoilt: list[Record], change: floa
         ],
         hero=FOLDED,
         cautions=[
-            "A gap, a value that is no number and time that steps back are refused with their "
-            "place; all else is counted as it stands."
+            "A value that is no number and time that steps back are refused with their place, and "
+            "where reactions are asked for a gap, too; all else is counted as it stands."
         ],
     )
 

@@ -27,7 +27,7 @@ from fe_drivetrain.cases.references.studied_lives import (
 )
 from fe_drivetrain.cases.references.thesis_beam import HOUSING_RADIAL, HOUSING_TILT, HOUSING_YAW
 from fe_drivetrain.common import Floats
-from fe_drivetrain.report import bars, trace
+from fe_drivetrain.report import Chart, bars, trace
 from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.uncertainty import Samples, Shares, variance_shares
@@ -55,6 +55,10 @@ INPUTS: dict[str, tuple[Any, str]] = {
     "seed of the wind": (stats.randint(0, SEEDS), "one ten-minute history for each wind speed"),
 }
 NOMINAL = np.array([20.0, 0.12977, 0.0, 1.0, 1.0, 50.0, 1.0, np.nan])
+NOISE = 2.0  # standard errors of shares that samples leave open, 95 % of normal ones
+CHART = "Share of the variance of the logarithm of {} life, with the noise of its samples"
+ALONE, TOGETHER = "alone", "with all others"
+WITH_OTHERS, TOTAL_ERROR = "with all others [%]", "standard error of that [%]"
 NOMINAL_LIFE, LOW_LIFE, HIGH_LIFE = "nominal [years]", "2.5 % [years]", "97.5 % [years]"
 SEED = list(INPUTS).index("seed of the wind")
 
@@ -149,7 +153,7 @@ def run(run: Run, page: Page) -> None:
 
     with run.step("samples"):
         inputs = {name: one for name, (one, _) in INPUTS.items()}
-        shares = variance_shares(logarithms, inputs, 2 if run.quick else 64)
+        shares = variance_shares(logarithms, inputs, 16 if run.quick else 64)
     base = asked[:2]
     rows, values = np.vstack([r for r, _ in base]), np.hstack([v for _, v in base])
     nominal = np.log(lives(NOMINAL))
@@ -279,21 +283,32 @@ def show(
     page.data("bands", [*rows.values()])
     page.section("Which input decides")
     for words, of in zip(("modified", "basic"), reversed(shares), strict=True):
-        page.add(
-            bars(
-                f"Share of the variance of the logarithm of {words} life",
-                {
-                    "alone": dict(zip(of.keys, np.maximum(100.0 * of.first, 0.0), strict=True)),
-                    "with all others": dict(zip(of.keys, 100.0 * of.total, strict=True)),
-                },
-                "share [%]",
-            )
-        )
+        page.add(shares_chart(CHART.format(words), of))
     table = shares_rows(samples, shares, alone)
     page.table("Shares of the variance, three ways", table)
     page.data("shares of the variance", table)
     models_section(page, rows["basic"], of_models)
     answer(page, rows, table, of_models)
+
+
+def shares_chart(caption: str, of: Shares) -> Chart:
+    """Shares of each input, alone and with all others, with the noise of few samples."""
+    values = {
+        ALONE: (of.first, of.first_error),
+        TOGETHER: (of.total, of.total_error),
+    }
+    groups = {
+        name: dict(zip(of.keys, (100.0 * share).tolist(), strict=True))
+        for name, (share, _) in values.items()
+    }
+    ends = {
+        name: {
+            key: (100.0 * float(s - NOISE * e), 100.0 * float(s + NOISE * e))
+            for key, s, e in zip(of.keys, share, error, strict=True)
+        }
+        for name, (share, error) in values.items()
+    }
+    return bars(caption, groups, "share [%]", ends=ends)
 
 
 def band_row(words: str, sample: Samples) -> Record:
@@ -326,7 +341,8 @@ def shares_rows(
                 "with others [%]": 100.0 * float(shares[0].total[k]),
                 "modified: alone [%]": 100.0 * float(shares[1].first[k]),
                 "its standard error [%]": 100.0 * float(shares[1].first_error[k]),
-                "with all others [%]": 100.0 * float(shares[1].total[k]),
+                WITH_OTHERS: 100.0 * float(shares[1].total[k]),
+                TOTAL_ERROR: 100.0 * float(shares[1].total_error[k]),
                 "by a plane [%]": 100.0 * float(samples[1].contributions()[k]),
                 "modified life, largest over least, others nominal": float(
                     np.exp(np.ptp(spread[:, 1]))
@@ -364,35 +380,64 @@ def models_section(page: Page, basic: Record, of_models: dict[str, float]) -> No
     page.data("basic life by model over that of the housing in series", of_models)
 
 
+def deciding(table: list[Record]) -> tuple[list[Record], str]:
+    """Inputs by their share, largest first, and which of them decide, in words.
+
+    Samples leave noise in each share: what is within it of the largest may decide as well.
+    """
+    order = sorted(table, key=lambda row: -row[WITH_OTHERS])
+    first = order[0]
+    close = [
+        row
+        for row in order
+        if first[WITH_OTHERS] - row[WITH_OTHERS]
+        <= NOISE * np.hypot(first[TOTAL_ERROR], row[TOTAL_ERROR])
+    ]
+    one, two = (short_name(row) for row in order[:2])
+    if len(close) == 1:
+        return order, f"{one} decides most, then {two}"
+    if len(close) == 2:
+        return order, f"{one} and {two} decide most"
+    return order, f"samples are too few to tell which of {len(close)} inputs decides"
+
+
+def short_name(row: Record) -> str:
+    """Name of an input without its unit and what it is varied by."""
+    return str(row["input"]).partition(" [")[0].partition(",")[0]
+
+
 def answer(
     page: Page, rows: dict[str, Record], table: list[Record], of_models: dict[str, float]
 ) -> None:
     """Which input decides, and that models do more than inputs."""
     basic, modified = rows["basic"], rows["modified"]
-    order = sorted(table, key=lambda row: -row["with all others [%]"])
+    order, words = deciding(table)
     seed = table[SEED]
     span = max(of_models.values()) / min(of_models.values())
-    first, second = (str(row["input"]).partition(" [")[0].partition(",")[0] for row in order[:2])
     low, high = (value_text(float(modified[key])) for key in (LOW_LIFE, HIGH_LIFE))
     factor = float(modified["high over low"])
     page.answer(
         "How certain is the modified life of a main bearing, and which input decides it?",
         f"Modified life is uncertain by a factor of {factor:.2g}, {low} to {high}\u00a0years; "
-        f"{first} decides most, then {second}.",
+        f"{words}.",
         [
             page.value("nominal modified life [years]", float(modified[NOMINAL_LIFE])),
             page.value("its 2.5 % [years]", float(modified[LOW_LIFE])),
             page.value("its 97.5 % [years]", float(modified[HIGH_LIFE])),
             *(
-                page.value(f"share of the variance, {name} [%]", float(row["with all others [%]"]))
-                for name, row in zip((first, second), order[:2], strict=True)
+                page.value(
+                    f"share of the variance, {short_name(row)} [%]",
+                    float(row[WITH_OTHERS]),
+                    NOISE * float(row[TOTAL_ERROR]),
+                )
+                for row in order[:2]
             ),
             page.value(
                 "basic life of a pinned beam over that of the best model here",
                 of_models[models.PINNED],
             ),
         ],
-        hero="Share of the variance of the logarithm of modified life",
+        hero=CHART.format("modified"),
         cautions=[
             "A wrong model is no scatter: more samples do not show what a pinned beam or a rigid "
             "housing changes.",

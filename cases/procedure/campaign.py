@@ -5,7 +5,8 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
 from fe_drivetrain.common.typeset import MINUS
-from fe_drivetrain.dynamics import Machine, library_machine, torsional
+from fe_drivetrain.drivetrain_file import read_drivetrain
+from fe_drivetrain.dynamics import Machine, machine_of, torsional
 from fe_drivetrain.dynamics.torsion import (
     Element,
     Inertia,
@@ -52,8 +53,9 @@ TORQUE = "Torque of the main shaft: measured and scaled, and by a model of two i
 )
 def run(run: Run, page: Page) -> None:
     """Record torque and angles with sensors, write them as a campaign would, compare a model."""
-    machine = library_machine(MACHINE)
-    page.about(machine, MACHINE)
+    drivetrain = read_drivetrain(MACHINE)
+    machine = machine_of(drivetrain)
+    page.about(drivetrain, MACHINE)
     truth, simple = eleven_inertias(machine), two_inertias(machine)
     wind = winds(1 if run.quick else WINDOWS)
     mean = RATED * (wind / RATED_WIND) ** 3

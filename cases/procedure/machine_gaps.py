@@ -3,7 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import (
     ConvergenceInTime,
     InTime,
@@ -11,7 +11,6 @@ from fe_drivetrain.comparison import (
     peak_between,
     round_off,
 )
-from fe_drivetrain.drivetrain_file import read_drivetrain
 from fe_drivetrain.dynamics import (
     Level,
     Machine,
@@ -39,7 +38,7 @@ from fe_drivetrain.procedure import (
 )
 from fe_drivetrain.report import chart, mark_events, trace
 from fe_drivetrain.report.number_text import certain_value, formatted
-from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
+from fe_drivetrain.report.suite import ChosenDrivetrain, Page, Record, Run, check_in_time
 
 DEFAULT = "nrel_750kw"
 RATIO = 0.01  # of critical damping
@@ -56,30 +55,32 @@ MAXIMUM, MINIMUM = (
 
 
 @case(
-    "What load cases leave out, of one machine: resonance, misalignment, voltage dips",
+    "What load cases leave out, of one drivetrain: resonance, misalignment, voltage dips",
     source="PROTEST 2010, ECN-E--10-100, section 4.2 and appendix A",
     settings={
-        "machine": "FILE, or a name of the library (otherwise nrel_750kw)",
-        "low": "21.9 (rpm, lowest speed of the rotor, to be given for another machine)",
+        "drivetrain": "FILE, or a name of the library (otherwise nrel_750kw)",
+        "low": "21.9 (rpm, lowest speed of the rotor; of another drivetrain that of its operation)",
         "high": "22.3 (rpm, highest speed of the rotor, likewise)",
         "torque": "325 (kN m, of the rotor before a dip, likewise)",
         "offset": "0.5 (mm, of each bearing of rotor, generator or a shaft)",
     },
 )
 def run(run: Run, page: Page) -> None:
-    """One value for each gap, of the machine that the page states."""
-    name = str(run.settings.get("machine", DEFAULT))
-    machine = machine_of(read_drivetrain(name))
-    page.about(machine, name)
+    """One value for each gap, of the drivetrain that the page states."""
+    chosen = run.drivetrain(DEFAULT)
+    machine = machine_of(chosen.drivetrain)
+    chosen.state(page)
     page.subject = machine.title
-    if name != DEFAULT:
-        require_operation(run, name)
-    low, high = run.positive("low", 21.9), run.positive("high", 22.3)
-    torque, offset = run.positive("torque", 325.0), run.positive("offset", 0.5)
+    low, high, torque = operation(run, chosen)
+    offset = run.positive("offset", 0.5)
     with run.step("resonance"):
         resonance(page, machine, (low, high))
     with run.step("misalignment"):
-        misalignment(page, machine, 1e-3 * offset)
+        if machine.not_given:
+            lost = ", ".join(machine.not_given)
+            page.skip(FORCE, f"the file does not state what it needs: {lost}")
+        else:
+            misalignment(page, machine, 1e-3 * offset)
     with run.step("voltage dips"):
         dips(page, machine, 1e3 * torque)
     answer(page, (low, high), torque, offset)
@@ -111,26 +112,29 @@ def answer(page: Page, speeds: tuple[float, float], torque: float, offset: float
         [most, least, over, margin, *loaded],
         hero=TORQUE,
         cautions=[
-            f"Damping is assumed, {100 * RATIO:g} % of critical: the machine's table has none.",
+            f"Damping is assumed, {100 * RATIO:g} % of critical: the drivetrain's file has none.",
             f"Torque before a dip is {torque:g} kN m; the generator's torque falls by up to all "
             "of it.",
         ],
     )
 
 
-def require_operation(run: Run, name: str) -> None:
-    """Refuse a machine without its operation: that of the default one is not its own."""
-    missing = [key for key in ("low", "high", "torque") if key not in run.settings]
-    if missing:
-        words = " ".join(f"--set {key}=NUMBER" for key in missing)
-        raise InputError(f"machine {name!r} has no {missing[0]} of operation: give {words}")
+def operation(run: Run, chosen: ChosenDrivetrain) -> tuple[float, float, float]:
+    """Lowest and highest speed of the rotor [rpm], and its torque before a dip [kN m]."""
+    low, high, torque = 21.9, 22.3, 325.0
+    if chosen.own and not {"low", "high"} <= run.settings.keys():
+        low, high = (speed / RPM for speed in chosen.rotor_speeds())
+    if chosen.own and "torque" not in run.settings:
+        torque = chosen.rated_torque() / 1e3
+    return run.positive("low", low), run.positive("high", high), run.positive("torque", torque)
 
 
 def resonance(page: Page, machine: Machine, speeds: tuple[float, float]) -> None:
     """Least margin of all excitations at all frequencies that they excite."""
     register = drivetrain_excitations(machine.stages)
     within = speeds[0] * RPM, speeds[1] * RPM
-    found = resonances(register, system_modes(machine_system(machine, Level.RIGID)), within)
+    level = Level.TORSIONAL if machine.not_given else Level.RIGID
+    found = resonances(register, system_modes(machine_system(machine, level)), within)
     met = sorted((m for m in found if m.verdict != "not excited"), key=lambda m: m.margin)
     by_name = {e.name: e for e in register}
     page.vanishes(
@@ -273,7 +277,7 @@ def dips(page: Page, machine: Machine, torque: float) -> None:
     torques = chart(TORQUE, curves, "time [s]", "torque [kN m]")
     page.add(mark_events(torques, {"dip": START, "end of it": START + SECONDS[1]}))
     page.table(f"By depth and duration; first frequency {frequency:.3g} Hz", rows)
-    page.assume("damping ratio of the drivetrain", RATIO, "", "the machine's table has none")
+    page.assume("damping ratio of the drivetrain", RATIO, "", "the drivetrain's file has none")
 
 
 def off_grid(machine: Machine) -> Torsional:

@@ -13,7 +13,7 @@ from fe_drivetrain.dynamics import (
     Level,
     Machine,
     System,
-    library_machine,
+    machine_of,
     machine_system,
     with_proportional_damping,
 )
@@ -33,7 +33,7 @@ from fe_drivetrain.procedure import (
 from fe_drivetrain.report import trace
 from fe_drivetrain.report.suite import Page, Record, Run
 
-MACHINE, TORQUE, SHAFT = "nrel_5mw", 3.946e6, "LSS"
+MACHINE, TORQUE = "nrel_5mw", 3.946e6  # N m
 DEPTH, LENGTH, STEP = 1.0, 0.15, 4e-3  # of the torque, s, s
 SECONDS = {True: 1.6, False: 6.0}  # quick or not
 DAMPING = 1e-4  # s, damping over stiffness: 0.06 % of critical at 2 Hz
@@ -47,14 +47,17 @@ THRESHOLDS = tuple(10.0**exponent for exponent in np.arange(-6.0, 0.1, 0.5))
 @case(
     "Reduction of a drivetrain: levels, thresholds on modes and signals, one after another",
     source="PROTEST 2010, ECN-E--10-100, section 4.3; Nejad et al. 2016 for the 5 MW gearbox",
+    settings={"drivetrain": "FILE, or a name of the library (otherwise nrel_5mw)"},
 )
 def run(run: Run, page: Page) -> None:
     """A generator's torque dips by its whole size; what of the model does the main shaft need?"""
-    machine = library_machine(MACHINE)
-    page.about(machine, MACHINE)
-    level = levels(run, page, machine)
+    chosen = run.drivetrain(MACHINE)
+    chosen.state(page)
+    machine = machine_of(chosen.drivetrain)
+    torque = chosen.rated_torque() if chosen.own else TORQUE
+    level = levels(run, page, chosen.name, machine, torque)
     system = damped(machine_system(machine, Level.RIGID))
-    signal = dip_torque(machine, system, SECONDS[run.quick])
+    signal = dip_torque(machine, torque, system, SECONDS[run.quick])
     with run.step("spectrum"):
         full = signal(locked_basis(system, ()))
         needed = frequency_that_holds(full, STEP, SHARE)
@@ -67,7 +70,7 @@ def run(run: Run, page: Page) -> None:
     groups = {
         name: springs
         for name, springs in spring_groups(system).items()
-        if name != f"{SHAFT} torsion"
+        if name != f"{machine.shafts[0].name} torsion"
     }
     with run.step("modes"):
         found = influences(system, groups, highest)
@@ -121,25 +124,27 @@ def damped(system: System) -> System:
     return with_proportional_damping(system, DAMPING)
 
 
-def dip_torque(machine: Machine, system: System, seconds: float) -> Callable[[Floats], Floats]:
+def dip_torque(
+    machine: Machine, torque: float, system: System, seconds: float
+) -> Callable[[Floats], Floats]:
     """Torque of the main shaft while the generator's dips, less that before."""
     history = 1.0 - Dip(0.2, DEPTH, LENGTH).shares(np.arange(0.0, seconds, STEP))
     turn = np.zeros(6)
-    turn[3] = TORQUE / machine.speeds[-1]
+    turn[3] = torque / machine.speeds[-1]
     load = system.load_on("generator", turn)
-    return torque_signal(system, load, history, STEP, SHAFT, front="rotor")
+    return torque_signal(system, load, history, STEP, machine.shafts[0].name, front="rotor")
 
 
-def levels(run: Run, page: Page, machine: Machine) -> Record:
+def levels(run: Run, page: Page, name: str, machine: Machine, torque: float) -> Record:
     """The same signal on each level of the ladder; the first that has its peak."""
     signals: dict[str, Floats] = {}
     rows: list[Record] = []
-    for rung in [*RUNGS, *more_rungs(run, MACHINE)]:
+    for rung in [*RUNGS, *more_rungs(run, name)]:
         with run.step(rung.name):
             start = time.perf_counter()
             system = damped(machine_system(machine, rung.level, flexible=rung.flexible))
             basis = locked_basis(system, ())
-            signals[rung.name] = dip_torque(machine, system, SECONDS[run.quick])(basis)
+            signals[rung.name] = dip_torque(machine, torque, system, SECONDS[run.quick])(basis)
             seconds = time.perf_counter() - start
         rows.append({"level": rung.name, "degrees of freedom": basis.shape[1], "time [s]": seconds})
     finest = list(signals.values())[-1]

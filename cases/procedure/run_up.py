@@ -1,10 +1,12 @@
 """Resonance of bodies with six degrees of freedom: register, margins, a run-up and its Campbell."""
 
+from dataclasses import dataclass, replace
+
 import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.procedure.swept_modes import Sweep, run_up_peak, swept_response
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.comparison import (
     ConvergenceInTime,
     InTime,
@@ -14,6 +16,7 @@ from fe_drivetrain.comparison import (
 )
 from fe_drivetrain.dynamics import (
     Loads,
+    Machine,
     System,
     SystemModes,
     crossings,
@@ -21,7 +24,7 @@ from fe_drivetrain.dynamics import (
     energy_error,
     equations_of,
     exact_steps,
-    library_machine,
+    machine_of,
     machine_system,
     system_modes,
     with_proportional_damping,
@@ -33,17 +36,14 @@ from fe_drivetrain.procedure import (
     resonances,
 )
 from fe_drivetrain.report import heat_map, trace
-from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
+from fe_drivetrain.report.suite import ChosenDrivetrain, Page, Record, Run, check_in_time
 from fe_drivetrain.turbine_loads.histories import campbell
 
-MACHINE = library_machine("synthetic_2mw")
-SPEEDS = (8.0, 18.0)  # rpm, in operation
+DEFAULT = "synthetic_2mw"
 RPM = np.pi / 30.0
-BEGIN, END = 6.0, 28.0  # rpm, of the run-up
-SECONDS, STEP = 20.0, 2.5e-4  # s
-RATIO, AT = 0.01, 60.0  # of critical damping, at that frequency [Hz], in proportion to it elsewhere
+SECONDS = 20.0  # s
+RATIO = 0.01  # of critical damping, in proportion to frequency
 ERROR = 10e-6  # m, of transmission, once in each mesh
-MESH = "stage 1 sun-planet 1"
 SEGMENT, CLASS = 0.5, 1.0  # s, rpm, of the short-time spectra
 PEAK = "largest motion of the planet [µm]"
 SHARE, LATE = "peak over that at rest", "later than the crossing by [Hz]"
@@ -51,25 +51,79 @@ DIAGRAM = (
     "Campbell diagram of the planet's motion in a run-up; lines: mesh of stage 1, and natural "
     "frequencies (dotted); circles: crossings"
 )
-HIGHEST = 90.0  # Hz, of what is drawn
+
+
+@dataclass(frozen=True)
+class Passed:
+    """A drivetrain and its run-up.
+
+    Attributes
+    ----------
+    machine : Machine
+        The drivetrain.
+    speeds : tuple of float
+        Lowest and highest speed of the rotor in operation [rpm].
+    begin, end : float
+        Speeds of the rotor at either end of the run-up [rpm].
+    step : float
+        Step in time [s].
+    at : float
+        Frequency of the damping ratio `RATIO` [Hz].
+    highest : float
+        Largest frequency that is drawn [Hz].
+    """
+
+    machine: Machine
+    speeds: tuple[float, float]
+    begin: float
+    end: float
+    step: float
+    at: float
+    highest: float
+
+    @property
+    def order(self) -> float:
+        """Mesh frequency of the first stage over the rotor's."""
+        return float(mesh_orders(self.machine.stages)["stage 1"])
+
+    @property
+    def first(self) -> tuple[str, str]:
+        """The mesh that is excited, and the motion that is watched."""
+        if self.machine.stages[0].kind == "planetary":
+            return "stage 1 sun-planet 1", "stage 1 planet 1 uy"
+        return "stage 1 mesh", "stage 1 pinion uy"
+
+
+def passed_by(chosen: ChosenDrivetrain) -> Passed:
+    """The run-up of a drivetrain; that of a user's own in proportion to its speeds and meshes."""
+    machine = machine_of(chosen.drivetrain)
+    if not chosen.own:
+        return Passed(machine, (8.0, 18.0), 6.0, 28.0, 2.5e-4, 60.0, 90.0)
+    low, high = (speed / RPM for speed in chosen.rotor_speeds())
+    ends = Passed(machine, (low, high), 0.75 * low, 1.5 * high, 0.0, 0.0, 0.0)
+    largest = ends.order * ends.end / 60.0
+    return replace(ends, step=1 / (200.0 * largest), at=0.9 * largest, highest=1.3 * largest)
 
 
 @case(
     "Run-up of a drivetrain with six degrees of freedom: register, margins, Campbell diagram",
     source="PROTEST 2010, ECN-E--10-100, section 4.2, appendix A; Lewis 1932, Trans. ASME 54",
+    settings={"drivetrain": "FILE, or a name of the library (otherwise synthetic_2mw)"},
 )
 def run(run: Run, page: Page) -> None:
     """Register against modes; a run-up by the whole matrices, against exact modes."""
-    page.about(MACHINE)
-    system = with_proportional_damping(machine_system(MACHINE), RATIO / (np.pi * AT))
+    chosen = run.drivetrain(DEFAULT)
+    chosen.state(page)
+    of = passed_by(chosen)
+    system = with_proportional_damping(machine_system(of.machine), RATIO / (np.pi * of.at))
     modes = system_modes(system)
     with run.step("register"):
-        found = register(page, system, modes)
+        found = register(page, of, system, modes)
     with run.step("run-up"):
-        signal, exact, step, orders = simulated_run_up(system, modes, 0.5 if run.quick else 1.0)
+        signal, exact, step = simulated_run_up(of, system, modes, 0.5 if run.quick else 1.0)
     with run.step("convergence of the run-up"):
         series = converge_in_time(
-            lambda h, _: peak_motion(system, 0.25 if run.quick else 1.0, h), STEP
+            lambda h, _: peak_motion(of, system, 0.25 if run.quick else 1.0, h), of.step
         )
     page.section("Steps of the run-up")
     check_in_time(
@@ -81,7 +135,7 @@ def run(run: Run, page: Page) -> None:
         why="integrals over records, which do not resolve modes above a kilohertz",
     )
     error = float(np.abs(signal - exact).max() / np.abs(exact).max())
-    fastest = 2.0 * np.pi * orders * END / 60.0 * step
+    fastest = 2.0 * np.pi * of.order * of.end / 60.0 * step
     page.vanishes(
         "run-up: motion of the planet by the whole matrices and by exact modes, largest difference "
         "over the largest motion",
@@ -92,26 +146,29 @@ def run(run: Run, page: Page) -> None:
         source="sum of modes, each by Lewis' integral",
     )
     with run.step("Campbell"):
-        shown(page, modes, signal, step)
-    by_time = peaks(page, modes, orders)
-    answer(page, found, [row for row in by_time if row["run-up [s]"] == SECONDS], series)
+        shown(page, of, modes, signal, step)
+    by_time = peaks(page, of, modes)
+    answer(page, of, found, [row for row in by_time if row["run-up [s]"] == SECONDS], series)
     page.assume(
-        "damping ratio at 60 Hz, in proportion to frequency", RATIO, "", "none is published"
+        f"damping ratio at {of.at:.4g} Hz, in proportion to frequency",
+        RATIO,
+        "",
+        "none is published",
     )
     page.assume("error of transmission", ERROR * 1e6, "µm", "linear: all motions scale with it")
 
 
 def answer(
-    page: Page, found: list[Meeting], swept: list[Record], series: ConvergenceInTime
+    page: Page, of: Passed, found: list[Meeting], swept: list[Record], series: ConvergenceInTime
 ) -> None:
     """State how many resonances operation meets, and what a run-up makes of them."""
     met = sum(m.verdict == "resonance" for m in found)
     highest = max(float(row[SHARE]) for row in swept)
     page.answer(
         "Which resonances does the drivetrain pass in operation, and how far are they excited?",
-        f"From {SPEEDS[0]:g} to {SPEEDS[1]:g}\u00a0rpm {met} excitations meet a mode; a run-up in "
-        f"{SECONDS:g}\u00a0s excites the mesh's modes to {100 * highest:.0f}\u00a0% of their "
-        "steady response at most.",
+        f"From {of.speeds[0]:.3g} to {of.speeds[1]:.3g}\u00a0rpm {met} excitations meet a mode; a "
+        f"run-up in {SECONDS:g}\u00a0s excites the mesh's modes to {100 * highest:.0f}\u00a0% of "
+        "their steady response at most.",
         [
             page.value(
                 "crossings at a part with 1 % or more of the energy",
@@ -139,10 +196,10 @@ def answer(
     )
 
 
-def register(page: Page, system: System, modes: SystemModes) -> list[Meeting]:
+def register(page: Page, of: Passed, system: System, modes: SystemModes) -> list[Meeting]:
     """All excitations against all modes, with energy shares; crossings of `dynamics` the same."""
-    excitations = drivetrain_excitations(MACHINE.stages)
-    operation = (SPEEDS[0] * RPM, SPEEDS[1] * RPM)
+    excitations = drivetrain_excitations(of.machine.stages)
+    operation = (of.speeds[0] * RPM, of.speeds[1] * RPM)
     found = resonances(excitations, modes, operation)
     kinds = direction_kinds(system, modes)
     free = int(np.count_nonzero(modes.frequencies == 0.0))
@@ -160,7 +217,7 @@ def register(page: Page, system: System, modes: SystemModes) -> list[Meeting]:
         for m in found
         if m.verdict in ("resonance", "near")
     ]
-    orders = mesh_orders(MACHINE.stages)
+    orders = mesh_orders(of.machine.stages)
     names = {f"{name} mesh {k}x" for name in orders for k in (1, 2, 3)}
     other = crossings(modes.frequencies[free:], orders, operation)
     ours = sorted(m.crossing for m in found if m.margin == 0.0 and m.excitation in names)
@@ -172,13 +229,14 @@ def register(page: Page, system: System, modes: SystemModes) -> list[Meeting]:
     )
     page.vanishes(
         "speeds of these crossings, largest difference [rpm]",
-        float(np.abs(np.array(ours) - sorted(c.speed for c in other)).max()) / RPM,
-        **round_off(10 * SPEEDS[1], "a frequency over the same order, in other units"),
+        float(np.abs(np.array(ours) - sorted(c.speed for c in other)).max(initial=0.0)) / RPM,
+        **round_off(10 * of.speeds[1], "a frequency over the same order, in other units"),
         source="crossings of `dynamics`",
     )
     page.section("Register against modes")
     page.table(
-        f"Excitations that meet or near a mode from {SPEEDS[0]:g} to {SPEEDS[1]:g} rpm", rows
+        f"Excitations that meet or near a mode from {of.speeds[0]:.3g} to {of.speeds[1]:.3g} rpm",
+        rows,
     )
     counts: list[Record] = [
         {
@@ -199,59 +257,66 @@ def register(page: Page, system: System, modes: SystemModes) -> list[Meeting]:
 
 
 def simulated_run_up(
-    system: System, modes: SystemModes, share: float
-) -> tuple[Floats, Floats, float, float]:
+    of: Passed, system: System, modes: SystemModes, share: float
+) -> tuple[Floats, Floats, float]:
     """Radial motion of a planet while the speed rises evenly, by matrices and by exact modes."""
-    order = mesh_orders(MACHINE.stages)["stage 1"]
-    sweep, loads = swept_load(system, share, STEP)
+    sweep, loads = swept_load(of, system, share, of.step)
     time, push = loads.times, loads.patterns[:, 0]
-    _, q, _ = exact_steps(equations_of(system), loads, SECONDS * share, STEP)
-    place = system.place("stage 1 planet 1 uy")
+    _, q, _ = exact_steps(equations_of(system), loads, SECONDS * share, of.step)
+    place = system.place(of.first[1])
     exact = np.zeros(len(time))
     for frequency, shape in zip(modes.frequencies, modes.shapes.T, strict=True):
         if frequency > 0.0:
-            ratio = RATIO * frequency / AT
+            ratio = RATIO * frequency / of.at
             each = shape[place] * float(shape @ push)
             if ratio < 1.0:
                 exact += each * swept_response(float(frequency), ratio, sweep, time).real
             else:
                 # far above the sweep, and overdamped: it follows
                 exact += each * np.cos(sweep.phase(time)) / (2.0 * np.pi * frequency) ** 2
-    return q[:, place], exact, STEP, order
+    return q[:, place], exact, of.step
 
 
-def swept_load(system: System, share: float, step: float) -> tuple[Sweep, Loads]:
+def swept_load(of: Passed, system: System, share: float, step: float) -> tuple[Sweep, Loads]:
     """The sweep of the mesh, and its push at samples."""
-    order = mesh_orders(MACHINE.stages)["stage 1"]
     seconds = SECONDS * share
-    sweep = Sweep(order * BEGIN / 60.0, order * (END - BEGIN) / 60.0 / seconds)
-    springs = [k for k, n in enumerate(system.spring_names) if n.startswith(f"{MESH} slice")]
+    sweep = sweep_of(of, seconds)
+    mesh = of.first[0]
+    springs = [
+        k for k, n in enumerate(system.spring_names) if n == mesh or n.startswith(f"{mesh} slice")
+    ]
     push = system.rows[springs].T @ system.stiffness[springs] * ERROR
     time = np.asarray(np.arange(round(seconds / step) + 1) * step, dtype=np.float64)
     return sweep, Loads(push[:, None], time, np.cos(sweep.phase(time))[:, None])
 
 
-def peak_motion(system: System, share: float, step: float) -> InTime:
-    """Largest motion of a planet in a run-up."""
-    loads = swept_load(system, share, step)[1]
+def sweep_of(of: Passed, seconds: float) -> Sweep:
+    """The sweep of the mesh in a run-up that takes so long."""
+    return Sweep(of.order * of.begin / 60.0, of.order * (of.end - of.begin) / 60.0 / seconds)
+
+
+def peak_motion(of: Passed, system: System, share: float, step: float) -> InTime:
+    """Largest motion of a planet in a run-up, once the start has died away in its first tenth."""
+    loads = swept_load(of, system, share, step)[1]
     equations = equations_of(system)
     time, q, velocity = exact_steps(equations, loads, SECONDS * share, step)
-    motion = q[:, system.place("stage 1 planet 1 uy")]
-    values = {PEAK: 1e6 * max(peak_between(motion), peak_between(-motion))}
+    motion = q[:, system.place(of.first[1])]
+    later = motion[len(motion) // 10 :]
+    values = {PEAK: 1e6 * max(peak_between(later), peak_between(-later))}
     return InTime(values, energy_error(equations, loads, time, q, velocity))
 
 
-def shown(page: Page, modes: SystemModes, signal: Floats, step: float) -> None:
+def shown(page: Page, of: Passed, modes: SystemModes, signal: Floats, step: float) -> None:
     """Short-time spectra of the run-up by speed, with known modes and mesh orders drawn in."""
-    speed = np.linspace(BEGIN, END, len(signal))
-    edges = np.arange(BEGIN, END + CLASS, CLASS)
+    begin, end, highest, order = of.begin, of.end, of.highest, of.order
+    speed = np.linspace(begin, end, len(signal))
+    edges = np.arange(begin, end + CLASS, CLASS)
     found = campbell([(signal, speed * np.pi / 30.0, step)], edges * np.pi / 30.0, SEGMENT)
-    kept = found.frequency <= HIGHEST
+    kept = found.frequency <= highest
     level = np.log10(np.maximum(found.density[:, kept].T, 1e-12 * np.nanmax(found.density)))
-    order = mesh_orders(MACHINE.stages)["stage 1"]
     middles = 0.5 * (edges[1:] + edges[:-1])
-    drawn = modes.frequencies[(modes.frequencies > 0.0) & (modes.frequencies <= HIGHEST)]
-    ends = np.array([BEGIN, END])
+    drawn = modes.frequencies[(modes.frequencies > 0.0) & (modes.frequencies <= highest)]
+    ends = np.array([begin, end])
     page.section("Run-up")
     diagram = heat_map(
         DIAGRAM,
@@ -259,7 +324,7 @@ def shown(page: Page, modes: SystemModes, signal: Floats, step: float) -> None:
         found.frequency[kept],
         level,
         ("rotor speed [rpm]", "frequency [Hz]", "log10 of density [m^2/Hz]"),
-        yaxis={"range": [0.0, HIGHEST]},
+        yaxis={"range": [0.0, highest]},
     )
     white = {"color": "white", "width": 1}
     diagram.figure["data"] += [
@@ -270,7 +335,7 @@ def shown(page: Page, modes: SystemModes, signal: Floats, step: float) -> None:
         ),
     ]
     crossed = 60.0 * drawn / order
-    within = (crossed >= BEGIN) & (crossed <= END)
+    within = (crossed >= begin) & (crossed <= end)
     diagram.figure["data"].append(
         trace(
             "crossings",
@@ -290,7 +355,7 @@ def shown(page: Page, modes: SystemModes, signal: Floats, step: float) -> None:
         max(
             min(abs(r - m), float(np.abs(r - drawn).min())) for r, m in zip(ridge, met, strict=True)
         ),
-        order * (0.5 * CLASS + 0.5 * SEGMENT * (END - BEGIN) / (len(signal) * step)) / 60.0
+        order * (0.5 * CLASS + 0.5 * SEGMENT * (end - begin) / (len(signal) * step)) / 60.0
         + 2.0 / SEGMENT,
         why="half a class of 1 rpm, half the rise in a segment of 0.5 s, and two of its lines",
         source="excitation, or the decay of a mode that was passed",
@@ -303,14 +368,20 @@ def shown(page: Page, modes: SystemModes, signal: Floats, step: float) -> None:
     )
 
 
-def peaks(page: Page, modes: SystemModes, order: float) -> list[Record]:
+def peaks(page: Page, of: Passed, modes: SystemModes) -> list[Record]:
     """Peak of each mode in the run-up over that at rest, by the time that the run-up takes."""
-    inside = [f for f in modes.frequencies if order * BEGIN / 60.0 < f < order * END / 60.0]
+    ends = of.order * of.begin / 60.0, of.order * of.end / 60.0
+    inside = [f for f in modes.frequencies if ends[0] < f < ends[1]]
+    if not inside:
+        raise InputError(
+            f"no mode of {of.machine.title!r} is between {ends[0]:.4g} and {ends[1]:.4g} Hz, which "
+            "the mesh of stage 1 passes in the run-up: give another operation.rotor_speed"
+        )
     rows: list[Record] = []
     for seconds in (5.0, 20.0, 100.0, 1000.0):
-        sweep = Sweep(order * BEGIN / 60.0, order * (END - BEGIN) / 60.0 / seconds)
+        sweep = sweep_of(of, seconds)
         for f in (inside[0], inside[-1]):
-            peak = run_up_peak(float(f), RATIO * float(f) / AT, sweep)
+            peak = run_up_peak(float(f), RATIO * float(f) / of.at, sweep)
             rows.append(
                 {
                     "run-up [s]": seconds,

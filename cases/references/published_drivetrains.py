@@ -1,11 +1,11 @@
 """Al-Hamadani 2018: tables of four drivetrains as printed, and what their rounding leaves open.
 
-The inputs stand in YAML files beside this module, digit for digit as in Tables 4.2, 4.3 and 4.7;
-the frequencies of Tables 6.1, 6.2 and 6.4 stand here.
+The inputs stand in drivetrain files beside this module, digit for digit as in Tables 4.2, 4.3 and
+4.7; the frequencies of Tables 6.1, 6.2 and 6.4 stand here.
 """
 
 from collections.abc import Callable, Iterator, Mapping
-from functools import partial
+from functools import cache, partial
 from importlib.resources import files
 from typing import Any
 
@@ -14,6 +14,8 @@ import yaml
 
 from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.comparison.tolerances import digit
+from fe_drivetrain.drivetrain_file import Drivetrain, parse_drivetrain
+from fe_drivetrain.dynamics import gear_table
 from fe_drivetrain.dynamics.torsion import (
     GearTable,
     GeneratorState,
@@ -22,7 +24,6 @@ from fe_drivetrain.dynamics.torsion import (
     PlanetaryStage,
     Torsional,
     natural_modes,
-    parse_gear_table,
 )
 
 TABLE_6_1 = "Al-Hamadani 2018, Table 6.1"
@@ -83,10 +84,12 @@ SHUTDOWN = {"A": 9.1, "B": 4.664, "C": 2.503}
 
 #: What is counted is exact.
 _EXACT = {"teeth", "planets"}
+#: Keys of shafts and of the mesh of a parallel stage in a table, by those of a file.
+OF_SHAFTS, OF_MESHES = {"torsion": "stiffness"}, {"stiffness": "mesh", "damping": "mesh_damping"}
 
 
 def text_of(name: str) -> str:
-    """The YAML text of a table, digit for digit as printed.
+    """The text of a drivetrain's file, digit for digit as printed.
 
     Parameters
     ----------
@@ -96,9 +99,16 @@ def text_of(name: str) -> str:
     return (files("fe_drivetrain.cases.references") / f"{name}.yaml").read_text("utf-8")
 
 
+@cache
+def drivetrain(name: str) -> Drivetrain:
+    """One of the drivetrains; `name` as in `text_of`."""
+    return parse_drivetrain(text_of(name), source=name)
+
+
+@cache
 def table(name: str) -> GearTable:
-    """One of the tables; `name` as in `text_of`."""
-    return parse_gear_table(text_of(name), source=name)
+    """One of the drivetrains in torsion, as its table has it; `name` as in `text_of`."""
+    return gear_table(drivetrain(name))
 
 
 def nrel_stages(table: GearTable) -> tuple[PlanetaryStage, ParallelStage, ParallelStage]:
@@ -132,9 +142,26 @@ def with_values(table: GearTable, values: Mapping[str, float]) -> GearTable:
 
 
 def printed_inputs(name: str) -> Iterator[tuple[str, str]]:
-    """Dotted key and digits as printed of every input of a table that is measured or computed."""
+    """Dotted key in a table, and digits as printed, of all inputs that are measured or computed."""
     # the base loader leaves numbers the words that they are in the file
-    yield from _numbers(yaml.load(text_of(name), Loader=yaml.BaseLoader), "")
+    for key, digits in _numbers(yaml.load(text_of(name), Loader=yaml.BaseLoader), ""):
+        yield _key_in_table(key), digits
+
+
+def _key_in_table(key: str) -> str:
+    """Key of a `GearTable` of a file's key, as "stages.0.carrier" of its carrier's inertia."""
+    match key.split("."):
+        case ["rotor", "inertia"]:
+            return "rotor"
+        case ["shaft", last]:
+            return f"shafts.0.{OF_SHAFTS.get(last, last)}"
+        case ["gearbox", "shafts", number, last]:
+            return f"shafts.{int(number) + 1}.{OF_SHAFTS.get(last, last)}"
+        case ["gearbox", "stages", number, body, "inertia"]:
+            return f"stages.{number}.{body}"
+        case ["gearbox", "stages", number, last]:
+            return f"stages.{number}.{OF_MESHES.get(last, last)}"
+    return key
 
 
 def _numbers(data: Any, key: str) -> Iterator[tuple[str, str]]:

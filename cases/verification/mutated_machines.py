@@ -25,8 +25,8 @@ from fe_drivetrain.drivetrain_file import (
     parse_drivetrain,
     read_drivetrain,
 )
-from fe_drivetrain.dynamics import MACHINES, Machine, library_machine, machine_of
-from fe_drivetrain.dynamics.torsion import GearTable, parse_gear_table
+from fe_drivetrain.dynamics import MACHINES, Machine, gear_table, library_machine, machine_of
+from fe_drivetrain.dynamics.torsion import GearTable
 from fe_drivetrain.report import bars
 from fe_drivetrain.report.suite import Page, Record, Run
 
@@ -63,7 +63,7 @@ def run(run: Run, page: Page) -> None:
         ),
         (
             "gear tables",
-            [plain(published.table(name)) for name in TABLES],
+            [plain(published.drivetrain(name)) for name in TABLES],
             run.count("tables", QUICK if run.quick else TABLES_TRIED, least=FEWEST),
             try_table,
         ),
@@ -131,7 +131,7 @@ def slips(
     return rows
 
 
-def plain(table: Drivetrain | Machine | GearTable) -> dict[str, Any]:
+def plain(table: Drivetrain | Machine) -> dict[str, Any]:
     """Mappings, lists and values, as in a file."""
     return table.model_dump(mode="json", exclude_none=True)
 
@@ -145,18 +145,25 @@ def try_machine(data: dict[str, Any], text: bool) -> Outcome:
     """A machine from data, or from text."""
 
     def made() -> Machine:
-        if text:
-            return machine_of(parse_drivetrain(as_text(data)))
-        return machine_of(validated(LumpedDrivetrain, data, "drivetrain"))
+        return machine_of(read(data, text))
 
     return tried(made, machine_facts)
 
 
 def try_table(data: dict[str, Any], text: bool) -> Outcome:
     """A gear table from data, or from text."""
+
+    def made() -> GearTable:
+        return gear_table(read(data, text))
+
+    return tried(made, table_facts)
+
+
+def read(data: dict[str, Any], text: bool) -> Drivetrain:
+    """The drivetrain of data, or of text."""
     if text:
-        return tried(partial(parse_gear_table, as_text(data)), table_facts)
-    return tried(partial(GearTable.model_validate, data), table_facts)
+        return parse_drivetrain(as_text(data))
+    return validated(LumpedDrivetrain, data, "drivetrain")
 
 
 def check(page: Page, name: str, rows: list[Record]) -> None:

@@ -9,6 +9,7 @@ from fe_drivetrain.cases.references.interference_fits import (
 )
 from fe_drivetrain.comparison import as_printed
 from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.report import bars
 from fe_drivetrain.report.number_text import certain_value, value_text
 from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target
 
@@ -17,6 +18,7 @@ MISFIT = 0.02  # m, on the radius
 EQUAL = Material(youngs_modulus=206e9, poisson_ratio=0.0, density=0.0)
 FIT = RADII, MISFIT, (EQUAL, EQUAL)
 
+PRESSURES = "Contact pressure with 0.02 m of misfit on the radius, and on the diameter"
 BY_RADIUS = "Stress by the radius: finest mesh against Lame's cylinders"
 PRINTED = "221.638"  # MPa
 THROUGH, PRESSURE = "elements through the outer cylinder", "contact pressure [MPa]"
@@ -38,7 +40,7 @@ def answer(page: Page, found: float, band: float, exact: float) -> None:
             page.judged("Lame's contact pressure", by="VM292", printed=PRINTED),
             page.value("the same with 0.02 m on the diameter [MPa]", 0.5 * exact),
         ],
-        hero=BY_RADIUS,
+        hero=PRESSURES,
         claim="holds in part",
     )
 
@@ -59,6 +61,13 @@ def run(run: Run, page: Page) -> None:
     page.equals(PRESSURE, found, band=band, **printed, source=MANUAL, basis="second-hand")
     page.equals(f"Lame's {PRESSURE}", exact, **printed, source=MANUAL, basis="second-hand")
     answer(page, found, band, exact)
+    pressures = {
+        "finest mesh": found,
+        "Lame": exact,
+        "VM292, printed": float(PRINTED),
+        "Lame, 0.02 m on the diameter": 0.5 * exact,
+    }
+    page.add(bars(PRESSURES, {"pressure": pressures}, PRESSURE))
     curves = stress_by_radius(fit, meshes[4], ("inner cylinder", "outer cylinder"))
     page.chart(BY_RADIUS, curves, "radius [m]", "stress [MPa]")
     page.text(

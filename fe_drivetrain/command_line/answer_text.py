@@ -148,12 +148,11 @@ def figures_table(figures: Sequence[KeyFigure]) -> RenderableType:
     """
     from rich.text import Text
 
-    from fe_drivetrain.report.number_text import limit_text, value_with_band
+    from fe_drivetrain.report.number_text import limit_text, standing_words, value_with_band
 
-    words = {"good": "ok", "watch": "near", "bad": "beyond", "none": ""}
     table = _table()
     for figure in figures:
-        cells = (figure.name, value_with_band(figure), limit_text(figure), words[figure.status])
+        cells = (figure.name, value_with_band(figure), limit_text(figure), standing_words(figure))
         name, value, limit, status = (cell.translate(_TYPED) for cell in cells)
         style = _COLOURS[figure.status]
         table.add_row(name, Text(value, style=f"bold {style}".strip()), limit, Text(status, style))

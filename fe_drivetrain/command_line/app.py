@@ -24,6 +24,7 @@ from fe_drivetrain.command_line.gears import gears_command
 from fe_drivetrain.command_line.history import history_command
 from fe_drivetrain.command_line.life import life_command
 from fe_drivetrain.command_line.loads import loads_command
+from fe_drivetrain.command_line.modes import modes_command
 from fe_drivetrain.command_line.new_scene import new_command
 from fe_drivetrain.command_line.output_options import LOOK, with_shared_options
 from fe_drivetrain.command_line.part import part_command
@@ -40,6 +41,7 @@ from fe_drivetrain.command_line.settings import CaseSettings
 from fe_drivetrain.command_line.studies import advise_command, check_command
 from fe_drivetrain.command_line.study import study_command
 from fe_drivetrain.command_line.terminal import ended, prepare_streams, write
+from fe_drivetrain.command_line.transient import transient_command
 from fe_drivetrain.command_line.uncertainty import uncertainty_command
 from fe_drivetrain.command_line.validate import validate_command
 from fe_drivetrain.common.memory import collect_lasting_seldom
@@ -59,9 +61,11 @@ _COMMANDS: tuple[tuple[str, str, Callable[..., None]], ...] = (
     (_DESCRIBE, "check", check_command),
     (_STUDY, "study", study_command),
     (_STUDY, "advise", advise_command),
+    (_STUDY, "modes", modes_command),
     (_STUDY, "loads", loads_command),
     (_STUDY, "life", life_command),
     (_STUDY, "gears", gears_command),
+    (_STUDY, "transient", transient_command),
     (_STUDY, "compare", compare_command),
     (_STUDY, "uncertainty", uncertainty_command),
     (_STUDY, "report", report_command),

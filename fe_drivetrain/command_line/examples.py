@@ -16,18 +16,29 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
         "main_bearing_bonded --quantity main_bearing.My --tolerance 2%",
         "mine.yaml --load hub.My=1e6",
     ),
+    "modes": (
+        "nrel_5mw --speeds 6.9:12.1 --open",
+        "mine.yaml --level torsional --generator held --json",
+    ),
     "loads": (
         "'outputs/*.outb' --site class-II --open",
         "mine.csv --against 'others/*.csv'",
+        "torque.csv --channel 'Mx=Main shaft torque' --rotor-speed 12",
     ),
     "life": (
         "two_bearings --loads 'outputs/*.outb' --site class-II",
         "mine.yaml --loads outputs --bearing front=240/630",
+        "grc_750kw --loads outputs --gearbox-temperature 65",
     ),
     "gears": (
         "nrel_5mw --open",
         "mine.yaml --torque 4e6 --load hub.My=1e6 --hours 50000",
         "mine.yaml --loads 'outputs/*.outb' --site class-II",
+    ),
+    "transient": (
+        "mine.yaml stop --value braked=2.5 --open",
+        "mine.yaml operation --loads 'outputs/*.outb' --level rigid",
+        "mine.yaml dip --value depth=0.9 --value length=0.25 --json",
     ),
     "compare": (
         "mine.yaml stiffer.yaml",

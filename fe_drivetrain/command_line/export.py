@@ -115,6 +115,8 @@ def export_command(context: typer.Context, asked: ExportRequest) -> int:
     """Write a scene for other programs: condensed matrices, a model for CalculiX, or its mesh."""
     if asked.formats:
         if wants_json():
+            from fe_drivetrain.export.files import format_rows
+
             write_json(format_rows())
         else:
             write(sys.stdout, formats_table())
@@ -301,21 +303,6 @@ def _write(result: ExportResult, wanted: Export) -> None:
         export.write_inp(content, wanted.out)
 
 
-def format_rows() -> list[dict[str, str]]:
-    """Formats as records: name, usual ending, programs that read it, and what it needs."""
-    from fe_drivetrain.export.files import FORMATS
-
-    return [
-        {
-            "format": one.name,
-            "ending": one.suffix,
-            "read by": one.reader,
-            "needs": f"fe-drivetrain[{one.extra}]" if one.extra else "",
-        }
-        for one in FORMATS.values()
-    ]
-
-
 def formats_table() -> str:
     """Formats: name, usual ending, programs that read it, and the extra that it needs.
 
@@ -324,6 +311,8 @@ def formats_table() -> str:
     str
         A heading, and a line for each format.
     """
+    from fe_drivetrain.export.files import format_rows
+
     found = format_rows()
     rows = [list(found[0]), *(list(one.values()) for one in found)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]

@@ -1,4 +1,4 @@
-"""The command ``life``: rating life of the rolling bearings of a scene under load histories."""
+"""The command ``life``: rating life of a drivetrain's rolling bearings under load histories."""
 
 from __future__ import annotations
 
@@ -15,16 +15,17 @@ from fe_drivetrain.command_line.showing import Shown
 from fe_drivetrain.command_line.terminal import as_typed
 from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
-from fe_drivetrain.drivetrain_file.named_scenes import named_scene
+from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 
 
 @with_options(LifeRequest, kept="files that are done are kept: run again with --resume")
 def life_command(context: typer.Context, asked: LifeRequest) -> int:
-    """Rating life of a scene's rolling bearings under load histories, by ISO 281 and ISO/TS 16281.
+    """Rating life of a drivetrain's bearings under load histories, by ISO 281 and ISO/TS 16281.
 
-    Each load step is brought to equilibrium with shaft and rollers; lives L10, L10m, L10r and L10mr
-    stand side by side, with the damage by wind speed, row, ring and place of the rollers, and with
-    the time in which the methods do not hold. Tables stand beside the page as CSV.
+    Main bearings are brought to equilibrium with shaft and rollers at each load step; bearings of
+    the gearbox take their loads from statics of the whole drivetrain. Lives L10, L10m, L10r and
+    L10mr stand side by side, with the damage by wind speed, row, ring and place of the rollers, and
+    with the time in which the methods do not hold. Tables stand beside the page as CSV.
 
     The exit status is 0 if every check passes.
     """
@@ -32,7 +33,7 @@ def life_command(context: typer.Context, asked: LifeRequest) -> int:
     from fe_drivetrain.report.suite.ownership import check_result_folder
 
     check_result_folder(asked.folder)
-    scene = named_scene(asked.scene, parse_settings(asked.set_ or ()))
+    found = read_drivetrain(asked.scene, parse_settings(asked.set_ or ()))
     from fe_drivetrain.command_line.life_files import write_life
     from fe_drivetrain.pages.life import show_life
     from fe_drivetrain.report.suite.case import Case
@@ -45,7 +46,7 @@ def life_command(context: typer.Context, asked: LifeRequest) -> int:
     with show_steps() as report, scheduled_by(asked.scheduler):
         # before the run: a mistake leaves no trace in a folder of reports
         report("bearings")
-        drivetrain = DrivetrainBearings(scene, options)
+        drivetrain = DrivetrainBearings(found, options)
         work = Shown(
             lambda run: lives_under(
                 drivetrain, files, place, resume=asked.resume, report=run.report
@@ -55,7 +56,7 @@ def life_command(context: typer.Context, asked: LifeRequest) -> int:
         )
         case = Case(
             f"life/{Path(asked.scene).stem}",
-            f"{drivetrain.scene.title}: rating life of its bearings",
+            f"{drivetrain.drivetrain.title}: rating life of its bearings",
             "the user's scene and files",
             work,
             command=as_typed(),

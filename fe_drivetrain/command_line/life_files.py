@@ -24,10 +24,13 @@ def write_life(run: Run, page: Page, result: LifeResult) -> None:
     """
     known = result.all_tables()
     tables: dict[str, list[Record]] = {
-        name: known[name] for name in ("lives", "files", "winds", "places", "laminae")
+        name: known[name]
+        for name in ("lives", "levels", "files", "winds", "places", "laminae")
+        if name in known
     }
     facts = {
-        "frame": f"{HUB_LOADS.frame}; places of rollers: 0 right, 90 deg on top",
+        "frame": f"{HUB_LOADS.frame}; places of rollers: 0 right, 90 deg on top; of planets "
+        "0 towards the sun, 90 deg along the tangent",
         "units": "as in the heads of columns",
         "lives": "with 90 % reliability but for a_1 of modified ones",
     }

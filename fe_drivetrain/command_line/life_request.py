@@ -49,8 +49,9 @@ class LifeRequest:
         typer.Option(
             "--bearing",
             metavar="NAME=ENTRY",
-            help="Entry of the bearing catalogue for a bearing of the scene, before what the scene "
-            "says under 'catalogue'. May be repeated.",
+            help="Entry of the bearing catalogue for a bearing of the drivetrain, before what its "
+            "file says under 'catalogue', as in 'stage 1 pin upwind=planet_nj2232'. May be "
+            "repeated.",
         ),
     ] = None
     only: Annotated[
@@ -137,6 +138,33 @@ class LifeRequest:
         bool,
         typer.Option("--weight/--no-weight", help="Whether gearbox and shaft have their weight."),
     ] = LifeOptions.weight
+    gearbox_lubricant: Annotated[
+        str | None,
+        typer.Option(
+            "--gearbox-lubricant",
+            metavar="GRADE",
+            help="Oil of the gearbox's bearings, as --lubricant. Default: that of the drivetrain's "
+            "operation, or VG 320.",
+        ),
+    ] = None
+    gearbox_temperature: Annotated[
+        float | None,
+        typer.Option(
+            "--gearbox-temperature",
+            metavar="DEGC",
+            help="Of the gearbox's bearings in operation. Default: that of the drivetrain's "
+            "operation, or 60.",
+        ),
+    ] = LifeOptions.gearbox_temperature
+    gearbox_cleanliness: Annotated[
+        str | None,
+        typer.Option(
+            "--gearbox-cleanliness",
+            metavar="CLASS",
+            help="Of the gearbox's oil, which circulates through a filter: a code of ISO 4406. "
+            "Default: -/17/14.",
+        ),
+    ] = LifeOptions.gearbox_cleanliness
     resume: Resume = False
     scheduler: Scheduler = None
     out: Annotated[
@@ -191,6 +219,11 @@ class LifeRequest:
             skip=self.skip,
             every=self.every,
             weight=self.weight,
+            gearbox_lubricant=None
+            if self.gearbox_lubricant is None
+            else parse_lubricant(self.gearbox_lubricant),
+            gearbox_temperature=self.gearbox_temperature,
+            gearbox_cleanliness=self.gearbox_cleanliness,
             stated=tuple(name for name in ASSUMED if not left_out(context, name)),
         )
 

@@ -28,7 +28,8 @@ def loads_command(context: typer.Context, asked: LoadsRequest) -> int:
     Reads one file after the other in bounded memory. The page has statistics by wind, a capture
     matrix, planes of force and moment, spectra with multiples of the rotor's speed, rainflow
     counts with damage-equivalent loads, load duration and revolution distributions, and load
-    loops; all tables stand beside it as CSV.
+    loops; all tables stand beside it as CSV. Files may have some of the six components alone:
+    what needs the others is left out by name.
 
     The exit status is 0 if every check passes.
     """

@@ -34,8 +34,9 @@ class LoadsRequest:
         list[str],
         typer.Argument(
             metavar="FILES",
-            help="Hub loads: files (.out, .outb of OpenFAST, or .csv), folders, or patterns in "
-            "quotes, as in 'outputs/**/*.outb'. Lengths and steps may differ.",
+            help="Hub loads, all six or some, as a torque alone: files (.out, .outb of OpenFAST, "
+            "or .csv), folders, or patterns in quotes, as in 'outputs/**/*.outb'. Lengths and "
+            "steps may differ.",
         ),
     ]
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Result folder.")] = Path(

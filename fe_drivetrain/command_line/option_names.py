@@ -27,7 +27,11 @@ OPTIONS: Mapping[str, str] = {
     "changes": "--set",
     "channels": "--channel",
     "cleanliness": "--cleanliness",
+    "duration": "--duration",
     "every": "--every",
+    "gearbox_cleanliness": "--gearbox-cleanliness",
+    "gearbox_lubricant": "--gearbox-lubricant",
+    "gearbox_temperature": "--gearbox-temperature",
     "held": "--held",
     "high": "--winds",
     "hours": "--hours",
@@ -39,6 +43,7 @@ OPTIONS: Mapping[str, str] = {
     "modes": "--modes",
     "only": "--only",
     "profile": "--profile",
+    "quantity": "--quantity",
     "reliability_percent": "--reliability",
     "residue": "--residue",
     "rings": "--rings",
@@ -47,7 +52,9 @@ OPTIONS: Mapping[str, str] = {
     "site": "--site",
     "slices": "--slices",
     "slopes": "--slope",
+    "speeds": "--speeds",
     "spectrum": "--spectrum",
+    "step": "--step",
     "supply": "--supply",
     "support": "--support",
     "temperature": "--temperature",
@@ -55,6 +62,7 @@ OPTIONS: Mapping[str, str] = {
     "torque": "--torque",
     "transients": "--transient",
     "turning": "--turning",
+    "values": "--value",
     "what": "--what",
     "windows": "--target",
     "winds": "--winds",
@@ -69,7 +77,7 @@ WORDS: Mapping[tuple[str, object], str] = {
 }
 """What is typed for a value of an argument that is no option with the value behind it."""
 
-_BETWEEN = {"at": ",", "held": ",", "low": ":", "lubricant": ","}
+_BETWEEN = {"at": ",", "held": ",", "low": ":", "lubricant": ",", "gearbox_lubricant": ","}
 """What stands between items of one option; others are repeated."""
 
 

@@ -51,6 +51,7 @@ TITLES: Mapping[str, str] = {
     "life": "Life",
     "model": "Which model",
     "check": "The drivetrain",
+    "export": "Export",
 }
 """Parts of a dossier as its menu has them."""
 
@@ -219,16 +220,20 @@ def content_of(asked: ReportRequest, scene: Scene) -> dict[str, Any]:
 
 def _works(asked: ReportRequest, scene: Scene, own: StudyLoads) -> dict[str, Work]:
     """What makes each part; a part that says nothing of this drivetrain is left out."""
+    from fe_drivetrain.command_line.export_files import write_shaft
     from fe_drivetrain.command_line.life_files import write_life
     from fe_drivetrain.command_line.loads_files import write_loads
     from fe_drivetrain.command_line.study_files import write_study
     from fe_drivetrain.pages.advise import show_advise
     from fe_drivetrain.pages.check import show_check
+    from fe_drivetrain.pages.export import show_export
     from fe_drivetrain.pages.life import show_life
     from fe_drivetrain.pages.loads import show_loads
     from fe_drivetrain.pages.study import show_study
     from fe_drivetrain.studies.bearing_lives import life
     from fe_drivetrain.studies.dossier_overview import extremes_of
+    from fe_drivetrain.studies.export_content import prepare_export
+    from fe_drivetrain.studies.gearbox_bearings import catalogue_entries
     from fe_drivetrain.studies.level_advice import advise
     from fe_drivetrain.studies.life_options import LifeOptions
     from fe_drivetrain.studies.load_digest import LoadOptions
@@ -275,8 +280,11 @@ def _works(asked: ReportRequest, scene: Scene, own: StudyLoads) -> dict[str, Wor
         ),
         "model": Shown(lambda run: advise(scene, first, TOLERANCE, report=run.report), show_advise),
         "check": Shown(lambda run: check(scene, catalogues, report=run.report), show_check),
+        "export": Shown(
+            lambda run: prepare_export(scene, report=run.report), show_export, write_shaft
+        ),
     }
-    if not any(unit.catalogue for unit in scene.bearing_units):
+    if not catalogue_entries(scene):
         del works["life"]
     return works
 

@@ -8,13 +8,14 @@ from pathlib import Path
 
 from fe_drivetrain.procedure.project import Capture, Comparison, Project
 from fe_drivetrain.report.suite.case import Case, all_cases
+from fe_drivetrain.report.suite.chosen import SETTING
 from fe_drivetrain.studies.project_validation import ValidateResult
 
 _MADE_AGAIN = frozenset({"missing", "edited", "stale", "quick", "of another drivetrain"})
 """States of evidence that a run may change."""
 
-_ON_SCENES = ("advise", "check", "study", "uncertainty")
-"""Commands whose only argument is a scene."""
+_ON_DRIVETRAINS = ("advise", "check", "study", "uncertainty")
+"""Commands whose only argument is a drivetrain."""
 
 
 def ready_commands(result: ValidateResult, path: Path) -> list[str]:
@@ -36,14 +37,14 @@ def ready_commands(result: ValidateResult, path: Path) -> list[str]:
     reports = path.parent / project.reports
     wanted = _missing(result, path.parent, reports)
     known = all_cases()
-    machine = _machine(project, path.parent)
+    drivetrain = _drivetrain(project, path.parent)
     cases = [known[name] for name in wanted if name in known]
     groups = [
-        [case for case in cases if machine and "machine" in case.settings],
-        [case for case in cases if not (machine and "machine" in case.settings)],
+        [case for case in cases if drivetrain and SETTING in case.settings],
+        [case for case in cases if not (drivetrain and SETTING in case.settings)],
     ]
     commands = [
-        _run(group, project, reports, machine if number == 0 else "")
+        _run(group, project, reports, drivetrain if number == 0 else "")
         for number, group in enumerate(groups)
         if group
     ]
@@ -51,7 +52,7 @@ def ready_commands(result: ValidateResult, path: Path) -> list[str]:
         command
         for name in wanted
         if name not in known
-        if (command := _of_scene(name, path, project))
+        if (command := _of_drivetrain(name, path, project))
     ]
     return [*commands, shlex.join(["fe-drivetrain", "validate", str(path)])] if commands else []
 
@@ -84,29 +85,28 @@ def _files(of: Capture | Comparison | None) -> list[str]:
     return [of.measured.file, *([of.computed.file] if of.computed else [])]
 
 
-def _machine(project: Project, folder: Path) -> str:
-    """The machine as a case takes it: a file by its path, or a name of the library."""
-    name = project.model.machine if project.model else ""
+def _drivetrain(project: Project, folder: Path) -> str:
+    """The drivetrain as a case takes it: a file by its path, or a name of the library."""
+    name = project.model.drivetrain if project.model else ""
     return str(folder / name) if name and (folder / name).is_file() else name
 
 
-def _run(cases: list[Case], project: Project, reports: Path, machine: str) -> str:
+def _run(cases: list[Case], project: Project, reports: Path, drivetrain: str) -> str:
     # of one case, --out is its own folder
     out = reports if len(cases) > 1 else reports / cases[0].name
     words = ["fe-drivetrain", "run", "--out", str(out)]
     words += ["--quick"] if "quick" in project.accept else []
-    words += ["--set", f"machine={machine}"] if machine else []
+    words += ["--set", f"{SETTING}={drivetrain}"] if drivetrain else []
     return shlex.join([*words, *(case.name for case in cases)])
 
 
-def _of_scene(name: str, path: Path, project: Project) -> str:
-    """The command whose results a name is of; empty where it is of none on scenes."""
+def _of_drivetrain(name: str, path: Path, project: Project) -> str:
+    """The command whose results a name is of; empty where it is of none on drivetrains."""
     command, _, _ = name.partition("/")
-    scene = project.model.scene if project.model else ""
-    if not scene or command not in _ON_SCENES:
+    drivetrain = _drivetrain(project, path.parent)
+    if not drivetrain or command not in _ON_DRIVETRAINS:
         return ""
-    file = path.parent / scene
-    words = ["fe-drivetrain", command, str(file) if file.is_file() else scene]
+    words = ["fe-drivetrain", command, drivetrain]
     if command == "advise" and project.model:
         for need in project.model.needs[:1]:
             words += ["--quantity", need.quantity, "--tolerance", f"{100 * need.tolerance:g}%"]

@@ -6,24 +6,31 @@ fit is the gate's (`machine_gate`).
 """
 
 from math import cos, radians
-from typing import Annotated, Any, Generic, Literal, NamedTuple, Self, TypeVar
+from typing import Annotated, Literal, Self
 
 from pydantic import (
-    BeforeValidator,
     Discriminator,
     Field,
-    PlainSerializer,
     Tag,
     field_validator,
     model_validator,
 )
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file import stage_fields
 from fe_drivetrain.drivetrain_file.gear_strength import GearStrength
+from fe_drivetrain.drivetrain_file.stage_fields import (
+    NAMED,
+    Fillet,
+    GearPinion,
+    RingPlanetSun,
+    Shift,
+    SunPlanet,
+)
 from fe_drivetrain.drivetrain_file.turning_parts import (
-    MAX_DAMPING,
     MAX_GEAR,
     MAX_STIFFNESS,
+    CarrierBody,
     PinData,
     Radius,
     RotorBody,
@@ -41,70 +48,8 @@ from fe_drivetrain.geometry.part import (
     rows_of,
 )
 
-T = TypeVar("T")
-
-
-class RingPlanetSun(NamedTuple, Generic[T]):
-    """A value of each gear of a planetary stage."""
-
-    ring: T
-    planet: T
-    sun: T
-
-
-class GearPinion(NamedTuple, Generic[T]):
-    """A value of each gear of a parallel stage."""
-
-    gear: T
-    pinion: T
-
-
-class SunPlanet(NamedTuple, Generic[T]):
-    """A value of the gears that determine the size of a planetary stage without teeth."""
-
-    sun: T
-    planet: T
-
-
-def _by_name(value: Any) -> Any:
-    """Refuse a list in a file, whose order a reader would have to know."""
-    if isinstance(value, list):
-        raise InputError(
-            f"{value} is a list but must name each gear, as in {{ring: 99, planet: 39, sun: 21}} "
-            "or {gear: 82, pinion: 23}: name them"
-        )
-    return value
-
-
-_NAMED = BeforeValidator(_by_name), PlainSerializer(lambda value: value and value._asdict())
-
 #: What the full data of gears take where a table is silent, of stages with profile shifts.
 OF_TEETH = ("dedendum", "fillets", "tips", "faces", "blank")
-
-
-Shift = Annotated[float, Field(gt=-3, lt=3)]
-Fillet = Annotated[float, Field(ge=0, le=1)]
-
-
-def _shifts() -> Any:
-    return Field(default=None, description="profile shifts in modules; of a ring as ISO 21771")
-
-
-def _of_each(of: str, source: str) -> Any:
-    """Declare numbers of all gears of a stage; none where nothing is given."""
-    return Field(default=None, description=of, json_schema_extra={"unit": "", "source": source})
-
-
-def _tips() -> Any:
-    return _of_each("tip diameters, m", "assumed: an addendum of a module")
-
-
-def _faces() -> Any:
-    return _of_each("face widths, m", "assumed: each as wide as the face in contact")
-
-
-def _fillets() -> Any:
-    return _of_each("tip radii of the racks, in modules", "assumed: 0.38 modules, ISO 53")
 
 
 class GearStage(Part):
@@ -158,14 +103,6 @@ class GearStage(Part):
         None, of="centre distance; follows from the teeth, module and shifts", gt=0, le=MAX_GEAR
     )
     face_width: float | None = dimension(None, of="face width in contact", gt=0, le=MAX_GEAR)
-    mesh_damping: float = dimension(
-        0.0,
-        of="damping of each mesh",
-        unit="N s/m",
-        ge=0,
-        le=MAX_DAMPING,
-        source="assumed: meshes without damping",
-    )
     slices: int = Field(
         default=1,
         ge=1,
@@ -181,8 +118,8 @@ class GearStage(Part):
     )
     stiffness_of: Literal["line", "axis"] | None = Field(
         default=None,
-        description="line: meshes in N/m along the line of action; axis: in N m/rad about the "
-        "planet's, or the gear's, axis",
+        description="line: meshes in N/m and N s/m along the line of action; axis: in N m/rad and "
+        "N m s/rad about the planet's, or the gear's, axis",
     )
 
     _strength = field_validator("strength", mode="wrap")(in_its_field)
@@ -242,15 +179,26 @@ class GearStage(Part):
                 f"width in contact, {self.face_width:g} m: correct one of them"
             )
 
-    def check_stiffness(self, *meshes: float | None) -> None:
-        """Refuse mesh stiffnesses without a word on what they are of.
+    def check_stiffness(self, **meshes: tuple[float | None, float]) -> None:
+        """Refuse mesh stiffnesses without a word on what they are of, and damping alone.
+
+        Parameters
+        ----------
+        **meshes : tuple
+            Stiffness and damping of each mesh, by the key of the stiffness.
 
         Raises
         ------
         InputError
             See above.
         """
-        if any(mesh is not None for mesh in meshes) and self.stiffness_of is None:
+        for key, (stiffness, damping) in meshes.items():
+            if damping > 0 and stiffness is None:
+                raise InputError(
+                    f"damping of a mesh is {damping:g} but its stiffness is not given: give "
+                    f"{key}, or remove the damping"
+                )
+        if any(mesh is not None for mesh, _ in meshes.values()) and self.stiffness_of is None:
             raise InputError(
                 "a mesh stiffness needs stiffness_of: give line for N/m along the line of action, "
                 "or axis for N m/rad about the planet's, or the gear's, axis"
@@ -267,18 +215,18 @@ class PlanetaryStage(GearStage):
     """A planetary stage of a file: the carrier is driven, the sun drives the next shaft."""
 
     kind: Literal["planetary"] = Field(default="planetary", description="the word planetary")
-    teeth: Annotated[RingPlanetSun[Teeth] | None, *_NAMED] = Field(
+    teeth: Annotated[RingPlanetSun[Teeth] | None, *NAMED] = Field(
         default=None, description="teeth of each gear"
     )
-    radii: Annotated[SunPlanet[Radius] | None, *_NAMED] = Field(
+    radii: Annotated[SunPlanet[Radius] | None, *NAMED] = Field(
         default=None, description="working pitch radii, in place of teeth, m"
     )
-    shifts: Annotated[RingPlanetSun[Shift] | None, *_NAMED] = _shifts()
-    tips: Annotated[RingPlanetSun[Radius] | None, *_NAMED] = _tips()
-    faces: Annotated[RingPlanetSun[Radius] | None, *_NAMED] = _faces()
-    fillets: Annotated[RingPlanetSun[Fillet] | None, *_NAMED] = _fillets()
+    shifts: Annotated[RingPlanetSun[Shift] | None, *NAMED] = stage_fields.shifts()
+    tips: Annotated[RingPlanetSun[Radius] | None, *NAMED] = stage_fields.tips()
+    faces: Annotated[RingPlanetSun[Radius] | None, *NAMED] = stage_fields.faces()
+    fillets: Annotated[RingPlanetSun[Fillet] | None, *NAMED] = stage_fields.fillets()
     planets: int = Field(ge=1, le=50, description="number of planets")
-    carrier: RotorBody | None = Field(default=None, description="carrier, planets left out")
+    carrier: CarrierBody | None = Field(default=None, description="carrier, planets left out")
     planet: RotorBody | None = Field(
         default=None, description="one planet; a disc of steel where left out"
     )
@@ -305,6 +253,8 @@ class PlanetaryStage(GearStage):
         gt=0,
         le=MAX_STIFFNESS,
     )
+    sun_planet_damping: float = stage_fields.mesh_damping()
+    ring_planet_damping: float = stage_fields.mesh_damping()
     pins: tuple[PinData, ...] = Field(default=(), description="bearings of each planet")
 
     _bodies = field_validator("carrier", "planet", "sun", "ring", mode="wrap")(in_its_field)
@@ -313,15 +263,17 @@ class PlanetaryStage(GearStage):
     @model_validator(mode="after")
     def _stands_for_itself(self) -> Self:
         self.check_gears()
-        self.check_stiffness(self.sun_planet, self.ring_planet)
+        self.check_stiffness(
+            sun_planet=(self.sun_planet, self.sun_planet_damping),
+            ring_planet=(self.ring_planet, self.ring_planet_damping),
+        )
         if self.teeth is not None:
             if not self.teeth.ring > max(self.teeth.planet, self.teeth.sun):
                 raise InputError(
                     f"a planetary stage has teeth of {_of_gears(self.teeth)} but the ring must "
                     "have the most: correct them"
                 )
-            name = self.name or "planetary stage"
-            check_assembly(name, self.teeth.sun, self.teeth.ring, self.planets)
+            self._check_angles()
         if self.ratio is not None and self.ratio <= 2:
             raise InputError(
                 f"ratio of a planetary stage is {self.ratio:g} but must be greater than 2, or no "
@@ -333,6 +285,27 @@ class PlanetaryStage(GearStage):
                 "both, or none where the housing holds it"
             )
         return self
+
+    @property
+    def has_size(self) -> bool:
+        """Whether its planets have places, and do more than turn."""
+        return self.module is not None or self.centre_distance is not None
+
+    def _check_angles(self) -> None:
+        if self.teeth is not None and self.has_size:
+            name = self.name or "planetary stage"
+            check_assembly(name, self.teeth.sun, self.teeth.ring, self.planets)
+
+    def assumptions(self) -> list[Assumption]:
+        """Say what is assumed, and that torsion ignores unequal angles of planets."""
+        rows = super().assumptions()
+        if self.teeth is not None and (self.teeth.ring + self.teeth.sun) % self.planets:
+            why = (
+                f"assumed: ring and sun, {self.teeth.ring} + {self.teeth.sun} teeth, are no "
+                f"multiple of {self.planets} planets, which stand at unequal angles"
+            )
+            rows.append(Assumption("angles of planets", "unequal", "", why))
+        return rows
 
     @property
     def speed_ratio(self) -> float:
@@ -352,7 +325,7 @@ class PlanetaryData(PlanetaryStage):
     centre_distance: float = dimension(of="centre distance", gt=0, le=MAX_GEAR)
     face_width: float = dimension(of="face width in contact", gt=0, le=MAX_GEAR)
     stiffness_of: Literal["line", "axis"] = Field(description="line or axis")
-    carrier: RotorBody = Field(description="carrier, planets left out")
+    carrier: CarrierBody = Field(description="carrier, planets left out")
     planet: RotorBody = Field(description="one planet")
     sun: RotorBody = Field(description="sun")
     sun_planet: float = dimension(of="mesh stiffness", unit="N m/rad", gt=0, le=MAX_STIFFNESS)
@@ -372,29 +345,39 @@ class PlanetaryData(PlanetaryStage):
         ring, planet, sun = self.teeth if self.teeth is not None else (0, 0, 0)
         return mesh_of(self, sun + planet), mesh_of(self, ring - planet)
 
-    def along_line(self, stiffness: float) -> float:
-        """A mesh's stiffness along its line of action [N/m]."""
-        if self.stiffness_of == "line":
-            return stiffness
+    def _check_angles(self) -> None:
+        """Leave it to the gate, which knows whether sizes are nominal."""
+
+    @property
+    def arm(self) -> float:
+        """Winding of a mesh along its line of action by a turn of the planet alone [m/rad]."""
         mesh = self.meshes[0]
         base = (self.centre_distance - self.sun_radius) * cos(mesh.pressure_angle)
-        return stiffness / (base * cos(mesh.base_helix)) ** 2
+        return base * cos(mesh.base_helix)
+
+    def along_line(self, value: float) -> float:
+        """A mesh's stiffness or damping along its line of action [N/m, N s/m]."""
+        return value if self.stiffness_of == "line" else value / self.arm**2
+
+    def about_axis(self, value: float) -> float:
+        """A mesh's stiffness or damping about the planet's axis [N m/rad, N m s/rad]."""
+        return value if self.stiffness_of == "axis" else value * self.arm**2
 
 
 class ParallelStage(GearStage):
     """A parallel stage of a file: a gear that drives a pinion."""
 
     kind: Literal["parallel"] = Field(default="parallel", description="the word parallel")
-    teeth: Annotated[GearPinion[Teeth] | None, *_NAMED] = Field(
+    teeth: Annotated[GearPinion[Teeth] | None, *NAMED] = Field(
         default=None, description="teeth of each gear"
     )
-    radii: Annotated[GearPinion[Radius] | None, *_NAMED] = Field(
+    radii: Annotated[GearPinion[Radius] | None, *NAMED] = Field(
         default=None, description="working pitch radii, in place of teeth, m"
     )
-    shifts: Annotated[GearPinion[Shift] | None, *_NAMED] = _shifts()
-    tips: Annotated[GearPinion[Radius] | None, *_NAMED] = _tips()
-    faces: Annotated[GearPinion[Radius] | None, *_NAMED] = _faces()
-    fillets: Annotated[GearPinion[Fillet] | None, *_NAMED] = _fillets()
+    shifts: Annotated[GearPinion[Shift] | None, *NAMED] = stage_fields.shifts()
+    tips: Annotated[GearPinion[Radius] | None, *NAMED] = stage_fields.tips()
+    faces: Annotated[GearPinion[Radius] | None, *NAMED] = stage_fields.faces()
+    fillets: Annotated[GearPinion[Fillet] | None, *NAMED] = stage_fields.fillets()
     angle: float = dimension(
         0.0, of="where the pinion is, from y to z", unit="deg", ge=-360, le=360
     )
@@ -410,12 +393,14 @@ class ParallelStage(GearStage):
         le=MAX_STIFFNESS,
     )
 
+    damping: float = stage_fields.mesh_damping()
+
     _bodies = field_validator("gear", "pinion", mode="wrap")(in_its_field)
 
     @model_validator(mode="after")
     def _stands_for_itself(self) -> Self:
         self.check_gears()
-        self.check_stiffness(self.stiffness)
+        self.check_stiffness(stiffness=(self.stiffness, self.damping))
         return self
 
     @property
@@ -452,13 +437,18 @@ class ParallelData(ParallelStage):
         return mesh_of(self, sum(self.teeth) if self.teeth is not None else 0)
 
     @property
-    def along_line(self) -> float:
-        """The mesh's stiffness along its line of action [N/m]."""
-        if self.stiffness_of == "line":
-            return self.stiffness
+    def arm(self) -> float:
+        """Winding of the mesh along its line of action by a turn of the gear alone [m/rad]."""
         mesh = self.meshing
-        base = self.gear_radius * cos(mesh.pressure_angle)
-        return self.stiffness / (base * cos(mesh.base_helix)) ** 2
+        return self.gear_radius * cos(mesh.pressure_angle) * cos(mesh.base_helix)
+
+    def along_line(self, value: float) -> float:
+        """The mesh's stiffness or damping along its line of action [N/m, N s/m]."""
+        return value if self.stiffness_of == "line" else value / self.arm**2
+
+    def about_axis(self, value: float) -> float:
+        """The mesh's stiffness or damping about the gear's axis [N m/rad, N m s/rad]."""
+        return value if self.stiffness_of == "axis" else value * self.arm**2
 
 
 def mesh_of(stage: PlanetaryData | ParallelData, teeth: int) -> Mesh:

@@ -39,6 +39,24 @@ def spring_matrix(unit: BearingUnit) -> Floats:
     return np.diag(as_numbers(k for k in given if not isinstance(k, tuple)))
 
 
+def free_to_turn(stiffness: Floats) -> Floats:
+    """(6, 6) stiffness of a bearing on its housing whose shaft turns in it without a torque.
+
+    The outer ring then turns about x as far as the forces ask it to: a housing on feet rolls under
+    a force across, and leaving that out would hold the shaft too stiffly.
+
+    Parameters
+    ----------
+    stiffness : Floats
+        (6, 6) to ground with the turn about x resisted [N/m, N, N m/rad].
+    """
+    K = np.array(stiffness, dtype=float)
+    if K[3, 3] > 0.0:
+        K -= np.outer(K[:, 3], K[3]) / K[3, 3]
+    K[3] = K[:, 3] = 0.0
+    return K
+
+
 def roller_lines(unit: BearingUnit) -> Floats:
     """(n, 6) lines of contact of all rollers: direction, and its moment about the centre."""
     places, ways = roller_contacts(unit)

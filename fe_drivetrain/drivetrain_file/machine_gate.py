@@ -14,6 +14,7 @@ from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.drivetrain_file.stage_gears import stage_pairs
 from fe_drivetrain.drivetrain_file.turning_parts import RotorBody, diagonal
 from fe_drivetrain.gear.functions import involute_of
+from fe_drivetrain.gear.planets import check_assembly
 from fe_drivetrain.gear.working_angles import transverse_angle
 
 #: Distance of radii of three digits from the centre distance, over it, that is allowed.
@@ -87,6 +88,7 @@ def check_planetary(stage: PlanetaryData, name: str) -> None:
                 f"{of_planet}, which ask for {sun + 2 * of_planet} where no module is given: "
                 "correct the teeth, or give the module, of which profile shifts follow"
             )
+        check_assembly(name, sun, ring, stage.planets)
         _check_distance(stage, sun + of_planet, f"{name}, sun and planet")
         _check_distance(stage, of_planet - ring, f"{name}, planet and ring")
     tip = _check_teeth(stage, name).get("planet", planet)

@@ -31,17 +31,23 @@ def read_drivetrain(name: str | Path, changes: Mapping[str, Any] | None = None) 
     Raises
     ------
     InputError
-        There is no such scene, it is a component, or a value is wrong.
+        There is no such scene, it is a component, a value is wrong, or a carrier that it names is
+        not there or does not fit.
     """
+    from fe_drivetrain.drivetrain_file.carriers import carriers_of
     from fe_drivetrain.drivetrain_file.reading import (
         drivetrain_of_file,
         library_text,
         parse_drivetrain,
     )
 
-    if _is_file(name):
-        return drivetrain_of_file(name, changes)
-    return parse_drivetrain(library_text(str(name)), changes, str(name))
+    found = (
+        drivetrain_of_file(name, changes)
+        if _is_file(name)
+        else parse_drivetrain(library_text(str(name)), changes, str(name))
+    )
+    carriers_of(found)
+    return found
 
 
 def named_scene(name: str | Path, changes: Mapping[str, Any] | None = None) -> Scene:

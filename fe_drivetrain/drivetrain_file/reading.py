@@ -57,6 +57,7 @@ def drivetrain_of_file(path: str | Path, changes: Mapping[str, Any] | None = Non
     """Read a drivetrain from a YAML file, its main shaft with sections or not; see `read_scene`."""
     data = _changed_mapping(read_text(path, "scene"), changes, str(path))
     _beside(Path(path).parent, data.get("bearing_units"))
+    _carriers_beside(Path(path).parent, data.get("gearbox"))
     found = _drivetrain(data, str(path))
     if isinstance(found, Scene):
         check_files(found.bearing_units)
@@ -108,9 +109,8 @@ def _drivetrain(data: dict[str, Any], source: str) -> Drivetrain:
                 "components can be exported, and have cases of their own"
             )
     shaft = data.get("shaft")
-    if isinstance(shaft, dict) and any(key in shaft for key in BY_STIFFNESS):
-        return validated(LumpedDrivetrain, data, source)
-    return validated(Scene, data, source)
+    by_stiffness = isinstance(shaft, dict) and any(key in shaft for key in BY_STIFFNESS)
+    return validated(LumpedDrivetrain if by_stiffness else Scene, data, source)
 
 
 def scene_text(drivetrain: Drivetrain) -> str:
@@ -228,6 +228,16 @@ def _beside(folder: Path, units: Any) -> None:
             for key in ("step", "mesh"):
                 if isinstance(part, dict) and isinstance(part.get(key), str):
                     part[key] = str(folder / part[key])
+
+
+def _carriers_beside(folder: Path, gearbox: Any) -> None:
+    """Take the names of files of carriers as from the folder of the drivetrain's file."""
+    stages = gearbox.get("stages") if isinstance(gearbox, dict) else None
+    for stage in stages if isinstance(stages, list) else []:
+        carrier = stage.get("carrier") if isinstance(stage, dict) else None
+        name = carrier.get("component") if isinstance(carrier, dict) else None
+        if isinstance(carrier, dict) and isinstance(name, str) and Path(name).suffix:
+            carrier["component"] = str(folder / name)
 
 
 def _name_bearings(units: Any) -> None:

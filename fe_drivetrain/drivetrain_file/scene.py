@@ -1,7 +1,7 @@
 """A scene: shaft, bearing units, supports and mesh sizes; typed, validated, and sound."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import (
@@ -17,12 +17,12 @@ from fe_drivetrain.drivetrain_file.bearing_unit import BearingUnit, Keys, Spring
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain, Gears
 from fe_drivetrain.drivetrain_file.entrance import Entrance
 from fe_drivetrain.drivetrain_file.gate import check_scene
-from fe_drivetrain.drivetrain_file.joint_springs import as_numbers, joint_stiffness
+from fe_drivetrain.drivetrain_file.joint_springs import as_numbers, free_to_turn, joint_stiffness
 from fe_drivetrain.drivetrain_file.materials import MATERIALS, Material, known_materials
 from fe_drivetrain.drivetrain_file.nose import Nose, NoseBearing
 from fe_drivetrain.drivetrain_file.shared_parts import coupled_units
 from fe_drivetrain.drivetrain_file.turning_gate import check_turning
-from fe_drivetrain.drivetrain_file.turning_parts import BearingData, ShaftRow
+from fe_drivetrain.drivetrain_file.turning_parts import MAX_INERTIA, BearingData, ShaftRow
 from fe_drivetrain.geometry import Band, Housing, MeshSizes, Shaft, within_walls
 
 #: How a reference point holds its face: as its mean motion (RBE3) or as a rigid body (RBE2).
@@ -49,12 +49,20 @@ class Hub(Keys):
     )
 
 
+Inertia = Annotated[float, Field(gt=0, le=MAX_INERTIA)]
+
+
 class Gearbox(Gears):
     """Springs to ground and a weight at the centre of the shaft's rear face, and what is inside."""
 
     stiffness: Springs
     weight: float = Field(default=0.0, ge=0, le=HEAVIEST, description="weight [N], along -z")
     coupling: Coupling = "averaged"
+    housing_inertia: tuple[Inertia, Inertia] | None = Field(
+        default=None,
+        description="inertia of the housing about x and across, for models in which it moves on "
+        "its mount, kg m^2; of a thin tube round the largest gear where left out",
+    )
 
     @property
     def held(self) -> list[int]:
@@ -239,9 +247,10 @@ def main_bearings(
     scene : Scene
         The scene.
     supports : mapping of str to ndarray (6, 6), optional
-        Stiffness of bearings with their housings, at the bearing's centre [N/m, N, N m/rad]; others
-        are the joint alone, in a rigid housing. Without a gearbox the shaft's rear is held by the
-        springs of ``gearbox.stiffness``.
+        Stiffness of bearings with their housings, at the bearing's centre [N/m, N, N m/rad], see
+        `fe_drivetrain.shafts.fidelity.main_supports`; others are the joint alone, in a rigid
+        housing. All let the shaft turn: housings carry no torque about x. Without gear stages the
+        shaft's rear is held by the springs of ``gearbox.stiffness``.
     """
     given = supports or {}
     held = {
@@ -254,7 +263,7 @@ def main_bearings(
     for name, (x, joint) in held.items():
         K = np.array(given.get(name, joint), dtype=float)
         K[~np.isfinite(K)] = RIGID
-        K[3] = K[:, 3] = 0.0  # a bearing lets its shaft turn
+        K = free_to_turn(K)
         if not K.any():
             continue
         coupled = np.abs(K - np.diag(K.diagonal())).max() > 0

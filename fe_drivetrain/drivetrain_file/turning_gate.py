@@ -97,9 +97,10 @@ def check_turning(
             "remove some"
         )
     names = [main.name, *(shaft.name for shaft in gears.shafts)]
-    if drivetrain.brake is not None and drivetrain.brake.on not in names:
+    if drivetrain.brake is not None and drivetrain.brake.shaft not in names:
         raise InputError(
-            f"brake is on {drivetrain.brake.on!r}, which is no shaft: use one of {', '.join(names)}"
+            f"brake is on shaft {drivetrain.brake.shaft!r}, which is none: use one of "
+            f"{', '.join(names)}"
         )
     if not gears.stages and drivetrain.generator is None:
         return

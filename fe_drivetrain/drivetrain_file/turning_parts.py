@@ -101,6 +101,17 @@ class RotorBody(Part):
         return mass, across if self.transverse is None else self.transverse
 
 
+class CarrierBody(RotorBody):
+    """A planet carrier, planets left out."""
+
+    component: str | None = Field(
+        default=None,
+        min_length=1,
+        max_length=1000,
+        description="planet carrier that gives: a component's file, or one of the library",
+    )
+
+
 class GeneratorBody(RotorBody):
     """The generator's rotor, and what holds its speed; without a mass, it turns and no more."""
 
@@ -265,6 +276,15 @@ def _catalogue() -> Any:
     )
 
 
+def _clearance() -> Any:
+    return dimension(
+        None,
+        of="clearance along the contact normal of its rollers, in place of the catalogue's",
+        ge=-1e-3,
+        le=1e-2,
+    )
+
+
 def diagonal(stiffness: Six | tuple[Row, ...]) -> tuple[float, ...]:
     """The six stiffnesses, or the diagonal of a matrix."""
     if isinstance(stiffness[0], tuple):
@@ -283,6 +303,7 @@ class PinData(Part):
         description="axial, radial, tangential, and about them, N/m, N m/rad; or six rows"
     )
     catalogue: str | None = _catalogue()
+    clearance: float | None = _clearance()
 
 
 class BearingData(Part):
@@ -299,12 +320,13 @@ class BearingData(Part):
         description="along x, y, z and about them, N/m, N m/rad; or six rows of a matrix"
     )
     catalogue: str | None = _catalogue()
+    clearance: float | None = _clearance()
 
 
 class Brake(Part):
     """A disc brake."""
 
-    on: str = Field(description="name of the shaft of its disc")
+    shaft: str = Field(description="name of the shaft of its disc")
     torque: float = dimension(of="torque at full size, on its shaft", unit="N m", gt=0, le=1e9)
     rise: float = dimension(
         0.0,

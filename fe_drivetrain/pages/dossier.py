@@ -99,6 +99,6 @@ def _answers(page: Page, parts: Mapping[str, Results]) -> None:
         )
     )
     page.text(
-        "For other programs: `summary.json`, `stiffness.json`, the mesh and the reactions over "
-        "time stand beside the page of reactions; `fe-drivetrain export` writes more formats."
+        "`summary.json`, `stiffness.json`, the mesh and the reactions over time stand beside the "
+        "page of reactions. What else other programs can take is on the page Export."
     )

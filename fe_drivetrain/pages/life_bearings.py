@@ -80,7 +80,8 @@ def places(page: Page, life: BearingLife, rings: Sequence[Record]) -> None:
     rings : sequence of dict
         Share of each row and ring in the damage, and its life if it were alone.
     """
-    page.add(load_zone(life.name, life.rows, life.mean_load, life.peak_load))
+    seen, planet = life.bearing.seen, bool(life.bearing.planets)
+    page.add(load_zone(life.name, life.rows, life.mean_load, life.peak_load, seen))
     page.table(f"{life.name}: rows and rings", rings, list(rings[0])[1:])
     what = "damage by L10r at the site over wind and place of rollers"
     maps = [
@@ -90,6 +91,7 @@ def places(page: Page, life: BearingLife, rings: Sequence[Record]) -> None:
             "wind [m/s]",
             one.row,
             one.values,
+            planet,
         )
         for one in site_maps(life)
     ]
@@ -98,7 +100,7 @@ def places(page: Page, life: BearingLife, rings: Sequence[Record]) -> None:
             page.add(maps[r])
         worst = life.worst
         caption = f"{life.name}, {word}: damage by L10r over time in {worst.file.name}"
-        page.add(damage_map(caption, worst.times, "time [s]", row, worst.values[:, r]))
+        page.add(damage_map(caption, worst.times, "time [s]", row, worst.values[:, r], planet))
     page.text(
         "Both rings together. On the ring that stands damage is where it is shown; on the one that "
         "turns every point takes its share of all of it, and the map says where the load comes "

@@ -14,8 +14,8 @@ from fe_drivetrain.report.results import Chart
 from fe_drivetrain.studies.life_sums import row_names
 
 
-def load_zone(name: str, rows: Sequence[Row], mean: Floats, peak: Floats) -> Chart:
-    """Mean and largest load of the rollers' places, as seen looking downwind.
+def load_zone(name: str, rows: Sequence[Row], mean: Floats, peak: Floats, seen: str) -> Chart:
+    """Mean and largest load of the rollers' places.
 
     Parameters
     ----------
@@ -25,11 +25,13 @@ def load_zone(name: str, rows: Sequence[Row], mean: Floats, peak: Floats) -> Cha
         Of the bearing.
     mean, peak : Floats
         (rows, elements) [N].
+    seen : str
+        How places are counted, as `OneBearing.seen`.
 
     Returns
     -------
     chart : Chart
-        In polar coordinates: 0 degrees on the right, 90 on top.
+        In polar coordinates: 0 degrees on the right, 90 on top of the chart.
     """
     data: list[Any] = []
     for r, (row, word) in enumerate(zip(rows, row_names(len(rows)), strict=True)):
@@ -48,12 +50,19 @@ def load_zone(name: str, rows: Sequence[Row], mean: Floats, peak: Floats) -> Cha
             )
     layout = {"polar": {"radialaxis": {"title": {"text": "kN"}, "angle": 45}}, "height": 520}
     return Chart(
-        caption=f"{name}: load of the places of its rollers, looking downwind, 90 deg on top [kN]",
+        caption=f"{name}: load of the places of its rollers, {seen} [kN]",
         figure={"data": data, "layout": layout},
     )
 
 
-def damage_map(caption: str, across: Floats, across_title: str, row: Row, values: Floats) -> Chart:
+def damage_map(
+    caption: str,
+    across: Floats,
+    across_title: str,
+    row: Row,
+    values: Floats,
+    planet: bool = False,
+) -> Chart:
     """How damage is spread over places of rollers, and over wind or time.
 
     Parameters
@@ -68,6 +77,8 @@ def damage_map(caption: str, across: Floats, across_title: str, row: Row, values
         Whose places they are.
     values : Floats
         (n, elements) damage, of which the map shows shares.
+    planet : bool
+        Whether it is a planet's bearing, whose places are counted on its pin.
 
     Returns
     -------
@@ -77,7 +88,7 @@ def damage_map(caption: str, across: Floats, across_title: str, row: Row, values
     whole = values.sum()
     shares = 100.0 * values / whole if whole else values
     order = np.argsort(np.degrees(angles(row)) % 360.0)
-    titles = across_title, "place [deg], 90 on top", "%"
+    titles = across_title, f"place [deg], 90 {'along the tangent' if planet else 'on top'}", "%"
     places = np.degrees(angles(row))[order] % 360.0
     categories = {"type": "category"} if len(across) <= 12 and "wind" in across_title else {}
     shares, down = shares.T[order], {"dtick": 90}

@@ -11,9 +11,11 @@ from fe_drivetrain.pages.loads_shape import shape
 from fe_drivetrain.report.charts import trace
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.run import Run
+from fe_drivetrain.studies.load_digest import UNIT_OF
 from fe_drivetrain.studies.load_histories import LoadsResult
 from fe_drivetrain.studies.load_tables import capture_rows
 from fe_drivetrain.studies.load_winds import TURBULENCE_BIN
+from fe_drivetrain.studies.shown_units import shown_unit
 from fe_drivetrain.studies.wind_statistics import bending_rows, channel_rows, wind_rows
 from fe_drivetrain.turbine_loads.histories.sites import WIND_BIN
 from fe_drivetrain.turbine_loads.histories.windows import COLUMNS
@@ -70,20 +72,30 @@ def _statistics(page: Page, result: LoadsResult) -> None:
     if not by_wind:
         return
     page.table(f"By mean wind speed in {WIND_BIN:g} m/s", by_wind)
+    if "bending moment" not in result.hub.loads:
+        _by_wind(page, result, result.hub.loads[0])
+        return
     page.table(
         f"Bending moment by mean wind speed and turbulence intensity in {100 * TURBULENCE_BIN:g} "
         "%; every channel is in wind_and_turbulence.csv",
         bending_rows(statistics)[:_MAX_BINS],
     )
-    wind, moments = statistics.of_windows("wind speed"), statistics.of_windows("bending moment")
+    _by_wind(page, result, "bending moment")
+
+
+def _by_wind(page: Page, result: LoadsResult, load: str) -> None:
+    """A load in each window over its mean wind."""
+    statistics = result.hub.statistics
+    wind, values = statistics.of_windows("wind speed"), statistics.of_windows(load)
+    unit = shown_unit(UNIT_OF[load])
     page.chart(
-        "Bending moment at the hub in each window of ten minutes",
+        f"{load[:1].upper()}{load[1:]} at the hub in each window of ten minutes",
         [
-            trace(name, wind[:, _MEAN], moments[:, k] / 1e3, points=True)
-            for k, name in enumerate(COLUMNS[:3])
+            trace(column, wind[:, _MEAN], values[:, k] / 1e3, points=True)
+            for k, column in enumerate(COLUMNS[:3])
         ],
         "mean wind speed [m/s]",
-        "bending moment [kN m]",
+        f"{load} [{unit}]",
     )
 
 

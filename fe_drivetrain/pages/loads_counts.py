@@ -6,7 +6,7 @@ import numpy as np
 
 from fe_drivetrain.report.charts import heat_map, trace
 from fe_drivetrain.report.suite.page import Page
-from fe_drivetrain.studies.load_digest import LOADS, MOMENTS_BY_MEAN, UNITS
+from fe_drivetrain.studies.load_digest import LOADS, UNITS
 from fe_drivetrain.studies.load_histories import LoadsResult
 from fe_drivetrain.studies.load_records import slope_columns, torque_rows
 from fe_drivetrain.studies.shown_units import shown_unit
@@ -45,13 +45,13 @@ def _cycles(page: Page, result: LoadsResult) -> None:
             for name, unit, row, (largest, number, left_out) in zip(
                 LOADS, UNITS, overall.tolist(), numbers.tolist(), strict=False
             )
+            if name in result.hub.loads
         ],
     )
     _about_zero(page, result)
-    for chosen in (("Fx", "Fy", "Fz"), ("Mx", "My", "Mz")):
+    for chosen in result.hub.by_kind:
         page.chart(*result.exceedances(chosen))
-    for name in MOMENTS_BY_MEAN:
-        both = cycles.ranges_and_means[name]
+    for name, both in cycles.ranges_and_means.items():
         with np.errstate(divide="ignore"):
             shown = np.log10(both.amount)
         shown[np.isinf(shown)] = np.nan
@@ -82,7 +82,7 @@ def _about_zero(page: Page, result: LoadsResult) -> None:
                 **slope_columns(row, options),
             }
             for name, unit, row in zip(LOADS, UNITS, loads.tolist(), strict=False)
-            if name in options.ultimate
+            if name in options.ultimate and name in result.hub.loads
         ],
     )
 
@@ -90,6 +90,9 @@ def _about_zero(page: Page, result: LoadsResult) -> None:
 def _levels(page: Page, result: LoadsResult) -> None:
     page.section("Time and turns at level")
     levels = result.hub.levels
+    if "Mx" not in levels.seconds:
+        page.text("Both distributions of every load are in levels.csv.")
+        return
     torque = levels.seconds["Mx"]
     page.chart(
         "Load duration distribution of the torque: time at a level or above it",

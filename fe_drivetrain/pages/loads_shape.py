@@ -11,13 +11,20 @@ from fe_drivetrain.common.arrays import Floats, rounded
 from fe_drivetrain.report.charts import heat_map, trace
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.page import Page
-from fe_drivetrain.studies.load_digest import LOADS, UNITS
+from fe_drivetrain.studies.load_digest import LOADS, UNIT_OF, UNITS
 from fe_drivetrain.studies.load_histories import LoadsResult
 from fe_drivetrain.studies.load_planes import SECTORS
 from fe_drivetrain.studies.load_records import multiple_columns
 from fe_drivetrain.studies.load_totals import LoadTotals
 from fe_drivetrain.studies.shown_units import shown_unit
-from fe_drivetrain.turbine_loads.histories.spectra import MULTIPLES, NEAR, SEGMENT, WINDOW, Campbell
+from fe_drivetrain.turbine_loads.histories.spectra import (
+    FEWEST,
+    MULTIPLES,
+    NEAR,
+    SEGMENT,
+    WINDOW,
+    Campbell,
+)
 from fe_drivetrain.turbine_loads.histories.spectrum_sums import HIGHEST
 from fe_drivetrain.turbine_loads.hub_loads.loops import LONGEST, ROUNDNESS, SHARE
 
@@ -38,14 +45,18 @@ def shape(page: Page, result: LoadsResult) -> None:
     result : LoadsResult
         What was found.
     """
-    _planes(page, result.hub)
+    if result.hub.planes:
+        _planes(page, result.hub)
     _spectra(page, result.hub)
-    _loops(page, result)
+    if result.hub.planes:
+        _loops(page, result)
 
 
 def _planes(page: Page, found: LoadTotals) -> None:
     page.section("Direction of force and moment")
     for name, unit in (("force", "kN"), ("moment", "kN m")):
+        if name not in found.planes:
+            continue
         plane = found.planes[name].positions
         with np.errstate(divide="ignore"):
             share = np.log10(100.0 * plane.amount / plane.amount.sum())
@@ -124,14 +135,18 @@ def _spectra(page: Page, found: LoadTotals) -> None:
     page.section("Spectra")
     frequency, density = found.spectra.frequency, found.spectra.density
     if not len(frequency):
-        page.text(f"No file lasts half of a segment of {SEGMENT:g} s, so there is no spectrum.")
+        page.text(
+            f"No file lasts half of a segment of {SEGMENT:g} s, with {FEWEST} samples or more in "
+            "one, so there is no spectrum."
+        )
         return
     if found.spectra.rates > 1:
         page.text(
             f"Files are sampled at several rates; spectra end at {frequency[-1]:g} Hz, which the "
             "slowest has."
         )
-    for chosen, unit in ((("Fx", "Fy", "Fz"), "kN"), (("Mx", "My", "Mz"), "kN m")):
+    for chosen in found.by_kind:
+        unit = shown_unit(UNIT_OF[chosen[0]])
         traces = [
             trace(name, frequency[1:], density[LOADS.index(name), 1:] / 1e6) for name in chosen
         ]
@@ -149,7 +164,7 @@ def _spectra(page: Page, found: LoadTotals) -> None:
         )
     _multiples(page, found)
     if found.spectra.by_speed is not None:
-        page.add(_campbell(found.spectra.by_speed))
+        page.add(_campbell(found.spectra.by_speed, found.spectra.load))
 
 
 def _multiple_lines(hertz: float, last: float, within: tuple[float, float]) -> list[Any]:
@@ -186,21 +201,23 @@ def _multiples(page: Page, found: LoadTotals) -> None:
         [
             {"channel": f"{name} [{shown_unit(unit)}]", **multiple_columns(row / 1e3)}
             for name, unit, row in zip(LOADS, UNITS, amplitudes, strict=False)
+            if name in found.loads
         ],
     )
 
 
-def _campbell(found: Campbell) -> Chart:
+def _campbell(found: Campbell, load: str) -> Chart:
+    unit = shown_unit(UNIT_OF[load])
     lines, density = found.frequency, found.density / 1e6
     speed = 0.5 * (found.speed[1:] + found.speed[:-1])
     kept = (lines > 0.0) & (lines <= min(HIGHEST, 4.0))
     chart = heat_map(
-        f"Campbell diagram of My: spectra of segments of {SEGMENT:g} s by their mean rotor speed; "
-        f"dotted {', '.join(f'{n}P' for n in MULTIPLES)}",
+        f"Campbell diagram of {load}: spectra of segments of {SEGMENT:g} s by their mean rotor "
+        f"speed; dotted {', '.join(f'{n}P' for n in MULTIPLES)}",
         speed,
         lines[kept],
         np.log10(density[:, kept].T),
-        ("rotor speed [rad/s]", "frequency [Hz]", "log10 of (kN m)²/Hz"),
+        ("rotor speed [rad/s]", "frequency [Hz]", f"log10 of ({unit})²/Hz"),
         height=560,
         yaxis={"range": [0.0, float(lines[kept][-1])]},
     )

@@ -99,9 +99,8 @@ def _failure_modes(page: Page, result: ValidateResult) -> None:
 def _model(page: Page, result: ValidateResult) -> None:
     step = result.project.model
     assert step is not None
-    of = f"scene {step.scene}" if step.scene else f"machine {step.machine}"
     page.table(
-        f"Model: {of}, level {step.level}",
+        f"Model: drivetrain {step.drivetrain}, level {step.level}",
         [
             {"quantity that decides": need.quantity, "tolerance [%]": 100 * need.tolerance}
             for need in step.needs

@@ -144,5 +144,6 @@ from .steps import Visit as Visit
 from .steps import require_complete as require_complete
 from .three_points import ThreePoints as ThreePoints
 from .three_points import three_point_loads as three_point_loads
+from .three_points import three_points_of as three_points_of
 from .voltage_dips import Dip as Dip
 from .voltage_dips import TorqueTable as TorqueTable

@@ -217,7 +217,8 @@ def _model(project: Project, evidence: Evidence) -> list[str]:
         if not found:
             lacks.append(
                 f"no evidence says which level {wanted} needs: link dynamics/drivetrain_levels for "
-                "a machine, fe-drivetrain advise for a scene"
+                "its frequencies and shares, fe-drivetrain modes for frequencies, fe-drivetrain "
+                "advise for reactions"
             )
             continue
         levels, least = found[-1]
@@ -248,7 +249,7 @@ def needed_of(
     Parameters
     ----------
     results : Results
-        Results of ``fe-drivetrain advise``, or of the case of levels of a machine.
+        Results of ``fe-drivetrain advise`` or ``modes``, or of the case of levels of a drivetrain.
     record : DrivetrainRecord
         How the results call the drivetrain.
     need : Need
@@ -263,8 +264,9 @@ def needed_of(
         where the results say nothing of the quantity.
     """
     figures = results.figures
-    machine = record.kind != "scene"
-    rows = figures.get(f"ladder_{record.name}") if machine else figures.get("levels")
+    ladder = figures.get(f"ladder_{record.name}")
+    rows = ladder or figures.get("levels")
+    machine = bool(ladder) or (bool(rows) and need.quantity in rows[0])
     if not rows or (not machine and figures.get("quantity") != need.quantity):
         return None
     if not machine and OWN_ERROR not in rows[0]:  # of an older program

@@ -19,7 +19,7 @@ from fe_drivetrain.common.csv_cells import SafeWriter
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.common.short_repr import short_repr
-from fe_drivetrain.turbine_loads.hub_loads.recorded import csv_channels
+from fe_drivetrain.turbine_loads.hub_loads.csv_columns import csv_channels
 
 _TURN = np.pi / 180.0
 _UNITS: Mapping[str, tuple[float, str]] = {

@@ -16,8 +16,8 @@ from typing import Literal
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.provenance import program_hash
 from fe_drivetrain.common.reading import value_changes
-from fe_drivetrain.drivetrain_file.reading import parse_scene
-from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.reading import parse_drivetrain
 from fe_drivetrain.procedure.answers import Answer, answer_of, quantities_of
 from fe_drivetrain.procedure.project import Accepted, EvidenceLink
 from fe_drivetrain.procedure.steps import Evidence
@@ -78,12 +78,12 @@ class Subject:
     ----------
     record : DrivetrainRecord
         Its title and hash.
-    scene : Scene or None
-        Scene of a project that has one: in which values another one differs is said.
+    drivetrain : Drivetrain or None
+        The drivetrain itself: in which values another one differs is said.
     """
 
     record: DrivetrainRecord
-    scene: Scene | None = None
+    drivetrain: Drivetrain | None = None
 
 
 @dataclass(frozen=True)
@@ -292,14 +292,15 @@ def _why_other(results: Results, subject: Subject | None) -> str:
 
 
 def _changed_values(results: Results, subject: Subject) -> str:
-    """In which values results of a scene differ from the project's."""
-    if subject.scene is None or not results.scene:
+    """In which values the drivetrain of results differs from the project's."""
+    own = subject.drivetrain
+    if own is None or not results.scene:
         return ""
     try:
-        before = parse_scene(results.scene)
+        before = parse_drivetrain(results.scene)
     except InputError:
-        return "; its scene is not one that this version reads"
-    changes = value_changes(before.model_dump(mode="json"), subject.scene.model_dump(mode="json"))
+        return "; its drivetrain is not one that this version reads"
+    changes = value_changes(before.model_dump(mode="json"), own.model_dump(mode="json"))
     if not changes:
         return ""
     key, old, new = changes[0]
@@ -361,7 +362,7 @@ def subject_of(drivetrain: Described) -> Subject:
     Parameters
     ----------
     drivetrain : Described
-        Scene, machine or gear table.
+        A drivetrain's file, or what is made of it.
     """
-    scene = drivetrain if isinstance(drivetrain, Scene) else None
-    return Subject(drivetrain_record(drivetrain), scene)
+    own = drivetrain if isinstance(drivetrain, Drivetrain) else None
+    return Subject(drivetrain_record(drivetrain), own)

@@ -102,8 +102,7 @@ class Need(_Part):
 class ModelChoice(_Step):
     """Step 2."""
 
-    scene: str = Field(default="", description="scene file, or a scene of the library")
-    machine: str = Field(default="", description="machine file, or a machine of the library")
+    drivetrain: Name = Field(description="drivetrain file, or a drivetrain of the library")
     level: Name = Field(description="level of the ladder by its name or number")
     needs: tuple[Need, ...] = Field(description="quantities that decide the level")
 
@@ -112,11 +111,16 @@ class ModelChoice(_Step):
     def _by_number(cls, value: Any) -> Any:
         return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
 
-    @model_validator(mode="after")
-    def _of_one_thing(self) -> Self:
-        if bool(self.scene) == bool(self.machine):
-            raise InputError("model needs one of scene and machine: name what the model is of")
-        return self
+    @model_validator(mode="before")
+    @classmethod
+    def _by_one_key(cls, data: Any) -> Any:
+        for old in ("scene", "machine"):
+            if isinstance(data, dict) and old in data:
+                raise InputError(
+                    f"model.{old} is {data[old]!r} but a project names its drivetrain, of whatever "
+                    f"kind, by one key: write drivetrain in place of {old}"
+                )
+        return data
 
 
 class CaseOfLoad(_Part):

@@ -9,11 +9,12 @@ energy of the mode.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
+from scipy.optimize import brentq
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
@@ -74,7 +75,9 @@ class Excitation:
         return np.inf if self.fixed else crossing_speed(frequency, self.per_turn)
 
 
-def drivetrain_excitations(stages: Iterable[Geared], blades: int = 3) -> tuple[Excitation, ...]:
+def drivetrain_excitations(
+    stages: Iterable[Geared], blades: int = 3, passings: int = 2
+) -> tuple[Excitation, ...]:
     """Blade passing, imbalance of shafts, planets passing, meshes up to 3x and their sidebands.
 
     Imbalance of brake disc, coupling and generator is once a turn of the generator. Frequencies of
@@ -88,6 +91,8 @@ def drivetrain_excitations(stages: Iterable[Geared], blades: int = 3) -> tuple[E
         register.
     blades : int
         Number of blades of the rotor.
+    passings : int
+        Number of multiples of blade passing: 2 of 3P and 6P.
 
     Returns
     -------
@@ -99,7 +104,10 @@ def drivetrain_excitations(stages: Iterable[Geared], blades: int = 3) -> tuple[E
     orders = mesh_orders(given)
     found = [
         Excitation("1P", 1.0, (ROTOR,)),
-        *(Excitation(f"{k * blades}P", float(k * blades), (ROTOR,)) for k in (1, 2)),
+        *(
+            Excitation(f"{k * blades}P", float(k * blades), (ROTOR,))
+            for k in range(1, passings + 1)
+        ),
     ]
     speed = 1.0
     for number, stage in enumerate(given, start=1):
@@ -181,6 +189,7 @@ def resonances(
     speeds: tuple[float, float],
     near: float = NEAR,
     moved: float = MOVED,
+    turning: Callable[[float], Floats] | None = None,
 ) -> list[Meeting]:
     """All excitations against all modes.
 
@@ -197,6 +206,9 @@ def resonances(
         Margin below which a mode is near.
     moved : float
         Share below which a mode is not excited.
+    turning : callable, optional
+        Frequencies (n,) of the modes [Hz] at a speed of the rotor [rad/s], where spinning bodies
+        change them; those of ``modes`` at any speed where left out.
 
     Returns
     -------
@@ -219,26 +231,49 @@ def resonances(
     for excitation in excitations:
         shares = _shares(excitation, known)
         for number, m in enumerate(moving, start=1):
-            frequency, share = float(modes.frequencies[m]), float(shares[m])
-            crossing = excitation.crossing(frequency)
-            if low <= crossing <= high:
-                margin = 0.0
-            else:
-                nearest = low if crossing < low else high
-                margin = abs(excitation.frequency(nearest) / frequency - 1.0)
-            verdict: Verdict = (
-                "not excited"
-                if share < moved
-                else "resonance"
-                if margin == 0.0
-                else "near"
-                if margin < near
-                else "clear"
-            )
+            frequency = float(modes.frequencies[m])
+            if turning is not None:
+                frequency = _where_met(excitation, m, speeds, turning)
+            crossing, margin = _margin(excitation, frequency, speeds)
+            share = float(shares[m])
+            verdict: Verdict = "resonance" if margin == 0.0 else "clear"
+            if 0.0 < margin < near:
+                verdict = "near"
+            if share < moved:
+                verdict = "not excited"
             found.append(
                 Meeting(excitation.name, number, frequency, crossing, margin, share, verdict)
             )
     return found
+
+
+def _margin(
+    excitation: Excitation, frequency: float, speeds: tuple[float, float]
+) -> tuple[float, float]:
+    """Speed at which an excitation has a frequency, and its least distance in a range of speeds."""
+    low, high = speeds
+    crossing = excitation.crossing(frequency)
+    if low <= crossing <= high:
+        return crossing, 0.0
+    nearest = low if crossing < low else high
+    return crossing, abs(excitation.frequency(nearest) / frequency - 1.0)
+
+
+def _where_met(
+    excitation: Excitation,
+    mode: int,
+    speeds: tuple[float, float],
+    turning: Callable[[float], Floats],
+) -> float:
+    """Frequency of a mode [Hz] where an excitation meets it, else at the end that is nearer."""
+
+    def apart(speed: float) -> float:
+        return excitation.frequency(speed) - float(turning(speed)[mode])
+
+    ends = [apart(speed) for speed in speeds]
+    if ends[0] * ends[1] > 0.0:
+        return float(turning(speeds[int(np.argmin(np.abs(ends)))])[mode])
+    return excitation.frequency(float(brentq(apart, *speeds)))
 
 
 def _shares(excitation: Excitation, known: Mapping[str, Floats]) -> Floats:

@@ -15,6 +15,9 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import wrench_transport
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.dynamics.bodies.machine import machine_of
+from fe_drivetrain.dynamics.bodies.machine_shafts import shaft_slices
 from fe_drivetrain.procedure.interface_loads import GROUND, Body, Interface, LoadTable
 
 
@@ -94,6 +97,61 @@ class ThreePoints:
             ("high-speed shaft", "generator", "gearbox"),
             ("generator supports", GROUND, "generator"),
         )
+
+
+def three_points_of(scene: Scene, between_arms: float) -> ThreePoints:
+    """Places and masses of a drivetrain's file that has one main bearing and a geared gearbox.
+
+    The gearbox is where its weight and its mount are: at the main shaft's rear face.
+
+    Parameters
+    ----------
+    scene : Scene
+        The drivetrain, with ``gearbox.weight`` and ``generator.mass``.
+    between_arms : float
+        Distance of the torque arms across the shaft [m], which no file states.
+
+    Returns
+    -------
+    ThreePoints
+
+    Raises
+    ------
+    InputError
+        It has not one main bearing, no gearbox, or no mass of gearbox or generator.
+    """
+    units = scene.bearing_units
+    if len(units) != 1:
+        raise InputError(
+            f"{scene.title!r} has {len(units)} main bearings but a drivetrain on three points has "
+            "one: use a file with one bearing unit"
+        )
+    machine = machine_of(scene)
+    mass = machine.generator.mass
+    lacks = {"gearbox.stages": machine.stages, "gearbox.weight": scene.gearbox.weight}
+    for key, value in {**lacks, "generator.mass": mass}.items():
+        if not value:
+            raise InputError(f"{scene.title!r} does not state {key}: add it")
+    main, last = machine.shafts[0], machine.shafts[-1]
+    slices = shaft_slices(main, 0.0, main.length)
+    masses = np.array([main.material.density * s.section.area * s.length for s in slices])
+    front, (x, y, _) = scene.shaft.front, machine.axes[-1]
+    return ThreePoints(
+        hub=front,
+        bearing=units[0].bearing.x,
+        entrance=front + main.length,
+        arms=front + main.length,
+        output=front + x,
+        generator=front + x + last.length,
+        between_arms=between_arms,
+        offset=y,
+        shaft_mass=float(masses.sum()),
+        shaft_centre=front + float(masses @ [s.middle for s in slices] / masses.sum()),
+        gearbox_mass=scene.gearbox.weight / GRAVITY,
+        gearbox_centre=front + main.length,
+        generator_mass=float(mass or 0.0),
+        ratio=machine.speeds[-1],
+    )
 
 
 def three_point_loads(places: ThreePoints, time: Floats, hub: Floats) -> LoadTable:

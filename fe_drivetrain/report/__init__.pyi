@@ -8,6 +8,8 @@ from .charts import mark_events as mark_events
 from .charts import marked as marked
 from .charts import trace as trace
 from .environment import environment as environment
+from .error_chart import Difference as Difference
+from .error_chart import difference_chart as difference_chart
 from .history import PastRun as PastRun
 from .history import past_runs as past_runs
 from .index import write_index as write_index
@@ -15,6 +17,7 @@ from .junit import write_junit as write_junit
 from .maps import LEVELS as LEVELS
 from .maps import dashed as dashed
 from .maps import map_traces as map_traces
+from .mode_shapes import shape_chart as shape_chart
 from .number_text import formatted as formatted
 from .page import write_page as write_page
 from .pictures import NoPictureError as NoPictureError

@@ -13,7 +13,7 @@ from fe_drivetrain.common.arrays import rounded
 _GREY = "#767676"  # seen on white and on black
 _STRIP = 0.24  # share of the height that the strip of differences takes
 _GAP = 0.08
-_STRIP_HEIGHT = 130  # pixels that the chart grows for it
+_STRIP_HEIGHT = 90  # pixels that the chart grows for it
 _PLAIN_HEIGHT = 460
 
 
@@ -68,7 +68,7 @@ def _on(axis: Mapping[str, Any], value: float) -> float:
 
 
 def draw_events(layout: dict[str, Any], events: Mapping[str, float]) -> None:
-    """Draw a dashed line for each event, its name along it.
+    """Draw a dashed line for each event, its name along it, or above horizontal bars.
 
     Parameters
     ----------
@@ -77,6 +77,9 @@ def draw_events(layout: dict[str, Any], events: Mapping[str, float]) -> None:
     events : dict of str to float
         What happens, and where on the horizontal axis.
     """
+    # bars would be under a name that stands along the line
+    along: dict[str, Any] = {"xanchor": "right", "yanchor": "top", "textangle": -90}
+    above: dict[str, Any] = {"xanchor": "center", "yanchor": "bottom"}
     line = {"color": _GREY, "width": 1.5, "dash": "dash"}
     layout["shapes"] = [
         *layout.get("shapes", ()),
@@ -91,11 +94,9 @@ def draw_events(layout: dict[str, Any], events: Mapping[str, float]) -> None:
             {
                 "text": name,
                 "x": _on(layout.get("xaxis", {}), float(x)),
-                "xanchor": "right",
                 "yref": "paper",
                 "y": 1,
-                "yanchor": "top",
-                "textangle": -90,
+                **(above if "barmode" in layout else along),
                 "showarrow": False,
                 "font": {"size": 12},
             }

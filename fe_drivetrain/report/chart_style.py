@@ -10,6 +10,10 @@ from markupsafe import Markup
 from fe_drivetrain.plots.style import is_number, styled
 from fe_drivetrain.report.results import Chart, Image, Solid
 
+SWING = "swing"
+"""Key of a figure with a trace that can swing: its number under "trace", its points at rest "x" and
+"y", and how far they swing, "dx" and "dy"."""
+
 
 def chart_height(item: Chart | Image | Solid) -> int:
     """Pixels, so that the page does not jump when the chart appears; of a picture 460, unused."""
@@ -22,7 +26,10 @@ def figure_as_json(item: Chart) -> Markup:
     """The figure in the project's look, as JSON that can stand inside a script element."""
     sizes = ("width", "height")
     own = {k: v for k, v in item.figure.get("layout", {}).items() if k not in sizes}
-    return script_json(styled(item.figure.get("data", []), {**own, "autosize": True}))
+    content = styled(item.figure.get("data", []), {**own, "autosize": True})
+    if SWING in item.figure:
+        content[SWING] = item.figure[SWING]
+    return script_json(content)
 
 
 def script_json(content: Any) -> Markup:

@@ -4,12 +4,38 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.charts import chart, trace
 from fe_drivetrain.report.results import Chart
+
+
+class Difference(NamedTuple):
+    """How far a value is from its reference; all of a chart in one unit.
+
+    Attributes
+    ----------
+    name : str
+        Name of the value, with that of the reference.
+    error : float
+        Value less reference.
+    band : float
+        Half width of the numerical uncertainty of the value.
+    allowed : float
+        Largest difference that is allowed, or 0.
+    """
+
+    name: str
+    error: float
+    band: float = 0.0
+    allowed: float = 0.0
+
+    @property
+    def share(self) -> float:
+        """Size of the error over what is allowed, which is not 0."""
+        return abs(self.error) / self.allowed
 
 
 def error_chart(caption: str, figures: Sequence[KeyFigure]) -> Chart:
@@ -33,38 +59,66 @@ def error_chart(caption: str, figures: Sequence[KeyFigure]) -> Chart:
         None of them has such a reference.
     """
     shown = [
-        one
+        _relative(one, one.limit)
         for one in figures
         if one.bound in ("equals", "beside") and one.limit and math.isfinite(one.value)
     ]
     if not shown:
         raise ValueError(f"{caption}: no value has a reference other than 0 to be compared with")
-    names = [f"{one.name} ({one.by})" if one.by else one.name for one in shown]
-    sizes = [abs(one.limit or 1.0) / 100.0 for one in shown]
-    errors = [(f.value - (f.limit or 0.0)) / size for f, size in zip(shown, sizes, strict=True)]
-    bands = [(f.band or 0.0) / size for f, size in zip(shown, sizes, strict=True)]
-    allowed = [f.allowed / size for f, size in zip(shown, sizes, strict=True)]
+    return difference_chart(caption, shown, "difference from the reference [%]")
+
+
+def _relative(figure: KeyFigure, reference: float) -> Difference:
+    """Difference of a key figure from its reference, in percent of that."""
+    size = abs(reference) / 100.0
+    return Difference(
+        f"{figure.name} ({figure.by})" if figure.by else figure.name,
+        (figure.value - reference) / size,
+        (figure.band or 0.0) / size,
+        figure.allowed / size,
+    )
+
+
+def difference_chart(caption: str, shown: Sequence[Difference], axis: str) -> Chart:
+    """Differences with their bands, over the ranges that are allowed.
+
+    Parameters
+    ----------
+    caption : str
+        What it shows.
+    shown : sequence of Difference
+        A line for each, from above.
+    axis : str
+        Title of the axis, with the unit of the differences.
+
+    Returns
+    -------
+    Chart
+    """
+    names = [one.name for one in shown]
     traces: list[Any] = []
-    if any(allowed):
+    if any(one.allowed for one in shown):
         traces.append(
             {
                 "type": "bar",
                 "orientation": "h",
                 "name": "allowed",
                 "y": names,
-                "x": rounded([2.0 * one for one in allowed]),
-                "base": rounded([-one for one in allowed]),
+                "x": rounded([2.0 * one.allowed for one in shown]),
+                "base": rounded([-one.allowed for one in shown]),
                 "marker": {"color": "#c9dcc9"},
                 "hoverinfo": "skip",
             }
         )
+    errors = [one.error for one in shown]
     points = trace("computed", errors, [0.0] * len(errors), True, marker={"size": 10})
     points |= {"y": names}
-    if any(bands):
+    if any(one.band for one in shown):
         points["name"] = "computed, with band"
-        points["error_x"] = {"type": "data", "array": rounded(bands), "thickness": 2, "width": 5}
+        bands = rounded([one.band for one in shown])
+        points["error_x"] = {"type": "data", "array": bands, "thickness": 2, "width": 5}
     traces.append(points)
-    found = chart(caption, traces, "difference from the reference [%]", "")
+    found = chart(caption, traces, axis, "")
     found.figure["layout"] |= {
         "height": 150 + 34 * max(len(shown), 3),
         "yaxis": {"autorange": "reversed", "automargin": True, "type": "category"},

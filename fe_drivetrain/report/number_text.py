@@ -15,6 +15,7 @@ _NOTHING = 0.1  # share of its band below which a value has no digit
 _MAX_DIGITS = 7  # of a value with a band
 _PRINTED_DIGITS = 7  # of a number that somebody has given; what was computed has more
 _ROUND_OFF = 1e-13  # of one that was converted to another unit
+_MARKS = {"good": "✓", "watch": "!", "bad": "✗"}
 _COMPARED_DIGITS = 6  # at most, of a value without a band beside a reference that has as many
 
 
@@ -240,8 +241,8 @@ def limit_text(figure: KeyFigure) -> str:
     return f"{words.get(figure.bound, '')}{with_unit(low, figure.unit)}{by}"
 
 
-def standing_text(figure: KeyFigure) -> str:
-    """How a key figure stands to its limit, in words, so that no colour is needed to see it.
+def standing_words(figure: KeyFigure) -> str:
+    """How a key figure stands to its limit: on pages and in a terminal.
 
     Parameters
     ----------
@@ -256,11 +257,28 @@ def standing_text(figure: KeyFigure) -> str:
     if figure.status == "none" or figure.bound in ("", "beside"):
         return ""
     if figure.bound == "holds":
-        return "✓ holds" if figure.status == "good" else "✗ does not hold"
+        return "holds" if figure.status == "good" else "does not hold"
     if figure.bound == "equals":
-        return "✓ agrees" if figure.status == "good" else "✗ differs"
-    words = {"good": "✓ within", "watch": "! within, but not with its band", "bad": "✗ beyond"}
+        return "agrees" if figure.status == "good" else "differs"
+    words = {"good": "within", "watch": "near", "bad": "beyond"}
     return words[figure.status]
+
+
+def standing_text(figure: KeyFigure) -> str:
+    """What `standing_words` says, with a mark before it, so that no colour is needed to see it.
+
+    Parameters
+    ----------
+    figure : KeyFigure
+        The value.
+
+    Returns
+    -------
+    str
+        Empty where nothing is asked of it.
+    """
+    words = standing_words(figure)
+    return f"{_MARKS[figure.status]} {words}" if words else ""
 
 
 def standing_of_answer(answer: Answer) -> tuple[Status, str] | None:
@@ -281,11 +299,13 @@ def standing_of_answer(answer: Answer) -> tuple[Status, str] | None:
         status = alone if answer.status == "none" else answer.status
         return status, f"The source's statement {answer.claim}"
     words: dict[Status, str] = {
-        "good": "✓ within all limits",
-        "watch": "! near a limit",
-        "bad": "✗ beyond a limit",
+        "good": "within all limits",
+        "watch": "near a limit",
+        "bad": "beyond a limit",
     }
-    return (answer.status, words[answer.status]) if answer.status in words else None
+    if answer.status not in words:
+        return None
+    return answer.status, f"{_MARKS[answer.status]} {words[answer.status]}"
 
 
 def given_text(value: float | int | str | bool | None, unit: str | None = None) -> str:

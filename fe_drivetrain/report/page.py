@@ -24,7 +24,7 @@ from fe_drivetrain.common.manifest import MANIFEST
 from fe_drivetrain.plots.style import is_number
 from fe_drivetrain.report.answer import MAX_CAUTIONS, KeyFigure
 from fe_drivetrain.report.bundle import place_plotly, plotly_file
-from fe_drivetrain.report.chart_style import chart_height, figure_as_json, script_json
+from fe_drivetrain.report.chart_style import SWING, chart_height, figure_as_json, script_json
 from fe_drivetrain.report.headline import answer_sentence, headline, values_found
 from fe_drivetrain.report.history import FILE, Point, points_over_runs, tolerated
 from fe_drivetrain.report.number_text import (
@@ -51,6 +51,7 @@ from fe_drivetrain.report.results import (
 )
 from fe_drivetrain.report.table_text import cell_texts, numeric_columns
 from fe_drivetrain.report.trend import change_text, sparkline
+from fe_drivetrain.report.words import FirstUses, words_in
 
 Item = Text | Table | Chart | Image | Solid
 """What stands in a section."""
@@ -110,8 +111,15 @@ def render(results: Results, folder: Path, shared: Path) -> str:
     items = [item for section in results.sections for item in section.items]
     has_charts = any(isinstance(item, Chart) for item in items)
     has_solids = any(isinstance(item, Solid) for item in items)
-    names = ("page.js", *(("charts.js",) * has_charts), *(("solid.js",) * has_solids))
+    swings = any(isinstance(item, Chart) and SWING in item.figure for item in items)
+    names = (
+        "page.js",
+        *(("charts.js",) * has_charts),
+        *(("swing.js",) * swings),
+        *(("solid.js",) * has_solids),
+    )
     scripts = [read_template(name) for name in names]
+    words = words_in(_sentences(results))
     above = Markup(quote(os.path.relpath(shared, folder)))
     template = _pages().get_template("report.html")
     return template.render(
@@ -123,6 +131,8 @@ def render(results: Results, folder: Path, shared: Path) -> str:
         standing=standing_of_answer(results.answer) if results.answer else None,
         printed=_printed_references(results),
         verdict=verdict_sentence(results),
+        words=words,
+        linked=FirstUses(words),
         cautions=_cautions(results),
         most_cautions=MAX_CAUTIONS,
         most_rows=_MOST_ROWS,
@@ -138,6 +148,19 @@ def render(results: Results, folder: Path, shared: Path) -> str:
         scripts=scripts,
         script_hashes=[policy_hash(script) for script in scripts],
     )
+
+
+def _sentences(results: Results) -> list[str]:
+    """What the page says in sentences, captions and names, of which words are explained."""
+    answer = results.answer
+    said = [answer.question, *(figure.name for figure in answer.figures)] if answer else []
+    if answer and any(figure.band for figure in answer.figures):
+        said.append("band")  # which stands behind ±
+    said += [verdict_sentence(results), *results.details, *cautions_of(results)]
+    for item in (item for section in results.sections for item in section.items):
+        said += [item.text] if isinstance(item, Text) else [item.caption]
+        said += item.columns if isinstance(item, Table) else []
+    return [results.title, *said, *(check.quantity for check in results.verdicts)]
 
 
 def _hero(results: Results, items: Sequence[Item]) -> Item | None:

@@ -40,7 +40,7 @@ def templates() -> jinja2.Environment:
         trim_blocks=True,
         lstrip_blocks=True,
         # of plain strings alone: what is Markup is scripts, styles, and what is to be typed again
-        finalize=lambda value: _printed(value) if type(value) is str else value,
+        finalize=lambda value: printed(value) if type(value) is str else value,
     )
     shared: dict[str, Callable[..., str]] = {
         "seconds": _seconds,
@@ -80,7 +80,7 @@ def _seconds(seconds: float) -> str:
     return f"{seconds:.3g}" if seconds < 1000 else f"{seconds:.0f}"
 
 
-def _printed(text: str) -> str:
+def printed(text: str) -> str:
     """Text as a page prints it; what stands between backticks is code, and stays as it is."""
     if text.count("`") % 2 or "`" not in text:
         return typeset(text)

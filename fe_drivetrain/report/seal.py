@@ -21,7 +21,7 @@ _DIGITS = 16
 
 
 class Described(Protocol):
-    """A drivetrain that is read from a file: scene, machine, or gear table."""
+    """A drivetrain's file, or what is made of it: a machine, or a gear table."""
 
     @property
     def title(self) -> str:
@@ -37,7 +37,7 @@ def drivetrain_hash(drivetrain: Described) -> str:
     Parameters
     ----------
     drivetrain : Described
-        A scene, machine or gear table, with all changes made.
+        A drivetrain's file or what is made of it, with all changes made.
 
     Returns
     -------

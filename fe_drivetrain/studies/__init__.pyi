@@ -8,6 +8,9 @@ from .design_comparison import Varied as Varied
 from .design_comparison import compare as compare
 from .dossier_overview import DossierResult as DossierResult
 from .dossier_overview import dossier as dossier
+from .drivetrain_modes import ModesResult as ModesResult
+from .drivetrain_modes import modes as modes
+from .drivetrain_transient import transient as transient
 from .export_content import ExportResult as ExportResult
 from .export_content import prepare_export as prepare_export
 from .gear_options import GearOptions as GearOptions
@@ -42,3 +45,4 @@ from .solved_assembly import Assembly as Assembly
 from .solved_assembly import solved_assembly as solved_assembly
 from .study_loads import StudyLoads as StudyLoads
 from .tilt_secants import TiltSecant as TiltSecant
+from .transient_result import TransientResult as TransientResult

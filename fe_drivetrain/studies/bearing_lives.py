@@ -1,4 +1,4 @@
-"""Rating lives of the rolling bearings of a scene under load histories: ISO 281 and ISO/TS 16281.
+"""Rating lives of a drivetrain's rolling bearings under load histories: ISO 281, ISO/TS 16281.
 
 Each load step is brought to equilibrium with shaft and rollers; damage adds up step by step and
 file by file, so that memory does not grow with the length of histories, and little with their
@@ -8,7 +8,7 @@ number.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from itertools import islice
 from pathlib import Path
 from typing import Any, ClassVar
@@ -16,14 +16,26 @@ from typing import Any, ClassVar
 import numpy as np
 
 from fe_drivetrain.bearing_life.life.roller_damage import KINDS, LifeRules
+from fe_drivetrain.common.arguments import argument
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.drivetrain_file.without_weight import weightless
+from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.report.charts import bars
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.studies.gearbox_bearings import (
+    MachineBearings,
+    catalogue_entries,
+    gearbox_mount,
+    machine_bearings,
+    machine_with_bearings,
+)
+from fe_drivetrain.studies.gearbox_findings import assume_reactions, name_unrated, say_levels
 from fe_drivetrain.studies.life_answer import state_answer
 from fe_drivetrain.studies.life_digest import kept_digest
 from fe_drivetrain.studies.life_findings import answers, assumptions, cautions, checks
@@ -31,10 +43,11 @@ from fe_drivetrain.studies.life_options import LifeOptions
 from fe_drivetrain.studies.life_sums import BearingLife, BearingSums
 from fe_drivetrain.studies.life_tables import limit_rows, long_tables, result_tables
 from fe_drivetrain.studies.result import Result
-from fe_drivetrain.studies.rolling_bearings import bearings_of
+from fe_drivetrain.studies.rolling_bearings import OneBearing, bearings_of
 from fe_drivetrain.turbine_loads.histories.sites import Site
 from fe_drivetrain.turbine_loads.hub_loads.recorded import Files, recorded_files, short_name
 
+_SEEN = 4  # bearings of which a chart shows lives of all kinds at one view
 _MANY = 8  # files, each of every bearing, for which it pays to start processes
 
 
@@ -49,11 +62,13 @@ class LifeResult(Result):
     Attributes
     ----------
     bearings : Mapping[str, BearingLife]
-        Life by bearing, in the scene's order.
+        Life by bearing: main bearings, those of the gearbox in the order of the file, planets'.
     site : Site or None
         Whose winds are weighted; None where files repeat for ever.
     rules : LifeRules
         Choices that change lives.
+    not_rated : tuple of str
+        Bearings of the drivetrain without a catalogue entry.
     """
 
     STUDY: ClassVar[str] = "life"
@@ -62,6 +77,7 @@ class LifeResult(Result):
     bearings: Mapping[str, BearingLife]
     site: Site | None
     rules: LifeRules
+    not_rated: tuple[str, ...] = ()
 
     @property
     def lives(self) -> tuple[BearingLife, ...]:
@@ -73,15 +89,18 @@ class LifeResult(Result):
         return {**self.tables, **long_tables(self.lives)}
 
     def chart(self) -> Chart:
-        """Lives of all bearings, of each kind; those without end are left out."""
+        """Lives of all bearings, of each kind; of many L10mr alone; those without end left out."""
+        kinds = KINDS if len(self.lives) <= _SEEN else KINDS[-1:]
         ending = {
-            kind: [life for life in self.lives if np.isfinite(life.years[kind])] for kind in KINDS
+            kind: [life for life in self.lives if np.isfinite(life.years[kind])] for kind in kinds
         }
         groups = {
             kind: {life.name: life.years[kind] for life in lives} for kind, lives in ending.items()
         }
         least = min((v for values in groups.values() for v in values.values()), default=1.0)
         caption = "Lives of the bearings"
+        if len(kinds) == 1:
+            caption += f", {kinds[0]}"
         if any(life.bands["L10mr"] is not None for life in self.lives):
             caption += ", ± two standard errors of files of the same wind"
         found = bars(caption, groups, "life [years]", least=least)
@@ -92,7 +111,7 @@ class LifeResult(Result):
 
 
 def life(
-    scene: Scene,
+    drivetrain: Drivetrain,
     files: Files,
     site: Site | None = None,
     options: LifeOptions | None = None,
@@ -100,12 +119,12 @@ def life(
     resume: bool = False,
     report: Progress = silent,
 ) -> LifeResult:
-    """Rating lives of a scene's rolling bearings under hub loads.
+    """Rating lives of a drivetrain's rolling bearings under hub loads.
 
     Parameters
     ----------
-    scene : Scene
-        The drivetrain.
+    drivetrain : Drivetrain
+        The drivetrain: main bearings, and those of its gearbox.
     files : str, path, or sequence of these
         Hub loads: files (.out, .outb of OpenFAST, or .csv), folders, or patterns as
         ``"outputs/*.outb"``.
@@ -121,14 +140,15 @@ def life(
     Raises
     ------
     InputError
-        The scene has no rolling bearing or an unknown one, a file cannot be read, or a site is
-        given and files have no wind speed.
+        The drivetrain has no rolling bearing or an unknown one, a file cannot be read, or a site
+        is given and files have no wind speed.
     """
     asked = LifeOptions() if options is None else options
     paths = recorded_files(files)
     report("bearings")
-    drivetrain = DrivetrainBearings(scene, asked)
-    return lives_under(drivetrain, paths, site, resume=resume, report=report)
+    return lives_under(
+        DrivetrainBearings(drivetrain, asked), paths, site, resume=resume, report=report
+    )
 
 
 class DrivetrainBearings:
@@ -136,30 +156,65 @@ class DrivetrainBearings:
 
     Parameters
     ----------
-    scene : Scene
+    drivetrain : Drivetrain
         The drivetrain.
     options : LifeOptions
         What is asked for.
 
     Attributes
     ----------
-    scene : Scene
+    drivetrain : Drivetrain
         The drivetrain, without its weight where that is asked for.
     options : LifeOptions
         What is asked for.
     bearings : list of OneBearing
-        Its bearings, or the one that is asked for.
+        Its bearings, or the one that is asked for: main bearings, then those of the gearbox.
+    machine : MachineBearings
+        Those by statics of the whole, those without a catalogue entry, and the levels of loads.
 
     Raises
     ------
     InputError
-        The scene has no rolling bearing or an unknown one.
+        The drivetrain has no rolling bearing or an unknown one.
     """
 
-    def __init__(self, scene: Scene, options: LifeOptions) -> None:
-        self.scene = scene if options.weight else weightless(scene)
+    def __init__(self, drivetrain: Drivetrain, options: LifeOptions) -> None:
         self.options = options
-        self.bearings = bearings_of(self.scene, options.choices)
+        self.drivetrain = drivetrain
+        if isinstance(drivetrain, Scene) and not options.weight:
+            self.drivetrain = weightless(drivetrain)
+        found = machine_with_bearings(drivetrain)
+        self.machine = MachineBearings()
+        if isinstance(found, Machine):
+            self.bearings = self._all_bearings(found)
+        else:
+            assert isinstance(self.drivetrain, Scene)
+            self.machine = MachineBearings(lacks=found)
+            self.bearings = bearings_of(self.drivetrain, options.choices)
+
+    def _all_bearings(self, machine: Machine) -> list[OneBearing]:
+        """Main bearings on their rollers where all have an entry, and those by statics."""
+        choices, drivetrain = self.options.choices, self.drivetrain
+        named = {**catalogue_entries(drivetrain), **choices.named}
+        main: list[OneBearing] = []
+        on_rollers: list[str] = []
+        if isinstance(drivetrain, Scene):
+            units = [unit.bearing.name for unit in drivetrain.bearing_units]
+            on_rollers = units if all(name in named for name in units) else []
+            if on_rollers and choices.only in (None, *on_rollers):
+                of_units = {name: entry for name, entry in named.items() if name in units}
+                main = bearings_of(drivetrain, replace(choices, named=of_units))
+        oil = self.options.oil(drivetrain.operation)
+        on_mount = gearbox_mount(drivetrain, machine)
+        self.machine = machine_bearings(machine, named, choices, oil, on_rollers, on_mount)
+        found = [*main, *self.machine.rated]
+        if not found:
+            raise InputError(
+                f"no bearing of {machine.title!r} has an entry of the catalogue: name one under "
+                f"'catalogue' in its file, or with "
+                f"{argument('LifeOptions.bearings', {self.machine.unrated[0].name: 'ENTRY'})}"
+            )
+        return found
 
 
 def lives_under(
@@ -193,20 +248,25 @@ def lives_under(
     found, steps = Findings(), Steps(report)
     asked = drivetrain.options
     found.seed = None
-    found.about(drivetrain.scene)
+    found.about(drivetrain.drivetrain)
     with steps.step("load steps"):
         lives = list(_lives(drivetrain, files, site, resume, report))
+    machine = drivetrain.machine
     answers(found, lives, asked.rules, site)
-    cautions(found, drivetrain.scene, lives, asked, limit_rows(lives))
+    say_levels(found, lives, machine)
+    name_unrated(found, machine)
+    cautions(found, drivetrain.drivetrain, lives, asked, limit_rows(lives))
     assumptions(found, lives, asked)
+    assume_reactions(found, lives, machine)
     checks(found, lives)
-    state_answer(found, lives, site)
-    for name, table in result_tables(lives).items():
+    state_answer(found, lives, site, len(machine.unrated))
+    for name, table in result_tables(lives, machine).items():
         found.data(name, table)
     return LifeResult(
         bearings={one.name: one for one in lives},
         site=site,
         rules=asked.rules,
+        not_rated=tuple(one.name for one in machine.unrated),
         **found.frozen(steps.times, **_stated(files, site, asked)),
     )
 
@@ -219,10 +279,10 @@ def _lives(
     report: Progress,
 ) -> Iterator[BearingLife]:
     """Lives of bearings one after the other; digests of files are added up as they come."""
-    options, scene = drivetrain.options, drivetrain.scene
+    options, of = drivetrain.options, drivetrain.drivetrain
     rules, choices, reading = options.rules, options.choices, options.reading
     items = [
-        (file, one, rules, reading, scene, choices, resume)
+        (file, one, rules, reading, of, choices, resume)
         for one in drivetrain.bearings
         for file in files
     ]

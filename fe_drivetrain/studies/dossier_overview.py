@@ -22,8 +22,9 @@ from fe_drivetrain.studies.scene_study import StudyResult
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
 
 REACTIONS, LIFE, LOADS, MODEL, CHECK = "reactions", "life", "loads", "model", "check"
+EXPORT = "export"
 """Parts of a dossier."""
-_SEVERE_FIRST = (LIFE, REACTIONS, LOADS, MODEL, CHECK)
+_SEVERE_FIRST = (LIFE, REACTIONS, LOADS, MODEL, CHECK, EXPORT)
 DESIGN_LIFE = 20.0
 """Years that a wind turbine is designed for, at least (IEC 61400-1, 6.2)."""
 
@@ -87,7 +88,7 @@ def dossier(scene: Scene, parts: Mapping[str, Results]) -> DossierResult:
     scene : Scene
         The drivetrain.
     parts : mapping of str to Results
-        By `REACTIONS`, which has to be there, `LIFE`, `LOADS`, `MODEL` and `CHECK`.
+        By `REACTIONS`, which has to be there, `LIFE`, `LOADS`, `MODEL`, `CHECK` and `EXPORT`.
 
     Returns
     -------
@@ -170,6 +171,8 @@ def _answer(found: Findings, rows: Sequence[Record], parts: Mapping[str, Results
         elif life.status == "bad":
             lives = f"{shortest['bearing']} lives {certain_value(life)}"
             said += f"; {lives}, less than {DESIGN_LIFE:g}"
+        elif len(lived) == 1:
+            said += f"; {shortest['bearing']} lives {certain_value(life)}"
         else:
             said += f"; the bearings live {certain_value(life)} or more"
     figures += _others(parts)

@@ -337,7 +337,9 @@ def _of_superelement(found: Findings, content: Superelement) -> tuple[str, list[
         widest = max(bands, key=lambda one: one.value)
         known = f"its stiffness is known within {formatted(widest.value, 2)}\u00a0%"
     state = "on its supports" if content.supported else "free"
-    return f"{content.name} is condensed to {n} points, {state}; {known}.", figures
+    # other parts than these have names of the user's
+    subject = "The shaft" if content.name == SHAFT else content.name
+    return f"{subject} is condensed to {n} points, {state}; {known}.", figures
 
 
 def _data(found: Findings, content: Content) -> None:

@@ -20,7 +20,9 @@ _SHORTEST, _LONGEST = 1e-3, 1e4  # years, between which a number needs no power 
 _STANDARD = "ISO 76"
 
 
-def state_answer(found: Findings, lives: Sequence[BearingLife], site: Site | None) -> None:
+def state_answer(
+    found: Findings, lives: Sequence[BearingLife], site: Site | None, unrated: int = 0
+) -> None:
     """State the shortest life; a bearing that cannot be used comes before it.
 
     Parameters
@@ -31,6 +33,8 @@ def state_answer(found: Findings, lives: Sequence[BearingLife], site: Site | Non
         The bearings.
     site : Site or None
         Whose winds are weighted, and whose years are asked for.
+    unrated : int
+        Number of other bearings, which have no catalogue entry.
     """
     by_life = sorted(lives, key=lambda life: life.years["L10mr"])
     shortest, weakest = by_life[0], hardest_loaded(lives)
@@ -42,7 +46,8 @@ def state_answer(found: Findings, lives: Sequence[BearingLife], site: Site | Non
         verdict = _not_usable(weakest, first, own)
         figures = [first, own, second, *years.values()]
     else:
-        verdict = _lives(shortest, years[shortest.name], site, len(lives), safety)
+        among = f"{len(lives)}{' rated' if unrated else ''}"
+        verdict = _lives(shortest, years[shortest.name], site, len(lives), safety, among)
         figures = [*[*years.values()][:_SHOWN], pressure, safety]
     figures = figures[: _SHOWN + 2]
     if shortest.site is not None:
@@ -114,7 +119,12 @@ def _not_usable(life: BearingLife, overload: KeyFigure, years: KeyFigure) -> str
 
 
 def _lives(
-    life: BearingLife, years: KeyFigure, site: Site | None, number: int, safety: KeyFigure
+    life: BearingLife,
+    years: KeyFigure,
+    site: Site | None,
+    number: int,
+    safety: KeyFigure,
+    among: str,
 ) -> str:
     """The shortest life, beside the one that is asked for."""
     who = bearing_in_words(life.name)
@@ -123,7 +133,7 @@ def _lives(
         takes = "No bearing takes" if number > 1 else f"{who} takes no"
         least = certain_value(safety)
         return f"{takes} damage (L10mr) under these loads; static safety is {least} at least."
-    shortest = f", the shortest of {number}" if number > 1 else ""
+    shortest = f", the shortest of {among}" if number > 1 else ""
     words = f"{who} lives {_life_text(years)} (L10mr){shortest}"
     if site is None:
         return f"{words}, if these files repeat for ever."

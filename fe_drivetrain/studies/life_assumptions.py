@@ -14,6 +14,7 @@ from math import floor, log10
 import numpy as np
 
 from fe_drivetrain.bearing.geometry import Bearing, max_clearance
+from fe_drivetrain.bearing_life.coupled.reaction_paths import ReactionPath
 from fe_drivetrain.bearing_life.life.lubricants import GRADES, SUPPLIES
 from fe_drivetrain.bearing_life.life.rated import RatedBearing
 from fe_drivetrain.bearing_life.life.roller_damage import LifeRules, damage_of_steps
@@ -54,12 +55,15 @@ class WhatIf:
         The bearing then.
     rules : LifeRules
         The choices then.
+    path : ReactionPath or None
+        The way of its load then; None where it stays what it is.
     """
 
     assumed: str
     instead: str
     rated: RatedBearing
     rules: LifeRules
+    path: ReactionPath | None = None
 
 
 @dataclass(frozen=True)
@@ -87,7 +91,7 @@ def what_ifs(one: OneBearing, rules: LifeRules, choices: Choices) -> tuple[WhatI
     one : OneBearing
         The bearing.
     rules : LifeRules
-        Choices that change its life.
+        Choices that change its life, as `OneBearing.rules` has them.
     choices : Choices
         With the options that stayed at their default.
 
@@ -97,6 +101,7 @@ def what_ifs(one: OneBearing, rules: LifeRules, choices: Choices) -> tuple[WhatI
         None where all is stated.
     """
     return (
+        *(WhatIf(o.assumed, o.instead, one.rated, rules, o.path) for o in one.others),
         *_of_clearance(one, rules),
         *_of_rollers(one, rules, choices),
         *_of_lubricant(one, rules, choices),
@@ -140,7 +145,9 @@ def ratios(
     found = []
     for other in ifs:
         there = taken
-        if other.rated.bearing != one.rated.bearing:
+        if other.path is not None:
+            there = list(other.path.steps(loads[part], speed_rpm[part], seconds))
+        elif other.rated.bearing != one.rated.bearing:
             there = list(
                 one.path_with(other.rated.bearing).steps(loads[part], speed_rpm[part], seconds)
             )
@@ -261,7 +268,7 @@ def _of_rollers(one: OneBearing, rules: LifeRules, choices: Choices) -> Iterator
     if not own.balls and rules.riser == "standard" and "riser" in choices.assumed:
         none = replace(rules, riser="none")
         yield WhatIf("the standard's stress riser at their ends", "none", own, none)
-    if rules.turning == "inner" and "turning" in choices.assumed:
+    if one.turning is None and rules.turning == "inner" and "turning" in choices.assumed:
         outer = replace(rules, turning="outer")
         yield WhatIf("the inner ring turns against the load", "the outer", own, outer)
 
@@ -270,17 +277,19 @@ def _of_lubricant(one: OneBearing, rules: LifeRules, choices: Choices) -> Iterat
     oil = rules.lubricant
     if oil is None:
         return
-    if "temperature" in choices.assumed and oil.temperature + WARMER <= oil.range[1]:
+    assumed = choices.assumed if one.oil is None else one.oil.assumed
+    if "temperature" in assumed and oil.temperature + WARMER <= oil.range[1]:
         warm = replace(oil, temperature=oil.temperature + WARMER)
         words = f"{oil.temperature:g} degC", f"{warm.temperature:g} degC"
         yield WhatIf(*words, one.rated, replace(rules, lubricant=warm))
-    if "lubricant" in choices.assumed:
-        at_40, at_100 = GRADES["VG 320"]
+    if "lubricant" in assumed:
+        words = ("VG 460", "VG 320") if one.oil is None else ("VG 320", "VG 220")
+        at_40, at_100 = GRADES[words[1]]
         thinner = replace(oil, viscosity_40=at_40, viscosity_100=at_100)
-        yield WhatIf("VG 460", "VG 320", one.rated, replace(rules, lubricant=thinner))
+        yield WhatIf(*words, one.rated, replace(rules, lubricant=thinner))
     classes = list(SUPPLIES[oil.supply])
     worse = classes[classes.index(oil.cleanliness) + 1 :]
-    if "cleanliness" in choices.assumed and worse:
+    if "cleanliness" in assumed and worse:
         dirty = replace(oil, cleanliness=worse[0])
         words = f"cleanliness {oil.cleanliness!r}", repr(worse[0])
         yield WhatIf(*words, one.rated, replace(rules, lubricant=dirty))

@@ -10,23 +10,27 @@ import numpy as np
 
 from fe_drivetrain.bearing.answers import race_pressures
 from fe_drivetrain.bearing.geometry import RollerRow
+from fe_drivetrain.bearing_life.coupled.reaction_paths import ReactionPath
 from fe_drivetrain.bearing_life.life.limits import check_speed
 from fe_drivetrain.bearing_life.life.roller_damage import Damage, LifeRules, damage_of_steps
 from fe_drivetrain.bearing_life.life.steps import Steps
 from fe_drivetrain.common.arguments import argument
-from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.arrays import Floats, chunks
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.provenance import file_digest, program_hash
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.entrance import AT_HUB, Entrance
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.shafts.response.cached import whole_content
-from fe_drivetrain.shafts.response.entering import entering
+from fe_drivetrain.shafts.response.entering import Entered, entering
 from fe_drivetrain.studies.life_assumptions import ratios, what_ifs
 from fe_drivetrain.studies.rolling_bearings import Choices, OneBearing
 from fe_drivetrain.studies.unused import RPM, own_speeds, require_samples
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.turbine_loads.hub_loads.histories import MIN_SAMPLES
+from fe_drivetrain.turbine_loads.hub_loads.point_loads import PointLoads
 from fe_drivetrain.turbine_loads.hub_loads.recorded import Recorded, read_recorded
 from fe_drivetrain.turbine_loads.hub_loads.turbines import vertical_forces
 
@@ -35,6 +39,9 @@ WINDOWS = 60
 
 MAXIMUM = 512
 """Steps at a time, at most."""
+
+LONGEST = 20000
+"""Steps of the hub at a time, at most, where no rollers are solved."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +77,7 @@ class LifeDigest:
     wind : float
         Mean wind speed [m/s]; not a number where the file has none.
     speed : float
-        Mean rotor speed [1/min].
+        Mean speed of one ring against the other [1/min].
     samples : float
         Number of samples that were taken.
     mean_load, peak_load : Floats
@@ -86,6 +93,10 @@ class LifeDigest:
         (2,) least and largest rotor speed that the file states [1/min]; NaN where it has none.
     ratios : Floats
         Damage with other values of what was assumed, see `fe_drivetrain.studies.life_assumptions`.
+    levels : Floats
+        Damage by L10 at each level of `OneBearing.levels`, over that of the load path.
+    flanges : float
+        Largest axial force that rolling elements do not carry [N].
     """
 
     damage: Damage
@@ -100,10 +111,17 @@ class LifeDigest:
     vertical: tuple[float, float]
     own_speeds: Floats
     ratios: Floats
+    levels: Floats
+    flanges: float
 
 
 def content(
-    file: Path, one: OneBearing, rules: LifeRules, reading: Reading, scene: Scene, choices: Choices
+    file: Path,
+    one: OneBearing,
+    rules: LifeRules,
+    reading: Reading,
+    drivetrain: Drivetrain,
+    choices: Choices,
 ) -> dict[str, Any]:
     """All that a digest depends on.
 
@@ -117,8 +135,8 @@ def content(
         Rules of the life.
     reading : Reading
         How the file is read.
-    scene : Scene
-        The shaft.
+    drivetrain : Drivetrain
+        The drivetrain.
     choices : Choices
         Choices of the model.
 
@@ -133,10 +151,11 @@ def content(
         "bearing": one.name,
         "rated": repr(one.rated),
         "rollers": {name: repr(b) for name, b in one.path.bearings.items()},
-        "rules": repr(rules),
+        "rules": repr(one.rules(rules)),
+        "reactions": [path.key for path in reactions_of(one)],
         "mapping": reading.names.content(),
         "reading": [reading.skip, reading.every, reading.rotor_speed],
-        "scene": whole_content(scene),
+        "scene": whole_content(drivetrain) if isinstance(drivetrain, Scene) else None,
         "choices": repr(choices),
     }
 
@@ -146,7 +165,7 @@ def digest(
     one: OneBearing,
     rules: LifeRules,
     reading: Reading,
-    scene: Scene,
+    drivetrain: Drivetrain,
     choices: Choices,
     report: Progress = silent,
 ) -> LifeDigest:
@@ -162,7 +181,7 @@ def digest(
         Rules of the life.
     reading : Reading
         How the file is read.
-    scene : Scene
+    drivetrain : Drivetrain
         Says which point of the shaft hub loads are about.
     choices : Choices
         Choices of the model.
@@ -182,24 +201,31 @@ def digest(
     found = read_recorded(file, reading.names, reading.skip)
     history, speed = found.history, _speed_rpm(file, found, reading)
     require_samples(file, len(history), reading.every, MIN_SAMPLES)
-    loads, speed = entering(scene, history)[:: reading.every], speed[:: reading.every]
-    check_speed(one.rated, speed)
+    loads, speed = (
+        entering(loaded_at(drivetrain), history)[:: reading.every],
+        speed[:: reading.every],
+    )
+    turns, own = speed * one.path.speed_ratio, one.rules(rules)
+    check_speed(one.rated, turns)
     n, step = len(loads), history.step * reading.every
     sums = _Sums(one)
     chunk = int(np.clip(-(-n // WINDOWS), 1, MAXIMUM))
     done = 0
     for steps in one.path.steps(loads, speed, step, chunk):
-        sums.add(steps, damage_of_steps(steps, one.rated, rules), (done + 0.5 * chunk) * step)
-        done += len(steps.loads)
+        sums.add(steps, damage_of_steps(steps, one.rated, own), (done + 0.5 * chunk) * step)
+        done += len(steps.loads) // one.path.repeats
         report(f"{one.name}, {file.stem}: load steps ({done} of {n})")
     wind = np.nan if found.wind_speed is None else float(found.wind_speed.mean())
-    made = sums.digest(wind, float(np.abs(speed).mean()), float(n))
-    changed = ratios(one, rules, what_ifs(one, rules, choices), loads, speed, sums.weights)
+    made = sums.digest(wind, float(np.abs(turns).mean()), float(n))
+    changed = ratios(one, own, what_ifs(one, own, choices), loads, speed, sums.weights)
+    levels, flanges = by_levels(one, loads, speed)
     return replace(
         made,
         vertical=vertical_forces([history])[history.name],
         own_speeds=own_speeds(found.rotor_speed),
         ratios=changed,
+        levels=levels,
+        flanges=flanges,
     )
 
 
@@ -216,13 +242,75 @@ def _speed_rpm(file: Path, found: Recorded, reading: Reading) -> Floats:
     )
 
 
+@dataclass(frozen=True)
+class AtFront:
+    """A drivetrain whose main shaft begins where hub loads enter, and whose file says no more.
+
+    Attributes
+    ----------
+    entrance : Entrance
+        Where loads enter.
+    """
+
+    entrance: Entrance = AT_HUB
+
+
+def loaded_at(drivetrain: Drivetrain) -> Entered:
+    """Where the hub loads of a drivetrain enter.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        The drivetrain.
+    """
+    return drivetrain if isinstance(drivetrain, Scene) else AtFront()
+
+
+def reactions_of(one: OneBearing) -> list[ReactionPath]:
+    """All ways of the load to a bearing by reactions: by level, and with other stiffnesses."""
+    return [*one.levels.values(), *(other.path for other in one.others)]
+
+
+def by_levels(one: OneBearing, loads: PointLoads, speed_rpm: Floats) -> tuple[Floats, float]:
+    """Damage by L10 at each level over that of the load path, and force on flanges.
+
+    Parameters
+    ----------
+    one : OneBearing
+        The bearing.
+    loads : PointLoads
+        Load steps as they enter the drivetrain, (n, 6) [N, N m].
+    speed_rpm : Floats
+        Speed (n,) of the rotor [1/min].
+
+    Returns
+    -------
+    levels : Floats
+        One for each of `OneBearing.levels`; 1 where none does damage.
+    flanges : float
+        Largest axial force that rolling elements do not carry [N].
+    """
+    if not isinstance(one.path, ReactionPath):
+        return np.zeros(0), 0.0
+    paths = [one.path, *one.levels.values()]
+    sums, flanges = np.zeros(len(paths)), 0.0
+    for part in chunks(len(loads), LONGEST):
+        for i, path in enumerate(paths):
+            found, beside = path.carried(loads[part])
+            used = one.rated.equivalent_load(found) ** one.rated.exponent
+            each = used.reshape(-1, path.repeats).mean(axis=1)
+            sums[i] += float(each @ np.abs(speed_rpm[part]))
+            flanges = max(flanges, float(beside.max())) if path is one.path else flanges
+    return sums[1:] / sums[0] if sums[0] else np.ones(len(paths) - 1), flanges
+
+
 def kept_digest(
     report: Progress,
     file: Path,
     one: OneBearing,
     rules: LifeRules,
     reading: Reading,
-    scene: Scene,
+    drivetrain: Drivetrain,
     choices: Choices,
     resume: bool,
 ) -> LifeDigest:
@@ -240,17 +328,17 @@ def kept_digest(
         Rules of the life.
     reading : Reading
         How the file is read.
-    scene : Scene
+    drivetrain : Drivetrain
         Says which point of the shaft hub loads are about.
     choices : Choices
         Choices of the model.
     resume : bool
         Take what is kept.
     """
-    cache, key = user_cache(), content(file, one, rules, reading, scene, choices)
+    cache, key = user_cache(), content(file, one, rules, reading, drivetrain, choices)
     kept = cache.load_record("life-digests", key, LifeDigest) if resume else None
     if kept is None:
-        kept = digest(file, one, rules, reading, scene, choices, report)
+        kept = digest(file, one, rules, reading, drivetrain, choices, report)
         cache.keep_record("life-digests", key, kept)
     return kept
 
@@ -270,8 +358,9 @@ class _Sums:
 
     @property
     def weights(self) -> Floats:
-        """(n,) of all steps so far, about in proportion to their damage."""
-        return np.concatenate(self._weights)
+        """(n,) of all steps of the hub so far, about in proportion to their damage."""
+        each = np.concatenate(self._weights).reshape(-1, self.one.path.repeats)
+        return np.asarray(each.sum(axis=1))
 
     def add(self, steps: Steps, damage: Damage, time: float) -> None:
         rollers = [q.sum(axis=2) for q in steps.laminae]
@@ -315,6 +404,8 @@ class _Sums:
             (np.nan, np.nan),
             own_speeds(None),
             np.zeros(0),
+            np.zeros(0),
+            0.0,
         )
 
 

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.bearing_life.life.limits import centrifugal_load
+from fe_drivetrain.bearing_life.life.lubricants import Lubricant
 from fe_drivetrain.bearing_life.life.reference_life import RINGS
 from fe_drivetrain.bearing_life.life.roller_damage import LifeRules
 from fe_drivetrain.common.arguments import argument
-from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.procedure.failure_modes import TORQUE_AND_BENDING
 from fe_drivetrain.report.number_text import value_with_band
 from fe_drivetrain.report.suite.findings import Findings
@@ -99,7 +100,7 @@ def _takes_longest(life: BearingLife, rules: LifeRules) -> str:
 
 def cautions(
     found: Findings,
-    scene: Scene,
+    drivetrain: Drivetrain,
     lives: Sequence[BearingLife],
     options: LifeOptions,
     limits: Sequence[Record],
@@ -110,7 +111,7 @@ def cautions(
     ----------
     found : Findings
         Takes the sentences.
-    scene : Scene
+    drivetrain : Drivetrain
         The drivetrain.
     lives : sequence of BearingLife
         The bearings.
@@ -124,46 +125,68 @@ def cautions(
             found.note(life.bearing.misfit)
     for life, row in zip(lives, limits, strict=True):
         _beyond_limits(found, life, row)
-    for life in lives:
+    _beyond_limits_together(found, lives, limits)
+    for life in _spoken_of(lives):
         if sentence := in_words(life.name, life.years["L10mr"], life.assumptions):
             found.note(sentence)
     files = [one.file for one in lives[0].files]
     vertical = {short_name(one.file, files): one.vertical for one in lives[0].files}
     if unlike := different_turbines(vertical):
         found.note(unlike, first=True)
-    oil = options.rules.lubricant
-    if oil is not None and oil.caution is not None:
-        found.note(oil.caution)
+    used = [life.bearing.rules(options.rules).lubricant for life in lives]
+    for caution in dict.fromkeys(one.caution for one in used if one is not None):
+        if caution is not None:
+            found.note(caution)
     own_speeds = [one.own_speeds for one in lives[0].files]
     if unused := speed_not_used(options.rotor_speed_rpm, own_speeds):
         found.note(unused, first=True)
-    for unused in choices_not_used(scene, options.choices, [life.bearing for life in lives]):
+    for unused in choices_not_used(drivetrain, options.choices, [life.bearing for life in lives]):
         found.note(unused, first=True)
     found.note(UNVERIFIED)
 
 
+def _spoken_of(lives: Sequence[BearingLife]) -> list[BearingLife]:
+    """Bearings on rollers in equilibrium with the shaft, and of the others the shortest-lived."""
+    others = sorted((one for one in lives if one.levels), key=lambda one: one.years["L10mr"])
+    return [*(one for one in lives if not one.levels), *others[:1]]
+
+
+BEYOND = {
+    "load above C/2 [% of time]": "the load is above C/2, beyond the range of ISO 281",
+    "kappa below 0.1 [% of time]": "the film is below kappa = 0.1: a_ISO is taken as 0.1",
+    "kappa above 4 [% of time]": "the film is above kappa = 4, a_ISO is taken as that of 4: a "
+    "lubricant that thick may not reach the contacts",
+    "standing [% of time]": "the bearing stands: no life is computed for that time",
+}
+"""What is said of time beyond a limit of the methods, by the column of its share."""
+
+
+def _beyond_limits_together(
+    found: Findings, lives: Sequence[BearingLife], limits: Sequence[Record]
+) -> None:
+    """State the same limits of several bearings of a gearbox in one sentence each."""
+    for key, words in BEYOND.items():
+        shares = {
+            life.name: row[key]
+            for life, row in zip(lives, limits, strict=True)
+            if life.levels and isinstance(row[key], float)
+        }
+        past = {name: share for name, share in shares.items() if share > 0.0}
+        if past:
+            several = "Bearing" if len(past) == 1 else "Bearings"
+            most = f"{'up to ' if len(past) > 1 else ''}{max(past.values()):.3g}"
+            found.note(f"{several} {', '.join(past)}: in {most} % of the time {words}.")
+
+
 def _beyond_limits(found: Findings, life: BearingLife, row: Record) -> None:
     of, name = life.limits, life.name
-    for key, words in (
-        (
-            "S0 below 1 [% of time]",
-            f"static safety is below 1, {of.static_safety:.2g} at least, with "
-            f"{1e-6 * of.max_pressure:,.0f} MPa on a raceway",
-        ),
-        ("load above C/2 [% of time]", "the load is above C/2, beyond the range of ISO 281"),
-        (
-            "above the limiting speed [% of time]",
-            f"it turns faster than its limiting speed, {life.bearing.rated.limiting_speed_rpm} "
-            "1/min",
-        ),
-        ("kappa below 0.1 [% of time]", "the film is below kappa = 0.1: a_ISO is taken as 0.1"),
-        (
-            "kappa above 4 [% of time]",
-            "the film is above kappa = 4, a_ISO is taken as that of 4: a lubricant that thick may "
-            "not reach the contacts",
-        ),
-        ("standing [% of time]", "the bearing stands: no life is computed for that time"),
-    ):
+    own = {
+        "S0 below 1 [% of time]": f"static safety is below 1, {of.static_safety:.2g} at least, "
+        f"with {1e-6 * of.max_pressure:,.0f} MPa on a raceway",
+        "above the limiting speed [% of time]": "it turns faster than its limiting speed, "
+        f"{life.bearing.rated.limiting_speed_rpm} 1/min",
+    }
+    for key, words in (own if life.levels else own | BEYOND).items():
         share = row[key]
         if isinstance(share, float) and share > 0.0:
             found.note(f"Bearing {name}: in {share:.3g} % of the time {words}.")
@@ -196,14 +219,8 @@ def assumptions(found: Findings, lives: Sequence[BearingLife], options: LifeOpti
     rules = options.rules
     for life in lives:
         _of_entry(found, life, rules)
-    oil = rules.lubricant
-    if oil is not None:
-        found.assume("temperature", oil.temperature, "degC", _option("temperature"))
-        found.assume(
-            "viscosity there", oil.viscosity, "mm2/s", f"{_option('lubricant')}, by ASTM D341"
-        )
-        found.assume("lubrication", oil.supply, "", _option("supply"))
-        found.assume("cleanliness", oil.cleanliness, "", _option("cleanliness"))
+    if rules.lubricant is not None and any(life.bearing.oil is None for life in lives):
+        _of_lubricant(found, rules.lubricant)
     found.assume(
         "lambda nu taken out of C", rules.reduction, "-", "0.83 with a stress riser, else 1"
     )
@@ -212,7 +229,24 @@ def assumptions(found: Findings, lives: Sequence[BearingLife], options: LifeOpti
     )
     share = "C_u over the number of rows" if rules.limit_per_row else "the whole C_u"
     found.assume("fatigue limit of a row", share, "", "loads P_ks are those of a row")
-    found.assume("ring that turns against the load", rules.turning, "", _option("turning"))
+    if any(life.bearing.turning is None for life in lives):
+        found.assume("ring that turns against the load", rules.turning, "", _option("turning"))
+    if not all(life.levels for life in lives):
+        _of_support(found, options)
+    files = len(lives[0].files)
+    found.assume("samples", f"one of {options.every}", "", f"{_option('every')}; {files} files")
+
+
+def _of_lubricant(found: Findings, oil: Lubricant) -> None:
+    """State the lubricant of main bearings."""
+    found.assume("temperature", oil.temperature, "degC", _option("temperature"))
+    found.assume("viscosity there", oil.viscosity, "mm2/s", f"{_option('lubricant')}, by ASTM D341")
+    found.assume("lubrication", oil.supply, "", _option("supply"))
+    found.assume("cleanliness", oil.cleanliness, "", _option("cleanliness"))
+
+
+def _of_support(found: Findings, options: LifeOptions) -> None:
+    """State how shaft and rings are modelled where rollers are in equilibrium with the shaft."""
     words = {
         "rollers": "bearings in equilibrium with the shaft, a beam",
         "pinned": "pinned bearings: no moment on them",
@@ -221,8 +255,6 @@ def assumptions(found: Findings, lives: Sequence[BearingLife], options: LifeOpti
     found.assume(
         "rings", options.rings, "", f"{_option('rings')}; housings are rigid but for 'housing'"
     )
-    files = len(lives[0].files)
-    found.assume("samples", f"one of {options.every}", "", f"{_option('every')}; {files} files")
 
 
 def _option(name: str) -> str:

@@ -15,8 +15,9 @@ if TYPE_CHECKING:
     from fe_drivetrain.bearing_life.life.lubricants import Lubricant, Supply
     from fe_drivetrain.bearing_life.life.reference_life import Turning
     from fe_drivetrain.bearing_life.life.roller_damage import LifeRules
+    from fe_drivetrain.drivetrain_file.turning_parts import Operation
     from fe_drivetrain.studies.life_digest import Reading
-    from fe_drivetrain.studies.rolling_bearings import Choices
+    from fe_drivetrain.studies.rolling_bearings import Choices, Oil
 
 #: Options whose defaults change lives, though the user may never have thought of them.
 ASSUMED = ("lubricant", "temperature", "cleanliness", "profile", "riser", "turning")
@@ -61,6 +62,14 @@ class LifeOptions(HistoryOptions):
         Use every n-th sample.
     weight : bool
         Gearbox and shaft have their weight.
+    gearbox_lubricant : str, tuple of float, or None
+        Oil of the gearbox's bearings, as ``lubricant``; None takes that of the drivetrain's
+        operation, or VG 320.
+    gearbox_temperature : float or None
+        Temperature of these bearings in operation [degC]; None takes that of the drivetrain's
+        operation, or 60.
+    gearbox_cleanliness : str or None
+        Code of ISO 4406 of that oil, which circulates through a filter; None takes -/17/14.
     stated : tuple of str
         Options of `ASSUMED` whose defaults are meant. A default that is not named here is an
         assumption: what another value would do to the life is computed, too.
@@ -86,6 +95,9 @@ class LifeOptions(HistoryOptions):
     reliability_percent: float = 90.0
     every: int = 1
     weight: bool = True
+    gearbox_lubricant: str | tuple[float, float] | None = None
+    gearbox_temperature: float | None = None
+    gearbox_cleanliness: str | None = None
     stated: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
@@ -94,7 +106,7 @@ class LifeOptions(HistoryOptions):
             require_known("an option that is stated", name, ASSUMED)
         if not (isinstance(self.every, int) and self.every >= 1):
             raise InputError(f"every is {self.every}: give a whole number of samples from 1 on")
-        _ = self.rules  # checks lubricant, ring and reliability
+        _ = self.rules, self.oil(None)  # checks lubricant, ring and reliability
 
     @property
     def assumed(self) -> tuple[str, ...]:
@@ -117,6 +129,27 @@ class LifeOptions(HistoryOptions):
             turning=self.turning,
             reliability=RELIABILITY[self.reliability_percent],
         )
+
+    def oil(self, operation: Operation | None) -> Oil:
+        """The oil of the gearbox's bearings: as asked for, else as the drivetrain's file has it.
+
+        Parameters
+        ----------
+        operation : Operation or None
+            Of the drivetrain.
+
+        Raises
+        ------
+        InputError
+            There is no such lubricant.
+        """
+        from fe_drivetrain.studies.gearbox_bearings import gearbox_oil
+
+        grade, temperature = self.gearbox_lubricant, self.gearbox_temperature
+        if operation is not None:
+            grade = operation.lubricant if grade is None else grade
+            temperature = operation.temperature if temperature is None else temperature
+        return gearbox_oil(grade, temperature, self.gearbox_cleanliness)
 
     @property
     def reading(self) -> Reading:

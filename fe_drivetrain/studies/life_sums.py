@@ -33,7 +33,7 @@ class FileLife:
     wind : float
         Mean wind speed [m/s]; NaN where the file has none.
     speed : float
-        Mean rotor speed [1/min].
+        Mean speed of one ring against the other [1/min].
     samples : float
         Samples that were used.
     vertical : tuple of float
@@ -42,6 +42,10 @@ class FileLife:
         Least and largest rotor speed that the file states [1/min]; NaN where it has none.
     ratios : ndarray, (assumptions,)
         Damage by L10mr with another value of each assumption, over that with the one taken.
+    levels : ndarray, (levels,)
+        Damage by L10 at each level of the drivetrain's statics, over that of the one taken.
+    flanges : float
+        Largest axial force that rolling elements do not carry [N].
     """
 
     file: Path
@@ -52,6 +56,8 @@ class FileLife:
     vertical: tuple[float, float]
     own_speeds: Floats
     ratios: Floats
+    levels: Floats
+    flanges: float
 
     __repr__ = short_repr
 
@@ -105,6 +111,9 @@ class BearingLife:
         The file with the highest rate of damage by L10r.
     assumptions : tuple of Assumption
         What was not stated, and what it does to L10mr.
+    levels : Mapping[str, float]
+        Constant load of the same L10 at each level of the drivetrain's statics over that of the
+        level taken; none of a bearing whose rollers are in equilibrium with the shaft.
     """
 
     bearing: OneBearing
@@ -117,6 +126,7 @@ class BearingLife:
     pressures: Floats
     worst: DamageOverTime
     assumptions: tuple[Assumption, ...]
+    levels: Mapping[str, float]
 
     def __repr__(self) -> str:
         """One line: the bearing, and its life of each kind."""
@@ -142,6 +152,17 @@ class BearingLife:
     def million_revolutions(self) -> Mapping[str, float]:
         """The same lives [million revolutions]."""
         return self.damage.lives("Mrev")
+
+    @property
+    def speed(self) -> float:
+        """Mean speed of one ring against the other over all files [1/min]."""
+        seconds = [one.damage.seconds for one in self.files]
+        return float(np.average([one.speed for one in self.files], weights=seconds))
+
+    @property
+    def flanges(self) -> float:
+        """Largest axial force that rolling elements do not carry [N]."""
+        return max(one.flanges for one in self.files)
 
     @property
     def bands(self) -> Mapping[str, float | None]:
@@ -196,6 +217,8 @@ class BearingSums:
                 digest.vertical,
                 digest.own_speeds,
                 digest.ratios,
+                digest.levels,
+                digest.flanges,
             )
         )
 
@@ -223,7 +246,7 @@ class BearingSums:
         for one in self._files[1:]:
             limits = limits + one.damage.limits
         seconds = sum(one.damage.seconds for one in self._files)
-        ifs = what_ifs(self._bearing, rules, choices)
+        ifs = what_ifs(self._bearing, self._bearing.rules(rules), choices)
         return BearingLife(
             self._bearing,
             tuple(self._files),
@@ -238,7 +261,23 @@ class BearingSums:
                 Assumption(other.assumed, other.instead, self._years_with(i))
                 for i, other in enumerate(ifs)
             ),
+            {
+                name: self._load_at(i, damage.totals["L10"])
+                for i, name in enumerate(self._bearing.levels)
+            },
         )
+
+    def _load_at(self, level: int, used: float) -> float:
+        """Constant load of the same L10 at a level, over that of a damage by the level taken."""
+        changed = [
+            (
+                rounded_wind(one.wind),
+                replace(one.damage, of_standard=one.damage.of_standard * one.levels[level]),
+            )
+            for one in self._files
+        ]
+        there = _together(changed, self._site)[0].totals["L10"]
+        return float((there / used) ** (1.0 / self._bearing.rated.exponent)) if used else 1.0
 
     def _years_with(self, i: int) -> float:
         """L10mr with another value of the i-th assumption [years]."""

@@ -12,9 +12,16 @@ from fe_drivetrain.bearing_life.life.reference_life import RINGS, reference_load
 from fe_drivetrain.bearing_life.life.roller_damage import KINDS
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.studies.gearbox_bearings import MachineBearings
 from fe_drivetrain.studies.life_sums import BearingLife, row_names
 from fe_drivetrain.turbine_loads.histories.sites import HOURS_A_YEAR
 from fe_drivetrain.turbine_loads.hub_loads.recorded import short_name
+
+NOT_RATED = "not rated: no catalogue entry"
+"""What stands in place of the entry of a bearing that has none."""
+
+ENOUGH = 0.05
+"""Difference of the equivalent load up to which a cheaper level is enough: 16 % of a life."""
 
 
 def life_rows(lives: Sequence[BearingLife]) -> list[Record]:
@@ -24,6 +31,7 @@ def life_rows(lives: Sequence[BearingLife]) -> list[Record]:
         rated, years = life.bearing.rated, life.years
         million = life.million_revolutions
         row: Record = {"bearing": life.name, "entry": life.bearing.entry_name}
+        row["mean speed [1/min]"] = life.speed
         for name, value in zip(("C", "C0", "Cu"), rated.three, strict=True):
             row[f"{name} [kN]"] = value / 1e3
         for name, kind in (("P_ref", "L10r"), ("P of L10", "L10")):
@@ -236,11 +244,60 @@ def site_maps(life: BearingLife) -> Iterator[SiteMap]:
         yield SiteMap(word, row, life.site.speeds, values)
 
 
-def result_tables(lives: Sequence[BearingLife]) -> dict[str, Any]:
+def unrated_rows(lives: Sequence[BearingLife], machine: MachineBearings) -> list[Record]:
+    """Bearings without a catalogue entry, with the columns of those that are rated."""
+    if not machine.unrated:
+        return []
+    columns = dict.fromkeys(life_rows(lives[:1])[0])
+    of = lives[0]
+    rotor = of.speed / of.bearing.path.speed_ratio
+    return [
+        {
+            **columns,
+            "bearing": one.name,
+            "entry": NOT_RATED,
+            "mean speed [1/min]": rotor * one.speed_ratio,
+        }
+        for one in machine.unrated
+    ]
+
+
+def level_rows(lives: Sequence[BearingLife]) -> list[Record]:
+    """Constant load of the same L10 by each level of the drivetrain's statics."""
+    rows: list[Record] = []
+    for life in lives:
+        if not life.levels:
+            continue
+        of = life.bearing.rated
+        load = float(reference_load(of.dynamic, life.million_revolutions["L10"], of.exponent))
+        row: Record = {"bearing": life.name}
+        row |= {f"P, {name} [kN]": 1e-3 * load * ratio for name, ratio in life.levels.items()}
+        cheapest, *_, finest = life.levels.values()
+        row["difference [%]"] = 100.0 * (cheapest / finest - 1.0)
+        row["enough"] = enough(life)
+        rows.append(row)
+    return rows
+
+
+def enough(life: BearingLife) -> str:
+    """The cheapest level from which on a bearing's load is that of the finest within `ENOUGH`."""
+    names, ratios = list(life.levels), list(life.levels.values())
+    found = names[-1]
+    for name, ratio in zip(reversed(names), reversed(ratios), strict=True):
+        if abs(ratio / ratios[-1] - 1.0) > ENOUGH:
+            break
+        found = name
+    return found
+
+
+def result_tables(lives: Sequence[BearingLife], machine: MachineBearings) -> dict[str, Any]:
     """Tables of the page, by name."""
-    tables: dict[str, Any] = {"lives": life_rows(lives), "limits": limit_rows(lives)}
-    if rows := assumption_rows(lives):
-        tables["assumed"] = rows
+    rows = [*life_rows(lives), *unrated_rows(lives, machine)]
+    tables: dict[str, Any] = {"lives": rows, "limits": limit_rows(lives)}
+    if levels := level_rows(lives):
+        tables["levels"] = levels
+    if assumed := assumption_rows(lives):
+        tables["assumed"] = assumed
     tables["load_zones"] = [
         {"bearing": life.name, "mean load [N]": life.mean_load, "max load [N]": life.peak_load}
         for life in lives

@@ -6,10 +6,12 @@ import numpy as np
 
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.report.number_text import formatted
-from fe_drivetrain.studies.load_digest import LOADS, LoadOptions
+from fe_drivetrain.studies.load_digest import CHANNELS, LOADS, LoadOptions
+from fe_drivetrain.studies.load_planes import PLANES
 from fe_drivetrain.studies.load_totals import LoadTotals, Suspects
 from fe_drivetrain.turbine_loads.histories.faults import FAR
 from fe_drivetrain.turbine_loads.histories.windows import TEN_MINUTES
+from fe_drivetrain.turbine_loads.hub_loads.sampling import GAP
 from fe_drivetrain.turbine_loads.hub_loads.turbines import different_turbines
 
 MUCH = 0.1
@@ -32,6 +34,7 @@ def cautions(found: LoadTotals, options: LoadOptions) -> list[str]:
     said = []
     if unlike := different_turbines(dict(zip(names, vertical, strict=True))):
         said.append(unlike)
+    said += _sampling(found)
     said += _lone(found.suspects)
     count = len(names)
     said += [
@@ -46,6 +49,80 @@ def cautions(found: LoadTotals, options: LoadOptions) -> list[str]:
             "long as they are, and turbulence slower than that is missing."
         )
     return said + _residue(found, options)
+
+
+def left_out(found: LoadTotals, with_reactions: bool) -> list[str]:
+    """Sentences on what is left out since files lack components, and on a torque of another shaft.
+
+    Parameters
+    ----------
+    found : LoadTotals
+        All files.
+    with_reactions : bool
+        Whether reactions of a scene were asked for.
+    """
+    said = []
+    shaft = found.files.torque_of
+    if found.absent:
+        planes = [name for name, _ in PLANES if name not in found.planes]
+        without = [f"direction and loops of {' and '.join(planes)}"] if planes else []
+        without += ["bearing reactions, which need all six components"] if with_reactions else []
+        said.append(
+            f"{_where_absent(found)}, so not known rather than zero. Left out: "
+            f"{'; '.join(['their statistics, cycles and spectra', *without])}."
+        )
+    elif with_reactions and shaft:
+        said.append(
+            f"Bearing reactions are left out: they need the rotor's torque, and Mx is that of the "
+            f"{shaft}."
+        )
+    if shaft:
+        said.append(
+            f"Mx is the torque of the {shaft} as recorded; turns are the rotor's. gearbox_ratio in "
+            "a mapping makes it the rotor's torque, without losses and inertia between."
+        )
+    return said
+
+
+def _where_absent(found: LoadTotals) -> str:
+    """Which components are absent, and in which files."""
+    absent, names = found.absent, found.files.names
+    places = [CHANNELS.index(name) for name in absent]
+    lacking = np.isnan(found.statistics.means[:, places]).any(axis=1)
+    number = int(lacking.sum())
+    what = f"{', '.join(absent)} {'is' if len(absent) == 1 else 'are'}"
+    if len(names) == 1 or number == len(names):
+        return f"{what} not recorded"
+    first = names[int(np.argmax(lacking))]
+    return f"{what} not in all of the {len(names)} files ({number} without, as {first})"
+
+
+def _sampling(found: LoadTotals) -> list[str]:
+    """Uneven steps, and gaps."""
+    said = []
+    files = list(zip(found.files.names, found.files.steps, found.files.spans, strict=True))
+    for name, steps, _ in [one for one in files if not one[1].even][:_NAMED]:
+        spectra = (
+            f" Spectra are of values on straight lines between samples, every {steps.usual:.3g} s."
+            if len(found.spectra.frequency)
+            else ""
+        )
+        said.append(
+            f"{name} is sampled unevenly, every {steps.least:.3g} to {steps.most:.3g} s, usually "
+            f"{steps.usual:.3g} s: each sample counts for its own time, cycles are of samples as "
+            f"they are.{spectra}"
+        )
+    for name, steps, span in [one for one in files if len(one[1].gaps)][:_NAMED]:
+        count = len(steps.gaps)
+        at, longest = steps.gaps[int(np.argmax(steps.gaps[:, 1]))].tolist()
+        whole = span.end - span.start
+        said.append(
+            f"{name} has {'a gap' if count == 1 else f'{count} gaps'}, "
+            f"{steps.gaps[:, 1].sum():.4g} of {whole:.4g} s, the longest {longest:.4g} s from "
+            f"{at:.6g} s on (a step of more than {GAP:g} usual ones): nothing is filled in, and no "
+            "cycle, spectrum or loop leads over it."
+        )
+    return said
 
 
 def _lone(found: Suspects) -> list[str]:
@@ -74,7 +151,7 @@ def _lone(found: Suspects) -> list[str]:
 def _residue(found: LoadTotals, options: LoadOptions) -> list[str]:
     """Half cycles that decide the damage."""
     cycles = found.cycles
-    if options.residue != "half" or not cycles.damage.any():
+    if options.residue != "half" or not np.nan_to_num(cycles.damage).any():
         return []
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.nan_to_num(cycles.halves / cycles.damage)

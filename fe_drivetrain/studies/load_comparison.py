@@ -12,7 +12,6 @@ from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.studies.load_digest import LOADS, UNITS, Digest
-from fe_drivetrain.studies.load_planes import PLANES
 from fe_drivetrain.studies.load_reactions import ALONE, FileDigest
 from fe_drivetrain.studies.shown_units import shown_unit
 from fe_drivetrain.turbine_loads.histories.sets import CHANCE, Difference, differences
@@ -61,16 +60,19 @@ def features(found: Digest, slopes: Sequence[float], source: str = "") -> dict[F
     """
     result: dict[Feature, float] = {}
     for name, unit in zip(LOADS, UNITS, strict=False):
+        if name not in found.cycles.ranges:
+            continue
         for what, value in _of_load(found, name, slopes).items():
             result[Feature(source, name, what, shown_unit(unit))] = value / 1e3
-    for name, _ in PLANES:
-        plane, loops = found.planes[name], f"loops of {name}"
+    for name, plane in found.planes.items():
+        loops = f"loops of {name}"
         share = 100.0 * plane.loop_seconds / found.span.seconds
         result[Feature(source, loops, "share of time", "%")] = share
         if not np.isnan(plane.over_passing):
             result[Feature(source, loops, "over blade passages", "-")] = plane.over_passing
-    torque = found.torque.equivalent_over_time(found.span.seconds)
-    result[Feature(source, "Mx", "equivalent over time", shown_unit("N m"))] = torque / 1e3
+    if "Mx" in found.cycles.ranges:
+        torque = found.torque.equivalent_over_time(found.span.seconds)
+        result[Feature(source, "Mx", "equivalent over time", shown_unit("N m"))] = torque / 1e3
     return result
 
 
@@ -197,16 +199,20 @@ class LoadSet:
         if before is None or own is None:
             self._spectra[name] = None
             return
-        for load, density in own.items():
-            total = before.get(load, np.zeros_like(density))
-            lines = min(len(total), len(density))
-            own[load] = total[:lines] + density[:lines]
-        self._spectra[name] = own
+        if before:
+            own = {load: _added(before[load], own[load]) for load in own if load in before}
+        self._spectra[name] = own or None
 
     def spectra(self, wind: str) -> dict[str, Floats]:
         """Mean densities at a wind by load; none where a file is too short."""
         number = len(self.features[wind])
         return {load: one / number for load, one in (self._spectra[wind] or {}).items()}
+
+
+def _added(one: Floats, other: Floats) -> Floats:
+    """Two densities line by line, as far as both go."""
+    lines = min(len(one), len(other))
+    return np.asarray(one[:lines] + other[:lines])
 
 
 def _densities(found: FileDigest) -> dict[str, Floats] | None:
@@ -215,7 +221,7 @@ def _densities(found: FileDigest) -> dict[str, Floats] | None:
     for name, part in {"": found.hub, **found.reactions}.items():
         if part.spectra is None:
             return None
-        for load in ("Fz", "My") if name else ("My",):
+        for load in ("Fz", "My") if name else filter(None, (part.moment,)):
             result[f"{name}, {load}" if name else load] = part.spectra.density[LOADS.index(load)]
     return result
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,15 +21,22 @@ from fe_drivetrain.turbine_loads.histories.cycles import RESIDUES, Cycles, Resid
 from fe_drivetrain.turbine_loads.histories.damage import FREQUENCY, SLOPES, check_slope
 from fe_drivetrain.turbine_loads.histories.faults import lone_samples, times_as_far
 from fe_drivetrain.turbine_loads.histories.level_sums import (
+    NO_TORQUE,
     LevelSums,
     TorqueSums,
     level_sums,
     torque_sums,
     turns_of,
 )
-from fe_drivetrain.turbine_loads.histories.spectrum_sums import HistorySpectra, history_spectra
+from fe_drivetrain.turbine_loads.histories.spectrum_sums import (
+    HistorySpectra,
+    history_spectra,
+    joined_spectra,
+)
 from fe_drivetrain.turbine_loads.histories.windows import Windows, window_statistics
+from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
 from fe_drivetrain.turbine_loads.hub_loads.recorded import Recorded
+from fe_drivetrain.turbine_loads.hub_loads.sampling import Steps, evenly
 
 LOADS = (*FORCES, "radial force", "bending moment")
 """Channels that are counted; the last two are sizes across the shaft."""
@@ -40,6 +47,9 @@ UNIT_OF = dict(zip(CHANNELS, UNITS, strict=True))
 
 MOMENTS_BY_MEAN = ("Mx", "My")
 """Loads whose cycles are counted by range and mean."""
+
+CAMPBELL = ("My", "Mx")
+"""Loads of which the first that a file has is shown by rotor speed."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -171,17 +181,22 @@ class Digest:
         Samples that stand alone, of each component: how many, time of the first [s], and how many
         times as far from its neighbours as usual the farthest is.
     cycles : CycleSums
-        Cycles of `LOADS`.
+        Cycles of `LOADS`; NaN of those that the file has not.
     levels : LevelSums
-        Time and turns at each level of `LOADS`.
+        Time and turns at each level of those of `LOADS` that the file has.
     torque : TorqueSums
-        Sums of the torque.
+        Sums of the torque; NaN where the file has none.
     spectra : HistorySpectra or None
-        Spectra of `LOADS`; None of a file shorter than half a segment.
+        Spectra of `LOADS`, NaN of those that the file has not; None of a file shorter than half a
+        segment.
     planes : Mapping[str, PlaneDigest]
-        Force and moment across the shaft.
+        Force and moment across the shaft, where the file has both components.
     own_speeds : ndarray, (2,)
         Least and largest rotor speed that the file states [1/min]; NaN where it has none.
+    steps : Steps
+        Steps of time, and gaps.
+    torque_of : str
+        The shaft that Mx was recorded at, where that is not the rotor's; else empty.
     """
 
     channels: str
@@ -194,6 +209,13 @@ class Digest:
     spectra: HistorySpectra | None
     planes: Mapping[str, PlaneDigest]
     own_speeds: Floats
+    steps: Steps
+    torque_of: str
+
+    @property
+    def moment(self) -> str:
+        """The first of `CAMPBELL` that it has; empty where it has none."""
+        return next((name for name in CAMPBELL if name in self.cycles.ranges), "")
 
     def mean_of(self, channel: str) -> float:
         """Mean of one of `CHANNELS` over the file; NaN where it has none."""
@@ -217,40 +239,132 @@ def digest(found: Recorded, options: LoadOptions) -> Digest:
     InputError
         The mean of a cycle reaches an ultimate load.
     """
-    history = found.history
-    step, count = history.step, len(history)
+    history, sampling = found.history, found.history.sampling
+    count, step, pieces = len(history), sampling.weights, sampling.pieces
     speed = found.rotor_speed
     if speed is None and options.rotor_speed is not None:
         speed = np.full(count, options.rotor_speed)
     loads = _all_loads(history.loads)
     unknown = np.full(count, np.nan)
     beside = [unknown if c is None else c for c in (speed, found.wind_speed)]
-    channels = dict(zip(LOADS, loads.T, strict=True))
+    known = [k for k, column in enumerate(loads.T) if not np.isnan(column).all()]
+    channels = {LOADS[k]: loads[:, k] for k in known}
     turns = None if speed is None else turns_of(speed, step)
+    weights = None if sampling.regular else step
     return Digest(
         channels=str(history.attributes.get("channels", "as in the file")),
-        span=Span(float(history.time[0]), float(history.time[-1]), step, count),
-        windows=window_statistics(history.time, np.column_stack([loads, *beside])),
-        lone=_lone(history.time, history.loads),
-        cycles=count_cycles(channels, options.cycle_rule),
+        span=Span(float(history.time[0]), float(history.time[-1]), float(np.mean(step)), count),
+        windows=window_statistics(history.time, np.column_stack([loads, *beside]), weights=weights),
+        lone=_lone(history.time, history.loads, pieces),
+        cycles=_of_all(count_cycles(channels, options.cycle_rule, pieces), known),
         levels=level_sums(channels, step, turns),
-        torque=torque_sums(channels["Mx"], step, turns),
-        spectra=history_spectra(channels, step, speed, "My"),
+        torque=(
+            torque_sums(channels["Mx"], step, turns, pieces) if "Mx" in channels else NO_TORQUE
+        ),
+        spectra=_spectra(history, channels, speed, known),
         planes={
-            name: plane_digest(history.time, loads[:, y], loads[:, y + 1], step, speed)
+            name: plane_digest(history.time, loads[:, y], loads[:, y + 1], step, speed, pieces)
             for name, y in PLANES
+            if {y, y + 1} <= set(known)
         },
         own_speeds=own_speeds(found.rotor_speed),
+        steps=sampling.steps,
+        torque_of=history.torque_of,
     )
 
 
-def _lone(time: Floats, loads: Floats) -> Floats:
+def _spectra(
+    history: LoadHistory,
+    channels: Mapping[str, Floats],
+    speed: Floats | None,
+    known: Sequence[int],
+) -> HistorySpectra | None:
+    """Spectra of all pieces, of samples at even times; NaN of loads that are not known."""
+    shown = next((name for name in CAMPBELL if name in channels), next(iter(channels)))
+    sampling = history.sampling
+    mean = None
+    if speed is not None and not sampling.regular:
+        mean = float(np.average(np.abs(speed), weights=np.full(len(speed), sampling.weights)))
+    parts = []
+    for piece in sampling.pieces:
+        time, step = history.time[piece], sampling.steps.usual
+        if len(time) < 2:
+            continue
+        own = {name: values[piece] for name, values in channels.items()}
+        turning = None if speed is None else speed[piece]
+        if sampling.steps.even:
+            step = float(time[-1] - time[0]) / (len(time) - 1)
+        else:
+            own = {name: evenly(time, values, step) for name, values in own.items()}
+            turning = None if turning is None else evenly(time, turning, step)
+        found = history_spectra(own, step, turning, shown, mean)
+        if found is not None:
+            parts.append((found, len(time) * step))
+    whole = joined_spectra(parts)
+    if whole is None:
+        return None
+    multiples = None if whole.multiples is None else _rows_of_all(whole.multiples, known)
+    return replace(whole, density=_rows_of_all(whole.density, known), multiples=multiples)
+
+
+def _of_all(found: CycleSums, known: Sequence[int]) -> CycleSums:
+    """Cycles with rows of all `LOADS`, NaN of those that are not known."""
+    return replace(
+        found,
+        damage=_rows_of_all(found.damage, known),
+        halves=_rows_of_all(found.halves, known),
+        about_zero=_rows_of_all(found.about_zero, known),
+        largest=_rows_of_all(found.largest, known),
+        number=_rows_of_all(found.number, known),
+        left_out=_rows_of_all(found.left_out, known),
+    )
+
+
+def _rows_of_all(values: Floats, known: Sequence[int]) -> Floats:
+    """Rows of all `LOADS`, of those that are known."""
+    found = np.full((len(LOADS), *values.shape[1:]), np.nan)
+    found[list(known)] = values
+    return found
+
+
+class OneShaft:
+    """Refuses torques of different shafts among histories that are counted or compared together."""
+
+    def __init__(self) -> None:
+        self._first: tuple[str, str] | None = None
+
+    def add(self, name: str, found: Digest) -> None:
+        """Add the digest of a file of that name.
+
+        Raises
+        ------
+        InputError
+            Its torque is of another shaft than that of a file before it.
+        """
+        if "Mx" not in found.cycles.ranges:
+            return
+        self._first = self._first or (found.torque_of, name)
+        if found.torque_of != self._first[0]:
+            shafts = [of or "rotor" for of in (self._first[0], found.torque_of)]
+            raise InputError(
+                f"load histories: {self._first[1]} has the torque of the {shafts[0]} and {name} "
+                f"that of the {shafts[1]}: give gearbox_ratio in a mapping, or read them apart"
+            )
+
+
+def _lone(time: Floats, loads: Floats, pieces: Sequence[slice]) -> Floats:
     """Samples of each component that stand alone: see `Digest`."""
     rows = []
     for column in loads.T:
-        places = lone_samples(column)
-        far = times_as_far(column, places).max() if len(places) else np.nan
-        rows.append([len(places), time[places[0]] if len(places) else np.nan, far])
+        number, first, far = 0, np.nan, np.nan
+        for piece in pieces:
+            own = column[piece]
+            places = lone_samples(own)
+            if len(places):
+                number += len(places)
+                first = np.fmin(first, time[piece][places[0]])
+                far = np.fmax(far, times_as_far(own, places).max())
+        rows.append([number, first, far])
     return np.array(rows, dtype=float)
 
 

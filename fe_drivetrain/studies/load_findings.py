@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.procedure.failure_modes import ROTOR_TORQUE
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import certain_value
@@ -22,11 +23,18 @@ from fe_drivetrain.studies.load_records import (
 )
 from fe_drivetrain.studies.load_totals import LoadTotals
 from fe_drivetrain.studies.load_winds import Capture, CaptureTarget, winds_not_used
-from fe_drivetrain.studies.shown_units import in_large_unit
+from fe_drivetrain.studies.shown_units import in_large_unit, shown_unit
 from fe_drivetrain.studies.unused import speed_not_used
+from fe_drivetrain.turbine_loads.histories.level_sums import POWER
 from fe_drivetrain.turbine_loads.histories.sets import CHANCE
 from fe_drivetrain.turbine_loads.histories.spectra import MULTIPLES
 
+_PEAKS = {
+    "bending moment": "peak bending moment",
+    "Mx": "peak torque Mx",
+    "Fx": "peak thrust Fx",
+    "radial force": "peak radial force",
+}
 _NAMED = 3  # files that are sampled too slowly
 
 
@@ -84,15 +92,16 @@ def note_unused_speed(
 
 
 def _equivalent(found: Findings, hub: LoadTotals, options: LoadOptions) -> None:
-    """The equivalent tilting moment and torque, and what they are of."""
+    """The equivalent tilting moment and torque, or those of other loads, and what they are of."""
     slope, hertz = options.slopes[0], options.frequency
-    for name in ("My", "Mx"):
+    for name in [name for name in ("My", "Mx") if name in hub.loads] or hub.loads[:2]:
         one = hub.equivalent_load(name, slope, options)
         if not one.load:
             continue
         band = None if one.band is None else one.band / 1e3
-        quantity = f"equivalent load of {name}, slope {slope:g} [kN m]"
-        found.found(quantity, one.load / 1e3, band, (ROTOR_TORQUE,) if name == "Mx" else ())
+        quantity = f"equivalent load of {name}, slope {slope:g} [{shown_unit(UNIT_OF[name])}]"
+        of_rotor = name == "Mx" and not hub.files.torque_of
+        found.found(quantity, one.load / 1e3, band, (ROTOR_TORQUE,) if of_rotor else ())
     open_ends = ", \u00b1 what whole cycles in place of half ones would add"
     rule = open_ends if options.residue == "half" else ""
     if found.figures:
@@ -120,24 +129,84 @@ def state_answer(found: Findings, hub: LoadTotals, comparison: Comparison | None
     comparison : Comparison or None
         The files beside another set, where one is given.
     """
-    bending = found.value(*_extreme(hub, "bending moment", "peak bending moment"))
     figures = [
-        bending,
         *(found.judged(one.quantity) for one in found.figures),
-        found.value(*_extreme(hub, "Mx", "peak torque Mx")),
-        found.value(*_extreme(hub, "Fx", "peak thrust Fx")),
-        found.value(*_extreme(hub, "radial force", "peak radial force")),
+        *(
+            found.value(*_extreme(hub, load, name))
+            for load, name in _PEAKS.items()
+            if load in hub.loads
+        ),
     ]
+    if "bending moment" in hub.loads:
+        figures.insert(0, figures.pop(len(found.figures)))
     if comparison is not None:
         _answer_of_two(found, figures, comparison)
-        return
-    fatigue = "no moment has a cycle"
+    elif hub.loads == ("Mx",):
+        _answer_of_torque(found, hub)
+    elif hub.absent:
+        _answer_of_some(found, hub)
+    else:
+        fatigue = "no moment has a cycle"
+        if found.figures:
+            fatigue = f"the {figures[1].name}, is {certain_value(figures[1])}"
+        found.answer(
+            "Which loads act at the hub, at their extremes and in fatigue?",
+            f"Bending at the hub reaches {certain_value(figures[0])}; {fatigue}.",
+            figures,
+        )
+
+
+def _answer_of_torque(found: Findings, hub: LoadTotals) -> None:
+    """State extremes, mean and equivalents of a torque that is there alone."""
+    mean, deviation = (hub.statistics.overall[CHANNELS.index("Mx"), k] / 1e3 for k in (1, 3))
+    torque = hub.torque
+    over = "time", torque.equivalent_over_time(hub.files.seconds)
+    if torque.equivalent_over_turns is not None:
+        over = "turns", torque.equivalent_over_turns
+    peak, average = found.value(*_extreme(hub, "Mx", "peak torque Mx")), "mean torque [kN m]"
+    figures = [
+        peak,
+        found.value(average, float(mean)),
+        found.value("standard deviation of the torque [kN m]", float(deviation)),
+        *(found.judged(one.quantity) for one in found.figures),
+        found.value(
+            f"equivalent torque over {over[0]}, exponent {POWER:.3g} [kN m]", over[1] / 1e3
+        ),
+        found.value("torque reversals", torque.reversals),
+    ]
+    shaft = hub.files.torque_of
+    fatigue = "it has no cycle"
     if found.figures:
-        fatigue = f"the {figures[1].name}, is {certain_value(figures[1])}"
+        name = found.figures[0].quantity.removeprefix("equivalent load of Mx, ")
+        fatigue = f"its equivalent load, {name}, is {certain_value(figures[3])}"
     found.answer(
-        "Which loads act at the hub, at their extremes and in fatigue?",
-        f"Bending at the hub reaches {certain_value(bending)}; {fatigue}.",
+        f"Which torque acts at the {shaft or 'hub'}, at its extremes and in fatigue?",
+        f"Torque alone{f', of the {shaft}' if shaft else ''}: it reaches {certain_value(peak)}, "
+        f"{certain_value(figures[1])} on average; {fatigue}.",
         figures,
+    )
+
+
+def _answer_of_some(found: Findings, hub: LoadTotals) -> None:
+    """State extremes and equivalent loads of the components that are there."""
+    named = [name for name in FORCES if name in hub.loads]
+    peaks = {
+        load: found.value(*_extreme(hub, load, name))
+        for load, name in (
+            _PEAKS | {name: f"peak {name}" for name in named if name not in _PEAKS}
+        ).items()
+        if load in hub.loads
+    }
+    whole = [load for load in peaks if load in _PEAKS]
+    first = peaks[whole[0] if whole else named[0]]
+    equivalent = [found.judged(one.quantity) for one in found.figures]
+    fatigue = "none has a cycle"
+    if equivalent:
+        fatigue = f"the {equivalent[0].name}, is {certain_value(equivalent[0])}"
+    found.answer(
+        f"Which loads act at the hub, of {', '.join(named)}?",
+        f"{', '.join(named)} alone: {first.name} is {certain_value(first)}; {fatigue}.",
+        [first, *equivalent, *(one for one in peaks.values() if one is not first)][:6],
     )
 
 
@@ -221,6 +290,8 @@ def check_classes(found: Findings, hub: LoadTotals) -> None:
             [plane.positions for plane in hub.planes.values()],
         ),
     ):
+        if not classes:
+            continue
         worst = max(abs(one.amount.sum() / hub.files.seconds - 1.0) for one in classes)
         found.vanishes(
             f"{what}, less that of all samples, as a share",

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
@@ -18,8 +18,9 @@ from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.shafts.response.stated import Stated, stated_hub_loads
 from fe_drivetrain.studies import load_tables as rows
+from fe_drivetrain.studies.load_cautions import left_out
 from fe_drivetrain.studies.load_comparison import Comparison, LoadSet, compare_sets
-from fe_drivetrain.studies.load_digest import LOADS, UNIT_OF, LoadOptions
+from fe_drivetrain.studies.load_digest import UNIT_OF, Digest, LoadOptions, OneShaft
 from fe_drivetrain.studies.load_findings import (
     check_classes,
     hub_findings,
@@ -58,7 +59,8 @@ class LoadsResult(Result):
     hub : LoadTotals
         Hub loads of all files.
     reactions : Mapping[str, LoadTotals]
-        Reactions of a scene to them, by bearing, and "gearbox"; empty without a scene.
+        Reactions of a scene to them, by bearing, and "gearbox"; empty without a scene, and where
+        a file lacks components.
     others : Mapping[str, LoadTotals]
         Other channels, by name and unit, each as the load "Fx".
     capture : Capture or None
@@ -87,7 +89,7 @@ class LoadsResult(Result):
     def stated(self) -> Stated:
         """What the hub loads are: sign, frame, origin."""
         of = self.scene_reactions
-        return stated_hub_loads(None if of is None else of.scene)
+        return _stated(self.hub, None if of is None else of.scene)
 
     @property
     def equivalent_loads(self) -> dict[str, dict[float, EquivalentLoad]]:
@@ -129,8 +131,8 @@ class LoadsResult(Result):
         return {**self.tables, **self.file_tables()}
 
     def chart(self) -> Chart:
-        """Cycles of a range or a larger one, of the moments."""
-        caption, traces, x, y, logarithmic = self.exceedances(("Mx", "My", "Mz"))
+        """Cycles of a range or a larger one, of the moments, or else of the forces."""
+        caption, traces, x, y, logarithmic = self.exceedances(self.hub.by_kind[-1])
         return chart(caption, traces, x, y, logarithmic)
 
     def exceedances(self, loads: Sequence[str]) -> tuple[str, list[Any], str, str, str]:
@@ -141,6 +143,7 @@ class LoadsResult(Result):
             traces.append(trace(name, classes.edges()[:-1] / 1e3, classes.at_least))
         unit = shown_unit(UNIT_OF[loads[0]])
         what = "forces" if UNIT_OF[loads[0]] == "N" else "moments"
+        what = "the torque" if list(loads) == ["Mx"] else what
         caption = f"Cycles of a range or a larger one, of {what}; {self.asked.counted}"
         return caption, traces, f"range [{unit}]", "cycles", "y"
 
@@ -220,6 +223,7 @@ class _Asked:
     scene: Scene | None
     level: int
     resume: bool
+    shaft: OneShaft = field(default_factory=OneShaft)
 
     def __post_init__(self) -> None:
         if not self.files:
@@ -263,9 +267,13 @@ def _counted(asked: _Asked, steps: Steps) -> LoadsResult:
     sums = _added_up(asked, steps, reactions, mine)
     if not sums.hub.has_loads:
         raise InputError("all hub loads of all files are zero: give histories with loads")
+    _check_ultimate(options, sums.hub)
+    if not sums.reactions:
+        reactions = None
     capture = captured(sums.hub.statistics, asked.target)
+    found.notes += left_out(sums.hub, with_reactions=scene is not None)
     hub_findings(found, sums.hub, options, asked.target, capture)
-    found.data("hub_loads_stated", stated_hub_loads(scene).facts())
+    found.data("hub_loads_stated", _stated(sums.hub, scene).facts())
     if reactions is not None:
         found.data("reactions", reaction_rows(sums.reactions, options))
         found.data("reactions_stated", reactions.stated.facts())
@@ -288,6 +296,29 @@ def _counted(asked: _Asked, steps: Steps) -> LoadsResult:
         scene_reactions=reactions,
         **found.frozen(steps.times, **asked.plain()),
     )
+
+
+def _check_ultimate(options: LoadOptions, hub: LoadTotals) -> None:
+    """Refuse ultimate loads of what the files do not have."""
+    for name in options.ultimate:
+        if name not in hub.loads:
+            raise InputError(
+                f"load histories: an ultimate load of {name} is given, which not every file has "
+                f"({', '.join(hub.loads)} are there): leave it out"
+            )
+
+
+def _stated(hub: LoadTotals, scene: Scene | None) -> Stated:
+    """What hub loads are: sign, frame, origin; of a torque alone less."""
+    found, shaft = stated_hub_loads(scene), hub.files.torque_of
+    if hub.loads == ("Mx",):
+        return replace(
+            found,
+            load=f"torque of the {shaft or 'rotor on the shaft'}",
+            origin="about the axis of the shaft",
+            weight="no part of a torque about the axis",
+        )
+    return replace(found, load=f"{found.load}, Mx of the {shaft}") if shaft else found
 
 
 def _reactions(found: Findings, steps: Steps, scene: Scene, level: int) -> SceneReactions:
@@ -317,9 +348,10 @@ def _compared(
 ) -> Comparison:
     """The files beside another set, which is read into `its`."""
     with steps.step("the others"):
-        for _, one in digests(
+        for file, one in digests(
             asked.against, asked.options, asked.resume, "the others", steps.report, reactions
         ):
+            asked.shaft.add(file.stem, one.hub)
             its.add(one)
         comparison = compare_sets(mine, its)
     found.say(*comparison.sentences)
@@ -336,9 +368,15 @@ class _Totals:
 
 
 def _added_up(
-    asked: _Asked, steps: Steps, reactions: SceneReactions | None, mine: LoadSet
+    asked: _Asked,
+    steps: Steps,
+    reactions: SceneReactions | None,
+    mine: LoadSet,
 ) -> _Totals:
-    """Totals of all files; each is added to `mine` where another set is compared."""
+    """Totals of all files; each is added to `mine` where another set is compared.
+
+    There are none of reactions where a file lacks components.
+    """
     hub = LoadSums()
     of_scene = {name: LoadSums() for name in (reactions.names if reactions else ())}
     others: dict[str, LoadSums] = {}
@@ -347,7 +385,10 @@ def _added_up(
             asked.files, asked.options, asked.resume, "files", steps.report, reactions
         ):
             name = short_name(file, asked.files)
+            asked.shaft.add(name, one.hub)
             hub.add(name, one.hub)
+            if not one.reactions:
+                of_scene = {}
             for reaction, sums in of_scene.items():
                 sums.add(name, one.reactions[reaction])
             for channel, part in one.others.items():
@@ -363,20 +404,19 @@ def _added_up(
 
 def _events(asked: _Asked, report: Progress) -> list[Event]:
     return [
-        event(
-            a_year,
-            files,
-            (
-                one.hub
-                for _, one in digests(files, asked.options, asked.resume, "transients", report)
-            ),
-        )
-        for a_year, files in asked.transients
+        event(a_year, files, _of_event(asked, files, report)) for a_year, files in asked.transients
     ]
+
+
+def _of_event(asked: _Asked, files: Sequence[Path], report: Progress) -> Iterator[Digest]:
+    """Hub loads of the files of an event."""
+    for file, one in digests(files, asked.options, asked.resume, "transients", report):
+        asked.shaft.add(file.stem, one.hub)
+        yield one.hub
 
 
 def _equivalents(found: LoadTotals, options: LoadOptions) -> dict[str, dict[float, EquivalentLoad]]:
     return {
         name: {slope: found.equivalent_load(name, slope, options) for slope in options.slopes}
-        for name in LOADS
+        for name in found.loads
     }

@@ -89,7 +89,7 @@ class Lifetime:
     sources : tuple of str
         What damage comes from: each wind speed, then each event.
     damage : ndarray, (loads, slopes, sources)
-        Sums of n r^m of the lifetime.
+        Sums of n r^m of the lifetime; NaN of loads that a file lacks.
     total : ndarray, (loads, slopes)
         Their sums.
     events : tuple of Event
@@ -179,8 +179,11 @@ def _levels(
 ) -> dict[str, Classes]:
     """Distributions of the lifetime by load, in units of so many of those of the histories."""
     result = {}
+    known = set(found.loads).intersection(*(levels.seconds for e in events for levels in e.levels))
     for name in LOADS:
         parts = []
+        if name not in known:
+            continue
         for speed, factor in factors.items():
             own = getattr(found.levels_by_wind[speed], kind)
             parts += [_scaled(own[name], factor / size)] if name in own else []

@@ -110,7 +110,7 @@ class FileDigest:
     hub : Digest
         Hub loads.
     reactions : Mapping[str, Digest]
-        Each reaction of a scene to them, by name.
+        Each reaction of a scene to them, by name; empty where components are absent.
     others : Mapping[str, Digest]
         Each other channel, by name and unit, as the load `ALONE`.
     """
@@ -136,10 +136,12 @@ def file_digest(
     """
 
     def beside(loads: Floats, options: LoadOptions) -> Digest:
-        history = LoadHistory(found.history.name, found.history.time, loads)
+        own = found.history
+        history = LoadHistory(own.name, own.time, loads, measured=own.measured)
         return digest(Recorded(history, found.rotor_speed, found.wind_speed), options)
 
-    of_scene = {} if reactions is None else reactions.of(found.history)
+    whole = not found.history.absent and not found.history.torque_of
+    of_scene = reactions.of(found.history) if reactions is not None and whole else {}
     plain = replace(options, ultimate={})
     others = {}
     for name, values in found.others.items():
@@ -187,7 +189,7 @@ def kept_digest(
         kept = cache.load_record("load-digests", content, FileDigest)
         if kept is not None:
             return kept
-    recorded = read_recorded(file, options.names, options.skip, options.also)
+    recorded = read_recorded(file, options.names, options.skip, options.also, True)
     found = file_digest(recorded, options, reactions)
     cache.keep_record("load-digests", content, found)
     return found

@@ -45,6 +45,8 @@ def slope_rows(loads: Floats, options: LoadOptions) -> list[Record]:
 
 def torque_rows(found: LoadTotals) -> list[Record]:
     """Reversals of the torque, and the constant torques of the same effect on roller bearings."""
+    if "Mx" not in found.loads:
+        return []
     torque = found.torque
     over_time = torque.equivalent_over_time(found.files.seconds)
     rows: list[Record] = [
@@ -139,11 +141,12 @@ def other_rows(found: Mapping[str, LoadTotals], options: LoadOptions) -> list[Re
 
 
 def lifetime_rows(found: Lifetime, options: LoadOptions) -> list[Record]:
-    """Equivalent loads of a lifetime."""
+    """Equivalent loads of a lifetime, of loads that every file has."""
     loads = (found.equivalent_loads(options.slopes) / 1e3).tolist()
     return [
         {"channel": f"{name} [{shown_unit(unit)}]", **slope_columns(row, options)}
         for name, unit, row in zip(LOADS, UNITS, loads, strict=False)
+        if not np.isnan(row).any()
     ]
 
 

@@ -11,7 +11,6 @@ from fe_drivetrain.studies.load_comparison import Comparison
 from fe_drivetrain.studies.load_digest import (
     CHANNELS,
     LOADS,
-    MOMENTS_BY_MEAN,
     UNIT_OF,
     UNITS,
     LoadOptions,
@@ -27,8 +26,10 @@ from fe_drivetrain.turbine_loads.histories.windows import COLUMNS
 
 
 def file_rows(found: LoadTotals) -> list[Record]:
-    """Each file."""
+    """Each file; with its gaps where one has some."""
     winds, speeds = (found.statistics.mean_of(name) for name in ("wind speed", "rotor speed"))
+    gaps = [steps.gaps for steps in found.files.steps]
+    broken = any(len(own) for own in gaps)
     return [
         {
             "file": name,
@@ -38,9 +39,15 @@ def file_rows(found: LoadTotals) -> list[Record]:
             "samples": span.samples,
             "mean wind speed [m/s]": _known(wind),
             "mean rotor speed [rad/s]": _known(speed),
+            **({"gaps": len(own), "in gaps [s]": float(own[:, 1].sum())} if broken else {}),
         }
-        for name, span, wind, speed in zip(
-            found.files.names, found.files.spans, winds.tolist(), speeds.tolist(), strict=True
+        for name, span, wind, speed, own in zip(
+            found.files.names,
+            found.files.spans,
+            winds.tolist(),
+            speeds.tolist(),
+            gaps,
+            strict=True,
         )
     ]
 
@@ -120,10 +127,13 @@ def capture_rows(found: Capture) -> list[Record]:
 def spectrum_rows(found: LoadTotals) -> list[Record]:
     """Density of each load at each frequency."""
     spectra = found.spectra
-    names = [f"{name} [({unit})^2/Hz]" for name, unit in zip(LOADS, UNITS, strict=False)]
+    if not len(spectra.frequency):
+        return []
+    places = [LOADS.index(name) for name in found.loads]
+    names = [f"{LOADS[c]} [({UNITS[c]})^2/Hz]" for c in places]
     return [
         {"frequency [Hz]": float(frequency), **dict(zip(names, values.tolist(), strict=True))}
-        for frequency, values in zip(spectra.frequency, spectra.density.T, strict=True)
+        for frequency, values in zip(spectra.frequency, spectra.density[places].T, strict=True)
     ]
 
 
@@ -165,6 +175,7 @@ def equivalent_rows(found: LoadTotals, options: LoadOptions) -> list[Record]:
             LOADS, UNITS, equivalent_loads(damage, time, slopes, hertz).tolist(), strict=False
         )
         for slope, value in zip(slopes.tolist(), row, strict=True)
+        if not np.isnan(value)
     ]
 
 
@@ -173,6 +184,7 @@ def range_rows(found: LoadTotals) -> list[Record]:
     return [
         {"channel": name, "unit": unit, "range from": low, "range to": high, "cycles": number}
         for name, unit in zip(LOADS, UNITS, strict=False)
+        if name in found.cycles.ranges
         for low, high, number in _filled(found.cycles.ranges[name])
     ]
 
@@ -180,8 +192,7 @@ def range_rows(found: LoadTotals) -> list[Record]:
 def range_mean_rows(found: LoadTotals) -> list[Record]:
     """Cycles by range and mean, of torque and tilting moment."""
     rows: list[Record] = []
-    for name in MOMENTS_BY_MEAN:
-        both = found.cycles.ranges_and_means[name]
+    for name, both in found.cycles.ranges_and_means.items():
         ranges, means = both.edges(0), both.edges(1)
         for r, c in np.argwhere(both.amount > 0.0).tolist():
             rows.append(
@@ -242,7 +253,7 @@ def damage_rows(found: Lifetime, options: LoadOptions) -> list[Record]:
         {"channel": name, "slope": slope, "from": source, "share of damage [%]": share}
         for c, name in enumerate(LOADS)
         for k, slope in enumerate(options.slopes)
-        if found.total[c, k]
+        if found.total[c, k] > 0.0
         for source, share in zip(
             found.sources, (100.0 * found.damage[c, k] / found.total[c, k]).tolist(), strict=True
         )

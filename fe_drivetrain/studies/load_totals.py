@@ -16,6 +16,7 @@ from fe_drivetrain.turbine_loads.histories.level_sums import LevelSums, TorqueSu
 from fe_drivetrain.turbine_loads.histories.sites import rounded_wind
 from fe_drivetrain.turbine_loads.histories.spectrum_sums import MeanSpectra, SpectrumSums
 from fe_drivetrain.turbine_loads.histories.windows import Windows, joined_windows
+from fe_drivetrain.turbine_loads.hub_loads.sampling import Steps
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,12 +33,18 @@ class LoadFiles:
         Which channels were read, and in how many files.
     own_speeds : tuple of ndarray
         (2,) least and largest rotor speed that each states [1/min]; NaN where it has none.
+    steps : tuple of Steps
+        Steps of time in each, and gaps.
+    torque_of : str
+        The shaft that Mx was recorded at, where that is not the rotor's; else empty.
     """
 
     names: tuple[str, ...]
     spans: tuple[Span, ...]
     channels: Mapping[str, int]
     own_speeds: tuple[Floats, ...]
+    steps: tuple[Steps, ...]
+    torque_of: str
 
     @property
     def seconds(self) -> float:
@@ -131,6 +138,8 @@ class EquivalentLoad:
 class LoadTotals:
     """What all files have together: of hub loads, a reaction to them, or another channel.
 
+    Loads that a file lacks are not known of all: arrays have NaN of them, mappings leave them out.
+
     Attributes
     ----------
     files : LoadFiles
@@ -140,7 +149,7 @@ class LoadTotals:
     cycles : CycleSums
         Cycles of `LOADS`.
     damages : ndarray, (files, loads, slopes)
-        Sums of n r^m of each file.
+        Sums of n r^m of each file; NaN of what it has not.
     levels : LevelSums
         Time and turns at each level of `LOADS`.
     levels_by_wind : Mapping[float, LevelSums]
@@ -165,6 +174,23 @@ class LoadTotals:
     spectra: MeanSpectra
     planes: Mapping[str, PlaneTotals]
     suspects: Suspects
+
+    @property
+    def loads(self) -> tuple[str, ...]:
+        """Those of `LOADS` that every file has."""
+        values = self.statistics.overall[: len(LOADS)]
+        return tuple(n for n, row in zip(LOADS, values, strict=True) if not np.isnan(row).any())
+
+    @property
+    def by_kind(self) -> list[tuple[str, ...]]:
+        """Forces, and moments, that every file has; without a kind that is not there."""
+        kinds = (tuple(n for n in of if n in self.loads) for of in (FORCES[:3], FORCES[3:]))
+        return [names for names in kinds if names]
+
+    @property
+    def absent(self) -> tuple[str, ...]:
+        """Components that a file or more lacks."""
+        return tuple(name for name in FORCES if name not in self.loads)
 
     def equivalent_loads(self, options: LoadOptions) -> Floats:
         """(loads, slopes) damage-equivalent loads of all files [N, N m]."""
@@ -210,7 +236,7 @@ class LoadTotals:
     def has_loads(self) -> bool:
         """Whether any load of any file is not zero."""
         values = self.statistics.joined.values[:, : len(LOADS)]
-        return bool(self.cycles.largest.any() or np.abs(values).max(initial=0.0) > 0.0)
+        return bool(np.nanmax(np.abs(values), initial=0.0) > 0.0)
 
 
 class LoadSums:
@@ -221,6 +247,8 @@ class LoadSums:
         self._spans: list[Span] = []
         self._channels: dict[str, int] = {}
         self._own_speeds: list[Floats] = []
+        self._steps: list[Steps] = []
+        self._torque_of = ""
         self._windows: list[Windows] = []
         self._means: list[Floats] = []
         self._damages: list[Floats] = []
@@ -238,6 +266,8 @@ class LoadSums:
         self._spans.append(found.span)
         self._channels[found.channels] = self._channels.get(found.channels, 0) + 1
         self._own_speeds.append(found.own_speeds)
+        self._steps.append(found.steps)
+        self._torque_of = found.torque_of or self._torque_of
         self._windows.append(found.windows)
         means = found.windows.values[:, :, 1].T @ found.windows.seconds / seconds
         self._means.append(means)
@@ -246,12 +276,12 @@ class LoadSums:
         if found.spectra is not None:
             self._spectra.add(name, found.spectra, seconds, found.span.step)
         for plane, sums in self._planes.items():
-            sums.add(found.planes[plane], seconds)
+            sums.add(found.planes.get(plane), seconds)
         for c, component in enumerate(FORCES):
             number, first, far = found.lone[c].tolist()
             if number:
                 self._lone.append((name, component, int(number), first, far))
-            if not found.cycles.largest[c]:
+            if found.cycles.largest[c] == 0.0:
                 self._still[component] = self._still.get(component, 0) + 1
 
     def _add_sums(self, found: Digest, wind: float) -> None:
@@ -269,20 +299,26 @@ class LoadSums:
         """All files so far, one or more."""
         assert self._sums is not None
         cycles, levels, torque = self._sums
+        statistics = LoadStatistics(tuple(self._windows), np.array(self._means))
+        rows = zip(LOADS, statistics.overall, strict=False)
+        known = [name for name, row in rows if not np.isnan(row).any()]
+        planes = {name: sums.totals() for name, sums in self._planes.items()}
         return LoadTotals(
             LoadFiles(
                 tuple(self._names),
                 tuple(self._spans),
                 dict(self._channels),
                 tuple(self._own_speeds),
+                tuple(self._steps),
+                self._torque_of,
             ),
-            LoadStatistics(tuple(self._windows), np.array(self._means)),
-            cycles,
+            statistics,
+            cycles.of(known),
             np.array(self._damages),
-            levels,
-            dict(self._by_wind),
+            levels.of(known),
+            {wind: own.of(known) for wind, own in self._by_wind.items()},
             torque,
             self._spectra.mean(),
-            {name: sums.totals() for name, sums in self._planes.items()},
+            {name: one for name, one in planes.items() if one is not None},
             Suspects(tuple(self._lone), dict(self._still)),
         )

@@ -9,9 +9,8 @@ from typing import ClassVar
 
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
-from fe_drivetrain.drivetrain_file.named_scenes import named_scene, read_drivetrain
-from fe_drivetrain.drivetrain_file.scene import Scene
-from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 from fe_drivetrain.procedure.assessment import Measured, StepState, assessed, claims_of
 from fe_drivetrain.procedure.channels import missing_file
 from fe_drivetrain.procedure.evidence import (
@@ -120,7 +119,7 @@ def validate(project: Project, folder: Path, *, report: Progress = silent) -> Va
     Raises
     ------
     InputError
-        A file that the project names is faulty, or it names a system, scene or machine that there
+        A file that the project names is faulty, or it names a system, drivetrain that there
         is not.
     """
     found, steps = Findings(), Steps(report)
@@ -210,14 +209,13 @@ def _is_complete(states: Sequence[StepState]) -> bool:
     return all(state.complete for state in states)
 
 
-def _drivetrain(project: Project, folder: Path) -> Scene | Machine | None:
-    """The scene or machine that the model is of; None before step 2."""
+def _drivetrain(project: Project, folder: Path) -> Drivetrain | None:
+    """The drivetrain that the model is of; None before step 2."""
     if project.model is None:
         return None
-    name = project.model.scene or project.model.machine
+    name = project.model.drivetrain
     file = folder / name
-    given = str(file) if file.is_file() else name
-    return named_scene(given) if project.model.scene else machine_of(read_drivetrain(given))
+    return read_drivetrain(str(file) if file.is_file() else name)
 
 
 def _evidence(

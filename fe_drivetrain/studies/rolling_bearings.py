@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -13,7 +13,11 @@ from fe_drivetrain.bearing.geometry import Bearing, RollerRow
 from fe_drivetrain.bearing.races import Races
 from fe_drivetrain.bearing_life.coupled.load_paths import PINNED, LoadPath
 from fe_drivetrain.bearing_life.coupled.of_scene import scene_body
+from fe_drivetrain.bearing_life.coupled.reaction_paths import ReactionPath
+from fe_drivetrain.bearing_life.life.lubricants import Lubricant
 from fe_drivetrain.bearing_life.life.rated import RatedBearing, rated_from_catalogue
+from fe_drivetrain.bearing_life.life.reference_life import Turning
+from fe_drivetrain.bearing_life.life.roller_damage import LifeRules
 from fe_drivetrain.bearing_life.life.roller_models import (
     RollerModel,
     flexible_rings,
@@ -71,41 +75,102 @@ class Choices:
     assumed: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True)
+class Oil:
+    """The oil of a gearbox.
+
+    Attributes
+    ----------
+    lubricant : Lubricant
+        The oil in its bearings.
+    assumed : tuple of str
+        Which of "lubricant", "temperature" and "cleanliness" nobody stated.
+    """
+
+    lubricant: Lubricant
+    assumed: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class OtherPath:
+    """A way of the load to a bearing with another value of what was assumed.
+
+    Attributes
+    ----------
+    assumed, instead : str
+        What is taken, and what it is compared with.
+    path : ReactionPath
+        The way then.
+    """
+
+    assumed: str
+    instead: str
+    path: ReactionPath
+
+
 @dataclass(frozen=True, eq=False)
 class OneBearing:
-    """A bearing of a scene, ready for lives.
+    """A bearing of a drivetrain, ready for lives.
 
     Attributes
     ----------
     name, entry_name : str
-        In the scene, and in the catalogue.
+        In the drivetrain, and in the catalogue.
     entry : Entry
         Of the catalogue.
     rated : RatedBearing
         With ratings.
-    path : LoadPath
-        From the hub to its rollers.
-    seat : float
-        Diameter of the shaft there [m].
+    path : LoadPath or ReactionPath
+        From the hub to its rollers: with them in equilibrium with the shaft, or by reactions.
+    seat : float or None
+        Diameter of the shaft there [m], where the drivetrain has it.
     rollers : callable
         From a bearing as this one, but for clearance and profile, to how its load is shared.
     misfit : str or None
         What does not fit there, though it may be meant, as a sentence.
+    oil : Oil or None
+        The oil of a gearbox's bearing; a main bearing has the lubricant of the options.
+    turning : {"inner", "outer"} or None
+        The ring that turns against the load, where the drivetrain says so: the outer of planets.
+    planets : int
+        Number of planets with such a bearing; 0 of one in the housing.
+    levels : Mapping[str, ReactionPath]
+        The load by each level of the drivetrain's statics, from the cheapest.
+    others : tuple of OtherPath
+        The load with other values of what was assumed.
     """
 
     name: str
     entry_name: str
     entry: Entry
     rated: RatedBearing
-    path: LoadPath
-    seat: float
+    path: LoadPath | ReactionPath
+    seat: float | None
     rollers: Callable[[Bearing], RollerModel]
     misfit: str | None = None
+    oil: Oil | None = None
+    turning: Turning | None = None
+    planets: int = 0
+    levels: Mapping[str, ReactionPath] = field(default_factory=dict)
+    others: tuple[OtherPath, ...] = ()
 
-    def path_with(self, bearing: Bearing) -> LoadPath:
+    @property
+    def seen(self) -> str:
+        """How places of its rolling elements are counted."""
+        if self.planets:
+            return "on its pin, 0 deg towards the sun, 90 deg along the tangent about +x"
+        return "looking downwind, 90 deg on top"
+
+    def path_with(self, bearing: Bearing) -> LoadPath | ReactionPath:
         """The load path with another clearance or profile of this bearing."""
-        bearings = {**self.path.bearings, self.name: bearing}
-        return replace(self.path, bearings=bearings, rollers=self.rollers(bearing))
+        return self.path.with_bearing(bearing, self.rollers(bearing))
+
+    def rules(self, asked: LifeRules) -> LifeRules:
+        """Choices that change the life of this bearing, from those that are asked for."""
+        found = asked if self.turning is None else replace(asked, turning=self.turning)
+        if self.oil is None or asked.lubricant is None:
+            return found
+        return replace(found, lubricant=self.oil.lubricant)
 
 
 def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
@@ -134,7 +199,7 @@ def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
     named = _all_named(scene, choices)
     rated = {
         name: rated_from_catalogue(
-            one.name, *choices.catalogues, **_profile(one.entry, choices.profiled)
+            one.name, *choices.catalogues, **profile_of(one.entry, choices.profiled)
         )
         for name, one in named.items()
     }
@@ -239,8 +304,16 @@ def rollers_in_words(one: OneBearing, riser: str) -> str:
     return f"{shape}, {ends}"
 
 
-def _profile(entry: Entry, profiled: bool) -> dict[str, Any]:
-    """The standard's profile, for rollers whose entry has none."""
+def profile_of(entry: Entry, profiled: bool) -> dict[str, Any]:
+    """The standard's profile, for rollers whose entry has none.
+
+    Parameters
+    ----------
+    entry : Entry
+        The bearing's entry.
+    profiled : bool
+        Whether it is asked for.
+    """
     if not profiled or entry.crown or entry.kind not in PROFILE:
         return {}
     return {"crown": PROFILE[entry.kind]}

@@ -19,7 +19,7 @@ from fe_drivetrain.shafts.response.entering import at_front, entering, joined
 from fe_drivetrain.turbine_loads.hub_loads.aero_rotor import assumptions
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.turbine_loads.hub_loads.files import read_hub_load_files, read_hub_loads
-from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
+from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory, require_even
 from fe_drivetrain.turbine_loads.hub_loads.point_loads import PointLoads
 from fe_drivetrain.turbine_loads.hub_loads.recorded import read_mapped
 from fe_drivetrain.turbine_loads.hub_loads.surrogate import (
@@ -164,6 +164,8 @@ def _of_the_user(
     skip: float = 0.0,
 ) -> StudyLoads:
     """Histories at the front face, and a sentence on them."""
+    for history in found:
+        require_even(history)
     histories = [at_front(scene, history) for history in found]
     if not any(history.loads.any() for history in histories):
         raise InputError(f"{source}: all hub loads are zero: give histories with loads")

@@ -13,7 +13,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 
 if TYPE_CHECKING:
-    from fe_drivetrain.drivetrain_file.scene import Scene
+    from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
     from fe_drivetrain.studies.rolling_bearings import Choices, OneBearing
 
 RPM = 30.0 / np.pi
@@ -67,25 +67,28 @@ def speed_not_used(given: float | None, stated: Sequence[Floats]) -> str | None:
 
 
 def choices_not_used(
-    scene: Scene, choices: Choices, bearings: Sequence[OneBearing]
+    drivetrain: Drivetrain, choices: Choices, bearings: Sequence[OneBearing]
 ) -> Iterator[str]:
-    """Options of ``life`` on bearings against what the scene and catalogues say, as sentences.
+    """Options of ``life`` on bearings against what the file and catalogues say, as sentences.
 
     Parameters
     ----------
-    scene : Scene
-        The scene.
+    drivetrain : Drivetrain
+        The drivetrain.
     choices : Choices
         The options.
     bearings : sequence of OneBearing
         Whose lives are asked for.
     """
-    for unit in scene.bearing_units:
-        name, named = unit.bearing.name, choices.named.get(unit.bearing.name)
-        if named is not None and unit.catalogue not in (None, named):
+    # late, since it loads the compiled loops of bearings
+    from fe_drivetrain.studies.gearbox_bearings import catalogue_entries
+
+    stated = catalogue_entries(drivetrain)
+    for name, named in choices.named.items():
+        if stated.get(name, named) != named:
             yield (
                 f"{argument('LifeOptions.bearings', {name: named})} takes the place of the entry "
-                f"{unit.catalogue!r} that the scene names under catalogue."
+                f"{stated[name]!r} that the scene names under catalogue."
             )
     if "profile" not in choices.assumed:
         option = argument("LifeOptions.profile", choices.profiled)
@@ -95,8 +98,7 @@ def choices_not_used(
                     f"{option} is not used for bearing {one.name}: its entry {one.entry_name!r} "
                     f"states a profile of its own, crown {one.entry.crown:g} of the diameter."
                 )
-    of_scene = {u.bearing.name: u.catalogue for u in scene.bearing_units if u.catalogue}
-    yield from catalogues_not_used(choices.catalogues, {**of_scene, **choices.named})
+    yield from catalogues_not_used(choices.catalogues, {**stated, **choices.named})
 
 
 def catalogues_not_used(catalogues: Sequence[Path], named: Mapping[str, str]) -> Iterator[str]:

@@ -50,7 +50,14 @@ def test_scenes_that_bearings_stand_in_are_in_the_library() -> None:
 
 def test_assumed_rollers_fit_the_printed_ratings() -> None:
     """Bearing S is sized at 20 deg; MASTA's bearing is given with its rollers."""
-    for name, within in (("bearing_s_o20", 0.03), ("bearing_s_x20", 0.03), ("masta_single", 1e-3)):
+    for name, within in (
+        ("bearing_s_o20", 0.03),
+        ("bearing_s_x20", 0.03),
+        ("masta_single", 1e-3),
+        ("nrel_5mw_planet", 0.02),
+        ("nrel_5mw_carrier_upwind", 0.05),
+        ("nrel_5mw_carrier_downwind", 0.02),
+    ):
         entry = read_bearing_catalogue()[name]
         found = ratings(entry.bearing(name))
         assert entry.ratings is not None

@@ -22,12 +22,12 @@ PLACES = {fe_drivetrain.cases.__name__: Path(fe_drivetrain.cases.__path__[0])}
 
 READERS = frozenset(
     {
-        *("library_machine", "named_machine", "read_machine", "parse_machine"),
-        *("library_scene", "read_drivetrain", "read_scene", "parse_scene"),
-        *("read_gear_table", "parse_gear_table"),
+        *("library_machine", "named_machine", "named_scene"),
+        *("library_scene", "read_drivetrain", "read_scene", "parse_scene", "parse_drivetrain"),
+        "Run.drivetrain",
     }
 )
-"""Functions that give a machine, a scene or a gear table."""
+"""Functions that give a drivetrain, or a machine of one."""
 
 STAMPS = frozenset({"about", "of"})
 """Methods of a page that state its drivetrain."""
@@ -36,11 +36,6 @@ UNSTAMPED = {
     name: reason
     for reason, names in {
         "of four drivetrains of a thesis at once, which it compares": (
-            "dynamics/campbell_table",
-            "dynamics/hss_stiffness",
-            "dynamics/normal_operation",
-            "dynamics/shutdown",
-            "dynamics/two_mass_transients",
             "verification/drivetrain_shafts",
         ),
         "of a bearing in a housing that the case makes, on a library's shaft for its size": (
@@ -162,6 +157,8 @@ def mentioned(module: str, name: str) -> tuple[frozenset[str], frozenset[str]]:
         if isinstance(part, ast.Name):
             found.add(names.get(part.id, f"{module}.{part.id}"))
         elif isinstance(part, ast.Attribute) and isinstance(part.value, ast.Name):
+            if (part.value.id, part.attr) == ("run", "drivetrain"):
+                found.add("report.Run.drivetrain")
             found.add(f"{names.get(part.value.id, module)}.{part.attr}")
     return frozenset(stamps - {""}), frozenset(found)
 
@@ -181,7 +178,7 @@ def reached(module: str, name: str) -> tuple[set[str], set[str]]:
         stamps |= stated
         for full in names:
             of, _, own = full.rpartition(".")
-            if own in READERS and of not in modules():
+            if (own in READERS and of not in modules()) or full == "report.Run.drivetrain":
                 readers.add(own)
             left.append((of, own))
     return readers, stamps
@@ -193,12 +190,14 @@ def stated_by(node: ast.AST) -> str:
         case ast.Call(func=ast.Attribute(ast.Name("page"), stamp), args=[first, *_]):
             none = isinstance(first, ast.Constant) and first.value is None
             return stamp if stamp in STAMPS and not none else ""
+        case ast.Call(func=ast.Attribute(_, "state"), args=[ast.Name("page")]):
+            return "about"  # of the drivetrain that the user has chosen
     return ""
 
 
 def test_none_is_no_stamp() -> None:
     calls = {"page.about(machine)": "about", "page.of(table)": "of", "page.of(None)": ""}
-    calls |= {"one.of(table)": "", "page.note(text)": ""}
+    calls |= {"one.of(table)": "", "page.note(text)": "", "chosen.state(page)": "about"}
     for text, stamp in calls.items():
         assert stated_by(ast.parse(text, mode="eval").body) == stamp
 
@@ -220,7 +219,7 @@ def test_cases_that_take_a_drivetrain_are_found() -> None:
         "fidelity/bearing_joints",
     } <= taking().keys()
     assert "verification/units" not in taking()
-    asked = {name for name, case in all_cases().items() if "machine" in case.settings}
+    asked = {name for name, case in all_cases().items() if "drivetrain" in case.settings}
     asked |= {n for n, case in all_cases().items() if case.changes == "scene"}
     assert asked <= taking().keys()
 

@@ -164,7 +164,7 @@ def test_a_case_is_a_script(tmp_path):
     """`python cases/main_bearing/spherical.py` runs that case, with the options of `run`."""
     table = tmp_path / "mine.yaml"
     table.write_text(
-        "{title: direct drive, rotor: 5.0, shafts: [{name: s, stiffness: 80.0}], "
+        "{title: direct drive, rotor: {inertia: 5.0}, shaft: {name: s, torsion: 80.0}, "
         "generator: {inertia: 3.0}}",
         "utf-8",
     )
@@ -174,7 +174,7 @@ def test_a_case_is_a_script(tmp_path):
             str(ROOT / "cases" / "drivetrain" / "from_table.py"),  # which takes no time
             f"--out={tmp_path / 'out'}",
             "--quick",
-            f"--set=table={table}",
+            f"--set=drivetrain={table}",
         ],
         capture_output=True,
         text=True,
@@ -185,4 +185,4 @@ def test_a_case_is_a_script(tmp_path):
     results = read_results(tmp_path / "out" / "results.json")
     assert results.case == "drivetrain/from_table"
     assert results.environment.quick
-    assert results.environment.settings == {"table": str(table)}
+    assert results.environment.settings == {"drivetrain": str(table)}

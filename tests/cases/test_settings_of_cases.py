@@ -204,7 +204,7 @@ def test_a_number_of_things_may_be_written_with_an_exponent():
 @pytest.mark.parametrize(
     ("name", "key", "close"),
     [
-        ("drivetrain/from_table", "tabel", "table"),
+        ("drivetrain/from_table", "drivetran", "drivetrain"),
         ("performance/peers", "sises", "sizes"),
         ("performance/work_precision", "part", "parts"),
         ("main_bearing/rmse", "sovler", "solver"),

@@ -14,7 +14,7 @@ from coarse_scenes import coarse_scene
 from tiny_case import Result, check_one
 from typer.main import get_command
 
-from fe_drivetrain.command_line.answer_text import answer_text
+from fe_drivetrain.command_line.answer_text import answer_text, figures_table, rendered
 from fe_drivetrain.command_line.app import app
 from fe_drivetrain.command_line.examples import EXAMPLES, unfolded
 from fe_drivetrain.command_line.names import complete_case, complete_scene
@@ -22,7 +22,9 @@ from fe_drivetrain.common.near_words import did_you_mean
 from fe_drivetrain.drivetrain_file import library_names
 from fe_drivetrain.drivetrain_file.reading import scene_text
 from fe_drivetrain.report.answer import Answer
+from fe_drivetrain.report.number_text import standing_text, standing_words
 from fe_drivetrain.report.results import read_results
+from fe_drivetrain.report.suite.key_figures import KeyLimit, limited
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.run import Run
 from fe_drivetrain.studies import check
@@ -55,7 +57,7 @@ def test_the_answer_comes_first_and_the_page_last(invoke: Invoke) -> None:
         "The bearing carries 4,800 MPa, above its limit.",
         "",
         "contact pressure  4,800 ± 20 MPa  at most 4,000 MPa (ISO 76)  beyond",
-        "offset            -1.5 mm         at least -2 mm              ok",
+        "offset            -1.5 mm         at least -2 mm              within",
         "mass              12.0 ± 1.0 kg   at most 12.5 kg             near",
         "speed             12.1 rpm",
         "",
@@ -88,7 +90,7 @@ def test_a_terminal_has_colours_and_its_own_width(
     monkeypatch.setenv("TERM", "xterm")
     out = invoke("run", "tiny", work=answering)[1]
     assert "\x1b[1;31m4,800 ± 20 MPa" in out
-    assert "\x1b[32mok" in out
+    assert "\x1b[32mwithin" in out
     plain = re.sub(r"\x1b\[[\d;]*m", "", out).splitlines()
     assert max(map(len, plain)) <= 60
     assert len(plain) > 11  # the table folds
@@ -256,3 +258,20 @@ def test_results_keep_the_answer_as_it_is(invoke: Invoke, tmp_path: Path) -> Non
     answer = read_results(tmp_path / "reports/group/tiny/results.json").answer
     assert answer is not None
     assert answer.verdict == VERDICT  # with spaces that do not break, for the page
+
+
+@pytest.mark.parametrize(
+    ("limit", "words"),
+    [
+        ({"at_most": 12.5}, "near"),
+        ({"at_least": 10.0}, "within"),
+        ({"between": (1.0, 2.0)}, "beyond"),
+        ({"beside": 12.0}, ""),
+    ],
+)
+def test_page_and_terminal_have_the_same_words(limit: KeyLimit, words: str) -> None:
+    figure = limited("mass", "kg", 12.0, 1.0, **limit)
+    marked = standing_text(figure)
+    assert standing_words(figure) == words
+    assert marked.partition(" ")[2] == words
+    assert words in rendered(figures_table([figure]))

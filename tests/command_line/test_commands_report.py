@@ -47,7 +47,7 @@ def test_a_dossier_answers_and_is_made_once(
     status, said, error = invoke(*words)
     assert status == 0, error
     pages = {folder.name for folder in (out / "dossier").iterdir()}
-    assert pages == {"overview", "loads", "reactions", "life", "model", "check"}
+    assert pages == {"overview", "loads", "reactions", "life", "model", "check", "export"}
     overview = read_results(out / "dossier/overview/results.json")
     assert broken_rules(overview) == []
     assert overview.answer is not None

@@ -18,7 +18,6 @@ from fe_drivetrain.common.provenance import file_digest
 from fe_drivetrain.common.regular_files import NotRegularError, TooLargeError, opened, text_of
 from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 from fe_drivetrain.drivetrain_file.reading import read_component, read_scene
-from fe_drivetrain.dynamics.torsion.gear_table import read_gear_table
 from fe_drivetrain.export.calculix_results import read_dat
 from fe_drivetrain.export.formats import (
     craig_bampton_json,
@@ -47,7 +46,6 @@ READERS: list[tuple[str, Callable[[Path], Any]]] = [
     (".yaml", read_scene),
     (".yaml", read_component),
     (".yaml", read_drivetrain),
-    (".yaml", read_gear_table),
     (".yaml", read_project),
     (".yaml", read_measurement_cases),
     (".yaml", read_channel_map),

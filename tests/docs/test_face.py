@@ -59,8 +59,8 @@ def test_the_examples_find_what_they_say(names: Names) -> None:
     years = names["lived"].bearings["main_bearing"].years
     assert 0 < years["L10mr"] < float("inf")
     assert {result.STUDY for result in names.values() if isinstance(result, Result)} == {
-        *("check", "study", "advise", "loads", "life", "gears"),
-        *("compare", "uncertainty", "validate", "part", "export"),
+        *("check", "study", "advise", "loads", "life", "modes", "gears"),
+        *("transient", "compare", "uncertainty", "validate", "part", "export"),
     }
 
 

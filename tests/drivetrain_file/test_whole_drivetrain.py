@@ -1,8 +1,10 @@
 """A whole drivetrain in one file: what follows from the rest, what is missing, what contradicts."""
 
 import json
+import re
 from copy import deepcopy
 from math import cos, pi, radians, tan
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,6 +28,8 @@ from fe_drivetrain.drivetrain_file.gear_stages import ParallelStage, PlanetarySt
 from fe_drivetrain.dynamics import Level, library_machine, machine_of, machine_system, torsional
 from fe_drivetrain.dynamics.torsion import natural_modes
 from fe_drivetrain.gear import Gear, iso_gear_stiffness, meshing_without_backlash
+
+ROOT = Path(__file__).parents[2]
 
 PAIR: dict[str, Any] = {
     "kind": "parallel",
@@ -187,7 +191,7 @@ def changed(name: str, change: dict[str, Any]) -> dict[str, Any]:
     ("change", "message"),
     [
         ({"gearbox.shafts": []}, "3 stages and 0 shafts behind the main shaft"),
-        ({"brake": {"on": "LLS", "torque": 1e4}}, "brake is on 'LLS', which is no shaft: use one"),
+        ({"brake": {"shaft": "LLS", "torque": 1e4}}, "brake is on shaft 'LLS', which is none: use"),
         ({"gearbox.bearings.0.holds": "stage 9 carrier"}, "which is no shaft or body"),
         ({"gearbox.stages.0.teeth.ring": 60}, "stage 1 .*: a centre distance of"),
         ({"gearbox.bearings.0.stiffness": [[1e9] * 6] * 5}, "stiffness"),
@@ -228,6 +232,16 @@ def test_a_direct_drive_swings_as_two_inertias_on_its_shaft() -> None:
     half = shaft.material.density * polar * shaft.length / 2
     inverse = 1 / (machine.rotor.inertia + half) + 1 / (machine.generator.inertia + half)
     assert found == pytest.approx(np.sqrt(k * inverse) / (2 * pi), rel=1e-9)
+
+
+def test_the_documented_drivetrain_is_held_and_turns() -> None:
+    blocks = re.findall(
+        r"```yaml\n(.*?)```", (ROOT / "docs/scene.md").read_text("utf-8"), re.DOTALL
+    )
+    (text,) = (block for block in blocks if "stages:" in block)
+    machine = machine_of(parse_drivetrain(text))
+    assert machine.speeds[-1] == pytest.approx(-82 / 23)
+    assert len(machine_system(machine, Level.FLEXIBLE).names) > 20
 
 
 def test_a_whole_drivetrain_is_written_and_read_as_the_same() -> None:

@@ -14,14 +14,14 @@ from fe_drivetrain.cases.references.independent_torsion import (
 )
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.comparison.tolerances import digit
+from fe_drivetrain.drivetrain_file import parse_drivetrain, read_drivetrain
+from fe_drivetrain.dynamics import gear_table, machine_of, torsional
 from fe_drivetrain.dynamics.torsion.damping import mesh_damping, shaft_damping
 from fe_drivetrain.dynamics.torsion.gear_table import (
     GENERATOR,
     ROTOR,
     gear_masses,
     gear_speeds,
-    parse_gear_table,
-    read_gear_table,
     stage_masses,
     two_masses,
 )
@@ -359,9 +359,16 @@ def test_what_a_torque_puts_in_is_what_dampers_take_out(table):
     assert_allclose(response(one, "a", 5.0 / (2 * np.pi)), [[1 / (0.3 * 5.0j)]], rtol=1e-9)
 
 
+DIRECT = """
+title: direct drive
+rotor: {inertia: 5.0}
+shaft: {name: s, torsion: 80.0}
+generator: {inertia: 3.0}
+"""
+
+
 def test_direct_drive_has_no_stages():
-    text = "{title: d, rotor: 5.0, shafts: [{name: s, stiffness: 80.0}], generator: {inertia: 3.0}}"
-    table = parse_gear_table(text)
+    table = gear_table(parse_drivetrain(DIRECT))
     exact = np.sqrt(80 * (1 / 5 + 1 / 3)) / (2 * np.pi)
     for model in MODELS:
         assert_allclose(natural_modes(model(table, "free")).frequencies, [0, exact], rtol=1e-12)
@@ -408,9 +415,13 @@ def test_digits_are_those_of_the_print():
 
 GOOD = """
 title: t
-rotor: 100.0
-shafts: [{name: low, stiffness: 1e6}, {name: high, stiffness: 1e5}]
-stages: [{kind: parallel, ratio: 3.0, gear: 2.0, pinion: 0.5, mesh: 1e7}]
+rotor: {inertia: 100.0}
+shaft: {name: low, torsion: 1e6}
+gearbox:
+  stages:
+    - {kind: parallel, ratio: 3.0, gear: {inertia: 2.0}, pinion: {inertia: 0.5},
+       stiffness_of: axis, stiffness: 1e7, damping: 10.0}
+  shafts: [{name: high, torsion: 1e5, damping: 2.0}]
 generator: {inertia: 4.0}
 """
 
@@ -418,68 +429,109 @@ generator: {inertia: 4.0}
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("rotor: 100.0", "rotor: -1", "rotor is -1 but must be at least 1e-09"),
-        ("rotor: 100.0\n", "", "rotor .inertia of the rotor, kg m.2. is missing"),
-        ("ratio: 3.0", "ratio: 0.5", "stage 1: ParallelStage: ratio is 0.5 but must be greater"),
-        ("ratio: 3.0", "ratio: 3.0, teeth: [60, 20]", "needs a ratio or the teeth, and not both"),
-        ("ratio: 3.0, ", "", "needs a ratio or the teeth"),
-        ("ratio: 3.0", "teeth: [20, 60]", "the larger first"),
-        ("kind: parallel", "kind: worm", "stage 1: kind is 'worm' but must be one of planetary"),
-        ("mesh: 1e7", "mash: 1e7", "unknown key 'mash'.*did you mean 'mesh'"),
-        ("gear: 2.0", "gear: true", "truth value"),
-        ("gear: 2.0", "gear: .nan", "stage 1: ParallelStage: gear is"),
-        (
-            ", {name: high, stiffness: 1e5}",
-            "",
-            "1 shafts and 1 stages but must have one shaft more",
-        ),
-        ("name: high", "name: low", "must have a name of its own"),
-        ("name: high", "name: rotor", "must have a name of its own"),
-        ("stages: [", "stages: [7, ", "stages"),
+        ("inertia: 100.0", "inertia: -1", "rotor: .*inertia is -1 but must be at least 1e-09"),
+        ("rotor: {inertia: 100.0}\n", "", "does not state its rotor"),
+        ("ratio: 3.0", "ratio: 0.5", "ratio is 0.5 but must be greater"),
+        ("ratio: 3.0", "ratio: 3.0, teeth: {gear: 60, pinion: 20}", "one of teeth, radii and"),
+        ("ratio: 3.0, ", "", "one of teeth, radii and ratio, not none"),
+        ("kind: parallel", "kind: worm", "kind is 'worm' but must be one of planetary"),
+        ("stiffness: 1e7", "stifness: 1e7", "unknown key 'stifness'.*did you mean 'stiffness'"),
+        ("stiffness: 1e7, ", "", "damping of a mesh is 10 but its stiffness is not given"),
+        ("stiffness_of: axis, ", "", "needs stiffness_of"),
+        ("inertia: 2.0", "inertia: true", "truth value"),
+        ("inertia: 2.0", "inertia: .nan", "gear: .*inertia is"),
+        ("[{name: high, torsion: 1e5, damping: 2.0}]", "[]", "1 stages and 0 shafts behind"),
+        ("torsion: 1e5, damping: 2.0", "kind: rigid", "shaft 'high' of 't' is rigid"),
+        ("name: high", "name: low", "must be one of its own"),
+        ("name: high", "name: rotor", "must be one of its own"),
         ("title: t", "title: &a t", "is not plain YAML"),
-        (GOOD, "- 1", "must be a mapping"),
     ],
 )
-def test_wrong_tables_say_what_is_wrong(old, new, message):
-    assert parse_gear_table(GOOD).speeds == (1.0, 3.0)
+def test_wrong_drivetrains_say_what_is_wrong(old, new, message):
+    table = gear_table(parse_drivetrain(GOOD))
+    assert table.speeds == pytest.approx((1.0, 3.0), rel=1e-14)
+    assert table.shafts[1].damping == 2.0
     with pytest.raises(InputError, match=message.replace("[", r"\[")) as error:
-        parse_gear_table(GOOD.replace(old, new), source="mine")
-    assert str(error.value).startswith("mine")
+        gear_table(parse_drivetrain(GOOD.replace(old, new), source="mine"))
     assert "\n" not in str(error.value)
 
 
 def test_planets_need_room():
     text = GOOD.replace(
-        "{kind: parallel, ratio: 3.0, gear: 2.0, pinion: 0.5, mesh: 1e7}",
-        "{kind: planetary, ratio: 1.9, planets: 3, carrier: 1, planet: 1, sun: 1, "
-        "ring_planet: 1e6, sun_planet: 1e6}",
+        "{kind: parallel, ratio: 3.0, gear: {inertia: 2.0}, pinion: {inertia: 0.5},\n"
+        "       stiffness_of: axis, stiffness: 1e7, damping: 10.0}",
+        "{kind: planetary, ratio: 1.9, planets: 3, carrier: {inertia: 1}, planet: {inertia: 1}, "
+        "sun: {inertia: 1}, stiffness_of: axis, ring_planet: 1e6, sun_planet: 1e6}",
     )
     with pytest.raises(InputError, match="must be greater than 2"):
-        parse_gear_table(text)
+        parse_drivetrain(text)
 
 
-def test_files_are_read_and_misread_with_a_message(tmp_path):
-    path = tmp_path / "mine.yaml"
-    path.write_text(GOOD, "utf-8")
-    assert read_gear_table(path).rotor == 100.0
-    with pytest.raises(InputError, match="cannot read drivetrain file"):
-        read_gear_table(tmp_path / "none.yaml")
-    path.write_text("#" * 1_000_001, "utf-8")
-    with pytest.raises(InputError, match="it has more than 1000000 bytes"):
-        read_gear_table(path)
+def test_a_generator_without_stiffness_cannot_be_fixed():
     with pytest.raises(InputError, match="generator cannot be fixed"):
-        stage_masses(parse_gear_table(GOOD), "fixed")
+        stage_masses(gear_table(parse_drivetrain(GOOD)), "fixed")
+
+
+@pytest.mark.parametrize("name", [*NAMES, "library nrel_750kw", "library nrel_5mw", "good"])
+def test_a_table_and_the_machine_of_one_file_swing_and_decay_alike(name):
+    """Two assemblies of one file: by ratios about the planet's axis, and by lines of action."""
+    if name == "good":
+        drivetrain = parse_drivetrain(GOOD)
+    elif name.startswith("library"):
+        drivetrain = read_drivetrain(name.removeprefix("library "))
+    else:
+        drivetrain = published.drivetrain(name)
+    ours, other = gear_masses(gear_table(drivetrain), "free"), torsional(machine_of(drivetrain))
+    if drivetrain.generator.stiffness:
+        ours = gear_masses(gear_table(drivetrain), "fixed")
+    here, there = natural_modes(ours).frequencies, natural_modes(other).frequencies
+    moving = here > 1e-6 * here[-1]
+    assert_allclose(here[moving], there[moving], rtol=1e-10)
+    order = [other.place(part) for part in ours.names]
+    assert_allclose(ours.J, other.J[order], rtol=1e-12)
+    assert ours.C.any() == (name in ("nrel_750kw", "good"))
+    scale = np.sqrt(np.outer(ours.C.diagonal(), ours.C.diagonal())) + 1e-300
+    assert_allclose(ours.C / scale, other.C[np.ix_(order, order)] / scale, atol=1e-9)
+
+
+def test_damping_along_the_line_is_that_about_the_axis():
+    text = published.text_of("drivetrain_c")
+    about = parse_drivetrain(text, {"gearbox.stages.1.damping": 300.0})
+    arm = machine_of(about).stages[1].arm
+    changes = {
+        "gearbox.stages.1.stiffness_of": "line",
+        "gearbox.stages.1.damping": 300.0 / arm**2,
+        "gearbox.stages.1.stiffness": 1.63e9 / arm**2,
+    }
+    along = gear_table(parse_drivetrain(text, changes)).stages[1]
+    assert along.mesh_damping == pytest.approx(300.0, rel=1e-12)
+    assert along.mesh == pytest.approx(1.63e9, rel=1e-12)
+
+
+def test_planets_with_a_mass_are_points_of_their_carrier():
+    library = read_drivetrain("nrel_750kw")
+    stage = library.gearbox.stages[0]
+    own = gear_table(library).stages[0].carrier
+    expected = 65.2 + stage.planets * stage.planet.mass * stage.centre_distance**2
+    assert own == pytest.approx(expected, rel=1e-12)
+    assert gear_table(published.drivetrain("nrel_750kw")).stages[0].carrier == 65.2
+
+
+def test_a_stage_without_sizes_may_have_planets_at_unequal_angles():
+    text = published.text_of("drivetrain_b")
+    stage = parse_drivetrain(text).gearbox.stages[0]
+    assert [row.value for row in stage.assumptions() if row.name == "angles of planets"] == [
+        "unequal"
+    ]
+    with pytest.raises(InputError, match="cannot be put in at equal angles"):
+        parse_drivetrain(text, {"gearbox.stages.0.centre_distance": 0.5})
 
 
 def test_own_drivetrain_runs_as_a_case(tmp_path):
     path = tmp_path / "mine.yaml"
-    path.write_text(
-        "{title: direct drive, rotor: 5.0, shafts: [{name: s, stiffness: 80.0}], "
-        "generator: {inertia: 3.0}}",
-        "utf-8",
-    )
+    path.write_text(DIRECT, "utf-8")
     (case,) = find_cases("drivetrain/from_table")
-    results = case.results(Run({"table": str(path)}, True, tmp_path))
+    results = case.results(Run({"drivetrain": str(path)}, True, tmp_path))
     exact = np.sqrt(80 * (1 / 5 + 1 / 3)) / (2 * np.pi)
     for frequencies in results.figures["frequencies"].values():
         assert_allclose(frequencies, [0.0, exact], rtol=1e-12)

@@ -17,12 +17,12 @@ from fe_drivetrain.drivetrain_file.reading import library_text, parse_drivetrain
 from fe_drivetrain.dynamics.bodies.bodies import Body, assemble
 from fe_drivetrain.dynamics.bodies.gear_pairs import mesh_stresses
 from fe_drivetrain.dynamics.bodies.levels import Level, machine_system
-from fe_drivetrain.dynamics.bodies.machine import MACHINES, Machine, library_machine
+from fe_drivetrain.dynamics.bodies.machine import MACHINES, Machine, library_machine, machine_of
 from fe_drivetrain.dynamics.bodies.machine_motions import turning_motion
 from fe_drivetrain.dynamics.bodies.modes import spring_frequencies, system_modes
 from fe_drivetrain.dynamics.bodies.planetary import PlanetarySet
 from fe_drivetrain.dynamics.bodies.springs import Spring
-from fe_drivetrain.dynamics.torsion.gear_table import GearTable, PlanetaryStage, parse_gear_table
+from fe_drivetrain.dynamics.torsion.gear_table import GearTable, PlanetaryStage
 from fe_drivetrain.dynamics.torsion.orders import Toothed
 from fe_drivetrain.dynamics.torsion.system import Inertia, Torsional
 from fe_drivetrain.gear.involute import Gear, Pair
@@ -344,6 +344,8 @@ def test_gear_tables_refuse_planets_that_do_not_fit(row: dict[str, Any], message
 def test_gear_tables_state_what_they_assume() -> None:
     rows = {row.name: row for row in published.table("drivetrain_b").assumptions()}
     assert "127 + 27 teeth, are no multiple of 3" in rows["stage 1: angles of planets"].source
+    of_machine = machine_of(published.drivetrain("drivetrain_b")).assumptions()
+    assert "stage 1: angles of planets" in {row.name for row in of_machine}
     assert rows["stage 2: sun_planet_damping"].value == 0.0
     assert "stage 1: angles of planets" not in {
         row.name for row in published.table("drivetrain_c").assumptions()
@@ -351,13 +353,12 @@ def test_gear_tables_state_what_they_assume() -> None:
 
 
 def test_gear_tables_name_a_kind_that_is_none_and_numbers_beyond_reason() -> None:
-    data = mutations.plain(published.table("drivetrain_b"))
-    data["stages"][0]["kind"] = ["planetary"]
+    data = published.table("drivetrain_b").model_dump(mode="json", exclude_none=True)
     with pytest.raises(InputError, match=r"stage 1: kind is .'planetary'. but must be one of"):
-        GearTable.model_validate(data)
+        GearTable.model_validate(data | {"stages": [{**data["stages"][0], "kind": ["planetary"]}]})
+    file = mutations.plain(published.drivetrain("drivetrain_b"))
     with pytest.raises(InputError, match="is too large for a number"):
-        parse_gear_table(mutations.as_text(data).replace("127", "9" * 400))
-    data = mutations.plain(published.table("drivetrain_b"))
+        parse_drivetrain(mutations.as_text(file).replace("127", "9" * 400))
     data["shafts"][1]["stiffness"] = 1e-300
     with pytest.raises(InputError, match="shaft 1-2 has 1e-300 N m/rad"):
         GearTable.model_validate(data)

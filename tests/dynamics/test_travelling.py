@@ -152,7 +152,8 @@ def test_a_slow_turn_is_quasi_static() -> None:
     )
     assert found.converged
     # the second turn
-    moving = Turn(found.azimuth[count:-1], system.spring_names, found.forces[count:-1])
+    last = found.forces[count:-1]
+    moving = Turn(found.azimuth[count:-1], system.spring_names, last, system.directions)
     assert moving.azimuths == pytest.approx(2 * pi + azimuths(count), abs=1e-9)
     for name in ("stage 1 pin 1 upwind", "stage 1 pin 3 downwind"):
         mean = still.resultant(name).mean()

@@ -91,13 +91,16 @@ def test_a_face_says_what_its_room_is_for_and_shows_only_what_is_there(room: str
 
 #: Modules for users, which one case tries or none: the page that tells them to take its names.
 FOR_USERS = {
+    # what is condensed of a drivetrain's file, at every level of its ladder
+    "dynamics.bodies.catalogue_seats": "dynamics.md",
+    "dynamics.bodies.condensed_rungs": "dynamics.md",
+    "dynamics.bodies.housing_bounds": "dynamics.md",
     "bearing.subsurface": "procedure.md",
     # answers of a bearing to millions of loads, from one grid of solves
     "bearing.tables": "bearing.md",
     "export.formats.windio": "how-to/shafts-of-a-gearbox.md",
     "export.programs.ross_rotor": "how-to/housing-to-ross-and-exudyn.md",
     "gear.coupled_slices": "gear_rating.md",
-    "turbine_loads.histories.farm": "clusters.md",
     "turbine_loads.hub_loads.events": "turbine.md",
     "turbine_loads.hub_loads.wind_boxes": "loads.md",
     # loads at the interfaces of any scene, from a level of the ladder

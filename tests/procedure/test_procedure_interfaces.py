@@ -9,6 +9,7 @@ import pytest
 
 from fe_drivetrain.cases.procedure import assumed
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.reading import library_text, parse_scene
 from fe_drivetrain.procedure.failure_modes import (
     parse_catalogue,
     protest_catalogue,
@@ -23,7 +24,7 @@ from fe_drivetrain.procedure.interface_loads import (
     write_load_csv,
     write_load_json,
 )
-from fe_drivetrain.procedure.three_points import three_point_loads
+from fe_drivetrain.procedure.three_points import three_point_loads, three_points_of
 
 PLACES = replace(assumed.PLACES, ratio=95.0)
 
@@ -153,3 +154,54 @@ def test_faults_of_a_table_are_sentences(table: LoadTable) -> None:
             replace(table, interfaces=parts)
     with pytest.raises(InputError, match="no interface"):
         table.interface("brake")
+
+
+#: The library's drivetrain with a generator that has a mass, and stands on springs.
+STANDING = (
+    library_text("grc_750kw")
+    .replace("generator: {inertia: 24", "generator: {mass: 4200, inertia: 24")
+    .replace(
+        "  bearings:\n",
+        "  bearings:\n"
+        "    - {name: feet, holds: generator, stiffness: [5e7, 5e7, 5e7, 0, 5e7, 5e7]}\n",
+    )
+)
+
+
+def test_three_points_are_those_of_the_file() -> None:
+    """Places by hand: the last shaft begins behind three others, beside two centre distances."""
+    scene = parse_scene(STANDING)
+    places = three_points_of(scene, 1.6)
+    assert (places.hub, places.bearing, places.entrance) == (-0.644, 0.0, pytest.approx(1.698))
+    assert places.arms == places.entrance == places.gearbox_centre
+    assert places.output == pytest.approx(1.698 + 0.6 + 0.4)
+    assert places.generator - places.output == pytest.approx(0.6)
+    assert places.offset == pytest.approx(0.450 + 0.285 * np.cos(np.radians(60)))
+    lengths, diameters = np.array([0.117, 1.054, 1.171]), np.array([0.677, 0.387, 0.29])
+    volumes = np.pi / 4 * diameters**2 * lengths
+    density = scene.material_of("shaft").density
+    assert places.shaft_mass == pytest.approx(density * volumes.sum(), rel=1e-12)
+    middles = np.cumsum(lengths) - lengths / 2
+    centre = -0.644 + volumes @ middles / volumes.sum()
+    assert places.shaft_centre == pytest.approx(centre, rel=1e-12)
+    assert places.gearbox_mass == pytest.approx(59000 / 9.80665, rel=1e-3)
+    assert places.generator_mass == 4.2e3
+    assert places.ratio == pytest.approx((1 + 99 / 21) * 82 / 23 * 88 / 22, rel=1e-12)
+    check_equilibrium(
+        three_point_loads(
+            places, np.array([0.0]), np.array([[250e3, 0.0, -122e3, 325e3, 4e4, 1e4]])
+        )
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (library_text("grc_750kw"), "does not state generator.mass"),
+        (STANDING.replace("  weight: 59000\n", ""), "does not state gearbox.weight"),
+        (library_text("nrel_5mw"), "has 2 main bearings"),
+    ],
+)
+def test_what_three_points_need_is_asked_for(text: str, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        three_points_of(parse_scene(text), 2.0)

@@ -208,8 +208,7 @@ def test_evidence_of_another_scene_does_not_count(small: Content, tmp_path: Path
     ]
     figures = {"quantity": "main_bearing.Fz", "levels": levels}
     small["model"] |= {
-        "scene": "two_bearings",
-        "machine": "",
+        "drivetrain": "two_bearings",
         "level": 1,
         "needs": [{"quantity": "main_bearing.Fz", "tolerance": 0.05}],
         "evidence": [{"case": "advise/two_bearings"}],
@@ -300,7 +299,18 @@ def test_a_signature_holds_for_what_was_signed_alone(
         ({"subject": None}, "subject"),
         ({"sistems": ["gearbox"]}, "did you mean 'systems'"),
         ({"systems": ["tower"]}, "no system 'tower'"),
-        ({"model": {"decision": "d", "level": "1", "needs": []}}, "one of scene and machine"),
+        (
+            {"model": {"decision": "d", "level": "1", "needs": []}},
+            "model.drivetrain (drivetrain file, or a drivetrain of the library) is missing",
+        ),
+        (
+            {"model": {"decision": "d", "machine": "nrel_5mw", "level": "1", "needs": []}},
+            "by one key: write drivetrain in place of machine",
+        ),
+        (
+            {"model": {"decision": "d", "scene": "a.yaml", "level": "1", "needs": []}},
+            "by one key: write drivetrain in place of scene",
+        ),
         ({"inputs": {"decision": "", "values": []}}, "decision"),
     ],
 )

@@ -26,6 +26,7 @@ from tiny_case import Result
 
 from fe_drivetrain.command_line.validate_commands import ready_commands
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 from fe_drivetrain.drivetrain_file.reading import change_scene, library_scene
 from fe_drivetrain.dynamics.bodies.machine import library_machine
 from fe_drivetrain.procedure.answers import answer_of
@@ -355,7 +356,7 @@ def test_a_hash_is_of_values_and_not_of_words() -> None:
 def test_a_page_stamps_what_is_of_its_drivetrain() -> None:
     page = Page()
     page.holds("before", True, why="w", source="s")
-    page.about(library_machine(MACHINE), MACHINE)
+    page.about(read_drivetrain(MACHINE), MACHINE)
     page.holds("after", True, why="w", source="s")
     page.found("margin [-]", 0.2, loads=(RESONANCE,))
     page.skip("share", "NGSolve is not there")
@@ -399,7 +400,7 @@ def test_ready_commands_name_cases_machine_and_paths_as_a_shell_takes_them(
     file = folder / "p.yaml"
     assert ready_commands(standing, file) == [
         f"fe-drivetrain run --out '{folder}/reports/procedure/machine_gaps' --set "
-        f"machine={MACHINE} procedure/machine_gaps",
+        f"drivetrain={MACHINE} procedure/machine_gaps",
         f"fe-drivetrain run --out '{folder}/reports/procedure/campaign' procedure/campaign",
         f"fe-drivetrain validate '{file}'",
     ]

@@ -250,13 +250,13 @@ def test_a_tolerance_beside_a_level_is_refused(invoke: Invoke, tmp_path: Path) -
     assert not out.exists()
 
 
-@pytest.mark.parametrize("settings", [{"torque": 100}, {"machine": "nrel_5mw", "speed": 10}])
+@pytest.mark.parametrize("settings", [{"torque": 100}, {"drivetrain": "nrel_5mw", "speed": 10}])
 def test_an_operation_of_machines_that_have_their_own_is_refused(
     settings: dict[str, object], tmp_path: Path
 ) -> None:
-    key = next(key for key in settings if key != "machine")
+    key = next(key for key in settings if key != "drivetrain")
     with pytest.raises(InputError, match=f"{key} = {settings[key]} is not used: nrel_5mw,"):
         operations(Run(settings, True, tmp_path))
-    assert list(operations(Run({"machine": "nrel_5mw"}, True, tmp_path))) == ["nrel_5mw"]
-    own = operations(Run({"machine": "park_2021", "torque": 15, "moment": 2}, True, tmp_path))
+    assert list(operations(Run({"drivetrain": "nrel_5mw"}, True, tmp_path))) == ["nrel_5mw"]
+    own = operations(Run({"drivetrain": "park_2021", "torque": 15, "moment": 2}, True, tmp_path))
     assert own["park_2021"].torque == 15e3

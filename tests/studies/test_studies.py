@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from answer_rules import broken_by, broken_rules
 from coarse_scenes import coarse_scene
+from small_drivetrain import two_masses
 from small_project import OWN, Content, small_project
 from test_commands_life import write_history
 from test_scene_study import HISTORIES
@@ -29,7 +30,9 @@ from fe_drivetrain.pages.check import show_check
 from fe_drivetrain.pages.compare import show_compare
 from fe_drivetrain.pages.life import show_life
 from fe_drivetrain.pages.loads import show_loads
+from fe_drivetrain.pages.modes import show_modes
 from fe_drivetrain.pages.study import show_study
+from fe_drivetrain.pages.transient import show_transient
 from fe_drivetrain.pages.uncertainty import show_uncertainty
 from fe_drivetrain.pages.validate import show_validate
 from fe_drivetrain.procedure import Project
@@ -45,9 +48,11 @@ from fe_drivetrain.studies import (
     LifeResult,
     LoadOptions,
     LoadsResult,
+    ModesResult,
     PartResult,
     Result,
     StudyResult,
+    TransientResult,
     UncertaintyResult,
     ValidateResult,
     advise,
@@ -55,9 +60,11 @@ from fe_drivetrain.studies import (
     compare,
     life,
     loads,
+    modes,
     part,
     prepare_export,
     study,
+    transient,
     uncertainty,
     validate,
 )
@@ -139,11 +146,21 @@ def loaded(tmp_path_factory: pytest.TempPathFactory) -> LoadsResult:
 
 
 @pytest.fixture(scope="module")
+def vibrating() -> ModesResult:
+    return modes(read_drivetrain("park_2021"), level="rigid", speeds=(0.6, 1.2))
+
+
+@pytest.fixture(scope="module")
 def lived(tmp_path_factory: pytest.TempPathFactory) -> LifeResult:
     folder = tmp_path_factory.mktemp("histories")
     for wind in (8.0, 14.0):
         write_history(folder / f"v{wind:g}.csv", wind)
     return life(library_scene("main_bearing_spherical"), folder / "*.csv", Site(8.5))
+
+
+@pytest.fixture(scope="module")
+def timed() -> TransientResult:
+    return transient(two_masses(), "grid_loss", {"off": 0.1}, duration=0.6)
 
 
 @pytest.fixture(scope="module")
@@ -160,13 +177,15 @@ PAGES: dict[str, Callable[[Run, Page, Any], None]] = {
     "validated": show_validate,
     "lived": show_life,
     "loaded": show_loads,
+    "timed": show_transient,
+    "vibrating": show_modes,
 }
 """What shows a result on a page."""
 
 RESULTS = (
     "studied",
     *("checked", "compared", "advised", "uncertain", "validated", "lived", "loaded"),
-    *("shaped", "condensed", "exported"),
+    *("timed", "vibrating", "shaped", "condensed", "exported"),
 )
 
 
@@ -293,10 +312,10 @@ def test_a_drivetrain_without_sections_is_checked_by_what_turns() -> None:
     assert found.turning is not None
     # 1 + (a + r_p) / r_s of the planetary stage, and the radii of the two others
     ratio = (1 + 0.43 / 0.11) * 0.29 / 0.095 * 0.185 / 0.08
-    assert found["ratio of all stages"].computed == pytest.approx(ratio, rel=1e-3)
+    assert found.turning.ratio == pytest.approx(ratio, rel=1e-3)
     assert found.turning.degrees == {"torsional": 10, "rigid bodies": 60, "flexible shafts": 60}
     assert len(found.described["Gear stages, from the rotor on"]) == 3
-    assert any("lengths of shafts" in row.why for row in found.assumptions)
+    assert any("lengths of shafts" in row.source for row in found.assumptions)
 
 
 def test_a_figure_is_found_by_its_name(compared: CompareResult) -> None:

@@ -212,10 +212,10 @@ def test_real_file_gage_and_tip_moments_tell_one_story() -> None:
             info["attribute_names"], info["attribute_units"], data.T, strict=True
         )
     }
-    _, at_tip, _ = openfast.loads_from_channels("real", channels)
+    at_tip = openfast.loads_from_channels("real", channels).loads
     only_gage = {n: c for n, c in channels.items() if not n.startswith("lsstipm")}
     # ShftGagL of the NREL 5 MW model is 1.912 m (Jonkman 2009).
-    _, from_gage, _ = openfast.loads_from_channels("real", only_gage, gage_distance=1.912)
+    from_gage = openfast.loads_from_channels("real", only_gage, gage_distance=1.912).loads
     # Each channel is packed in 16 bits; a few steps of the widest are the most they can differ.
     step = 1e3 * np.ptp(channels["lssgagmya"].values) / 65535.0
     np.testing.assert_allclose(from_gage, at_tip, atol=4.0 * step)
@@ -548,7 +548,7 @@ def test_component_and_cut() -> None:
     with pytest.raises(InputError, match="'Fq' is not one of Fx, Fy"):
         history.component("Fq")
     np.testing.assert_array_equal(history.between(3.0, 7.0).time, [3.0, 4.0, 5.0, 6.0, 7.0])
-    with pytest.raises(InputError, match="1 samples"):
+    with pytest.raises(InputError, match="1 sample,"):
         history.between(9.0)
 
 
@@ -663,7 +663,7 @@ def test_a_history_that_never_varies_is_refused(tmp_path: Path) -> None:
     ("rows", "says"),
     [
         (["0,1,2,nan,4,5,6", *(f"{k},1,{k},3,4,5,6" for k in range(1, 5))], "Fz is nan at line 2"),
-        (["0,1,2,3,4,5,6"], "1 samples, fewer than the 3"),
+        (["0,1,2,3,4,5,6"], "1 sample, fewer than the 3"),
         ([], "0 samples, fewer than the 3"),
         ([f"{k},1,2,3,4,5,6" for k in range(5)], "all 5 samples are the same load"),
     ],

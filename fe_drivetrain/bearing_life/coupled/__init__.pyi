@@ -10,6 +10,9 @@ from .newton import contact_stiffness as contact_stiffness
 from .newton import coupled_equilibrium as coupled_equilibrium
 from .of_scene import scene_body as scene_body
 from .on_races import body_on_races as body_on_races
+from .reaction_paths import ReactionPath as ReactionPath
+from .reaction_paths import carried_loads as carried_loads
+from .reaction_paths import damage_of_forces as damage_of_forces
 from .springs import OnSprings as OnSprings
 from .springs import StiffnessLoop as StiffnessLoop
 from .springs import on_springs as on_springs

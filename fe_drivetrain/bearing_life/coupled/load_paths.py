@@ -66,6 +66,28 @@ class LoadPath:
             )
         object.__setattr__(self, "_model", self.rollers or rigid_rings(self.bearings[self.name]))
 
+    @property
+    def repeats(self) -> int:
+        """Number of load steps for each of the hub."""
+        return 1
+
+    @property
+    def speed_ratio(self) -> float:
+        """Speed of the bearing over that of the rotor."""
+        return 1.0
+
+    def with_bearing(self, bearing: Bearing, rollers: RollerModel) -> LoadPath:
+        """The path with another clearance or profile of the named bearing.
+
+        Parameters
+        ----------
+        bearing : Bearing
+            In place of the named one.
+        rollers : callable
+            How it shares its load.
+        """
+        return replace(self, bearings={**self.bearings, self.name: bearing}, rollers=rollers)
+
     def bearing_loads(self, hub_loads: Loads) -> tuple[Floats, Bools]:
         """Loads on the inner ring of the named bearing.
 

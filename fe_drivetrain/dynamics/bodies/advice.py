@@ -14,7 +14,7 @@ from fe_drivetrain.dynamics.bodies.flexible import Flexible
 from fe_drivetrain.dynamics.bodies.gear_pairs import pitch_contacts
 from fe_drivetrain.dynamics.bodies.levels import Level, machine_system, steady_load, torsional
 from fe_drivetrain.dynamics.bodies.machine import Machine
-from fe_drivetrain.dynamics.bodies.modes import SystemModes, system_modes
+from fe_drivetrain.dynamics.bodies.modes import SystemModes, distinct, system_modes
 from fe_drivetrain.dynamics.bodies.static import Static, load_sharing, static
 from fe_drivetrain.dynamics.bodies.system import System
 from fe_drivetrain.dynamics.torsion.system import natural_modes
@@ -48,14 +48,40 @@ class Rung:
         Carriers and housing that give.
     name : str
         Name of the rung, in words.
+    neglects : tuple[str, ...]
+        What the model leaves out.
+    assumes : tuple[str, ...]
+        Values that no file gives, and why so.
+    seconds : float
+        Time that it took to condense what gives, beyond the rung before [s].
     """
 
     level: Level
     flexible: Flexible
     name: str
+    neglects: tuple[str, ...] = ()
+    assumes: tuple[str, ...] = ()
+    seconds: float = 0.0
 
 
-RUNGS = tuple(Rung(level, Flexible(), level.value) for level in Level)
+#: What models without anything condensed leave out.
+UNCONDENSED = (
+    "housings of main bearings that give",
+    "a gearbox housing that moves",
+    "carriers that give",
+    "what steps, ends and rings of bearings do to the sections of the main shaft",
+    "clearance and rollers of bearings",
+)
+#: What each level leaves out beside it.
+_LEVELS = {
+    Level.TORSIONAL: ("every motion but turning: loads of bearings, uneven sharing",),
+    Level.RIGID: ("shafts that bend between their bearings",),
+    Level.FLEXIBLE: (),
+}
+
+RUNGS = tuple(
+    Rung(level, Flexible(), level.value, (*_LEVELS[level], *UNCONDENSED)) for level in Level
+)
 """The levels without flexible carriers or housing, from the simplest."""
 
 
@@ -71,11 +97,14 @@ class Asked:
         Level, and what gives.
     operation : Operation
         Loads.
+    held : bool
+        Whether the generator is held in modes, too; in statics it is.
     """
 
     machine: Machine
     rung: Rung
     operation: Operation
+    held: bool = False
 
     @cached_property
     def modes(self) -> SystemModes:
@@ -84,8 +113,13 @@ class Asked:
 
     @cached_property
     def system(self) -> System:
-        """System with the generator free to turn."""
-        return machine_system(self.machine, self.rung.level, flexible=self.rung.flexible)
+        """System of the modes."""
+        return machine_system(
+            self.machine,
+            self.rung.level,
+            held_generator=self.held,
+            flexible=self.rung.flexible,
+        )
 
     @cached_property
     def loaded(self) -> Static | None:
@@ -118,7 +152,7 @@ def torsional_frequency(number: int) -> Question:
     """
 
     def asked(of: Asked) -> float | None:
-        simple = torsional(of.machine)
+        simple = torsional(of.machine, of.held)
         modes = natural_modes(simple)
         chosen = int(np.flatnonzero(modes.frequencies > 0)[number - 1])
         if of.rung.level is Level.TORSIONAL:
@@ -127,6 +161,41 @@ def torsional_frequency(number: int) -> Question:
         likeness = (modes.shapes[:, chosen] * simple.J) @ of.modes.shapes[rows]
         best = int(np.abs(likeness).argmax())
         return float(of.modes.frequencies[best]) if likeness[best] ** 2 > 0.5 else None
+
+    return asked
+
+
+def like_mode(finest: Asked, number: int) -> Question:
+    """Frequency of the mode most like one of the finest level's, counted above zero [Hz].
+
+    Modes within a thousandth of a frequency are taken together: their shapes come in any
+    combination. None where those have less than half of it.
+
+    Parameters
+    ----------
+    finest : Asked
+        Machine at the finest level; all that moves at others moves there.
+    number : int
+        Number of its mode, from 1.
+    """
+
+    def asked(of: Asked) -> float | None:
+        chosen = int(np.flatnonzero(finest.modes.frequencies > 0)[number - 1])
+        if of.rung is finest.rung:
+            return float(finest.modes.frequencies[chosen])
+        rows = [finest.system.place(name) for name in of.system.names]
+        shape = finest.modes.shapes[rows, chosen]
+        shares = (of.modes.shapes.T @ (of.system.mass @ shape)) ** 2
+        shares[of.modes.frequencies == 0.0] = 0.0
+        best: tuple[float, float | None] = (0.5, None)
+        first = 0
+        for _, count in distinct(of.modes.frequencies, 1e-3):
+            group = shares[first : first + count]
+            if group.sum() > best[0]:
+                at = first + int(group.argmax())
+                best = (float(group.sum()), float(of.modes.frequencies[at]))
+            first += count
+        return best[1]
 
     return asked
 
@@ -146,10 +215,7 @@ def pin_loads(found: Static, stage: PlanetaryData, number: int) -> dict[str, flo
         for k in range(stage.planets)
         for pin in stage.pins
     ]
-    return {
-        name: float(np.hypot(found.force(f"{name} uy"), found.force(f"{name} uz")))
-        for name in names
-    }
+    return {name: found.radial(name) for name in names}
 
 
 def planet_sharing(of: Asked) -> float | None:
@@ -232,6 +298,7 @@ def ladder(
     operation: Operation,
     rungs: Sequence[Rung] = RUNGS,
     questions: Mapping[str, Question] = QUESTIONS,
+    held: bool = False,
 ) -> list[Answer]:
     """The answers of all levels, from the simplest.
 
@@ -245,11 +312,13 @@ def ladder(
         Rungs, from the simplest level to the finest.
     questions : mapping
         Questions by name.
+    held : bool
+        Whether the generator is held in modes, too.
     """
     found = []
     for rung in rungs:
         start = perf_counter()
-        asked = Asked(machine, rung, operation)
+        asked = Asked(machine, rung, operation, held)
         values = {name: ask(asked) for name, ask in questions.items()}
         size = len(asked.system.names)
         found.append(Answer(rung.name, size, perf_counter() - start, values))

@@ -148,6 +148,7 @@ def assemble(
         T,
         np.array([body.mass for body in bodies]),
         np.asarray(T.T @ weight),
+        np.array([spring.direction for spring in springs]).reshape(-1, 6),
     )
 
 

@@ -100,12 +100,20 @@ class Flexible:
     rims : Mapping[int, tuple[Rim, tuple[int, ...]]]
         Rims of rings by the number of the planetary stage, and the harmonics that each bends in,
         from 2 on.
+    bearings : Mapping[str, Floats]
+        Stiffness (6, 6) of bearings with their housings by name, in place of that of their rows
+        [N/m, N, N m/rad].
+    apart : frozenset[str]
+        Names of bearings that stand on the ground beside a housing, as those of the main shaft and
+        of the generator do.
     """
 
     carriers: Mapping[int, Condensed] = field(default_factory=dict)
     housing: Housing | ElasticHousing | None = None
     shafts: Mapping[str, Condensed] = field(default_factory=dict)
     rims: Mapping[int, tuple[Rim, tuple[int, ...]]] = field(default_factory=dict)
+    bearings: Mapping[str, Floats] = field(default_factory=dict)
+    apart: frozenset[str] = frozenset()
 
 
 def carrier_element(

@@ -19,9 +19,7 @@ from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.dynamics.bodies.bodies import ALL, Body, Superelement, assemble
 from fe_drivetrain.dynamics.bodies.elastic_ring import Rim, with_rim
 from fe_drivetrain.dynamics.bodies.flexible import (
-    ElasticHousing,
     Flexible,
-    Housing,
     carrier_element,
     held_by,
     housing_bodies,
@@ -153,7 +151,7 @@ def assembly(
     _add_generator(machine, free, held_generator, built)
     ends.append((driving, "generator"))
     _add_shafts(machine, ends, level, elements, gives, built)
-    _add_bearings(machine, gives.housing, built)
+    _add_bearings(machine, gives, built)
     return built
 
 
@@ -202,8 +200,8 @@ def _add_generator(
     moves = moves - TURNS if held else moves
     built.bodies.append(Body("generator", at, mass, own.inertia, across, machine.speeds[-1], moves))
     if own.stiffness > 0:
-        grid = (0, 0, 0, own.stiffness, 0, 0)
-        built.springs.extend(bushing("grid", Place("generator", at), None, at, grid))
+        grid, lost = (0, 0, 0, own.stiffness, 0, 0), (0, 0, 0, own.damping, 0, 0)
+        built.springs.extend(bushing("grid", Place("generator", at), None, at, grid, lost))
 
 
 def _add_shafts(
@@ -232,10 +230,13 @@ def _add_shafts(
     built.bodies[:] = bodies
 
 
-def _add_bearings(
-    machine: MachineTable, housing: Housing | ElasticHousing | None, built: Assembly
-) -> None:
+def _add_bearings(machine: MachineTable, gives: Flexible, built: Assembly) -> None:
     """Add the bearings, each between a body and what holds it."""
+    known = {bearing.name for bearing in machine.bearings}
+    for name in sorted({*gives.bearings, *gives.apart} - known):
+        raise InputError(
+            f"no bearing {name!r} is in {machine.title!r}: name another, or leave it out"
+        )
     centres = {body.name: body.position for body in built.bodies}
     shafts = {shaft.name for shaft in machine.shafts}
     for bearing in machine.bearings:
@@ -243,10 +244,11 @@ def _add_bearings(
             c = centres[bearing.holds]
             built.seats[bearing.name] = (bearing.holds, (c[0] + bearing.at, c[1], c[2]))
         body, at = built.seats[bearing.name]
-        holder = held_by(housing, bearing.name, at)
+        holder = None if bearing.name in gives.apart else held_by(gives.housing, bearing.name, at)
         built.holders[bearing.name] = holder
         place = Place(body, centres[body])
-        built.springs.extend(bushing(bearing.name, place, holder, at, bearing.stiffness))
+        stiffness = gives.bearings.get(bearing.name, bearing.stiffness)
+        built.springs.extend(bushing(bearing.name, place, holder, at, stiffness))
 
 
 def planetary_set(
@@ -296,7 +298,8 @@ def planetary_set(
         slices=stage.slices,
         position=(machine.axes[number][0], *machine.axes[number - 1][1:]),
         free=free,
-        mesh_damping=stage.mesh_damping,
+        sun_damping=stage.along_line(stage.sun_planet_damping),
+        ring_damping=stage.along_line(stage.ring_planet_damping),
     )
 
 
@@ -353,31 +356,39 @@ def _parallel(
         Place(bodies[1].name, pinion_at),
         np.asarray(gear_at) + radius * out,
         replace(mesh, base_helix=stage.hand * mesh.base_helix),
-        stage.along_line,
-        stage.mesh_damping,
+        stage.along_line(stage.stiffness),
+        stage.along_line(stage.damping),
         1 if machine.speeds[number - 1] > 0 else -1,
         stage.slices,
     )
     return bodies, springs
 
 
-def torsional(machine: MachineTable) -> Torsional:
+def torsional(machine: MachineTable, held_generator: bool = False) -> Torsional:
     """The machine at the torsional level, for what `dynamics.torsion` does with one.
 
     Windings of meshes are along the lines of action [m/rad], so that their stiffness is in N/m;
     else these are the systems of `gear_masses` of a gear table with the planets' teeth.
+
+    Parameters
+    ----------
+    machine : MachineTable
+        Table of the machine.
+    held_generator : bool
+        Whether the generator does not turn.
     """
-    system = machine_system(machine, Level.TORSIONAL)
+    system = machine_system(machine, Level.TORSIONAL, held_generator=held_generator)
     inertias = [
         Inertia(name.removesuffix(" rx"), float(J))
         for name, J in zip(system.names, system.mass.diagonal(), strict=True)
     ]
     parts = [part.name for part in inertias]
     elements = []
-    for name, row, k in zip(system.spring_names, system.rows, system.stiffness, strict=True):
+    springs = zip(system.spring_names, system.rows, system.stiffness, system.damping, strict=True)
+    for name, row, k, c in springs:
         winding = {part: float(by) for part, by in zip(parts, row, strict=True) if by}
         if winding:
-            elements.append(Element(name.removesuffix(" rx"), winding, float(k)))
+            elements.append(Element(name.removesuffix(" rx"), winding, float(k), float(c)))
     return Torsional(tuple(inertias), tuple(elements))
 
 

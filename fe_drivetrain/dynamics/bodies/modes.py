@@ -2,12 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import linalg
+from scipy.optimize import linear_sum_assignment
 
-from fe_drivetrain.common.arrays import Bools, Floats
+from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
@@ -16,6 +18,9 @@ from fe_drivetrain.dynamics.bodies.system import System
 from fe_drivetrain.dynamics.torsion.system import Oscillations
 
 Complex = NDArray[np.complex128]
+
+_ALIKE = 0.1
+"""Likeness that two pairs of modes may lose where they are exchanged, as whirls may be."""
 
 
 @dataclass(frozen=True)
@@ -220,6 +225,42 @@ def turning_modes(system: System, speed: float = 0.0, damped: bool = True) -> Tu
         np.asarray(shapes / np.linalg.norm(shapes, axis=0), dtype=np.complex128),
         np.sort(np.asarray(real, dtype=np.float64)),
     )
+
+
+def likest_modes(system: System, shapes: Floats | Complex, turning: TurningModes) -> Ints:
+    """For each shape the number of the mode of a turning system that is most like it.
+
+    Each mode is taken once, so that the likeness of all pairs, by the mass, is the largest in sum.
+    The two whirls of a shaft that bends alike in all planes are equally like both of its modes at
+    rest: the slower one goes with the first.
+
+    Parameters
+    ----------
+    system : System
+        System of both.
+    shapes : ndarray, (n, k)
+        Shapes of modes at rest or at another speed, by ascending frequency.
+    turning : TurningModes
+        Modes at a speed.
+
+    Returns
+    -------
+    ndarray, (k,)
+        -1 where there is no mode left.
+    """
+    sizes = [
+        np.einsum("ij,ij->j", of.conj(), system.mass @ of).real for of in (shapes, turning.shapes)
+    ]
+    likeness = np.abs(shapes.conj().T @ (system.mass @ turning.shapes)) ** 2 / np.outer(*sizes)
+    found = np.full(shapes.shape[1], -1)
+    rows, columns = linear_sum_assignment(likeness, maximize=True)
+    found[rows] = columns
+    for i, j in pairwise(rows):
+        first, second = found[i], found[j]
+        lost = likeness[i, first] + likeness[j, second] - likeness[i, second] - likeness[j, first]
+        if first > second and lost < _ALIKE:
+            found[i], found[j] = second, first
+    return found
 
 
 def divergence_speeds(system: System) -> Floats:

@@ -11,11 +11,10 @@ from math import cos, pi, sin
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import along_x
 from fe_drivetrain.dynamics.bodies.bodies import ALL, Body
-from fe_drivetrain.dynamics.bodies.springs import Place, Spring, directed, gear_mesh
+from fe_drivetrain.dynamics.bodies.springs import Place, Spring, bushing, gear_mesh
 from fe_drivetrain.gear.working_angles import Mesh
 
 RIGHT_HAND, SPUR, LEFT_HAND = 1, 0, -1
@@ -46,7 +45,8 @@ class PinBearing:
     Attributes
     ----------
     stiffness : ArrayLike
-        Stiffness (6,) along and about (x, radial, tangential) of the planet [N/m, N m/rad].
+        Stiffness (6,), or (6, 6) with couplings, along and about (x, radial, tangential) of the
+        planet [N/m, N, N m/rad].
     offset : float
         x from the planet's centre [m].
     name : str
@@ -95,7 +95,7 @@ class PlanetarySet:
         Degrees of freedom of the bodies; `PLANE` of a stage that stays in its plane.
     pins : tuple[Place, ...]
         Bodies that the planets are on, of a flexible carrier; the carrier where there are none.
-    mesh_damping : float
+    sun_damping, ring_damping : float
         Damping of each mesh along its line of action [N s/m].
     """
 
@@ -118,7 +118,8 @@ class PlanetarySet:
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
     free: frozenset[str] = ALL
     pins: tuple[Place, ...] = ()
-    mesh_damping: float = 0.0
+    sun_damping: float = 0.0
+    ring_damping: float = 0.0
     ratio: float = field(init=False)
 
     def __post_init__(self) -> None:
@@ -229,7 +230,7 @@ def springs_of(stage: PlanetarySet) -> list[Spring]:
     """Meshes and pins: "NAME sun-planet 1", "NAME ring-planet 1", "NAME pin 1 ux" and so on.
 
     Those of the pins are along and about x, the radius and the tangent of their planet, in this
-    order of (ux, uy, uz, rx, ry, rz).
+    order of (ux, uy, uz, rx, ry, rz); of six rows they are "NAME pin 1 1" and so on.
     """
     sun = Place(stage.full_name("sun"), stage.centre())
     ring = Place(stage.full_name("ring"), stage.centre())
@@ -246,7 +247,7 @@ def springs_of(stage: PlanetarySet) -> list[Spring]:
             axis + stage.sun_radius * out,
             _handed(stage.sun_mesh, stage.hand),
             stage.sun_stiffness,
-            stage.mesh_damping,
+            stage.sun_damping,
             -stage.driving,
             stage.slices,
         )
@@ -257,7 +258,7 @@ def springs_of(stage: PlanetarySet) -> list[Spring]:
             np.asarray(planet.centre) + stage.planet_ring_radius * out,
             _handed(stage.ring_mesh, -stage.hand),
             stage.ring_stiffness,
-            stage.mesh_damping,
+            stage.ring_damping,
             stage.driving,
             stage.slices,
         )
@@ -270,19 +271,11 @@ def pin_springs(stage: PlanetarySet, k: int, planet: Place, carrier: Place) -> l
     psi = stage.angles[k]
     out, along = np.array([0.0, cos(psi), sin(psi)]), np.array([0.0, -sin(psi), cos(psi)])
     axes = np.vstack([[1.0, 0.0, 0.0], out, along])
-    found = []
+    found: list[Spring] = []
     for bearing in stage.bearings:
-        stiffness = np.asarray(bearing.stiffness, dtype=float)
-        damping = np.broadcast_to(np.asarray(bearing.damping, dtype=float), 6)
         at = np.asarray(planet.centre) + along_x(bearing.offset)
-        label = f"pin {k + 1} {bearing.name}".strip()
-        for i, motion in enumerate(MOTIONS):
-            if stiffness[i] > 0 or damping[i] > 0:
-                direction = np.zeros(6)
-                direction[3 * (i // 3) : 3 * (i // 3) + 3] = axes[i % 3]
-                name = stage.full_name(f"{label} {motion}")
-                k_i, c_i = float(stiffness[i]), float(damping[i])
-                found.append(directed(name, planet, carrier, at, direction, k_i, c_i))
+        name = stage.full_name(f"pin {k + 1} {bearing.name}".strip())
+        found += bushing(name, planet, carrier, at, bearing.stiffness, bearing.damping, axes)
     return found
 
 

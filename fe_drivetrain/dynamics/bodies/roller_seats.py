@@ -222,6 +222,15 @@ class OnRollers:
         """
         return seat_number(self.seats, name)
 
+    def wrench(self, name: str) -> Floats:
+        """(6,) that the rollers of a bearing carry from its inner ring, see `System.wrench`.
+
+        Springs that stay beside the rollers, such as an axial guide, are not in it.
+        """
+        k = self.of(name)
+        directions = np.array([row.direction for row in self.seats[k].motions])
+        return np.asarray(self.loads[k] @ directions)
+
     def radial(self, name: str) -> float:
         """Radial load of a bearing [N]."""
         return float(np.hypot(*self.loads[self.of(name), 1:3]))
@@ -316,6 +325,11 @@ def without_bearings(system: System, seats: Sequence[Seat]) -> System:
             spring = f"{one.name} {motion}"
             if carried and spring in system.spring_names:
                 none[spring] = 0.0
+        if f"{one.name} 1" in system.spring_names:
+            raise InputError(
+                f"bearing {one.name!r} has a stiffness of six rows, in whose place rollers cannot "
+                "stand: give it six numbers, which hold what its rollers leave free"
+            )
         if not any(name.startswith(f"{one.name} u") for name in system.spring_names):
             raise InputError(
                 f"no springs of a bearing {one.name!r} in the system: correct its name"

@@ -5,7 +5,7 @@ do, so that a common rigid motion stretches nothing.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import cos, sin
 
 import numpy as np
@@ -31,12 +31,16 @@ class Spring:
         Elongation (6,) by the motion of each body about its centre [m/m, m/rad, ...].
     stiffness, damping : float
         Force per elongation [N/m, or N m/rad] and per its rate [N s/m, or N m s/rad].
+    direction : Floats
+        Direction (6,) of its force and moment at the point where its two bodies meet, along and
+        about x, y, z; zeros of a spring that is on other motions.
     """
 
     name: str
     by: Mapping[str, Floats]
     stiffness: float
     damping: float = 0.0
+    direction: Floats = field(default_factory=lambda: np.zeros(6))
 
 
 @dataclass(frozen=True)
@@ -92,7 +96,7 @@ def directed(
         if other.body == one.body:
             raise InputError(f"spring {name!r} joins {one.body!r} to itself: name two bodies")
         by[other.body] = -_row(direction, point, other.centre)
-    return Spring(name, by, stiffness, damping)
+    return Spring(name, by, stiffness, damping, np.asarray(direction, dtype=float))
 
 
 def bushing(
@@ -102,6 +106,7 @@ def bushing(
     point: ArrayLike,
     stiffness: ArrayLike,
     damping: ArrayLike = 0.0,
+    axes: ArrayLike = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
 ) -> list[Spring]:
     """Springs of a bearing, coupling or hinge: six stiffnesses, or a matrix with cross terms.
 
@@ -114,10 +119,12 @@ def bushing(
     point : array_like, (3,)
         Point where the stiffness is given [m].
     stiffness : array_like, (6,) or (6, 6)
-        Stiffness along and about x, y, z [N/m, N, N m/rad]; a matrix is symmetric and has no
+        Stiffness along and about the axes [N/m, N, N m/rad]; a matrix is symmetric and has no
         negative eigenvalue.
     damping : array_like, (6,) or scalar
         Damping of the same springs [N s/m, N m s/rad]; must be 0 with a matrix.
+    axes : array_like, (3, 3)
+        Axes of the stiffness, a row each; x, y, z where left out.
 
     Returns
     -------
@@ -127,32 +134,65 @@ def bushing(
     Raises
     ------
     InputError
-        The matrix is not symmetric, or has a negative eigenvalue; or a stiffness is negative.
+        The matrix is not symmetric, or has a negative eigenvalue, or comes with damping; or a
+        stiffness is negative.
     """
-    k = np.asarray(stiffness, dtype=float)
+    k, along = np.asarray(stiffness, dtype=float), np.kron(np.eye(2), np.asarray(axes, dtype=float))
     if k.ndim == 1:
         c = np.broadcast_to(np.asarray(damping, dtype=float), 6)
         if (k < 0).any():
             raise InputError(f"{name}: stiffness {k.min():g} must be at least 0 N/m: change it")
         return [
-            directed(f"{name} {m}", one, other, point, np.eye(6)[i], float(k[i]), float(c[i]))
+            directed(f"{name} {m}", one, other, point, along[i], float(k[i]), float(c[i]))
             for i, m in enumerate(MOTIONS)
             if k[i] > 0 or c[i] > 0
         ]
+    if np.any(np.asarray(damping)):
+        raise InputError(
+            f"{name}: stiffness is six rows, which have no damping of their own: make the damping "
+            "0, or give six numbers"
+        )
+    return [
+        directed(f"{name} {i}", one, other, point, along.T @ direction, value)
+        for i, (direction, value) in along_eigenvectors(name, k).items()
+    ]
+
+
+def along_eigenvectors(name: str, k: Floats) -> dict[int, tuple[Floats, float]]:
+    """Directions (6,) and stiffnesses of the springs of a matrix, by their number from 1.
+
+    Parameters
+    ----------
+    name : str
+        What they are of, for messages.
+    k : ndarray, (6, 6)
+        Stiffness, see `bushing`.
+
+    Raises
+    ------
+    InputError
+        The matrix is not symmetric, or has a negative eigenvalue.
+    """
     if np.abs(k - k.T).max() > 1e-9 * np.abs(k).max():
         raise InputError(f"{name}: the stiffness matrix must be symmetric: make it so")
     root = diagonal_roots(k.diagonal())
-    values, vectors = np.linalg.eigh(scaled_to_unit_diagonal(k))
+    # what the matrix leaves free stays exactly so, as the turn of a shaft in its bearing must
+    carried = np.flatnonzero(k.any(axis=1))
+    if not carried.size:
+        return {}
+    values, own = np.linalg.eigh(scaled_to_unit_diagonal(k)[np.ix_(carried, carried)])
+    vectors = np.zeros((6, len(values)))
+    vectors[carried] = own
     if values[0] < -1e-9 * values[-1]:
         raise InputError(
             f"{name}: the stiffness matrix has an eigenvalue of {values[0]:g} (on a unit diagonal) "
             "but none may be negative: correct it"
         )
-    return [
-        directed(f"{name} {i + 1}", one, other, point, root * vectors[:, i], float(value))
-        for i, value in enumerate(values)
+    return {
+        i + 1: (root * v, float(value))
+        for i, (value, v) in enumerate(zip(values, vectors.T, strict=True))
         if value > 1e-12 * values[-1]
-    ]
+    }
 
 
 def line_of_action(mesh: Mesh, to_pitch: ArrayLike, flank: int = 1) -> Floats:

@@ -9,7 +9,7 @@ from fe_drivetrain.common.arrays import Bools, Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
 from fe_drivetrain.common.short_repr import short_repr
-from fe_drivetrain.dynamics.bodies.system import System, springs_named
+from fe_drivetrain.dynamics.bodies.system import System, springs_named, wrench_of
 
 #: Eigenvalue of the stiffness on a unit diagonal below which a motion is free.
 FREE = 1e-12
@@ -48,6 +48,20 @@ class Static:
             There is no such spring.
         """
         return float(self.forces[springs_named(self.system.spring_names, name)].sum())
+
+    def wrench(self, name: str) -> Floats:
+        """(6,) force and moment of a bearing at its centre, see `System.wrench` [N, N m].
+
+        Raises
+        ------
+        InputError
+            There is no bearing of that name.
+        """
+        return self.system.wrench(name, self.forces)
+
+    def radial(self, name: str) -> float:
+        """Radial load of a bearing, whatever the kind of its stiffness [N]."""
+        return float(np.hypot(*self.wrench(name)[1:3]))
 
 
 def static(
@@ -157,11 +171,15 @@ class Turn:
         Names (m,) of the springs.
     forces : Floats
         Forces (s, m) of the springs [N, N m].
+    directions : Floats
+        Directions (s, m, 6) of the springs, where those of planets' pins turn with the carrier; or
+        (m, 6), along and about axes that do so.
     """
 
     azimuths: Floats
     spring_names: tuple[str, ...]
     forces: Floats
+    directions: Floats
 
     __repr__ = short_repr
 
@@ -176,8 +194,21 @@ class Turn:
         return np.asarray(self.forces[:, springs_named(self.spring_names, name)].sum(axis=1))
 
     def resultant(self, name: str) -> Floats:
-        """(s,) radial load of a bearing, by its springs NAME uy and NAME uz [N]."""
-        return np.hypot(self.of(f"{name} uy"), self.of(f"{name} uz"))
+        """(s,) radial load of a bearing, whatever the kind of its stiffness [N]."""
+        wrench = self.wrench(name)
+        return np.hypot(wrench[:, 1], wrench[:, 2])
+
+    def wrench(self, name: str) -> Floats:
+        """(s, 6) force and moment of a bearing at its centre, see `System.wrench` [N, N m].
+
+        Raises
+        ------
+        InputError
+            There is no bearing of that name.
+        """
+        turned = np.broadcast_to(self.directions, (*self.forces.shape, 6))
+        each = zip(turned, self.forces, strict=True)
+        return np.array([wrench_of(self.spring_names, d, name, f) for d, f in each])
 
     def amplitudes(self, values: Floats) -> Floats:
         """Amplitudes of the orders 0P, 1P and so on, of values at equal steps of one turn."""
@@ -206,12 +237,14 @@ def over_a_turn(
     gaps, contacts : mapping, sequence
         Gaps of springs by name, and names of springs that only press, see `static`.
     """
-    forces, names = [], None
+    forces, directions, names = [], [], None
     for azimuth in azimuths:
         system = at(float(azimuth))
         forces.append(static(system, loads(system), gaps, contacts).forces)
+        directions.append(system.directions)
         names = system.spring_names
-    return Turn(np.asarray(azimuths, dtype=float), names or (), np.array(forces))
+    angles = np.asarray(azimuths, dtype=float)
+    return Turn(angles, names or (), np.array(forces), np.array(directions))
 
 
 def load_sharing(forces: Floats) -> float:

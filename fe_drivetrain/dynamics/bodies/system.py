@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import scaled_solve
 from fe_drivetrain.common.short_repr import short_repr
@@ -41,6 +42,25 @@ def springs_named(names: Sequence[str], name: str, what: str = "spring") -> list
     if not found:
         raise InputError(f"no {what} {name!r}: use one of {', '.join(names[:40])}")
     return found
+
+
+def wrench_of(names: Sequence[str], directions: Floats, name: str, forces: Floats) -> Floats:
+    """(..., 6) force and moment of a bearing at its centre, see `System.wrench`.
+
+    Parameters
+    ----------
+    names, directions : sequence of str, ndarray (m, 6)
+        Names and directions of all springs.
+    name, forces : str, ndarray (..., m)
+        Name of the bearing, and forces of all springs [N, N m].
+    """
+    own = {f"{name} {end}" for end in (*MOTIONS, *range(1, 7))}
+    found = [k for k, spring in enumerate(names) if spring in own and directions[k].any()]
+    if not found:
+        ends = tuple(f" {motion}" for motion in (*MOTIONS, "1"))
+        known = dict.fromkeys(n.rpartition(" ")[0] for n in names if n.endswith(ends))
+        raise InputError(f"no bearing {name!r}: use one of {', '.join(list(known)[:40])}")
+    return np.asarray(np.asarray(forces, dtype=float)[..., found] @ directions[found])
 
 
 @dataclass(frozen=True)
@@ -76,6 +96,9 @@ class System:
         Masses (b,) of the bodies [kg].
     weight : Floats
         Load (n, 3) of superelements under a unit acceleration along x, y, z.
+    directions : Floats
+        Direction (m, 6) of the force and moment of each spring at the point where its bodies meet;
+        zeros of a spring that is on other motions.
     unchangeable : tuple[str, ...]
         Springs by whose stiffness motions without mass have been eliminated.
     """
@@ -93,6 +116,7 @@ class System:
     expansion: Floats
     body_mass: Floats
     weight: Floats
+    directions: Floats
     unchangeable: tuple[str, ...] = ()
 
     __repr__ = short_repr
@@ -148,6 +172,27 @@ class System:
                 "a.superelements) with a = assembly(machine, ...)"
             )
         return self.spring(name)
+
+    def wrench(self, name: str, forces: Floats) -> Floats:
+        """(..., 6) force and moment of a bearing at its centre, along and about x, y, z [N, N m].
+
+        K u of the motion u of what it holds against what holds it, whether its stiffness is six
+        numbers, whose springs are "NAME ux" and so on, or six rows, whose springs are "NAME 1" to
+        "NAME 6" along the eigenvectors.
+
+        Parameters
+        ----------
+        name : str
+            Name of a bearing, a planet's pin or another bushing.
+        forces : Floats
+            Forces (..., m) of all springs [N, N m], as of `Static`, `Turn` or a motion in time.
+
+        Raises
+        ------
+        InputError
+            There is no bearing of that name.
+        """
+        return wrench_of(self.spring_names, self.directions, name, forces)
 
     def motion_of(self, body: str, q: Floats) -> Floats:
         """(6, ...) motion of a body that belongs to degrees of freedom (n, ...).

@@ -23,8 +23,9 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import read_text
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import point_motions
-from fe_drivetrain.dynamics.bodies.bodies import Body
+from fe_drivetrain.dynamics.bodies.bodies import ALL, Body
 from fe_drivetrain.dynamics.bodies.equations import Equations, Loads, summed, varying
+from fe_drivetrain.dynamics.bodies.levels import TURNS
 from fe_drivetrain.dynamics.bodies.system import System
 
 UNITS = ("m", "m", "m", "rad", "rad", "rad")
@@ -159,20 +160,24 @@ def on_base(system: System, bodies: Iterable[Body]) -> Floats:
         System with n degrees of freedom.
     bodies : iterable of Body
         Bodies at their places; what is not named does not move rigidly, as amplitudes of elastic
-        rings do not.
+        rings do not. Beside bodies with all motions, one that turns alone stands on the base.
 
     Raises
     ------
     InputError
         The degrees of freedom do not allow that motion, as those of a torsional system.
     """
-    identity = np.eye(len(system.names))
+    identity, stands = np.eye(len(system.names)), list(bodies)
+    moving = any(body.free == ALL for body in stands)
     rows, rigid = [np.zeros((0, len(identity)))], [np.zeros((0, 6))]
-    for body in bodies:
+    for body in stands:
         moves = system.motion_of(body.name, identity)
-        if moves.any():  # what is held is part of the base
-            rows.append(moves)
-            rigid.append(point_motions(np.array([body.position])))
+        # what is held is part of the base, and what has no inertia does not feel it
+        if moves.any() and (body.mass > 0.0 or body.polar > 0.0):
+            # a generator that turns alone on its foundation goes along with the base otherwise
+            own = moves.any(axis=1) if moving and body.free == TURNS else np.ones(6, dtype=bool)
+            rows.append(moves[own])
+            rigid.append(point_motions(np.array([body.position]))[own])
     by, whole = np.vstack(rows), np.vstack(rigid)
     found = np.linalg.lstsq(by, whole, rcond=1e-12)[0]
     missed = np.abs(by @ found - whole).max(axis=0, initial=0.0)

@@ -6,7 +6,7 @@ generator is off at once, then a disc brake on the high-speed shaft until it sta
 swings against it.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,15 +15,14 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.dynamics.bodies.equations import (
     Equations,
     equations_of_motion,
-    joined_laws,
     spring_laws,
     varying,
 )
 from fe_drivetrain.dynamics.bodies.steady_state import wind_up
 from fe_drivetrain.dynamics.time.brakes import Brake
 from fe_drivetrain.dynamics.time.integration import Phase, transient
-from fe_drivetrain.dynamics.time.machines import slip_line
 from fe_drivetrain.dynamics.time.motion import Motion, State
+from fe_drivetrain.dynamics.time.steady_turning import Turning, with_laws
 from fe_drivetrain.dynamics.torsion.damping import shaft_damping
 from fe_drivetrain.dynamics.torsion.gear_table import (
     GENERATOR,
@@ -194,33 +193,52 @@ def shutdown(
         named = {e.name: ratios[0 if e.name in shafts else 1] for e in system.elements}
         system = damped_by_ratio(system, named)
     speeds = {ROTOR: 1.0, GENERATOR: 1.0} if lumped else dict(gear_speeds(table))
-    ratio = speeds[GENERATOR]
     to_rotor, to_generator = np.zeros(len(speeds)), np.zeros(len(speeds))
     to_rotor[system.place(ROTOR)] = 1.0
     to_generator[system.place(GENERATOR)] = 1.0
-    rated, speed = torque / ratio, rotor_speed * ratio
-    machine, pull = slip_line(to_generator, rated, speed, abs(rated / (slip * speed)))
     chain = torsional_equations(system)
     if backlash:
         shafts = {shaft.name for shaft in table.shafts} | {"shafts"}
         half = np.array([0.0 if e.name in shafts else backlash / 2.0 for e in system.elements])
         chain = replace(chain, springs=replace(chain.springs, lower=-half, upper=half))
-    on, off = (
-        Equations(
-            chain.mass,
-            joined_laws(chain.springs, machine if running else slip_line(to_generator, 0, 0, 0)[0]),
-            chain.damping,
-            chain.extra,
-        )
-        for running in (True, False)
-    )
-    wind = varying(to_rotor, [when.off, when.pitched], [torque, when.left * torque])
-    normal = varying(np.column_stack([to_rotor, pull.patterns[:, 0]]), [0.0], [[torque, 1.0]])
     velocity = rotor_speed * np.array([speeds[name] for name in system.names])
-    start = wind_up(on, normal.at(0.0), velocity)
+    turning = Turning(to_rotor, to_generator, torque, speeds[GENERATOR], velocity)
+    rated = turning.generator_torque
     discs = [Brake(to_generator, abs(brake * rated), when.braked, when.rise)] if brake else []
-    phases = [Phase(when.off, on, normal), Phase(when.back or when.end, off, [wind, *discs])]
+    phases, start = stop_phases(chain, turning, when, discs, slip)
+    return Shutdown(system, speeds, torque, transient(phases, dt, start))
+
+
+def stop_phases(
+    chain: Equations, turning: Turning, when: StopSequence, discs: Sequence[Brake], slip: float
+) -> tuple[list[Phase], State]:
+    """Phases of a stop, or of a loss of the grid, and the state wound up from which it begins.
+
+    Parameters
+    ----------
+    chain : Equations
+        Equations of motion without the generator's law.
+    turning : Turning
+        Steady turning before.
+    when : StopSequence
+        Times of the events; those of the discs are their own.
+    discs : sequence of Brake
+        Disc brakes.
+    slip : float
+        Slip of the generator at its torque.
+    """
+    machine, pull = turning.line(slip)
+    on, off = with_laws(chain, machine), with_laws(chain, turning.off())
+    torque, beside = turning.torque, turning.loads()
+    wind = varying(turning.to_rotor, [when.off, when.pitched], [torque, when.left * torque])
+    both = np.column_stack([turning.to_rotor, pull.patterns[:, 0]])
+    normal = varying(both, [0.0], [[torque, 1.0]])
+    load = sum((one.at(0.0) for one in beside), normal.at(0.0))
+    start = wind_up(on, load, turning.velocity)
+    phases = [
+        Phase(when.off, on, [normal, *beside]),
+        Phase(when.back or when.end, off, [wind, *beside, *discs]),
+    ]
     if when.back is not None:
-        phases.append(Phase(when.end, on, [wind, pull, *discs]))
-    found = transient(phases, dt, State(start.q, velocity, start.acceleration))
-    return Shutdown(system, speeds, torque, found)
+        phases.append(Phase(when.end, on, [wind, pull, *beside, *discs]))
+    return phases, State(start.q, turning.velocity, start.acceleration)

@@ -10,8 +10,6 @@ from .gear_table import PlanetaryStage as PlanetaryStage
 from .gear_table import ShaftRow as ShaftRow
 from .gear_table import gear_masses as gear_masses
 from .gear_table import gear_speeds as gear_speeds
-from .gear_table import parse_gear_table as parse_gear_table
-from .gear_table import read_gear_table as read_gear_table
 from .gear_table import stage_masses as stage_masses
 from .gear_table import two_masses as two_masses
 from .orders import Geared as Geared

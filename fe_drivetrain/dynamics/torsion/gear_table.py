@@ -1,7 +1,8 @@
 """Torsional drivetrains from a table of inertias, stiffnesses and ratios, as lumped masses.
 
-Rotor, shafts and gear stages by turns, generator; each row holds what belongs to its own axis, as
-data sheets give it. Three models of the same table (Al-Hamadani 2018, chapter 4):
+Rotor, shafts and gear stages by turns, generator; each row holds what belongs to its own axis.
+`dynamics.gear_table` makes the table of a drivetrain's file. Three models of the same table
+(Al-Hamadani 2018, chapter 4):
 
 - `two_masses`: the rotor and all the rest, the shafts in series (Eq 4.28-4.30, 4.33-4.35);
 - `stage_masses`: one mass a stage, gear meshes rigid (Eq 4.8-4.21, 4.24-4.26); five of them with
@@ -17,14 +18,12 @@ planets go the other way round than what drives them.
 from __future__ import annotations
 
 from math import cos, pi, radians, sin
-from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.reading import parse_mapping, read_text, validated
 from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.dynamics.torsion.system import (
     Element,
@@ -301,31 +300,6 @@ class GearTable(Part):
         for stage in self.stages:
             speeds.append(speeds[-1] * stage.speed_ratio)
         return tuple(speeds)
-
-
-def read_gear_table(path: str | Path) -> GearTable:
-    """Read a drivetrain's table from a YAML file of at most 1 MB.
-
-    Parameters
-    ----------
-    path : str or Path
-        Plain YAML without anchors, aliases or tags.
-
-    Returns
-    -------
-    GearTable
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, is not plain YAML, or does not describe a drivetrain.
-    """
-    return parse_gear_table(read_text(path, "drivetrain"), source=str(path))
-
-
-def parse_gear_table(text: str, source: str = "drivetrain") -> GearTable:
-    """A drivetrain from YAML text; see `read_gear_table`."""
-    return validated(GearTable, parse_mapping(text, source), source)
 
 
 def stage_masses(table: GearTable, generator: GeneratorState = "fixed") -> Torsional:

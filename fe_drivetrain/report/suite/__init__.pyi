@@ -1,6 +1,7 @@
 from .case import Case as Case
 from .case import all_cases as all_cases
 from .case import find_cases as find_cases
+from .chosen import ChosenDrivetrain as ChosenDrivetrain
 from .in_time import check_in_time as check_in_time
 from .page import Page as Page
 from .records import MeshSeries as MeshSeries

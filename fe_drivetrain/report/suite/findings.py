@@ -174,15 +174,15 @@ class Findings(Checks):
         Parameters
         ----------
         drivetrain : Described
-            A scene, machine or gear table, with all changes made; a scene is kept as a file, too.
+            A drivetrain's file or what is made of it, with all changes made; a file is kept as one.
         name : str
             As the results call it, where they are of several.
         """
+        from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
         from fe_drivetrain.drivetrain_file.reading import scene_text
-        from fe_drivetrain.drivetrain_file.scene import Scene
 
         self._of = self.concerns(drivetrain, name)
-        if isinstance(drivetrain, Scene):
+        if isinstance(drivetrain, Drivetrain):
             self.scene = scene_text(drivetrain)
 
     @contextmanager
@@ -209,7 +209,7 @@ class Findings(Checks):
         Parameters
         ----------
         drivetrain : Described
-            A scene, machine or gear table, with all changes made.
+            A drivetrain's file or what is made of it, with all changes made.
         name : str
             As the results call it.
         """

@@ -22,10 +22,12 @@ from fe_drivetrain.common.steps import Clock
 
 if TYPE_CHECKING:
     from fe_drivetrain.common.arrays import Floats
+    from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
     from fe_drivetrain.elasticity.mesh.blocks import Block
     from fe_drivetrain.geometry.shaft import Shaft
     from fe_drivetrain.report.pictures.sketch import Body, Faces
     from fe_drivetrain.report.results import Image, Solid
+    from fe_drivetrain.report.suite.chosen import ChosenDrivetrain
     from fe_drivetrain.report.suite.findings import Found
 
 _P = ParamSpec("_P")
@@ -139,6 +141,23 @@ class Run(Clock):
         if not number or not 0.0 < value < np.inf:
             raise InputError(f"{key} = {value!r} must be a number above 0, as in {key}={example:g}")
         return float(value)
+
+    def drivetrain(self, default: str | Drivetrain) -> ChosenDrivetrain:
+        """The drivetrain that the user names by ``--set drivetrain=FILE``, or the case's own.
+
+        Parameters
+        ----------
+        default : str or Drivetrain
+            The case's own, by its name in the library or as read.
+
+        Raises
+        ------
+        InputError
+            There is no such drivetrain, or it is wrong.
+        """
+        from fe_drivetrain.report.suite.chosen import SETTING, chosen_drivetrain
+
+        return chosen_drivetrain(self.settings.get(SETTING), default)
 
     def sketch(self, *bodies: Body | Shaft | list[Faces], file: str = "model.png") -> str:
         """Write a small picture of bodies, as meshed, shafts or surfaces; its name for a page."""

@@ -40,6 +40,8 @@ from .ladder import solved_assembly as solved_assembly
 from .ladder import statics_level as statics_level
 from .level_costs import Forecast as Forecast
 from .level_costs import forecast as forecast
+from .main_supports import MainSupports as MainSupports
+from .main_supports import main_supports as main_supports
 from .over_loads import Levels as Levels
 from .over_loads import imbalance as imbalance
 from .over_loads import levels_of as levels_of

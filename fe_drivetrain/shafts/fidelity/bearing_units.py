@@ -266,7 +266,9 @@ class UnitBounds(NamedTuple):
     mesh: StiffnessBands
 
 
-def unit_bounds(scene: Scene, name: str, cache: Cache | None = None) -> UnitBounds:
+def unit_bounds(
+    scene: Scene, name: str, cache: Cache | None = None, *, of_springs: bool = False
+) -> UnitBounds:
     """Stiffness of a bearing unit between its two bounds, and the band of its mesh.
 
     Parameters
@@ -277,6 +279,10 @@ def unit_bounds(scene: Scene, name: str, cache: Cache | None = None) -> UnitBoun
         Name of the bearing.
     cache : Cache or None
         Where they may come from, the same to the last bit; the user's if not given.
+    of_springs : bool
+        Whether the seat of a spring joint is between both bounds, too: such a joint holds its seat
+        on average in solid models, and so leaves nothing open there, but rollers keep it in shape
+        in part.
 
     Returns
     -------
@@ -288,6 +294,10 @@ def unit_bounds(scene: Scene, name: str, cache: Cache | None = None) -> UnitBoun
         return UnitBounds(given, given, StiffnessBands.uniform(0.0))
 
     ways = [face_of(scene, name, True, coupling) for coupling in _COUPLINGS]
+    band: dict[str, Any] = {"mesh band of": name}
+    if of_springs and scene.bearing_unit(name).interface == "spring":
+        ways = [(with_ring, c) for (with_ring, _), c in zip(ways, _COUPLINGS, strict=True)]
+        band["coupling"] = ways[0][1]
 
     def solved() -> list[Floats]:
         unit = _unit_solid(scene, name, ways[0][0])
@@ -296,7 +306,7 @@ def unit_bounds(scene: Scene, name: str, cache: Cache | None = None) -> UnitBoun
         return [stiff.stiffness, soft.stiffness, _mesh_band(scene, stiff)]
 
     contents = [_content(name, *way, "auto") for way in ways]
-    stiff, soft, mesh = _kept(scene, name, [*contents, {"mesh band of": name}], cache, solved)
+    stiff, soft, mesh = _kept(scene, name, [*contents, band], cache, solved)
     return UnitBounds(soft, stiff, StiffnessBands.of_motions(mesh))
 
 

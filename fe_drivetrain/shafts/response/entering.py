@@ -19,7 +19,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.entrance import Entrance
 from fe_drivetrain.turbine_loads.hub_loads.files import require_points
-from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
+from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory, require_all_loads
 from fe_drivetrain.turbine_loads.hub_loads.point_loads import PointLoads
 
 
@@ -109,9 +109,10 @@ def at_front(where: Entered, history: LoadHistory) -> LoadHistory:
     Raises
     ------
     InputError
-        It has loads at a point that the scene does not have.
+        It has loads at a point that the scene does not have, or lacks components at the hub.
     """
     entrance = where.entrance
+    require_all_loads(history)
     require_points([history], entrance.points)
     about = entrance.loads_at if history.about is None else history.about
     start = entrance.front if isinstance(about, str) else about

@@ -6,14 +6,14 @@ number of cycles for charts and tables.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.turbine_loads.histories.classes import Classes, added_by_name, in_classes
-from fe_drivetrain.turbine_loads.histories.cycles import Residue, gated, rainflow_cycles
+from fe_drivetrain.turbine_loads.histories.cycles import Residue, gated, joined, rainflow_cycles
 from fe_drivetrain.turbine_loads.histories.damage import FREQUENCY, SLOPES, goodman
 
 _MEANS = 24  # classes of range, and of mean, of cycles by both, at least
@@ -88,8 +88,19 @@ class CycleSums:
             added_by_name(self.ranges_and_means, other.ranges_and_means),
         )
 
+    def of(self, names: Collection[str]) -> CycleSums:
+        """The same, with classes of the named channels alone."""
+        both = self.ranges_and_means
+        return replace(
+            self,
+            ranges={name: one for name, one in self.ranges.items() if name in names},
+            ranges_and_means={name: one for name, one in both.items() if name in names},
+        )
 
-def count_cycles(channels: Mapping[str, Floats], rule: CycleRule) -> CycleSums:
+
+def count_cycles(
+    channels: Mapping[str, Floats], rule: CycleRule, pieces: Sequence[slice] = (slice(None),)
+) -> CycleSums:
     """Count the cycles of each channel of a history.
 
     Parameters
@@ -98,6 +109,8 @@ def count_cycles(channels: Mapping[str, Floats], rule: CycleRule) -> CycleSums:
         Samples (n,) by name.
     rule : CycleRule
         How they are counted.
+    pieces : sequence of slice
+        Samples between gaps: no cycle leads over a gap.
 
     Raises
     ------
@@ -109,7 +122,9 @@ def count_cycles(channels: Mapping[str, Floats], rule: CycleRule) -> CycleSums:
     numbers = np.zeros((len(channels), 3))
     ranges, both = {}, {}
     for c, (name, samples) in enumerate(channels.items()):
-        cycles = rainflow_cycles(samples, rule.residue)
+        cycles = joined(
+            [rainflow_cycles(samples[one], rule.residue) for one in pieces], rule.residue
+        )
         widest = float(cycles.ranges.max(initial=0.0))
         if rule.gate:
             cycles = gated(cycles, rule.gate * widest)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.arrays import Bools, Floats
 from fe_drivetrain.turbine_loads.histories.classes import Classes, added_by_name, in_classes
 from fe_drivetrain.turbine_loads.histories.levels import torque_reversals
 
@@ -37,6 +37,13 @@ class LevelSums:
         """Both together."""
         return LevelSums(
             added_by_name(self.seconds, other.seconds), added_by_name(self.turns, other.turns)
+        )
+
+    def of(self, names: Collection[str]) -> LevelSums:
+        """Those of the named loads alone."""
+        return LevelSums(
+            {name: one for name, one in self.seconds.items() if name in names},
+            {name: one for name, one in self.turns.items() if name in names},
         )
 
 
@@ -85,20 +92,26 @@ class TorqueSums:
         return _UNIT * float((self.over_turns / self.turns) ** (1.0 / POWER))
 
 
-def turns_of(rotor_speed: Floats, step: float) -> Floats:
-    """Turns of the rotor in each sample: (n,) of speeds (n,) [rad/s] and a step [s]."""
+NO_TORQUE = TorqueSums(np.nan, np.nan, np.nan, np.nan, np.nan)
+"""Sums where no torque is known."""
+
+
+def turns_of(rotor_speed: Floats, step: float | Floats) -> Floats:
+    """Turns of the rotor in each sample: (n,) of speeds (n,) [rad/s] and a step or steps [s]."""
     return np.asarray(np.abs(rotor_speed) * step / (2.0 * np.pi))
 
 
-def level_sums(channels: Mapping[str, Floats], step: float, turns: Floats | None) -> LevelSums:
+def level_sums(
+    channels: Mapping[str, Floats], step: float | Floats, turns: Floats | None
+) -> LevelSums:
     """Put the samples of each load into classes of level.
 
     Parameters
     ----------
     channels : Mapping[str, ndarray]
         Samples (n,) by name.
-    step : float
-        Between two samples [s].
+    step : float or ndarray, (n,)
+        Time that each sample stands for [s].
     turns : ndarray, (n,) or None
         Turns of the rotor in each sample, see `turns_of`.
     """
@@ -112,24 +125,40 @@ def level_sums(channels: Mapping[str, Floats], step: float, turns: Floats | None
     )
 
 
-def torque_sums(torque: Floats, step: float, turns: Floats | None) -> TorqueSums:
+def torque_sums(
+    torque: Floats,
+    step: float | Floats,
+    turns: Floats | None,
+    pieces: Sequence[slice] = (slice(None),),
+) -> TorqueSums:
     """Reversals of a torque, and its powers summed over time and turns.
 
     Parameters
     ----------
     torque : ndarray, (n,)
         The torque [N m].
-    step : float
-        Between two samples [s].
+    step : float or ndarray, (n,)
+        Time that each sample stands for [s].
     turns : ndarray, (n,) or None
         Turns of the rotor in each sample, see `turns_of`.
+    pieces : sequence of slice
+        Samples between gaps: no reversal is counted over a gap.
     """
-    back = torque_reversals(torque, step, band=_BAND * float(np.abs(torque).max()))
+    band, each = _BAND * float(np.abs(torque).max()), np.full(len(torque), step)
+    back = [torque_reversals(torque[one], 1.0, band) for one in pieces]
+    negative = torque < 0.0
     powers = np.abs(torque / _UNIT) ** POWER
     return TorqueSums(
-        float(back.count),
-        back.seconds,
-        float(np.full(len(torque), step) @ powers),
+        float(sum(one.count for one in back)),
+        _sum_of(step, negative),
+        float(each @ powers),
         np.nan if turns is None else float(turns @ powers),
         np.nan if turns is None else float(turns.sum()),
     )
+
+
+def _sum_of(step: float | Floats, chosen: Bools) -> float:
+    """Time of the chosen samples [s]."""
+    if isinstance(step, np.ndarray):
+        return float(step[chosen].sum())
+    return float(np.count_nonzero(chosen)) * step

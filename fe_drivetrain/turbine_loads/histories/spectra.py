@@ -22,6 +22,9 @@ MULTIPLES = (1, 3, 6, 9)
 SEGMENT = 60.0
 """Length of a segment [s]: lines 1/60 Hz apart."""
 
+FEWEST = 8
+"""Samples of a segment, at least."""
+
 NEAR = 0.05
 """About a multiple, as a share of it: a rotor's speed varies by as much."""
 
@@ -89,10 +92,10 @@ def spectrum(signal: ArrayLike, step: float, segment: float = SEGMENT) -> Spectr
 
     values = np.asarray(signal, dtype=float)
     length = min(round(segment / step), len(values))
-    if length < 8:
+    if length < FEWEST:
         raise InputError(
             f"spectrum: a segment of {length * step:g} s has {length} samples of {step:g} s and "
-            "needs 8: give a longer history, or longer segments"
+            f"needs {FEWEST}: give a longer history, or longer segments"
         )
     frequency, density = welch(values, 1.0 / step, "hann", length, detrend="constant")
     overlap = length // 2

@@ -6,7 +6,7 @@ slowest sampling shows them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +14,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.turbine_loads.histories.spectra import (
+    FEWEST,
     MULTIPLES,
     SEGMENT,
     Campbell,
@@ -43,12 +44,15 @@ class SpeedSpectra:
         [Hz].
     density : ndarray, (b, f)
         Mean of the segments, unit squared per Hz.
+    load : str
+        Which load.
     """
 
     classes: Floats
     segments: Floats
     frequency: Floats
     density: Floats
+    load: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,9 +79,14 @@ class HistorySpectra:
 
 
 def history_spectra(
-    channels: Mapping[str, Floats], step: float, rotor_speed: Floats | None, shown: str
+    channels: Mapping[str, Floats],
+    step: float,
+    rotor_speed: Floats | None,
+    shown: str,
+    mean_speed: float | None = None,
 ) -> HistorySpectra | None:
-    """Spectra of a history; None of one shorter than half a segment, whose lines are too far apart.
+    """Spectra of a history; None of one shorter than half a segment, whose lines are too far apart,
+    or of one with too few samples in a segment.
 
     Parameters
     ----------
@@ -89,9 +98,14 @@ def history_spectra(
         [rad/s].
     shown : str
         The load of the Campbell diagram.
+    mean_speed : float, optional
+        Mean size of the rotor speed where this is a piece of a history, whose multiples count
+        [rad/s]; that of `rotor_speed` where left out.
     """
     if len(channels[shown]) * step < 0.5 * SEGMENT:
         return None  # lines would be wider apart than 1P and 3P may be
+    if round(SEGMENT / step) < FEWEST:
+        return None
     lines = np.arange(0.0, min(HIGHEST, 0.5 / step), 1.0 / SEGMENT)
     spectra = [spectrum(samples, step) for samples in channels.values()]
     density = np.array([np.interp(lines, s.frequency, s.density) for s in spectra])
@@ -99,18 +113,59 @@ def history_spectra(
         return HistorySpectra(density, None, None, None)
     amplitudes = appears_at = None
     speed = np.abs(rotor_speed)
-    turning = float(speed.mean())
+    turning = float(speed.mean()) if mean_speed is None else mean_speed
     if turning > 0.0:
         rows = [multiples(s, turning, MULTIPLES) for s in spectra]
         amplitudes = np.array(
             [[np.nan if m.amplitude is None else m.amplitude for m in row] for row in rows]
         )
         appears_at = np.array([m.appears_at for m in rows[0]])
-    by_speed = _by_speed(channels[shown], step, speed)
+    by_speed = _by_speed(channels[shown], step, speed, shown)
     return HistorySpectra(density, amplitudes, appears_at, by_speed)
 
 
-def _by_speed(samples: Floats, step: float, speed: Floats) -> SpeedSpectra | None:
+def joined_spectra(parts: Sequence[tuple[HistorySpectra, float]]) -> HistorySpectra | None:
+    """Spectra of a history in pieces, each weighted by its time; None where there is no piece.
+
+    Parameters
+    ----------
+    parts : sequence of (HistorySpectra, float)
+        Of each piece, in which the same channels are known, and its time [s].
+    """
+    if len(parts) < 2:
+        return parts[0][0] if parts else None
+    share = np.array([seconds for _, seconds in parts])
+    share /= share.sum()
+    lines = min(one.density.shape[1] for one, _ in parts)
+    density = sum(k * one.density[:, :lines] for k, (one, _) in zip(share, parts, strict=True))
+    turning = [
+        (k, one) for k, (one, _) in zip(share, parts, strict=True) if one.multiples is not None
+    ]
+    multiples = appears_at = None
+    if turning:
+        powers = sum(k * np.asarray(one.multiples) ** 2 for k, one in turning)
+        multiples = np.sqrt(powers / sum(k for k, _ in turning))
+        appears_at = turning[0][1].appears_at
+    return HistorySpectra(np.asarray(density), multiples, appears_at, _joined_by_speed(parts))
+
+
+def _joined_by_speed(parts: Sequence[tuple[HistorySpectra, float]]) -> SpeedSpectra | None:
+    """Spectra by rotor speed of all pieces, each class the mean of its segments."""
+    found = [one.by_speed for one, _ in parts if one.by_speed is not None]
+    if not found:
+        return None
+    lines = min(len(one.frequency) for one in found)
+    classes = np.unique(np.concatenate([one.classes for one in found]))
+    segments, density = np.zeros(len(classes)), np.zeros((len(classes), lines))
+    for one in found:
+        places = np.searchsorted(classes, one.classes)
+        segments[places] += one.segments
+        density[places] += one.segments[:, None] * one.density[:, :lines]
+    mean = density / segments[:, None]
+    return SpeedSpectra(classes, segments, found[0].frequency[:lines], mean, found[0].load)
+
+
+def _by_speed(samples: Floats, step: float, speed: Floats, load: str) -> SpeedSpectra | None:
     edges = SPEED_STEP * np.arange(np.ceil(speed.max() / SPEED_STEP) + 1)
     try:
         found: Campbell = campbell([(samples, speed, step)], edges)
@@ -123,6 +178,7 @@ def _by_speed(samples: Floats, step: float, speed: Floats) -> SpeedSpectra | Non
         found.segments[filled],
         found.frequency[kept],
         found.density[filled][:, kept],
+        load,
     )
 
 
@@ -163,7 +219,10 @@ class MeanSpectra:
     aliased : tuple of Aliased
         Histories that are sampled too slowly for one of them.
     by_speed : Campbell or None
-        Spectra of one load by rotor speed; None where fewer than two classes of speed are filled.
+        Spectra of one load by rotor speed; None where fewer than two classes of speed are filled,
+        or histories have them of different loads.
+    load : str
+        Which load; empty where there is none.
     """
 
     frequency: Floats
@@ -172,6 +231,7 @@ class MeanSpectra:
     multiples: Floats | None
     aliased: tuple[Aliased, ...]
     by_speed: Campbell | None
+    load: str
 
 
 class SpectrumSums:
@@ -183,6 +243,7 @@ class SpectrumSums:
         self._lines = np.zeros(0)
         self._multiples: list[Floats] = []
         self._aliased: list[Aliased] = []
+        self._loads: set[str] = set()  # of the spectra by speed
 
     def add(self, file: str, found: HistorySpectra, seconds: float, step: float) -> None:
         """Add a history of that name, which lasts so many seconds in steps of `step` [s]."""
@@ -191,7 +252,7 @@ class SpectrumSums:
         self._density[density.shape[1]] = (total + seconds * density, time + seconds)
         if found.multiples is not None:
             self._multiples.append(found.multiples)
-            if found.appears_at is not None and np.isnan(found.multiples).any():
+            if found.appears_at is not None and np.isnan(found.multiples).all(axis=0).any():
                 self._aliased.append(Aliased(file, found.appears_at, step))
         if found.by_speed is not None:
             self._add_by_speed(found.by_speed)
@@ -200,6 +261,7 @@ class SpectrumSums:
         if not len(self._lines) or len(found.frequency) < len(self._lines):
             self._lines = found.frequency
         kept = len(self._lines)
+        self._loads.add(found.load)
         rows = zip(found.classes.astype(int).tolist(), found.segments, found.density, strict=True)
         for place, number, density in rows:
             total, before = self._by_speed.get(place, (np.zeros(kept), 0.0))
@@ -220,6 +282,7 @@ class SpectrumSums:
             self._median_multiples(),
             tuple(self._aliased),
             self._mean_by_speed(),
+            min(self._loads, default=""),
         )
 
     def _median_multiples(self) -> Floats | None:
@@ -233,7 +296,7 @@ class SpectrumSums:
         return result
 
     def _mean_by_speed(self) -> Campbell | None:
-        if len(self._by_speed) < 2:
+        if len(self._by_speed) < 2 or len(self._loads) > 1:
             return None
         first, last = min(self._by_speed), max(self._by_speed)
         density = np.full((last - first + 1, len(self._lines)), np.nan)

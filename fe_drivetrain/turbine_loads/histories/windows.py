@@ -73,7 +73,12 @@ def joined_windows(parts: Sequence[Windows]) -> Windows:
     )
 
 
-def window_statistics(time: ArrayLike, samples: ArrayLike, seconds: float = TEN_MINUTES) -> Windows:
+def window_statistics(
+    time: ArrayLike,
+    samples: ArrayLike,
+    seconds: float = TEN_MINUTES,
+    weights: ArrayLike | None = None,
+) -> Windows:
     """Statistics in windows of one length; each sample is in one of them.
 
     What is left at the end is a window of its own if it is half as long or longer, and else part of
@@ -82,11 +87,14 @@ def window_statistics(time: ArrayLike, samples: ArrayLike, seconds: float = TEN_
     Parameters
     ----------
     time : array_like, (n,)
-        Times of uniform step [s].
+        Times, of uniform step unless there are weights [s].
     samples : array_like, (n, k)
         Channels.
     seconds : float
         Length of a window [s].
+    weights : array_like, (n,), optional
+        Time that each sample stands for, where steps differ or leave gaps [s]: a window then lasts
+        as long as its samples do, and one without samples is left out.
 
     Raises
     ------
@@ -96,6 +104,8 @@ def window_statistics(time: ArrayLike, samples: ArrayLike, seconds: float = TEN_
     if not seconds > 0.0:
         raise InputError(f"windows of {seconds:g} s: give a length above 0 s, as 600")
     at, values = np.asarray(time, dtype=float), np.asarray(samples, dtype=float)
+    if weights is not None:
+        return _weighted(at, values, seconds, np.asarray(weights, dtype=float))
     step = float(at[-1] - at[0]) / (len(at) - 1)
     count = max(1, int(np.floor(len(at) * step / seconds + 0.5)))
     # half a step forward, so that round-off of the time column moves no sample
@@ -114,6 +124,20 @@ def window_statistics(time: ArrayLike, samples: ArrayLike, seconds: float = TEN_
         axis=2,
     )
     return Windows(at[first], number[:, 0] * step, table)
+
+
+def _weighted(at: Floats, values: Floats, seconds: float, weights: Floats) -> Windows:
+    """Statistics in windows of the clock, in which each sample counts for its own time."""
+    whole = max(1, int(np.floor((at[-1] - at[0]) / seconds + 0.5)))
+    window = np.minimum(((at - at[0]) // seconds).astype(int), whole - 1)
+    first = np.unique(window, return_index=True)[1]
+    lasting = np.add.reduceat(weights, first)
+    own = np.repeat(np.arange(len(first)), np.diff(first, append=len(at)))
+    each = weights[:, None]
+    mean = np.add.reduceat(each * values, first) / lasting[:, None]
+    squares = np.add.reduceat(each * (values - mean[own]) ** 2, first) / lasting[:, None]
+    low, high = (ufunc.reduceat(values, first) for ufunc in (np.minimum, np.maximum))
+    return Windows(at[first], lasting, np.stack([low, mean, high, np.sqrt(squares)], axis=2))
 
 
 @dataclass(frozen=True, eq=False)

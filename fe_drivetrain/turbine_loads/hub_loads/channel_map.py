@@ -13,6 +13,9 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import parse_mapping, read_text, validated
 
+HIGH_SPEED_TORQUE = "high-speed torque"
+"""Torque of the generator's shaft, as its channel is mapped; the gearbox ratio makes Mx of it."""
+
 LOAD_NAMES = {
     "time": "time",
     "Fx": "lsshftfxa",
@@ -22,10 +25,11 @@ LOAD_NAMES = {
     "My": "lsstipmys",
     "Mz": "lsstipmzs",
     "azimuth": "lsstippxa",
+    HIGH_SPEED_TORQUE: "gentq",
 }
 """What is read by `loads_from_channels`, and the name of OpenFAST that it is read under."""
 
-NAMES = (*LOAD_NAMES, "rotor speed", "wind speed")
+NAMES = (*LOAD_NAMES, "rotor speed", "generator speed", "wind speed")
 """What a channel of a file can be mapped as."""
 
 _ACROSS = ("Fy", "Fz", "My", "Mz")
@@ -52,6 +56,10 @@ class ChannelMap(BaseModel):
     moments_at : float
         How far downwind of the hub along the shaft the point is that moments are about, where it
         is not the hub; of OpenFAST's LSSGagM channels, ShftGagL [m].
+    gearbox_ratio : float or None
+        Speed of the generator over that of the rotor: a torque that files have at the high-speed
+        shaft alone, as GenTq, becomes the rotor's Mx, without losses and inertia between, and a
+        speed of the generator alone that of the rotor.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -62,6 +70,7 @@ class ChannelMap(BaseModel):
     azimuth_blade1_up: Annotated[float, Field(ge=-360.0, le=360.0)] = 0.0
     tilt: Annotated[float, Field(ge=-30.0, le=30.0)] = 0.0
     moments_at: Annotated[float, Field(ge=-20.0, le=20.0)] = 0.0
+    gearbox_ratio: Annotated[float, Field(ge=1.0, le=1000.0)] | None = None
 
     @field_validator("channels")
     @classmethod

@@ -20,11 +20,15 @@ _MAX_BYTES = 8_000_000_000  # of one file of loads or wind, which memory holds w
 
 @dataclass(frozen=True, eq=False)
 class Channel:
-    """One column of a file: its name there, its unit there, its samples (n,) as written."""
+    """One column of a file: its name there, its unit there, its samples (n,) as written.
+
+    A note says how they were read where they are not numbers there.
+    """
 
     name: str
     unit: str
     values: Floats
+    note: str = ""
 
 
 def parse_number(text: str) -> float:

@@ -7,8 +7,10 @@ import math
 import os
 import re
 from array import array
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,6 +20,7 @@ from fe_drivetrain.common.csv_cells import cell_as_given, comment_as_given, comm
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.common.strict_yaml import shown
+from fe_drivetrain.turbine_loads.hub_loads.channel_map import HIGH_SPEED_TORQUE
 from fe_drivetrain.turbine_loads.hub_loads.channels import (
     FORCE_UNITS,
     MOMENT_UNITS,
@@ -27,29 +30,47 @@ from fe_drivetrain.turbine_loads.hub_loads.channels import (
     in_si,
     not_utf8,
     parse_number,
+    without_unit,
 )
+from fe_drivetrain.turbine_loads.hub_loads.high_speed import at_rotor
 from fe_drivetrain.turbine_loads.hub_loads.histories import (
+    NEED_ALL,
     UNITS,
     About,
     Attribute,
     LoadHistory,
     require_sound,
 )
+from fe_drivetrain.turbine_loads.hub_loads.stamps import EXAMPLE, TimeColumn
+from fe_drivetrain.turbine_loads.hub_loads.table_names import HUB, named_columns
 
 _CSV_COLUMNS = ("time", *FORCES)
 _TABLES = (FORCE_UNITS,) * 3 + (MOMENT_UNITS,) * 3
+_UNITS = {"time": "s", HIGH_SPEED_TORQUE: "kN m", **dict(zip(FORCES, UNITS, strict=True))}
 _ABOUT = "moments about"  # key of a line before the header: x [m], or "front face"
 _CSV_EXAMPLE = "time [s],Fx [N],Fy [N],Fz [N],Mx [N m],My [N m],Mz [N m]"
 
 
-def read_csv(path: str | os.PathLike[str]) -> LoadHistory:
+def read_csv(
+    path: str | os.PathLike[str], measured: bool = False, gearbox_ratio: float | None = None
+) -> LoadHistory:
     """Read hub loads from a table with named columns and their units in the header.
 
-    The header is like ``time [s],Fx [kN],...,Mz [kN m]``, columns in any order, others ignored.
+    The header is like ``time [s],Fx [kN],...,Mz [kN m]``, columns in any order, others ignored;
+    other names that are known are in `TABLE_NAMES`. Time may be date-times.
     Columns like ``brake.Fz [kN]`` are loads at another point of the shaft; those that a point does
     not have are zero.
     Lines ``# key = value`` before it become the attributes; ``# moments about = 0.7`` is x [m] of
     the point that moments are about, where that is another than a scene states.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file.
+    measured : bool
+        Take what components there are, at whatever times.
+    gearbox_ratio : float, optional
+        Makes the rotor's torque of that of the high-speed shaft, where the table has that alone.
 
     Raises
     ------
@@ -61,29 +82,57 @@ def read_csv(path: str | os.PathLike[str]) -> LoadHistory:
     attributes: dict[str, Attribute] = {}
     try:
         with file.open(encoding="utf-8-sig") as stream:
-            channels, rows, unread = _channels(file, stream, attributes)
+            table = _read_table(file, stream, attributes, measured, bool(measured or gearbox_ratio))
     except UnicodeDecodeError as error:
         raise not_utf8("hub loads", file) from error
     except csv.Error as error:
         raise InputError(f"hub loads '{file}': {error}; correct the table") from error
 
-    source = str(file)
+    source, channels = str(file), table.channels
+    torque = channels.pop(HIGH_SPEED_TORQUE, None)
+    if torque is not None:
+        channels["Mx"] = torque
     time = in_si(source, channels["time"], TIME_UNITS)
-    loads = [
-        in_si(source, channels[name], table) for name, table in zip(FORCES, _TABLES, strict=True)
-    ]
-    columns = dict(zip(FORCES, loads, strict=True))
+    loads = {
+        name: in_si(source, channels[name], units)
+        for name, units in zip(FORCES, _TABLES, strict=True)
+        if name in channels
+    }
     others = [name for name in channels if name not in _CSV_COLUMNS]
     at = point_loads(source, [channels[name] for name in others])
+    columns = dict(loads)
     for point, values in at.items():
         columns |= {f"{point}.{c}": v for c, v in zip(FORCES, values.T, strict=True)}
-    require_sound(f"hub loads '{source}'", time, columns, rows)
-    read = ", ".join(f"{name} [{channels[name].unit}]" for name in (*FORCES, *others))
-    origin = {"source": file.name, "channels": f"{read}; signs as in the file, nothing turned"}
+    require_sound(f"hub loads '{source}'", time, columns, table.rows, even=not measured)
+    read = ", ".join(_as_read(name, channels[name]) for name in (*loads, *others))
+    origin: dict[str, Attribute] = {"source": file.name}
+    loads, where = at_rotor(source, loads, torque, gearbox_ratio)
+    read = "; ".join(filter(None, (read, where.words, table.times)))
     about = _about(attributes)
+    origin |= {"channels": f"{read}; signs as in the file, nothing turned", **where.attributes}
+    missing = np.full(len(time), np.nan)
     return LoadHistory(
-        file.stem, time, np.column_stack(loads), origin | attributes, at, unread, about
+        file.stem,
+        time,
+        np.column_stack([loads.get(name, missing) for name in FORCES]),
+        origin | attributes,
+        at,
+        table.unread,
+        about,
+        measured,
     )
+
+
+def _title(name: str, title: str) -> str:
+    """The name of a column as it is stated: its own, or the other one that the file has."""
+    own = without_unit(title)
+    return name if own.lower() == name.lower() else own
+
+
+def _as_read(name: str, channel: Channel) -> str:
+    """A column as the file calls it, with what it is where that is another name."""
+    title = f"{channel.name} [{channel.unit}]"
+    return title if channel.name == name else f"{name} = {title}"
 
 
 def is_of_point(title: str) -> bool:
@@ -116,12 +165,25 @@ def point_loads(source: str, channels: Iterable[Channel]) -> dict[str, Floats]:
     return at
 
 
-def _channels(
-    file: Path, stream: Iterable[str], attributes: dict[str, Attribute]
-) -> tuple[dict[str, Channel], Sequence[int], tuple[str, ...]]:
-    """Columns that are read, the line of each row, and titles of other columns.
+class _Table(NamedTuple):
+    """Columns that are read, the line of each row, titles of other columns, how times were read."""
 
-    Memory is that of the numbers that are read.
+    channels: dict[str, Channel]
+    rows: Sequence[int]
+    unread: tuple[str, ...]
+    times: str
+
+
+def _read_table(
+    file: Path,
+    stream: Iterable[str],
+    attributes: dict[str, Attribute],
+    measured: bool,
+    high_speed: bool,
+) -> _Table:
+    """Columns of a table, in the memory of the numbers that are read.
+
+    With `high_speed` the torque of that shaft stands for Mx where there is no other.
     """
     rows = array("q")
 
@@ -145,8 +207,12 @@ def _channels(
             "decimals must have a point: export the table so"
         )
     places = _csv_places(file, header)
+    if "Mx" in places or not high_speed:
+        places.pop(HIGH_SPEED_TORQUE, None)
+    _require_columns(file, places, measured)
     del rows[:]
     columns = {name: array("d") for name in places}
+    stamps = TimeColumn()
     for row in table:
         # more cells than columns: decimal commas would shift every number into another column
         if len(row) > len(header) and any(cell.strip() for cell in row[len(header) :]):
@@ -158,23 +224,33 @@ def _channels(
         for name, (place, _) in places.items():
             text = row[place].strip() if place < len(row) else ""
             try:
-                columns[name].append(parse_number(text))
+                columns[name].append(stamps(text) if name == "time" else parse_number(text))
             except ValueError as error:
-                if re.fullmatch(r"[-+]?\d+,\d*(e[-+]?\d+)?", text, re.IGNORECASE):
-                    raise InputError(
-                        f"hub loads '{file}': line {rows[-1]}, column {name}: {shown(text)} has a "
-                        "decimal comma: write decimals with a point"
-                    ) from error
-                raise InputError(
-                    f"hub loads '{file}': line {rows[-1]}, column {name}: {shown(text)} is not a "
-                    "number; correct it or remove the line and all after it"
-                ) from error
+                raise _bad_cell(file, rows[-1], name, text) from error
     channels = {
-        name: Channel(name, unit, np.array(columns[name])) for name, (_, unit) in places.items()
+        name: Channel(_title(name, header[place]), unit, np.array(columns[name]))
+        for name, (place, unit) in places.items()
     }
+    if stamps.first is not None:
+        channels["time"] = replace(channels["time"], unit="s")
+    elif not channels["time"].unit:
+        raise _no_unit(file, header[places["time"][0]], "time")
     taken = {place for place, _ in places.values()}
     unread = tuple(title.strip() for k, title in enumerate(header) if k not in taken)
-    return channels, rows, unread
+    return _Table(channels, rows, unread, stamps.words)
+
+
+def _bad_cell(file: Path, line: int, name: str, text: str) -> InputError:
+    """The sentence about a cell that is not what its column holds."""
+    place = f"hub loads '{file}': line {line}, column {name}: {shown(text)}"
+    if re.fullmatch(r"[-+]?\d+,\d*(e[-+]?\d+)?", text, re.IGNORECASE):
+        return InputError(f"{place} has a decimal comma: write decimals with a point")
+    if name == "time":
+        return InputError(
+            f"{place} is neither a number nor a date-time like {EXAMPLE}, or not in the form of "
+            "the first one: write all times in one form"
+        )
+    return InputError(f"{place} is not a number; correct it or remove the line and all after it")
 
 
 def write_hub_loads(
@@ -183,6 +259,8 @@ def write_hub_loads(
     beside: Mapping[str, Floats] | None = None,
 ) -> None:
     """Write a history as ``read_csv`` reads it, exactly, and whole or not at all.
+
+    Components that are absent have no column.
 
     Parameters
     ----------
@@ -201,12 +279,15 @@ def write_hub_loads(
     file = Path(path)
     more = dict(beside or {})
     columns = [values[:, None] for values in more.values()]
-    table = np.column_stack((history.time, history.loads, *history.at.values(), *columns))
+    there = [k for k, name in enumerate(FORCES) if name not in history.absent]
+    loads = history.loads[:, there]
+    table = np.column_stack((history.time, loads, *history.at.values(), *columns))
     others = [f"{p}.{c} [{u}]" for p in history.at for c, u in zip(FORCES, UNITS, strict=True)]
     facts = dict(history.attributes)
     facts |= {} if history.about is None else {_ABOUT: str(history.about)}
     lines = [comment_line(f"{key} = {value}") for key, value in facts.items()]
-    lines.append(table_row([*_CSV_EXAMPLE.split(","), *others, *more]))
+    titles = _CSV_EXAMPLE.split(",")
+    lines.append(table_row([titles[0], *(titles[k + 1] for k in there), *others, *more]))
     lines += [",".join(map(repr, row)) for row in table.tolist()]
     try:
         with atomic_path(file) as temporary:
@@ -227,28 +308,54 @@ def _about(attributes: dict[str, Attribute]) -> About:
 def _csv_places(file: Path, header: Sequence[str]) -> dict[str, tuple[int, str]]:
     """Where each wanted column is and its unit."""
     places: dict[str, tuple[int, str]] = {}
+    named = named_columns(str(file), [without_unit(title) for title in header])
     for place, title in enumerate(header):
-        match = re.fullmatch(r"\s*([\w.-]+)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*", title)
-        name = _wanted(match[1]) if match else None
-        if match is None or name is None:
+        match = re.fullmatch(r"\s*([\w. -]+?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*", title)
+        if match is None:
+            continue
+        name = named.get(place) or (None if " " in match[1] else _wanted(match[1]))
+        if name is None:
             continue
         if name in places:
             raise InputError(f"hub loads '{file}': column {name} is there twice; remove one")
-        if not match[2]:
-            component = name.rpartition(".")[2]
-            unit = "s" if name == "time" else UNITS[FORCES.index(component)]
+        if not match[2] and name != "time":
+            raise _no_unit(file, title, name)
+        places[name] = (place, match[2] or "")
+    return places
+
+
+def _no_unit(file: Path, title: str, name: str) -> InputError:
+    """The sentence about a column without a unit."""
+    unit = _UNITS[name if name in _UNITS else name.rpartition(".")[2]]
+    return InputError(
+        f"hub loads '{file}': column '{title.strip()}' has no unit; write it like "
+        f"'{without_unit(title)} [{unit}]'"
+    )
+
+
+def _require_columns(file: Path, columns: Collection[str], measured: bool) -> None:
+    """Refuse a table without time, or without the components that are needed."""
+    torque = {"Mx"} if HIGH_SPEED_TORQUE in columns else set()
+    missing = [name for name in _CSV_COLUMNS if name not in torque.union(columns)]
+    if measured:
+        if "time" in missing:
             raise InputError(
-                f"hub loads '{file}': column '{title.strip()}' has no unit; write it like "
-                f"'{name} [{unit}]'"
+                f"hub loads '{file}': no column time; give one, like 'time [s]' or of "
+                f"date-times like {EXAMPLE}, or map yours, as in "
+                "`ChannelMap(channels={'time': 'Timestamp'})`"
             )
-        places[name] = (place, match[2])
-    missing = [name for name in _CSV_COLUMNS if name not in places]
-    if missing:
+        if set(FORCES) <= set(missing):
+            raise InputError(
+                f"hub loads '{file}': no column of a load; name one or more of "
+                f"{', '.join(FORCES)}, like 'Mx [kN m]', or map yours, as in "
+                "`ChannelMap(channels={'Mx': 'Torque'})`"
+            )
+    elif missing:
+        what = f"; {NEED_ALL}" if set(missing) & set(FORCES) else ""
         raise InputError(
             f"hub loads '{file}': no column {', '.join(missing)}; the header must name all of "
-            f"{', '.join(_CSV_COLUMNS)}, like '{_CSV_EXAMPLE}'"
+            f"{', '.join(_CSV_COLUMNS)}, like '{_CSV_EXAMPLE}'{what}"
         )
-    return places
 
 
 def _wanted(title: str) -> str | None:
@@ -256,7 +363,9 @@ def _wanted(title: str) -> str | None:
     point, dot, component = title.rpartition(".")
     known = {name.lower(): name for name in (FORCES if point else _CSV_COLUMNS)}
     name = known.get(component.lower())
-    return None if name is None or (dot and not point) else f"{point}{dot}{name}"
+    if name is None or (dot and not point) or f"{point.lower()}{dot}" == HUB:
+        return None
+    return f"{point}{dot}{name}"
 
 
 def _number_or_text(text: str) -> Attribute:

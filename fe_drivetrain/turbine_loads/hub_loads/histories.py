@@ -20,7 +20,9 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.comparison.statistics import CONSTANT
 from fe_drivetrain.plots.figures import load_lines
+from fe_drivetrain.turbine_loads.hub_loads.high_speed import TORQUE_OF
 from fe_drivetrain.turbine_loads.hub_loads.point_loads import PointLoads
+from fe_drivetrain.turbine_loads.hub_loads.sampling import STEP_TOLERANCE, Sampling, sampling_of
 
 UNITS = ("N", "N", "N", "N m", "N m", "N m")
 
@@ -31,13 +33,13 @@ MIN_SAMPLES = 3
 """Two samples of any two signals correlate perfectly, so three is the fewest for which a mean
 error, an RMSE and a correlation all say something."""
 
-STEP_TOLERANCE = 0.25
-"""Largest departure of one time step from the median step, as a fraction of it.  Time columns are
-often printed with three decimals (a step of 0.00625 s shows as 0.006 and 0.007, 17 % apart); one
-missing sample is a departure of 100 %."""
-
 SHORTEST_STEP, LONGEST_STEP = 1e-9, 1e9
 """Time steps [s] beyond these are a typing or unit error."""
+
+NEED_ALL = (
+    "reactions need all six, so add the others, or ask for statistics of what there is (loads)"
+)
+"""What a history without some components is good for, as the end of a sentence."""
 
 Attribute = float | int | str
 
@@ -68,6 +70,9 @@ class LoadHistory:
         looks for misspelt load points.
     about : float, "front face" or None
         The point that moments at the hub are about, see `About`; None of a file.
+    measured : bool
+        Components may be absent, columns of NaN throughout, and steps may differ or leave gaps: see
+        `absent` and `sampling`. Its statistics can be counted, but it cannot act on a scene.
 
     Raises
     ------
@@ -83,6 +88,7 @@ class LoadHistory:
     at: Mapping[str, Floats] = field(default_factory=dict)
     unread: Sequence[str] = ()
     about: About = None
+    measured: bool = False
 
     __repr__ = short_repr
 
@@ -99,7 +105,11 @@ class LoadHistory:
         object.__setattr__(self, "attributes", dict(self.attributes))
         at = {name: _frozen(values) for name, values in self.at.items()}
         object.__setattr__(self, "at", at)
-        columns = dict(zip(FORCES, loads.T, strict=True))
+        columns = {n: c for n, c in zip(FORCES, loads.T, strict=True) if n not in self.absent}
+        if not columns:
+            raise InputError(
+                f"load history '{self.name}': it has none of {', '.join(FORCES)}; give one or more"
+            )
         for point, values in at.items():
             if values.shape != loads.shape:
                 raise InputError(
@@ -107,7 +117,7 @@ class LoadHistory:
                     f"those at the hub {loads.shape}; give one row for each sample"
                 )
             columns |= {f"{point}.{c}": v for c, v in zip(FORCES, values.T, strict=True)}
-        require_sound(f"load history '{self.name}'", time, columns)
+        require_sound(f"load history '{self.name}'", time, columns, even=not self.measured)
 
     def __len__(self) -> int:
         return int(self.time.size)
@@ -121,6 +131,23 @@ class LoadHistory:
     def seconds(self) -> float:
         """From the first sample to the last [s]."""
         return float(self.time[-1] - self.time[0])
+
+    @property
+    def absent(self) -> tuple[str, ...]:
+        """Components that were not recorded, which are not known rather than zero."""
+        if not self.measured:
+            return ()
+        return tuple(n for n, c in zip(FORCES, self.loads.T, strict=True) if np.isnan(c).all())
+
+    @property
+    def torque_of(self) -> str:
+        """The shaft that Mx was recorded at, where that is not the rotor's; else empty."""
+        return str(self.attributes.get(TORQUE_OF, ""))
+
+    @property
+    def sampling(self) -> Sampling:
+        """Steps and gaps."""
+        return sampling_of(self.time)
 
     def component(self, name: str) -> Floats:
         """One component by its name, for example ``"My"``: (n,) [N or N m].
@@ -178,6 +205,7 @@ def require_sound(
     time: Floats,
     columns: Mapping[str, Floats],
     rows: Sequence[int] | None = None,
+    even: bool = True,
 ) -> None:
     """Raise InputError at the first NaN, infinity, backward step or gap, and for too few samples.
 
@@ -191,6 +219,8 @@ def require_sound(
         Values (n,) by name.
     rows : sequence of int, (n,)
         Line of each sample in a text file; without it samples are counted from 1.
+    even : bool
+        Whether steps that differ and gaps are refused, too.
     """
 
     def at(i: int) -> str:
@@ -199,8 +229,8 @@ def require_sound(
 
     if time.size < MIN_SAMPLES:
         raise InputError(
-            f"{source}: {time.size} samples, fewer than the {MIN_SAMPLES} that a mean error, an "
-            "RMSE and a correlation need; give a longer history"
+            f"{source}: {time.size} sample{'s' * (time.size != 1)}, fewer than the {MIN_SAMPLES} "
+            "that a mean error, an RMSE and a correlation need; give a longer history"
         )
     for name, values in {"time": time, **columns}.items():
         bad = np.flatnonzero(~np.isfinite(values))
@@ -223,7 +253,8 @@ def require_sound(
     if back.size:
         raise InputError(
             f"{source}: time does not increase after {at(back[0])}, the next is "
-            f"{time[back[0] + 1]:g} s; sort the samples and remove repeated ones"
+            f"{time[back[0] + 1]:g} s; sort the samples and remove repeated ones, or write time "
+            "with more digits"
         )
     if not SHORTEST_STEP <= median <= LONGEST_STEP:
         raise InputError(
@@ -231,13 +262,48 @@ def require_sound(
             f"{LONGEST_STEP:g} s: check the unit of time"
         )
     uneven = np.flatnonzero(np.abs(steps - median) > STEP_TOLERANCE * median)
-    if uneven.size:
+    if even and uneven.size:
         i = uneven[0]
         raise InputError(
             f"{source}: the time step after {at(i)} is {steps[i]:g} s where the others are "
             f"{median:g} s (allowed: within {STEP_TOLERANCE:.0%}); samples are missing or the step "
             "changes, so resample to one step or cut the history there"
         )
+
+
+def require_all_loads(history: LoadHistory) -> None:
+    """Raise InputError where a history lacks components, so that it cannot act on a scene.
+
+    Parameters
+    ----------
+    history : LoadHistory
+        The history.
+    """
+    if history.absent:
+        there = [name for name in FORCES if name not in history.absent]
+        raise InputError(
+            f"hub loads: {history.name} has {', '.join(there)}, and {', '.join(history.absent)} "
+            f"are not known rather than zero: {NEED_ALL}"
+        )
+    if history.torque_of:
+        raise InputError(
+            f"hub loads: {history.name} has the torque of the {history.torque_of}, not the "
+            "rotor's: give gearbox_ratio in a mapping"
+        )
+
+
+def require_even(history: LoadHistory) -> None:
+    """Raise InputError where the samples of a measured history have uneven steps or gaps.
+
+    Parameters
+    ----------
+    history : LoadHistory
+        The history.
+    """
+    if history.measured:
+        columns = dict(zip(FORCES, history.loads.T, strict=True))
+        known = {n: c for n, c in columns.items() if n not in history.absent}
+        require_sound(f"hub loads: {history.name}", history.time, known)
 
 
 def require_variation(source: str, loads: Floats) -> None:

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.turbine_loads.hub_loads.channels import (
     ANGLE_UNITS,
@@ -31,11 +32,13 @@ from fe_drivetrain.turbine_loads.hub_loads.channels import (
     existing_file,
     in_si,
 )
-from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory, require_sound
+from fe_drivetrain.turbine_loads.hub_loads.high_speed import at_rotor
+from fe_drivetrain.turbine_loads.hub_loads.histories import NEED_ALL, LoadHistory, require_sound
 from fe_drivetrain.turbine_loads.hub_loads.openfast_output import openfast_channels, reversed_name
 
 _AXIAL = ("LSShftFxa", "LSShftFxs", "LSSGagFxa", "LSSGagFxs", "RotThrust")
 _TORQUE = ("LSShftMxa", "LSShftMxs", "LSSGagMxa", "LSSGagMxs", "RotTorq", "LSShftTq")
+_HIGH_SPEED = ("GenTq", "HSShftTq")
 AZIMUTH = ("LSSTipPxa", "LSSTipPxs", "LSSTipP", "Azimuth")
 """By which names files have the azimuth, the best first."""
 
@@ -46,7 +49,7 @@ _PAIRS = tuple(
 LOAD_CHANNELS = frozenset(
     name.lower()
     for name in (
-        *("Time", *_AXIAL, *_TORQUE, *AZIMUTH),
+        *("Time", *_AXIAL, *_TORQUE, *_HIGH_SPEED, *AZIMUTH),
         *(pair.replace("*", axis) for pair in _PAIRS for axis in "yz"),
     )
 )
@@ -84,10 +87,30 @@ def read_openfast(
     """
     file = existing_file(path)
     channels = openfast_channels(file, LOAD_CHANNELS)
-    time, loads, read = loads_from_channels(str(file), channels, gage_distance, azimuth_blade1_up)
-    return LoadHistory(
-        file.stem, time, loads, {"source": f"OpenFAST, {file.name}", "channels": read}
-    )
+    found = loads_from_channels(str(file), channels, gage_distance, azimuth_blade1_up)
+    origin = {"source": f"OpenFAST, {file.name}", "channels": found.read}
+    return LoadHistory(file.stem, found.time, found.loads, origin)
+
+
+class ChannelLoads(NamedTuple):
+    """Hub loads of the channels of a file.
+
+    Attributes
+    ----------
+    time : ndarray, (n,)
+        [s].
+    loads : ndarray, (n, 6)
+        [N, N m]; NaN of components that the file does not have, where these may be absent.
+    read : str
+        Which channels these were, in words.
+    attributes : Mapping[str, str]
+        What is to be known of them.
+    """
+
+    time: Floats
+    loads: Floats
+    read: str
+    attributes: Mapping[str, str]
 
 
 def loads_from_channels(
@@ -95,7 +118,9 @@ def loads_from_channels(
     channels: Mapping[str, Channel],
     gage_distance: float | None = None,
     azimuth_blade1_up: float = 0.0,
-) -> tuple[Floats, Floats, str]:
+    measured: bool = False,
+    gearbox_ratio: float | None = None,
+) -> ChannelLoads:
     """Hub loads from the channels of a file.
 
     Parameters
@@ -106,82 +131,139 @@ def loads_from_channels(
         Channels by their names in lower case.
     gage_distance, azimuth_blade1_up : float
         The same as for `read_openfast`.
-
-    Returns
-    -------
-    time : ndarray, (n,)
-        [s].
-    loads : ndarray, (n, 6)
-        [N, N m].
-    read : str
-        Which channels these were, in words.
+    measured : bool
+        Take what components there are, at whatever times.
+    gearbox_ratio : float, optional
+        Makes the rotor's torque of that of the high-speed shaft, where the file has that alone.
 
     Raises
     ------
     InputError
         The same as for `read_openfast`.
     """
-    chosen = _Chosen(source, channels)
+    chosen = _Chosen(source, channels, measured)
     time = chosen.needed(("Time",), "time")
-    axial, torque = chosen.needed(_AXIAL, "thrust"), chosen.needed(_TORQUE, "torque")
+    axial, torque = chosen.wanted(_AXIAL, "thrust"), chosen.first(_TORQUE)
+    high_speed = None
+    if torque is None and (measured or gearbox_ratio):
+        torque = high_speed = chosen.first(_HIGH_SPEED)
+    torque = torque or chosen.wanted(_TORQUE, "torque")
     shear = chosen.shear()
     bending, at_gage = chosen.bending(gage_distance)
     azimuth = chosen.azimuth(shear, bending)
+    if azimuth is None:
+        shear, bending = (_Pair(None, None) if p.rotating else p for p in (shear, bending))
+    chosen.require()
 
     seconds = in_si(source, time, TIME_UNITS)
     columns = {name: one.values for name, one in chosen.used.items() if one is not time}
-    require_sound(f"hub loads '{source}'", seconds, columns)
+    require_sound(f"hub loads '{source}'", seconds, columns, even=not measured)
 
     psi = np.zeros_like(seconds)
     if azimuth is not None:
         psi = in_si(source, azimuth, ANGLE_UNITS) - azimuth_blade1_up
-    fy, fz = _fixed(source, shear, FORCE_UNITS, psi)
-    my, mz = _fixed(source, bending, MOMENT_UNITS, psi)
+    loads: dict[str, Floats] = {}
+    if axial is not None:
+        loads["Fx"] = in_si(source, axial, FORCE_UNITS)
+    if torque is not None:
+        loads["Mx"] = in_si(source, torque, MOMENT_UNITS)
+    loads |= _fixed(source, shear, FORCE_UNITS, psi)
+    loads |= _fixed(source, bending, MOMENT_UNITS, psi)
     if at_gage and gage_distance is not None:
         # M_gage = M_hub + (-L, 0, 0) cross F
-        my, mz = my - gage_distance * fz, mz + gage_distance * fy
-    fx = in_si(source, axial, FORCE_UNITS)
-    mx = in_si(source, torque, MOMENT_UNITS)
-    turned = "" if azimuth is None else f", turned back by {azimuth.name} [{azimuth.unit}]"
-    if azimuth is not None and azimuth_blade1_up:
-        turned += f" less {azimuth_blade1_up:g} rad"
-    carried = f", carried {gage_distance:g} m from the gage to the hub" if at_gage else ""
-    changed = any(
-        reversed_name(c.name) for c in (axial, torque, *shear.channels, *bending.channels)
-    )
-    read = "; ".join(
-        (
-            f"Fx = {_as_read(axial)}",
-            f"Fy, Fz = {_as_read(*shear.channels)}{turned if shear.rotating else ''}",
-            f"Mx = {_as_read(torque)}",
-            f"My, Mz = {_as_read(*bending.channels)}{turned if bending.rotating else ''}{carried}",
+        loads = _from_gage(loads, gage_distance)
+    words = _Words(azimuth, azimuth_blade1_up, gage_distance if at_gage else None)
+    loads, where = at_rotor(source, loads, high_speed, gearbox_ratio)
+    read = words.read(axial, shear, torque, bending)
+    read = "; ".join(filter(None, (read, where.words, time.note, *chosen.left_out)))
+    if not loads:
+        raise chosen.refusal()
+    missing = np.full(len(seconds), np.nan)
+    six = np.column_stack([loads.get(name, missing) for name in FORCES])
+    return ChannelLoads(seconds, six, read, where.attributes)
+
+
+def _from_gage(loads: Mapping[str, Floats], distance: float) -> dict[str, Floats]:
+    """Bending moments at the hub, of those at the strain gage and the shear force."""
+    found = dict(loads)
+    for moment, force, sign in (("My", "Fz", -1.0), ("Mz", "Fy", 1.0)):
+        own = found.pop(moment, None)
+        if own is not None and force in loads:
+            found[moment] = own + sign * distance * loads[force]
+    return found
+
+
+class _Words(NamedTuple):
+    """How channels were turned and carried, as sentences have it."""
+
+    azimuth: Channel | None
+    blade1_up: float
+    gage_distance: float | None
+
+    def read(
+        self, axial: Channel | None, shear: _Pair, torque: Channel | None, bending: _Pair
+    ) -> str:
+        """Which channels loads were read from."""
+        azimuth, used = self.azimuth, [*shear.channels, *bending.channels]
+        turned = "" if azimuth is None else f", turned back by {azimuth.name} [{azimuth.unit}]"
+        if azimuth is not None and self.blade1_up:
+            turned += f" less {self.blade1_up:g} rad"
+        distance = self.gage_distance
+        carried = "" if distance is None else f", carried {distance:g} m from the gage to the hub"
+        changed = any(reversed_name(c.name) for c in (axial, torque, *used) if c is not None)
+        parts = [
+            f"Fx = {_as_read(axial)}" if axial else "",
+            shear.read("F", turned),
+            f"Mx = {_as_read(torque)}" if torque else "",
+            bending.read("M", turned, carried),
             f"{'other ' if changed else ''}signs as in the file",
             "nothing turned" if azimuth is None else "others not turned",
-        )
-    )
-    return seconds, np.column_stack((fx, fy, fz, mx, my, mz)), read
+        ]
+        return "; ".join(filter(None, parts))
 
 
 class _Pair(NamedTuple):
-    """Channels along y and z, and whether these axes turn with the rotor."""
+    """Channels along y and z, and whether these axes turn with the rotor; one may be absent."""
 
-    channels: list[Channel]
-    rotating: bool
+    y: Channel | None
+    z: Channel | None
+    rotating: bool = False
+
+    @property
+    def channels(self) -> list[Channel]:
+        """Those that are there."""
+        return [channel for channel in (self.y, self.z) if channel is not None]
+
+    def read(self, letter: str, turned: str, carried: str = "") -> str:
+        """What was read, in words; empty where nothing was."""
+        names = [f"{letter}{axis}" for axis, c in (("y", self.y), ("z", self.z)) if c is not None]
+        if not names:
+            return ""
+        how = f"{turned if self.rotating else ''}{carried}"
+        return f"{', '.join(names)} = {_as_read(*self.channels)}{how}"
 
 
-def _fixed(
-    source: str, pair: _Pair, units: Mapping[str, float], psi: Floats
-) -> tuple[Floats, Floats]:
-    """Components along the y and z that do not turn."""
-    y, z = (in_si(source, c, units) for c in pair.channels)
-    return turn_to_fixed(y, z, psi) if pair.rotating else (y, z)
+def _fixed(source: str, pair: _Pair, units: Mapping[str, float], psi: Floats) -> dict[str, Floats]:
+    """Components along the y and z that do not turn, by name."""
+    letter = "F" if units is FORCE_UNITS else "M"
+    found = {
+        f"{letter}{axis}": in_si(source, channel, units)
+        for axis, channel in (("y", pair.y), ("z", pair.z))
+        if channel is not None
+    }
+    if pair.rotating:
+        turned = turn_to_fixed(found[f"{letter}y"], found[f"{letter}z"], psi)
+        return dict(zip(found, turned, strict=True))
+    return found
 
 
 class _Chosen:
     """Channels of a file that hub loads are read from, chosen by what they are for."""
 
-    def __init__(self, source: str, channels: Mapping[str, Channel]) -> None:
-        self._source, self._channels = source, channels
+    def __init__(self, source: str, channels: Mapping[str, Channel], measured: bool) -> None:
+        self._source, self._channels, self._measured = source, channels, measured
+        self._missing: list[tuple[str, str]] = []
+        self.left_out: list[str] = []
         self.used: dict[str, Channel] = {}
 
     def first(self, names: Sequence[str]) -> Channel | None:
@@ -192,15 +274,33 @@ class _Chosen:
             self.used[found.name] = found
         return found
 
-    def needed(self, names: Sequence[str], what: str) -> Channel:
-        """The same; refused where the file has none."""
+    def wanted(self, names: Sequence[str], what: str) -> Channel | None:
+        """The same; noted as missing where the file has none."""
         found = self.first(names)
         if found is None:
-            raise InputError(
-                f"hub loads '{self._source}': no channel for the {what}; add one of "
-                f"{', '.join(names)} to OutList and run again, or map yours (`ChannelMap`)"
-            )
+            self._missing.append((f"no channel for the {what}", f"one of {', '.join(names)}"))
         return found
+
+    def needed(self, names: Sequence[str], what: str) -> Channel:
+        """The same; refused where the file has none."""
+        found = self.wanted(names, what)
+        if found is None:
+            raise self.refusal()
+        return found
+
+    def require(self) -> None:
+        """Refuse a file without components that are needed."""
+        if self._missing and not self._measured:
+            raise self.refusal()
+
+    def refusal(self) -> InputError:
+        """The sentence about all that is missing."""
+        what, names = (list(column) for column in zip(*self._missing, strict=True))
+        end = "" if self._measured else f"; {NEED_ALL}"
+        return InputError(
+            f"hub loads '{self._source}': {', '.join((*what, *self.left_out))}; add "
+            f"{', and '.join(names)} to OutList and run again, or map yours (`ChannelMap`){end}"
+        )
 
     def pair(self, fixed: Sequence[str], rotating: Sequence[str]) -> _Pair | None:
         """A pair that is complete: one component alone cannot be turned."""
@@ -208,18 +308,25 @@ class _Chosen:
             for prefix in prefixes:
                 names = [prefix.replace("*", axis) for axis in "yz"]
                 if all(n.lower() in self._channels for n in names):
-                    return _Pair([self.needed([n], n) for n in names], turning)
+                    y, z = (self.needed([n], n) for n in names)
+                    return _Pair(y, z, turning)
         return None
+
+    def _one_of(self, fixed: str) -> _Pair:
+        """What there is of a pair that does not turn, of a file that may lack the other one."""
+        if not self._measured:
+            return _Pair(None, None)
+        y, z = (self.first([fixed.replace("*", axis)]) for axis in "yz")
+        return _Pair(y, z)
 
     def shear(self) -> _Pair:
         """The shear forces."""
         found = self.pair(("LSShftF*s", "LSSGagF*s"), ("LSShftF*a", "LSSGagF*a"))
-        if found is None:
-            raise InputError(
-                f"hub loads '{self._source}': no pair of shear-force channels; add LSShftFys and "
-                "LSShftFzs to OutList and run again, or map yours, both Fy and Fz (`ChannelMap`)"
-            )
-        return found
+        if found is not None:
+            return found
+        names = "LSShftFys and LSShftFzs (mapped: both Fy and Fz)"
+        self._missing.append(("no pair of shear-force channels", names))
+        return self._one_of("LSShftF*s")
 
     def bending(self, gage_distance: float | None) -> tuple[_Pair, bool]:
         """The bending moments, and whether they are those at the strain gage."""
@@ -228,18 +335,17 @@ class _Chosen:
             return at_hub, False
         found = self.pair(("LSSGagM*s",), ("LSSGagM*a",))
         if found is None:
-            raise InputError(
-                f"hub loads '{self._source}': no pair of bending-moment channels; add LSSTipMys "
-                "and LSSTipMzs to OutList and run again, or map yours, both My and Mz "
-                "(`ChannelMap`)"
-            )
+            names = "LSSTipMys and LSSTipMzs (mapped: both My and Mz)"
+            self._missing.append(("no pair of bending-moment channels", names))
+            return self._one_of("LSSTipM*s"), False
         if gage_distance is None:
-            y, z = found.channels
-            raise InputError(
-                f"hub loads '{self._source}': {y.name} and {z.name} are moments at the strain "
-                "gage, not at the hub; add LSSTipMys and LSSTipMzs to OutList, or give "
-                "gage_distance (ShftGagL of the ElastoDyn file)"
+            names = ", ".join(channel.name for channel in found.channels)
+            self._cannot(
+                f"{names.replace(', ', ' and ')} are moments at the strain gage, not at the hub",
+                "add LSSTipMys and LSSTipMzs to OutList, or give gage_distance (ShftGagL of the "
+                "ElastoDyn file; moments_at of a mapping)",
             )
+            return _Pair(None, None), False
         return found, True
 
     def azimuth(self, *pairs: _Pair) -> Channel | None:
@@ -249,12 +355,17 @@ class _Chosen:
             return None
         found = self.first(AZIMUTH)
         if found is None:
-            raise InputError(
-                f"hub loads '{self._source}': {rotating} turn with the rotor and the file has no "
-                "azimuth to turn them back; add Azimuth, or LSShftFys, LSShftFzs, LSSTipMys and "
-                "LSSTipMzs, to OutList"
+            self._cannot(
+                f"{rotating} turn with the rotor and the file has no azimuth to turn them back",
+                "add Azimuth, or LSShftFys, LSShftFzs, LSSTipMys and LSSTipMzs, to OutList",
             )
         return found
+
+    def _cannot(self, why: str, remedy: str) -> None:
+        """Note channels that cannot be used, or refuse them where all components are needed."""
+        if not self._measured:
+            raise InputError(f"hub loads '{self._source}': {why}; {remedy}")
+        self.left_out.append(f"left out: {why} ({remedy})")
 
 
 def _as_read(*channels: Channel) -> str:

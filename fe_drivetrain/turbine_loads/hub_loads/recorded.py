@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import csv
 import os
-import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.csv_cells import cell_as_given
+from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import (
@@ -25,9 +23,9 @@ from fe_drivetrain.turbine_loads.hub_loads.channels import (
     Channel,
     existing_file,
     in_si,
-    not_utf8,
     without_unit,
 )
+from fe_drivetrain.turbine_loads.hub_loads.csv_columns import csv_channels, table_header
 from fe_drivetrain.turbine_loads.hub_loads.csv_table import is_of_point, point_loads, read_csv
 from fe_drivetrain.turbine_loads.hub_loads.files import SUFFIXES, files_of_patterns
 from fe_drivetrain.turbine_loads.hub_loads.histories import (
@@ -44,6 +42,7 @@ from fe_drivetrain.turbine_loads.hub_loads.openfast import (
 )
 from fe_drivetrain.turbine_loads.hub_loads.openfast_output import openfast_channels
 from fe_drivetrain.turbine_loads.hub_loads.point_loads import moved_moments
+from fe_drivetrain.turbine_loads.hub_loads.table_names import HUB, TABLE_NAMES, named_columns
 
 SPEED_UNITS = {"rad/s": 1.0, "rpm": np.pi / 30.0, "deg/s": np.pi / 180.0}
 WIND_UNITS = {"m/s": 1.0}
@@ -53,6 +52,8 @@ KNOWN = {
     "wind speed": ("wind speed", "RtVAvgxh", "WindHubVelX", "Wind1VelX", "HorWindV", "WindVxi"),
 }
 """Channels beside the loads, and by which names files have them, the best first."""
+
+_GENERATOR_SPEEDS = ("generator speed", "GenSpeed", "HSS speed")
 
 _NOTHING_TURNED = ", nothing turned"
 
@@ -119,7 +120,11 @@ def short_name(file: Path, files: Sequence[Path]) -> str:
 
 
 def read_recorded(
-    path: Path, mapping: ChannelMap = OWN_NAMES, skip: float = 0.0, also: Sequence[str] = ()
+    path: Path,
+    mapping: ChannelMap = OWN_NAMES,
+    skip: float = 0.0,
+    also: Sequence[str] = (),
+    measured: bool = False,
 ) -> Recorded:
     """Read a history of any format, with rotor speed and wind speed where the file has them.
 
@@ -133,6 +138,8 @@ def read_recorded(
         What is left out at the beginning [s].
     also : sequence of str
         Further channels, as the file calls them.
+    measured : bool
+        Take what components there are, at whatever times: see `LoadHistory.measured`.
 
     Raises
     ------
@@ -149,7 +156,7 @@ def read_recorded(
     is_table, loads_mapped = suffix == ".csv", mapping.loads_mapped
     wanted = _wanted(mapping, also, is_table)
     channels = (
-        csv_channels(file, wanted, mapping.units, points=bool(loads_mapped))
+        csv_channels(file, wanted, mapping.units, bool(loads_mapped), _times(mapping))
         if is_table
         else openfast_channels(file, wanted | LOAD_CHANNELS)
     )
@@ -161,19 +168,20 @@ def read_recorded(
     further = [_named(file, channels, name) for name in also]
     azimuth = _azimuth(file, channels, named) if is_table and mapping.rotating else None
     if is_table and not loads_mapped:
-        history = read_csv(file)
+        history = read_csv(file, measured, mapping.gearbox_ratio)
         if azimuth is not None:
             history = _turned_back(history, azimuth, mapping)
     else:
-        history = _of_channels(file, channels, named, mapping)
+        history = _of_channels(file, channels, named, mapping, measured)
         if is_table:
             history = _with_points(file, history, channels, mapping, azimuth)
     history = _at_hub(history, mapping, own_names=not (is_table or loads_mapped))
     unread = [t for t in history.unread if without_unit(t).lower() not in wanted]
     history = replace(history, unread=tuple(unread))
+    history, named = _with_ratio(history, channels, named, mapping.gearbox_ratio)
     beside = _beside_loads(file, history, channels, named)
     others = {f"{c.name} [{c.unit.strip('()')}]": c.values for c in further}
-    require_sound(f"hub loads '{file}'", history.time, others)
+    require_sound(f"hub loads '{file}'", history.time, others, even=not measured)
     kept = history.time >= history.time[0] + skip
     if kept.sum() < MIN_SAMPLES:
         raise InputError(
@@ -191,14 +199,23 @@ def read_recorded(
 
 def _wanted(mapping: ChannelMap, also: Sequence[str], is_table: bool) -> set[str]:
     """Names in lower case of channels that are looked for, beside OpenFAST's loads."""
-    beside_loads = [n.lower() for names in KNOWN.values() for n in names]
+    known = (*KNOWN.values(), _GENERATOR_SPEEDS)
+    beside_loads = [n.lower() for names in known for n in names]
     wanted = {*beside_loads, *(mapping.column(name)[0].lower() for name in mapping.channels)}
     wanted |= {name.lower() for name in also}
     if is_table and mapping.rotating:
         wanted |= {name.lower() for name in AZIMUTH}
     if is_table and mapping.loads_mapped:
         wanted |= {name.lower() for name in LOAD_NAMES} | LOAD_CHANNELS
+        wanted |= {name for names in TABLE_NAMES.values() for name in names}
+        wanted |= {f"{HUB}{name.lower()}" for name in FORCES}
     return wanted
+
+
+def _times(mapping: ChannelMap) -> set[str]:
+    """Names of the columns of a table that may hold date-times, in lower case."""
+    own = mapping.channels.get("time")
+    return {own.lower()} if own else {"time", *TABLE_NAMES["time"]}
 
 
 def _beside_loads(
@@ -214,8 +231,30 @@ def _beside_loads(
         channel = named.get(name) or next((c for c in candidates if c is not None), None)
         if channel is not None:
             beside[name] = in_si(str(file), channel, sizes)
-            require_sound(f"hub loads '{file}'", history.time, {channel.name: beside[name]})
+            found = {channel.name: beside[name]}
+            require_sound(f"hub loads '{file}'", history.time, found, even=not history.measured)
     return beside
+
+
+def _with_ratio(
+    history: LoadHistory,
+    channels: Mapping[str, Channel],
+    named: dict[str, Channel],
+    ratio: float | None,
+) -> tuple[LoadHistory, dict[str, Channel]]:
+    """The rotor speed of a file that has that of the generator alone, and what was done."""
+    known = {*named, *channels}
+    if ratio is None or not known.isdisjoint(name.lower() for name in KNOWN["rotor speed"]):
+        return history, named
+    candidates = (channels.get(name.lower()) for name in _GENERATOR_SPEEDS)
+    of_generator = named.get("generator speed") or next((c for c in candidates if c), None)
+    if of_generator is None:
+        return history, named
+    title = f"{of_generator.name} [{of_generator.unit}]"
+    read = f"{_read_of(history)}; rotor speed = {title} over the gearbox ratio {ratio:g}"
+    speed = replace(of_generator, values=of_generator.values / ratio)
+    attributes = {**history.attributes, "channels": read}
+    return replace(history, attributes=attributes), {**named, "rotor speed": speed}
 
 
 def read_mapped(mapping: ChannelMap, path: Path, skip: float = 0.0) -> LoadHistory:
@@ -241,22 +280,36 @@ def read_mapped(mapping: ChannelMap, path: Path, skip: float = 0.0) -> LoadHisto
 
 
 def _of_channels(
-    file: Path, channels: dict[str, Channel], named: Mapping[str, Channel], mapping: ChannelMap
+    file: Path,
+    channels: dict[str, Channel],
+    named: Mapping[str, Channel],
+    mapping: ChannelMap,
+    measured: bool,
 ) -> LoadHistory:
     """Loads of OpenFAST's channels, or of those that are mapped in their place."""
     if file.suffix.lower() == ".csv":  # the columns of a table, but for those that are mapped
-        shared = {name: channels.get(name.lower()) for name in LOAD_NAMES}
-        named = {name: c for name, c in shared.items() if c is not None} | dict(named)
+        taken = {mapping.column(name)[0].lower() for name in mapping.channels}
+        own = [(key, channel) for key, channel in channels.items() if key not in taken]
+        known = named_columns(str(file), [key for key, _ in own], mapping.channels)
+        shared = {name: own[k][1] for k, name in known.items()}
+        azimuth = {"azimuth": channels["azimuth"]} if "azimuth" in channels else {}
+        named = {**azimuth, **shared, **named}
     channels = dict(channels)
     for name in LOAD_NAMES:
         if name in named:
             channels.pop(LOAD_NAMES[name], None)  # fixed ones would be taken before rotating ones
             channels[mapping.read_as(name)] = named[name]
     at_gage = mapping.moments_at if "My" not in mapping.channels and mapping.moments_at else None
-    time, loads, read = loads_from_channels(
-        str(file), channels, at_gage, np.radians(mapping.azimuth_blade1_up)
+    found = loads_from_channels(
+        str(file),
+        channels,
+        at_gage,
+        np.radians(mapping.azimuth_blade1_up),
+        measured,
+        mapping.gearbox_ratio,
     )
-    return LoadHistory(file.stem, time, loads, {"source": file.name, "channels": read})
+    origin = {"source": file.name, "channels": found.read, **found.attributes}
+    return LoadHistory(file.stem, found.time, found.loads, origin, measured=measured)
 
 
 def _with_points(
@@ -270,7 +323,7 @@ def _with_points(
     taken = {mapping.column(name)[0].lower() for name in mapping.channels}
     own = [c for key, c in channels.items() if key not in taken and is_of_point(c.name)]
     read_ones = {c.name for c in own}
-    unread = (title for title in _header(file)[1] if without_unit(title) not in read_ones)
+    unread = (title for title in table_header(file)[1] if without_unit(title) not in read_ones)
     history = replace(history, unread=tuple(unread))
     if not own:
         return history
@@ -298,6 +351,11 @@ def _at_hub(history: LoadHistory, mapping: ChannelMap, own_names: bool) -> LoadH
         )
     if mapping.tilt:
         loads = to_shaft_frame(loads, mapping.tilt)
+        if not np.isfinite(loads).any():
+            raise InputError(
+                f"hub loads '{history.attributes['source']}': tilt makes Fx and Fz, or Mx and Mz, "
+                "from each other, and the file has one of them alone: leave out tilt, or map both"
+            )
         at = {point: to_shaft_frame(own, mapping.tilt) for point, own in at.items()}
         read = read.removesuffix(_NOTHING_TURNED)
         read += f"; turned from a horizontal frame by the shaft's tilt of {mapping.tilt:g} deg"
@@ -332,7 +390,8 @@ def _angle(history: LoadHistory, azimuth: Channel, mapping: ChannelMap) -> Float
     """Angle by which the rotor has turned since blade 1 pointed up [rad]."""
     source = str(history.attributes["source"])
     angle = in_si(source, azimuth, ANGLE_UNITS)
-    require_sound(f"hub loads '{source}'", history.time, {azimuth.name: angle})
+    columns = {azimuth.name: angle}
+    require_sound(f"hub loads '{source}'", history.time, columns, even=not history.measured)
     return np.asarray(angle - np.radians(mapping.azimuth_blade1_up))
 
 
@@ -356,77 +415,6 @@ def _of_fixed_frame(loads: Floats, angle: Floats) -> Floats:
     for y in (1, 4):
         turned[:, y], turned[:, y + 1] = turn_to_fixed(loads[:, y], loads[:, y + 1], angle)
     return turned
-
-
-def csv_channels(
-    file: Path, wanted: Collection[str], units: Collection[str] = (), points: bool = False
-) -> dict[str, Channel]:
-    """Columns of a table that have a unit, by their names in lower case.
-
-    Parameters
-    ----------
-    file : Path
-        A table with a header like ``time [s],thrust [kN]``; lines with # before it are left out.
-    wanted : collection of str
-        Names in lower case; other columns have no values, so that a large table is read in the
-        memory of what is used.
-    units : collection of str
-        Names of columns whose unit is known though their title has none.
-    points : bool
-        Whether columns like ``brake.Fz [kN]``, of loads at load points, are wanted, too.
-
-    Raises
-    ------
-    InputError
-        A cell of a wanted column is not a number.
-    """
-    before, titles = _header(file)
-    found: dict[str, Channel] = {}
-    places: dict[str, int] = {}
-    bare = {name.lower() for name in units}
-    for place, title in enumerate(titles):
-        match = re.fullmatch(r"\s*(.+?)\s*[\[(]\s*(.*?)\s*[\])]\s*", title)
-        if match is None and title.strip().lower() in bare:
-            match = re.fullmatch(r"\s*(.+?)()\s*", title)
-        if match is not None and match[1].lower() not in found:
-            found[match[1].lower()] = Channel(match[1], match[2], np.zeros(0))
-            if match[1].lower() in wanted or (points and is_of_point(match[1])):
-                places[match[1].lower()] = place
-    if not places:
-        return found
-    try:
-        values = np.loadtxt(
-            file,
-            delimiter=",",
-            skiprows=before,
-            usecols=list(places.values()),
-            ndmin=2,
-            encoding="utf-8-sig",
-        )
-    except UnicodeDecodeError as error:
-        raise not_utf8("table", file) from error
-    except ValueError as error:
-        raise InputError(
-            f"table '{file}': {error}, counted below the header: correct the cell, or remove "
-            "the line"
-        ) from error
-    for name, column in zip(places, values.T, strict=True):
-        found[name] = Channel(found[name].name, found[name].unit, column)
-    return found
-
-
-def _header(file: Path) -> tuple[int, list[str]]:
-    """The line of a table's header, from 1, and its titles."""
-    before, titles = 0, ""
-    try:
-        with file.open(encoding="utf-8-sig") as stream:
-            for before, line in enumerate(stream, 1):  # noqa: B007
-                if line.strip() and not line.startswith("#"):
-                    titles = line
-                    break
-    except UnicodeDecodeError as error:
-        raise not_utf8("table", file) from error
-    return before, [cell_as_given(title.strip()) for title in next(csv.reader([titles]), [])]
 
 
 def _named(

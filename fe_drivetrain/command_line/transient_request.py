@@ -1,0 +1,191 @@
+"""What is asked of ``transient``: its options as typed, and what they mean."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fe_drivetrain.command_line.names import complete_scene
+from fe_drivetrain.command_line.options import (
+    Channels,
+    Mapping,
+    Resume,
+    Scheduler,
+    Skip,
+    Slopes,
+)
+from fe_drivetrain.command_line.settings import SceneSettings, Tolerance, parse_settings
+from fe_drivetrain.common.errors import InputError
+
+if TYPE_CHECKING:
+    from fe_drivetrain.studies.transient_digest import OperationOptions
+
+EVENTS = ("operation", "stop", "grid-loss", "dip", "run-up", "offset", "base")
+"""Events as they are typed."""
+
+
+def complete_event(incomplete: str) -> list[str]:
+    """Events that begin with what was typed.
+
+    Parameters
+    ----------
+    incomplete : str
+        What was typed so far.
+    """
+    return [name for name in EVENTS if name.startswith(incomplete)]
+
+
+@dataclass(frozen=True)
+class TransientRequest:
+    """Arguments and options of ``transient`` as typed; each help text says what one is."""
+
+    drivetrain: Annotated[
+        str,
+        typer.Argument(
+            metavar="DRIVETRAIN",
+            autocompletion=complete_scene,
+            help="A drivetrain file with rotor, gearbox and generator, or a name of the library, "
+            "as in nrel_5mw.",
+        ),
+    ]
+    event: Annotated[
+        str,
+        typer.Argument(
+            metavar="EVENT",
+            autocompletion=complete_event,
+            help=f"What happens: {', '.join(EVENTS)}.",
+        ),
+    ]
+    loads: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--loads",
+            metavar="FILES",
+            help="Histories of operation: a file (.out, .outb of OpenFAST, or .csv), a folder, or "
+            "a pattern in quotes, as in 'outputs/*.outb'. May be repeated.",
+        ),
+    ] = None
+    value: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--value",
+            metavar="NAME=VALUE",
+            help="A value of the event, as in --value braked=2.5 of a stop, in s, N, m, N m, or "
+            "over rated (docs/commands.md). May be repeated.",
+        ),
+    ] = None
+    level: Annotated[
+        str | None,
+        typer.Option(
+            "--level",
+            metavar="LEVEL",
+            help="torsional, rigid (bodies), or flexible (shafts). Default: all of them, compared, "
+            "and the cheapest that is enough.",
+        ),
+    ] = None
+    quantity: Annotated[
+        str,
+        typer.Option(
+            "--quantity",
+            metavar="NAME",
+            help="For which the level has to be enough: torque, mesh or bearing.",
+        ),
+    ] = "bearing"
+    tolerance: Tolerance = "5%"
+    duration: Annotated[
+        float | None,
+        typer.Option(
+            "--duration",
+            metavar="SECONDS",
+            help="End of the event, or how much of each history. Default: what the event needs; "
+            "the whole history.",
+        ),
+    ] = None
+    step: Annotated[
+        float | None,
+        typer.Option(
+            "--step",
+            metavar="SECONDS",
+            help="Step of integration. Default: what the event needs; 0.005 of histories.",
+        ),
+    ] = None
+    backlash: Annotated[
+        float,
+        typer.Option(
+            "--backlash", metavar="M", help="Backlash of all meshes along their lines of action."
+        ),
+    ] = 0.0
+    channel: Channels = None
+    mapping: Mapping = None
+    skip: Skip = 0.0
+    slope: Slopes = None
+    csv: Annotated[
+        bool, typer.Option("--csv", help="Write all channels over time as samples.csv, too.")
+    ] = False
+    resume: Resume = False
+    scheduler: Scheduler = None
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out",
+            metavar="DIR",
+            help="Result folder. Default: reports/transient/DRIVETRAIN-EVENT.",
+        ),
+    ] = None
+    set_: SceneSettings = None
+
+    @property
+    def name(self) -> str:
+        """Name of the event in Python.
+
+        Raises
+        ------
+        InputError
+            There is no such event.
+        """
+        if self.event not in EVENTS and self.event.replace("_", "-") not in EVENTS:
+            raise InputError(f"no event {self.event!r}: use one of {', '.join(EVENTS)}")
+        return self.event.replace("-", "_")
+
+    @property
+    def folder(self) -> Path:
+        """The result folder."""
+        own = f"{Path(self.drivetrain).stem}-{self.event}"
+        return self.out or Path("reports", "transient", own)
+
+    @property
+    def values(self) -> dict[str, float | str]:
+        """Values of the event.
+
+        Raises
+        ------
+        InputError
+            One is no number or word.
+        """
+        found: dict[str, float | str] = {}
+        for key, value in parse_settings(self.value or (), "--value").items():
+            if isinstance(value, bool) or not isinstance(value, int | float | str):
+                raise InputError(f"--value {key}: {value!r} must be a number or a word")
+            found[key] = value if isinstance(value, str) else float(value)
+        return found
+
+    def options(self) -> OperationOptions:
+        """How histories are read and counted.
+
+        Raises
+        ------
+        InputError
+            An option has another form, or is out of range.
+        """
+        from fe_drivetrain.command_line.option_values import parse_mapping
+        from fe_drivetrain.studies.transient_digest import OperationOptions
+        from fe_drivetrain.turbine_loads.histories.damage import SLOPES
+
+        return OperationOptions(
+            channels=parse_mapping(self.mapping, self.channel or ()),
+            skip=self.skip,
+            slopes=tuple(self.slope or SLOPES),
+        )

@@ -1,0 +1,143 @@
+"""Bearings of a drivetrain's file with the rollers of their catalogue entries, in statics."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from fe_drivetrain.bearing.catalogue import catalogue_bearing
+from fe_drivetrain.bearing.geometry import Bearing
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
+from fe_drivetrain.drivetrain_file.turning_parts import BearingData, PinData
+from fe_drivetrain.dynamics.bodies.advice import Operation, Rung
+from fe_drivetrain.dynamics.bodies.bodies import assemble
+from fe_drivetrain.dynamics.bodies.levels import assembly, steady_load
+from fe_drivetrain.dynamics.bodies.machine import Machine
+from fe_drivetrain.dynamics.bodies.roller_seats import (
+    OnRollers,
+    Seat,
+    machine_seat,
+    planet_seats,
+    static_on_rollers,
+)
+
+
+def catalogued(machine: Machine) -> dict[str, BearingData | PinData]:
+    """Bearings with a catalogue entry by name; those of planets "stage 1 pin upwind" and so on.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    """
+    rows: dict[str, BearingData | PinData] = {row.name: row for row in machine.bearings}
+    for number, stage in enumerate(machine.stages, start=1):
+        if isinstance(stage, PlanetaryData):
+            rows |= {f"stage {number} pin {pin.name}".strip(): pin for pin in stage.pins}
+    return {name: row for name, row in rows.items() if row.catalogue is not None}
+
+
+def on_catalogue(
+    machine: Machine,
+    rung: Rung,
+    operation: Operation,
+    names: Sequence[str] | None = None,
+    *,
+    catalogues: Sequence[str | Path] = (),
+    azimuth: float = 0.0,
+) -> OnRollers:
+    """Equilibrium of a machine on the rollers of its catalogued bearings, with their clearances.
+
+    A bearing on rollers has rigid rings, its outer one in the housing of the rung, or the ground: a
+    main bearing's own housing is left out. What rollers do not resist keeps the spring of its row.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    rung : Rung
+        Level, and what gives; not the torsional one.
+    operation : Operation
+        Loads; gravity acts, too, and the generator is held.
+    names : sequence of str, optional
+        Names of `catalogued` bearings; all of them where left out. One of planets stands for those
+        of all planets of its stage.
+    catalogues : sequence of str or Path
+        Catalogue files beside the package's.
+    azimuth : float
+        Azimuth of the rotor's shaft [rad].
+
+    Returns
+    -------
+    OnRollers
+        Converged, or flagged.
+
+    Raises
+    ------
+    InputError
+        A bearing has no catalogue entry, or one that is in no catalogue; its stiffness is six rows;
+        or something moves freely.
+    """
+    known = catalogued(machine)
+    chosen = list(known) if names is None else list(names)
+    for name in chosen:
+        if name not in known:
+            raise InputError(
+                f"bearing {name!r} has no catalogue entry, whose rollers could carry: give "
+                f"catalogue, or use one of {', '.join(known) or 'none'}"
+            )
+    if not chosen:
+        raise InputError("no bearing has a catalogue entry, whose rollers could carry: give some")
+    kinds = {name: bearing_of(known[name], catalogues) for name in chosen}
+    housings = {k: v for k, v in rung.flexible.bearings.items() if k not in chosen}
+    gives = replace(rung.flexible, bearings=housings)
+    found = assembly(machine, rung.level, azimuth, held_generator=True, flexible=gives)
+    system = assemble(found.bodies, found.springs, found.superelements)
+    seats: list[Seat] = []
+    for name, bearing in kinds.items():
+        if name in found.seats:
+            seats.append(machine_seat(found, name, bearing))
+    seats += _of_planets(machine, rung, kinds, azimuth)
+    hub = np.array([0.0, 0.0, 0.0, 0.0, operation.moment, 0.0])
+    return static_on_rollers(system, steady_load(machine, system, operation.torque, hub), seats)
+
+
+def bearing_of(row: BearingData | PinData, catalogues: Sequence[str | Path] = ()) -> Bearing:
+    """The rolling bearing of a row: its catalogue entry, with the row's clearance where given.
+
+    Parameters
+    ----------
+    row : BearingData or PinData
+        Row with a catalogue entry.
+    catalogues : sequence of str or Path
+        Catalogue files beside the package's.
+
+    Raises
+    ------
+    InputError
+        It is in no catalogue.
+    """
+    changes = {} if row.clearance is None else {"clearance": row.clearance}
+    return catalogue_bearing(str(row.catalogue), *catalogues, **changes)
+
+
+def _of_planets(
+    machine: Machine, rung: Rung, kinds: Mapping[str, Bearing], azimuth: float
+) -> list[Seat]:
+    """Seats of planets' bearings, in the order of the stages."""
+    found = []
+    for number, stage in enumerate(machine.stages, start=1):
+        if not isinstance(stage, PlanetaryData):
+            continue
+        for pin in stage.pins:
+            bearing = kinds.get(f"stage {number} pin {pin.name}".strip())
+            if bearing is None:
+                continue
+            own = {f"stage {number} pin {k + 1} {pin.name}".strip() for k in range(stage.planets)}
+            seats = planet_seats(machine, number, bearing, azimuth, rung.flexible)
+            found += [one for one in seats if one.name in own]
+    return found

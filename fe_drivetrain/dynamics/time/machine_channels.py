@@ -1,0 +1,202 @@
+"""What is read from a machine that runs: torques, speeds, forces of meshes and bearings in time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import Literal
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import MOTIONS
+from fe_drivetrain.common.short_repr import short_repr
+from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
+from fe_drivetrain.dynamics.bodies.damping_ratios import element_of, mesh_names
+from fe_drivetrain.dynamics.bodies.equations import CONSTANT
+from fe_drivetrain.dynamics.bodies.springs import along_eigenvectors
+from fe_drivetrain.dynamics.bodies.steady_state import wind_up
+from fe_drivetrain.dynamics.time.motion import Motion
+from fe_drivetrain.dynamics.time.running import Running
+
+Kind = Literal["torque", "mesh", "bearing", "speed"]
+"""What a channel is: torque of a shaft, force of a mesh or of a bearing, speed of a body."""
+
+UNITS: dict[Kind, str] = {"torque": "N m", "mesh": "N", "bearing": "N", "speed": "rad/s"}
+
+
+@dataclass(frozen=True)
+class Channels:
+    """Channels of a machine that runs, each from forces of springs or from velocities.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Names (c,): "torque of HSS", "force of stage 3 mesh", "force of HS-A" (across its axis),
+        "axial force of HS-B", "speed of generator".
+    kinds : tuple of str
+        Kind (c,) of each, see `Kind`.
+    along, across : Floats
+        Weights (c, m) of the springs' forces: the channel is the first sum, or the length of both
+        where `round` says so.
+    rates : Floats
+        Weights (c, n) of the velocities.
+    round : Floats
+        Flags (c,), 1 of forces across an axis.
+    rated : Floats
+        Values (c,) in steady turning at rated torque.
+    """
+
+    __repr__ = short_repr
+
+    names: tuple[str, ...]
+    kinds: tuple[Kind, ...]
+    along: Floats
+    across: Floats
+    rates: Floats
+    round: Floats
+    rated: Floats
+
+    def of(self, motion: Motion) -> Floats:
+        """(k, c) values over a motion that recorded all degrees of freedom."""
+        return self._values(motion.forces, motion.velocity)
+
+    def _values(self, forces: Floats, velocity: Floats) -> Floats:
+        m = self.along.shape[1]
+        # springs behind those of the system are laws of the generator
+        found = forces[:, :m] @ self.along.T
+        both = np.flatnonzero(self.round)
+        found[:, both] = np.hypot(found[:, both], forces[:, :m] @ self.across[both].T)
+        return np.asarray(found + velocity @ self.rates.T)
+
+    def unit(self, k: int) -> str:
+        """Unit of a channel by its number."""
+        return UNITS[self.kinds[k]]
+
+
+Weights = Mapping[int, float]
+"""Weights of springs by their number."""
+
+NOTHING: Weights = MappingProxyType({})
+
+
+class _Rows:
+    """Rows of channels as they are gathered."""
+
+    def __init__(self, of: Running) -> None:
+        self.springs = list(of.system.spring_names)
+        self.n = len(of.system.names)
+        self.rows: list[tuple[str, Kind, Floats, Floats, Floats, float]] = []
+
+    def add(
+        self,
+        name: str,
+        kind: Kind,
+        along: Weights = NOTHING,
+        across: Weights = NOTHING,
+        rate: Floats | None = None,
+        both: bool = False,
+    ) -> None:
+        """Add a channel of springs with weights by their number, or of a velocity."""
+        first, second = np.zeros(len(self.springs)), np.zeros(len(self.springs))
+        for weights, sums in ((along, first), (across, second)):
+            sums[list(weights)] = list(weights.values())
+        rates = np.zeros(self.n) if rate is None else rate
+        self.rows.append((name, kind, first, second, rates, float(both)))
+
+    def numbers(self, *names: str) -> list[int]:
+        """Numbers of springs of these names, those that there are."""
+        return [k for k, name in enumerate(self.springs) if name in names]
+
+
+def machine_channels(of: Running) -> Channels:
+    """All channels of a machine at its level; signs are such that torques and meshes, at rated
+    torque, are positive.
+
+    Parameters
+    ----------
+    of : Running
+        The machine, turning steadily.
+    """
+    rows, system = _Rows(of), of.system
+    for shaft in of.machine.shafts:
+        found = rows.numbers(f"{shaft.name} rx", f"{shaft.name} element 1 rx")
+        if found and system.rows[found].any():
+            rows.add(f"torque of {shaft.name}", "torque", dict.fromkeys(found, 1.0))
+    names = [element_of(name) for name in system.spring_names]
+    for mesh in mesh_names(of.machine):
+        slices = {k: 1.0 for k, name in enumerate(names) if name == mesh}
+        rows.add(f"force of {mesh}", "mesh", slices)
+    for bearing, stiffness in _bearings(of):
+        _add_bearing(rows, of, bearing, stiffness)
+    for body in _turning_bodies(of):
+        rows.add(f"speed of {body}", "speed", rate=of.row(body))
+    labels, kinds, along, across, rates, both = zip(*rows.rows, strict=True)
+    made = Channels(
+        labels,
+        kinds,
+        np.array(along),
+        np.array(across),
+        np.array(rates),
+        np.array(both),
+        np.zeros(len(labels)),
+    )
+    return _with_rated(made, of)
+
+
+def _with_rated(made: Channels, of: Running) -> Channels:
+    """Values at rated torque, all torques, mesh forces and speeds then being positive."""
+    turning, e = of.turning, of.equations
+    # stiffnesses at their mean over a period
+    e = replace(e, springs=replace(e.springs, wave=np.full(len(e.springs.rows), CONSTANT)))
+    load = turning.torque * turning.to_rotor - turning.generator_torque * turning.to_generator
+    load = load if turning.beside is None else load + turning.beside
+    q = wind_up(e, load, turning.velocity).q
+    stretch = e.springs.rows @ q
+    gap = np.clip(stretch, e.springs.lower, e.springs.upper)
+    forces = e.springs.stiffness * (stretch - gap)
+    rated = made._values(forces[None], turning.velocity[None])[0]
+    turned = np.array([kind != "bearing" for kind in made.kinds]) & (rated < 0.0)
+    sign = np.where(turned, -1.0, 1.0)
+    return replace(
+        made,
+        along=sign[:, None] * made.along,
+        rates=sign[:, None] * made.rates,
+        rated=np.asarray(sign * rated),
+    )
+
+
+def _bearings(of: Running) -> list[tuple[str, Floats]]:
+    """Bearings in the housing, then those of planets, with six stiffnesses or a matrix."""
+    found = [(bearing.name, np.asarray(bearing.stiffness)) for bearing in of.machine.bearings]
+    for number, stage in enumerate(of.machine.stages, start=1):
+        if isinstance(stage, PlanetaryData):
+            found += [
+                (f"stage {number} pin {k + 1} {pin.name}".strip(), np.ones(6))  # its own axes
+                for k in range(stage.planets)
+                for pin in stage.pins
+            ]
+    return found
+
+
+def _add_bearing(rows: _Rows, of: Running, name: str, stiffness: Floats) -> None:
+    """Force across the axis of a bearing, and that along it where it carries one."""
+    if stiffness.ndim == 2:
+        directions = {f"{name} {k}": d for k, (d, _) in along_eigenvectors(name, stiffness).items()}
+    else:
+        directions = dict(zip((f"{name} {m}" for m in MOTIONS), np.eye(6), strict=True))
+    felt = np.abs(of.system.rows).max(axis=1) > 0.0
+    by = {k: directions[n] for k, n in enumerate(rows.springs) if n in directions and felt[k]}
+    x, y, z = ({k: float(d[axis]) for k, d in by.items() if d[axis]} for axis in range(3))
+    if y or z:
+        rows.add(f"force of {name}", "bearing", y, z, both=True)
+    if x:
+        rows.add(f"axial force of {name}", "bearing", x)
+
+
+def _turning_bodies(of: Running) -> list[str]:
+    """The rotor, what each stage drives, and the generator."""
+    kinds = ["sun" if isinstance(stage, PlanetaryData) else "pinion" for stage in of.machine.stages]
+    rear = [f"stage {number} {kind}" for number, kind in enumerate(kinds, start=1)]
+    return ["rotor", *rear, "generator"]

@@ -1,0 +1,405 @@
+"""A drivetrain in time: torque, speeds, forces of meshes and bearings, in events and operation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from fe_drivetrain.common.arguments import argument
+from fe_drivetrain.common.errors import InputError, require_known
+from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.common.steps import Steps
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.dynamics.bodies.damping_ratios import ASSUMED_RATIOS
+from fe_drivetrain.dynamics.bodies.equations import equations_of_motion, spring_laws, steady
+from fe_drivetrain.dynamics.bodies.levels import Level
+from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of
+from fe_drivetrain.dynamics.time.integration import integrate
+from fe_drivetrain.dynamics.time.machine_channels import Kind
+from fe_drivetrain.procedure.drivetrain_events import EVENTS, SLIP, Event, event_of
+from fe_drivetrain.procedure.drivetrain_operation import operation
+from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.studies.transient_digest import (
+    FileDigest,
+    OperationOptions,
+    digests,
+    driven,
+)
+from fe_drivetrain.studies.transient_findings import (
+    judge_run,
+    state_answer,
+    state_assumptions,
+    state_figures,
+)
+from fe_drivetrain.studies.transient_ladder import (
+    QUANTITIES,
+    cheapest_level,
+    level_error,
+)
+from fe_drivetrain.studies.transient_result import LEVELS, TransientResult
+from fe_drivetrain.studies.transient_runs import (
+    Extreme,
+    LevelRun,
+    Prepared,
+    Rated,
+    Samples,
+    with_bands,
+)
+from fe_drivetrain.studies.transient_tables import (
+    alternating_rows,
+    digest_rows,
+    equivalent_rows,
+    extreme_rows,
+    level_rows,
+    over_files,
+    spectrum_rows,
+)
+from fe_drivetrain.turbine_loads.hub_loads.drive_history import read_drive
+from fe_drivetrain.turbine_loads.hub_loads.recorded import Files, recorded_files, short_name
+
+OPERATION = "operation"
+"""Event that is driven by histories."""
+
+EVENT_NAMES = (OPERATION, *EVENTS)
+"""Names of all events."""
+
+WINDOW = 60.0
+"""Part of the first history in which levels and steps are compared [s]."""
+
+
+def transient(
+    drivetrain: Drivetrain,
+    event: str,
+    values: Mapping[str, float | str] | None = None,
+    *,
+    loads: Files = (),
+    level: str | None = None,
+    quantity: Kind = "bearing",
+    tolerance: float = 0.05,
+    duration: float | None = None,
+    step: float | None = None,
+    backlash: float = 0.0,
+    options: OperationOptions | None = None,
+    resume: bool = False,
+    report: Progress = silent,
+) -> TransientResult:
+    """Compute what a drivetrain does in an event, or in operation, by the cheapest level that is
+    enough.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        The drivetrain, with rotor and generator; its brake, damping and operation where it has
+        them.
+    event : str
+        "stop" (emergency stop with brake), "grid_loss", "dip" (of the voltage), "run_up", "offset"
+        (of the generator), "base" (which moves), or "operation" under histories.
+    values : Mapping[str, float or str], optional
+        Values of the event other than its defaults, by name: see the classes of
+        `fe_drivetrain.procedure.drivetrain_events`.
+    loads : str, path, or sequence of these
+        Histories of operation: files (.out, .outb of OpenFAST, or .csv), folders, patterns.
+    level : str, optional
+        "torsional", "rigid" or "flexible"; all are run and compared where left out.
+    quantity : str
+        For which the level has to be enough: "torque", "mesh", "bearing".
+    tolerance : float
+        Allowed error against the finest level.
+    duration : float, optional
+        End of the run, or how much of each history [s].
+    step : float, optional
+        Step of integration; what the event needs where left out [s].
+    backlash : float
+        Backlash of all meshes along their lines of action [m].
+    options : OperationOptions, optional
+        How histories are read and counted.
+    resume : bool
+        Take digests of histories that an earlier run kept.
+    report : Progress
+        Called with the name of each step as it begins.
+
+    Raises
+    ------
+    InputError
+        The event, a value or a level is unknown or out of range, a rated value is missing, or the
+        drivetrain does not have what the event needs.
+    """
+    require_known("event", event, EVENT_NAMES)
+    require_known("quantity", quantity, tuple(QUANTITIES))
+    if not 0.0 < tolerance < 1.0:
+        raise InputError(
+            f"{argument('tolerance')} is {tolerance:g} but must be between 0 and 1: change it"
+        )
+    asked = _Asked(
+        drivetrain,
+        machine_of(drivetrain),
+        event,
+        {**_of_file(drivetrain, event), **(values or {})},
+        rated_of(drivetrain, backlash),
+        level,
+        quantity,
+        tolerance,
+        duration,
+        step,
+    )
+    steps = Steps(report)
+    if event == OPERATION:
+        return _operated(asked, recorded_files(loads), options or OperationOptions(), resume, steps)
+    if loads:
+        raise InputError(
+            f"event {event} takes no histories: leave {argument('loads')} out, or ask for operation"
+        )
+    return _happened(asked, steps)
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """What is asked of a drivetrain."""
+
+    drivetrain: Drivetrain
+    machine: Machine
+    event: str
+    values: dict[str, float | str]
+    rated: Rated
+    level: str | None
+    quantity: Kind
+    tolerance: float
+    duration: float | None
+    step: float | None
+
+    def levels(self, possible: Sequence[Level]) -> list[Level]:
+        """Levels to run, of those at which the event can happen."""
+        if self.level is None:
+            turns = bool(self.machine.not_given)
+            found = [one for one in possible if not turns or one is Level.TORSIONAL]
+            if not found:
+                raise InputError(
+                    f"event {self.event} needs all motions of {self.machine.title!r}, whose file "
+                    f"does not state {', '.join(self.machine.not_given)}: add it"
+                )
+            return found
+        require_known("level", self.level, tuple(LEVELS))
+        if LEVELS[self.level] not in possible:
+            words = [word for word, one in LEVELS.items() if one in possible]
+            raise InputError(
+                f"event {self.event} does not happen at the level {self.level}: choose one of "
+                f"{', '.join(words)}"
+            )
+        return [LEVELS[self.level]]
+
+    def plain(self) -> dict[str, Any]:
+        """All of it as plain data."""
+        return {
+            "event": self.event,
+            "values": self.values,
+            "rated": self.rated.plain(),
+            "level": self.level,
+            "quantity": self.quantity,
+            "tolerance": self.tolerance,
+            "duration": self.duration,
+            "step": self.step,
+        }
+
+
+def rated_of(drivetrain: Drivetrain, backlash: float = 0.0) -> Rated:
+    """What a drivetrain runs at, from its file.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        With `operation`, or the rated torque of its generator and a speed of the rotor.
+    backlash : float
+        Backlash of all meshes along their lines of action [m].
+
+    Raises
+    ------
+    InputError
+        A value is missing; the message names its key.
+    """
+    of, generator = drivetrain.operation, drivetrain.generator
+    if of is None or of.rotor_speed is None:
+        raise InputError(
+            f"{drivetrain.title!r} does not state the speed of its rotor: add operation: "
+            "{rotor_speed: [least, rated]} in rad/s"
+        )
+    torque = of.rated_torque
+    if torque is None and generator is not None and generator.rated_torque is not None:
+        torque = generator.rated_torque * abs(machine_of(drivetrain).speeds[-1])
+    if torque is None:
+        raise InputError(
+            f"{drivetrain.title!r} does not state its rated power: add operation: "
+            "{rated_power: ...} in W"
+        )
+    slip = None if generator is None else generator.slip
+    return Rated(
+        torque,
+        of.rotor_speed[1],
+        SLIP if slip is None else slip,
+        drivetrain.damping or ASSUMED_RATIOS,
+        backlash,
+    )
+
+
+def _of_file(drivetrain: Drivetrain, event: str) -> dict[str, float | str]:
+    """Values of an event that the drivetrain's file states: its brake."""
+    brake = drivetrain.brake
+    if event != "stop" or brake is None:
+        return {}
+    return {"on": brake.shaft, "brake_torque": brake.torque, "rise": brake.rise}
+
+
+def _happened(asked: _Asked, steps: Steps) -> TransientResult:
+    """An event, at all levels that were asked for."""
+    event = event_of(asked.event, asked.values)
+    duration = _duration(asked, event)
+
+    def at(level: Level) -> Callable[[float | None], LevelRun]:
+        of = Prepared(asked.machine, level, asked.rated, event.teeth)
+        planned = event.plan(of.of, duration, asked.rated.slip)
+        return lambda step: of.event(planned, event.step(of.of) if step is None else step)
+
+    found = _findings(asked)
+    runs, number = _compared(asked, asked.levels(event.levels), at, asked.step, steps)
+    run = runs[number]
+    return _result(asked, found, steps, runs, number, run.extremes, run.samples, {}, {})
+
+
+def _duration(asked: _Asked, event: Event) -> float:
+    if asked.duration is None:
+        return event.lasts(asked.rated.running(asked.machine, Level.TORSIONAL))
+    longest = 3600.0
+    if not 0.0 < asked.duration <= longest:
+        raise InputError(
+            f"{argument('duration')} is {asked.duration:g} s but must be above 0 s and at most "
+            f"{longest:g} s: change it"
+        )
+    return asked.duration
+
+
+def _compared(
+    asked: _Asked,
+    levels: Sequence[Level],
+    at: Callable[[Level], Callable[[float | None], LevelRun]],
+    step: float | None,
+    steps: Steps,
+) -> tuple[list[LevelRun], int]:
+    """Runs at all levels, the chosen and the finest with their bands; number of the chosen one."""
+    if step is not None and not 1e-7 <= step <= 1.0:
+        raise InputError(
+            f"{argument('step')} is {step:g} s but must be from 1e-07 to 1 s: change it"
+        )
+    with steps.step("compiled loops"):
+        _load_loops()
+    runs, again = [], []
+    for level in levels:
+        with steps.step(level.value):
+            again.append(at(level))
+            runs.append(again[-1](step))
+    number = cheapest_level(runs, asked.quantity, asked.tolerance)
+    for k in sorted({number, len(runs) - 1}):
+        with steps.step("longer steps"):
+            runs[k] = with_bands(runs[k], again[k])
+    return runs, number
+
+
+def _load_loops() -> None:
+    """Let compiled loops be there, so that the first level does not pay for them."""
+    one = equations_of_motion([1.0], spring_laws([[1.0]], 1.0))
+    integrate(one, steady([0.0]), 1.0, 1.0)
+
+
+def _operated(
+    asked: _Asked, files: Sequence[Path], options: OperationOptions, resume: bool, steps: Steps
+) -> TransientResult:
+    """Operation under histories, one by one."""
+    if not files:
+        raise InputError(
+            f"operation needs histories: give {argument('loads')}, as in outputs/*.outb"
+        )
+    if asked.values:
+        raise InputError(f"operation has no value {next(iter(asked.values))!r}: leave it out")
+    options = replace(
+        options, step=asked.step or options.step, until=asked.duration or options.until
+    )
+    first = read_drive(files[0], options.names, options.skip)
+    window = min(options.until or WINDOW, WINDOW, first.seconds)
+
+    def at(level: Level) -> Callable[[float | None], LevelRun]:
+        of = Prepared(asked.machine, level, asked.rated, hub_loads=first.has_all)
+        moving = operation(of.of, first, asked.rated.slip)
+        return lambda step: of.window(moving, options.step if step is None else step, window)
+
+    found = _findings(asked)
+    runs, number = _compared(asked, asked.levels(list(Level)), at, options.step, steps)
+    level = runs[number].level
+    names = [short_name(path, files) for path in files]
+    with steps.step("files"):
+        of = Prepared(asked.machine, level, asked.rated, hub_loads=first.has_all)
+        begun, samples = driven(of, first, options)
+        rest = digests(files[1:], asked.machine, level, asked.rated, options, resume, steps.report)
+        of_files = dict(zip(names, [begun, *rest], strict=True))
+    extremes = over_files(of_files, runs[number])
+    more = {
+        "files": names,
+        **{key: getattr(options, key) for key in ("skip", "step", "until")},
+        "slopes": [float(slope) for slope in options.slopes],
+    }
+    found.data("equivalent_loads", equivalent_rows(of_files, extremes, options.slopes))
+    found.data("duration_spectra", spectrum_rows(of_files, extremes))
+    found.data("files", digest_rows(of_files, extremes))
+    return _result(asked, found, steps, runs, number, extremes, samples, of_files, more)
+
+
+def _findings(asked: _Asked) -> Findings:
+    found = Findings()
+    found.seed = None
+    found.about(asked.drivetrain)
+    if asked.machine.not_given:
+        found.note(
+            "Bodies only turn, since the file does not state "
+            f"{', '.join(asked.machine.not_given)}: there are no forces of bearings."
+        )
+    return found
+
+
+def _result(
+    asked: _Asked,
+    found: Findings,
+    steps: Steps,
+    runs: Sequence[LevelRun],
+    number: int,
+    extremes: Mapping[str, Extreme],
+    samples: Samples,
+    files: Mapping[str, FileDigest],
+    more: Mapping[str, Any],
+) -> TransientResult:
+    """State what was found, and freeze it."""
+    run = runs[number]
+    kinds = [kind for kind in QUANTITIES if any(e.kind == kind for e in extremes.values())]
+    errors = tuple(tuple(level_error(one, runs[-1], kind) for kind in kinds) for one in runs)
+    imbalance = max([run.imbalance, *(one.imbalance for one in files.values())])
+    found.data("extremes", extreme_rows(extremes))
+    found.data("levels", level_rows(runs, errors, number))
+    if asked.event == "offset":
+        found.data("alternating", alternating_rows(run))
+    judge_run(found, asked.event, run, imbalance, asked.rated)
+    state_assumptions(found, asked.event, asked.values, asked.drivetrain)
+    state_figures(found, extremes, run)
+    state_answer(found, asked.event, extremes, run, runs, number, files, asked.quantity)
+    word = next(word for word, one in LEVELS.items() if one is run.level)
+    return TransientResult(
+        event=asked.event,
+        level=word,
+        runs=tuple(runs),
+        errors=errors,
+        quantity=asked.quantity,
+        tolerance=asked.tolerance,
+        extremes=extremes,
+        marks=run.marks,
+        imbalance=imbalance,
+        samples=samples,
+        files=files,
+        **found.frozen(steps.times, **{**asked.plain(), **more}),
+    )

@@ -1,0 +1,336 @@
+"""The rolling bearings of a machine for ``life``: by reactions of its statics, level by level.
+
+Bearings of shafts and carriers in the housing, and of planets on their pins. Main bearings of a
+machine are among them where no scene has them on rollers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from fe_drivetrain.bearing.catalogue import Entry, read_bearing_catalogue
+from fe_drivetrain.bearing_life.coupled.reaction_paths import ReactionPath
+from fe_drivetrain.bearing_life.life.lubricants import GRADES, Lubricant
+from fe_drivetrain.bearing_life.life.rated import RatedBearing, rated_from_catalogue
+from fe_drivetrain.bearing_life.life.roller_models import rigid_rings
+from fe_drivetrain.common.arguments import argument
+from fe_drivetrain.common.components import GRAVITY
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.strict_yaml import shown
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.joint_springs import as_numbers
+from fe_drivetrain.drivetrain_file.scene import RIGID, Scene
+from fe_drivetrain.dynamics.bodies.bearing_reactions import (
+    BearingModel,
+    Reactions,
+    planet_bearing_name,
+)
+from fe_drivetrain.dynamics.bodies.flexible import Flexible, Housing
+from fe_drivetrain.dynamics.bodies.levels import Level, assembly
+from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of
+from fe_drivetrain.studies.rolling_bearings import (
+    Choices,
+    Oil,
+    OneBearing,
+    OtherPath,
+    profile_of,
+)
+
+LEVELS = (Level.RIGID, Level.FLEXIBLE)
+"""Levels that have loads of bearings, from the cheapest; lives are those of the last."""
+
+FACTORS = ((0.5, "half of it"), (2.0, "twice as much"))
+"""Stiffness of a bearing to compare with over that which its file states, and in words."""
+
+
+@dataclass(frozen=True)
+class Unrated:
+    """A bearing that has no entry of a catalogue.
+
+    Attributes
+    ----------
+    name : str
+        Name of the bearing.
+    speed_ratio : float
+        Its speed over that of the rotor.
+    """
+
+    name: str
+    speed_ratio: float
+
+
+@dataclass(frozen=True)
+class MachineBearings:
+    """Bearings of a machine.
+
+    Attributes
+    ----------
+    lacks : str or None
+        Why there is no machine, of a drivetrain with gears whose main bearings are rated all the
+        same, as a sentence.
+    mounted : bool
+        Whether the gearbox's housing stands on the springs of its mount, not on the ground.
+    rated : tuple of OneBearing
+        Those with an entry of a catalogue, ready for lives: main bearings first.
+    unrated : tuple of Unrated
+        The others, named alone.
+    degrees : Mapping[str, int]
+        Degrees of freedom of each level.
+    """
+
+    rated: tuple[OneBearing, ...] = ()
+    unrated: tuple[Unrated, ...] = ()
+    degrees: Mapping[str, int] = field(default_factory=dict)
+    lacks: str | None = None
+    mounted: bool = False
+
+
+def machine_bearings(
+    machine: Machine,
+    entries: Mapping[str, str],
+    choices: Choices,
+    oil: Oil,
+    on_rollers: Sequence[str] = (),
+    flexible: Flexible | None = None,
+) -> MachineBearings:
+    """The bearings of a machine by the loads that its statics give them.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    entries : Mapping[str, str]
+        Catalogue entry by the name of a bearing; of planets as "stage 1 pin upwind".
+    choices : Choices
+        Catalogues, profile of rollers, rings, and the one bearing that is asked for.
+    oil : Oil
+        The oil of the gearbox.
+    on_rollers : sequence of str
+        Bearings that are rated elsewhere, with their rollers in equilibrium with the shaft.
+    flexible : Flexible, optional
+        The gearbox's housing on its mount, see `gearbox_mount`; rigid on the ground where left out.
+
+    Returns
+    -------
+    bearings : MachineBearings
+        Main bearings first, then others in the order of the machine, then planets.
+
+    Raises
+    ------
+    InputError
+        An entry is unknown or of no bearing, or the machine has no statics.
+    """
+    models = {level: BearingModel(machine, level, flexible=flexible) for level in LEVELS}
+    loads = {level: model.reactions() for level, model in models.items()}
+    main = main_names(machine)
+    names = [n for n in models[LEVELS[-1]].names if n not in on_rollers]
+    names = [*(n for n in names if n in main), *(n for n in names if n not in main)]
+    _require_bearings((*on_rollers, *names), entries, choices.only)
+    known = read_bearing_catalogue(*choices.catalogues)
+    rated, unrated = [], []
+    for name in names:
+        here = {level: of[name] for level, of in loads.items()}
+        if choices.only not in (None, name):
+            continue
+        if name not in entries:
+            unrated.append(Unrated(name, here[LEVELS[-1]].speed_ratio))
+        else:
+            entry = _entry(name, entries[name], known)
+            made = _Maker(name, entries[name], entry, choices)
+            rated.append(made.bearing(models[LEVELS[-1]], here, None if name in main else oil))
+    degrees = {level.value: model.degrees for level, model in models.items()}
+    return MachineBearings(tuple(rated), tuple(unrated), degrees, mounted=flexible is not None)
+
+
+def catalogue_entries(drivetrain: Drivetrain) -> dict[str, str]:
+    """Catalogue entries in a drivetrain's file, by bearing; of planets "stage 1 pin upwind".
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        The drivetrain.
+    """
+    found: dict[str, str | None] = {}
+    if isinstance(drivetrain, Scene):
+        found |= {unit.bearing.name: unit.catalogue for unit in drivetrain.bearing_units}
+    found |= {bearing.name: bearing.catalogue for bearing in drivetrain.gearbox.bearings}
+    for number, stage in enumerate(drivetrain.gearbox.stages, start=1):
+        for pin in getattr(stage, "pins", ()):
+            found[planet_bearing_name(number, pin.name)] = pin.catalogue
+    return {name: entry for name, entry in found.items() if entry is not None}
+
+
+def machine_with_bearings(drivetrain: Drivetrain) -> Machine | str | None:
+    """The machine of a drivetrain with gears, or why there is none; None of one without gears.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        The drivetrain.
+
+    Raises
+    ------
+    InputError
+        There is none, and nothing else has bearings.
+    """
+    if isinstance(drivetrain, Scene) and not drivetrain.gearbox.stages:
+        return None
+    try:
+        machine = machine_of(drivetrain)
+        BearingModel(machine, LEVELS[0], 1, gearbox_mount(drivetrain, machine))
+    except InputError as error:
+        if isinstance(drivetrain, Scene):
+            return str(error)
+        raise
+    return machine
+
+
+def gearbox_mount(drivetrain: Drivetrain, machine: Machine) -> Flexible | None:
+    """The gearbox's housing on the springs that a file gives its mount; None where it has none.
+
+    The housing is rigid in itself, and has the gearbox's weight without that of its stages.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        The drivetrain.
+    machine : Machine
+        Its machine, which begins at the front face of the main shaft.
+    """
+    if not isinstance(drivetrain, Scene):
+        return None
+    stiffness = as_numbers(drivetrain.gearbox.stiffness)
+    if not stiffness.any():
+        return None
+    stages = [body for body in assembly(machine, Level.RIGID).bodies if body.name[:5] == "stage"]
+    mass = drivetrain.gearbox.weight / GRAVITY - sum(body.mass for body in stages)
+    K = np.diag(np.where(np.isfinite(stiffness), stiffness, RIGID))
+    at = (drivetrain.shaft.rear - drivetrain.shaft.front, 0.0, 0.0)
+    housing = Housing(at, K, max(mass, 0.0), 0.0, 0.0)
+    return Flexible(housing=housing, apart=frozenset(main_names(machine)))
+
+
+def main_names(machine: Machine) -> tuple[str, ...]:
+    """Names of the bearings of the rotor and of the shaft that it drives."""
+    holds = ("rotor", machine.shafts[0].name)
+    return tuple(bearing.name for bearing in machine.bearings if bearing.holds in holds)
+
+
+def gearbox_oil(
+    grade: str | tuple[float, float] | None,
+    temperature: float | None,
+    cleanliness: str | None,
+) -> Oil:
+    """The oil of a gearbox, circulating through a filter; what is not stated is assumed.
+
+    Parameters
+    ----------
+    grade : str or tuple of float or None
+        A grade, or viscosities at 40 and at 100 degC [mm2/s]; None takes VG 320.
+    temperature : float or None
+        Temperature of bearings in operation [degC]; None takes 60.
+    cleanliness : str or None
+        Code of ISO 4406; None takes -/17/14.
+
+    Raises
+    ------
+    InputError
+        There is no such grade, or a value is out of its range.
+    """
+    given = {"lubricant": grade, "temperature": temperature, "cleanliness": cleanliness}
+    name = "VG 320" if grade is None else grade
+    if isinstance(name, str):
+        if name not in GRADES:
+            raise InputError(
+                f"{argument('LifeOptions.gearbox_lubricant', name)}: choose {', '.join(GRADES)}, "
+                "or give the viscosity at 40 and at 100 degC in mm2/s"
+            )
+        at_40, at_100 = GRADES[name]
+    else:
+        at_40, at_100 = name
+    lubricant = Lubricant(
+        at_40,
+        at_100,
+        60.0 if temperature is None else temperature,
+        "filtered oil",
+        cleanliness or "-/17/14",
+    )
+    return Oil(lubricant, tuple(key for key, value in given.items() if value is None))
+
+
+@dataclass(frozen=True)
+class _Maker:
+    """A bearing of a machine with its entry, to be made ready for lives."""
+
+    name: str
+    entry_name: str
+    entry: Entry
+    choices: Choices
+
+    def bearing(
+        self, model: BearingModel, here: Mapping[Level, Reactions], oil: Oil | None
+    ) -> OneBearing:
+        """The bearing by the finest of its levels, with the others and other stiffnesses."""
+        catalogues, profile = self.choices.catalogues, profile_of(self.entry, self.choices.profiled)
+        rated = rated_from_catalogue(self.entry_name, *catalogues, **profile)
+        paths = {level.value: self._path(rated, of) for level, of in here.items()}
+        of = here[LEVELS[-1]]
+        return OneBearing(
+            self.name,
+            self.entry_name,
+            self.entry,
+            rated,
+            paths[LEVELS[-1].value],
+            None,
+            rigid_rings,
+            oil=oil,
+            turning="outer" if of.planets else None if oil is None else "inner",
+            planets=of.planets,
+            levels=paths,
+            others=tuple(
+                OtherPath(
+                    "the stiffness of this bearing as stated",
+                    words,
+                    self._path(rated, model.reactions({self.name: factor})[self.name]),
+                )
+                for factor, words in FACTORS
+            ),
+        )
+
+    def _path(self, rated: RatedBearing, of: Reactions) -> ReactionPath:
+        weight = of.by_weight if self.choices.weight else np.zeros_like(of.by_weight)
+        return ReactionPath(self.name, rated, of.by_hub, weight, of.speed_ratio)
+
+
+def _entry(name: str, entry: str, known: Mapping[str, Entry]) -> Entry:
+    """The entry of a bearing."""
+    if entry not in known:
+        raise InputError(
+            f"catalogue entry {shown(entry)} of bearing {name!r} is in no catalogue: give a file "
+            f"that has it with {argument('catalogues', ['FILE'])}, or use one of {', '.join(known)}"
+        )
+    return known[entry]
+
+
+def _require_bearings(names: Sequence[str], entries: Mapping[str, str], only: str | None) -> None:
+    """Refuse names of bearings that there are not, and to ask for one that cannot be rated."""
+    known = f"name one of {', '.join(names)}"
+    for name in entries:
+        if name not in names:
+            raise InputError(
+                f"{argument('LifeOptions.bearings', {name: entries[name]})}: the drivetrain has no "
+                f"bearing {name!r}; {known}"
+            )
+    if only is not None and only not in names:
+        raise InputError(
+            f"{argument('LifeOptions.only', only)}: the drivetrain has no such bearing; {known}"
+        )
+    if only is not None and only not in entries:
+        raise InputError(
+            f"{argument('LifeOptions.only', only)}: bearing {only!r} has no entry of the "
+            f"catalogue: name it with {argument('LifeOptions.bearings', {only: 'ENTRY'})}, or "
+            "under 'catalogue' in the drivetrain's file"
+        )

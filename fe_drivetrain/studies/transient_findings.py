@@ -1,0 +1,401 @@
+"""What a study of a drivetrain in time states: checks, assumptions, figures, the answer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields
+from typing import NamedTuple
+
+import numpy as np
+
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.dynamics.bodies.damping_ratios import ASSUMED_RATIOS
+from fe_drivetrain.dynamics.bodies.levels import Level
+from fe_drivetrain.dynamics.time.machine_channels import Kind
+from fe_drivetrain.procedure.drivetrain_events import EVENTS, SLIP
+from fe_drivetrain.report.answer import KeyFigure
+from fe_drivetrain.report.number_text import percent_text, value_text
+from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.studies.transient_digest import FileDigest
+from fe_drivetrain.studies.transient_ladder import COUNTED, QUANTITIES, level_error
+from fe_drivetrain.studies.transient_runs import Extreme, LevelRun, Rated
+from fe_drivetrain.studies.transient_tables import alternating_rows, in_shown_unit
+
+#: Energy that may appear from nowhere: of linear systems, and of teeth that vary or part.
+ENERGY, ENERGY_OF_LAWS = 1e-6, 1e-2
+SETTLED = 0.05
+"""What the step may leave uncertain of an extreme, over it, before it is said to be open."""
+
+QUESTIONS = {
+    "stop": "What does an emergency stop do to the drivetrain?",
+    "grid_loss": "What does the loss of the grid do to the drivetrain?",
+    "dip": "What does a dip of the grid's voltage do to the drivetrain?",
+    "run_up": "How far do resonances load the drivetrain as it runs up?",
+    "offset": "What does the offset of the generator do to the bearings?",
+    "base": "What does the motion of its base do to the drivetrain?",
+    "operation": "What do these histories do to the drivetrain?",
+}
+"""What is asked, by event."""
+
+_UNITS = {"brake_torque": "N m", "coupling": "N/m", "y": "m", "z": "m", "run_out": "m"}
+_TIMES = frozenset(
+    {"off", "pitched", "braked", "rise", "delay", "pitch", "start", "length", "fall", "recovery"}
+)
+
+
+def judge_run(found: Findings, event: str, run: LevelRun, imbalance: float, rated: Rated) -> None:
+    """Check the energy of a run, its iterations, and that nothing rings before anything happens.
+
+    Parameters
+    ----------
+    found : Findings
+        Takes the checks.
+    event : str
+        Name of the event.
+    run : LevelRun
+        The run that is reported.
+    imbalance : float
+        Energy that appears from nowhere, over the largest, of all histories.
+    rated : Rated
+        Whether teeth have backlash.
+    """
+    laws = event in ("run_up", "offset") or rated.backlash > 0.0
+    found.at_most(
+        "energy that appears from nowhere, over the largest",
+        imbalance,
+        ENERGY_OF_LAWS if laws else ENERGY,
+        why="a hundredth of the energy is half a hundredth of the forces"
+        if laws
+        else "average acceleration conserves the energy of linear systems, to round-off",
+        source="work of loads, clocks and dampers is kinetic and strain energy",
+        measure="identity",
+    )
+    if laws:
+        found.holds(
+            "Newton's method converged in every step",
+            run.converged,
+            why="forces would be wrong else",
+            source="its residual",
+        )
+    first = min(run.marks.values(), default=0.0)
+    before = run.samples.times < first
+    if before.sum() > 1 and event != "run_up":
+        _judge_rest(found, run, before)
+
+
+def _judge_rest(found: Findings, run: LevelRun, before: np.ndarray) -> None:
+    """Check that torques stand until something happens."""
+    swings = [
+        float(np.ptp(run.samples.of(name)[before]) / abs(one.rated))
+        for name, one in run.extremes.items()
+        if one.kind == "torque" and one.rated
+    ]
+    found.vanishes(
+        "torques before the event: largest swing over rated",
+        max(swings, default=0.0),
+        within=1e-6,
+        why="a drivetrain that is not wound up rings from the start",
+        source="steady turning",
+        measure="identity",
+    )
+
+
+def state_assumptions(
+    found: Findings, event: str, values: Mapping[str, float | str], drivetrain: Drivetrain
+) -> None:
+    """State the values that nobody gave.
+
+    Parameters
+    ----------
+    found : Findings
+        Takes the rows.
+    event : str
+        Name of the event.
+    values : Mapping[str, float or str]
+        What was given of it.
+    drivetrain : Drivetrain
+        Its file, for slip and damping.
+    """
+    kind = EVENTS.get(event)
+    for one in () if kind is None else fields(kind):  # type: ignore[arg-type]
+        if one.name not in values:
+            unit = "s" if one.name in _TIMES else _UNITS.get(one.name, "")
+            value: float | str = getattr(kind, one.name)
+            found.assume(f"{one.name} of the event", value, unit, "assumed: not stated")
+    if drivetrain.damping is None:
+        source = "assumed: Al-Hamadani 2018, section 4.1"
+        found.assume("damping ratio of shafts and bearings", ASSUMED_RATIOS.shafts, "-", source)
+        found.assume("damping ratio of meshes", ASSUMED_RATIOS.meshes, "-", source)
+    generator = drivetrain.generator
+    known = generator is not None and generator.slip is not None
+    if not known and event not in ("dip", "run_up"):
+        found.assume("slip of the generator at rated torque", SLIP, "-", "assumed: not stated")
+
+
+def state_figures(found: Findings, extremes: Mapping[str, Extreme], run: LevelRun) -> None:
+    """Extremes as figures, and those that their step leaves open.
+
+    Parameters
+    ----------
+    found : Findings
+        Takes them.
+    extremes : Mapping[str, Extreme]
+        Extremes by channel.
+    run : LevelRun
+        The run whose step it is.
+    """
+    loose: list[tuple[float, str]] = []
+    for name, one in extremes.items():
+        most, unit = in_shown_unit(one.most, one.unit)
+        least, _ = in_shown_unit(one.least, one.unit)
+        size = one.most / most if most else 1.0
+        bands = [None if b is None else b / size for b in (one.most_band, one.least_band)]
+        found.found(f"largest {name} [{unit}]", most, bands[0])
+        found.found(f"least {name} [{unit}]", least, bands[1])
+        band = max(one.most_band or 0.0, one.least_band or 0.0)
+        of_kind = max(each.largest for each in extremes.values() if each.kind == one.kind)
+        counts = one.kind != "speed" and one.largest >= COUNTED * of_kind
+        if counts and band > SETTLED * one.largest:
+            loose.append((band / one.largest, name))
+    if loose:
+        share, name = max(loose)
+        found.unsettled.append(
+            f"Not converged: {len(loose)} channel{'s' * (len(loose) > 1)}, uncertain by up to "
+            f"{percent_text(share)} by the step of {1e3 * run.step:g} ms ({name}): take a shorter "
+            "step."
+        )
+
+
+class _Answered(NamedTuple):
+    """What an answer is made of."""
+
+    found: Findings
+    extremes: Mapping[str, Extreme]
+    run: LevelRun
+
+    def of_kind(self, kind: Kind) -> dict[str, Extreme]:
+        """Channels of a kind that carry something at rated torque."""
+        return {
+            name: one
+            for name, one in self.extremes.items()
+            if one.kind == kind and np.isfinite(one.over_rated)
+        }
+
+    def worst(self, kind: Kind) -> str:
+        """Channel of a kind with the largest value over rated."""
+        of = self.of_kind(kind)
+        return max(of, key=lambda name: of[name].largest / abs(of[name].rated), default="")
+
+    def heaviest(self, by: Callable[[Extreme], float] = lambda one: one.largest) -> str:
+        """Bearing that is loaded most, or by another measure; empty where there is none."""
+        of = {name: one for name, one in self.extremes.items() if one.kind == "bearing"}
+        return max(of, key=lambda name: by(of[name]), default="")
+
+    def force(self, name: str) -> KeyFigure:
+        """Largest force of a bearing beside that at rated torque."""
+        one = self.extremes[name]
+        band = None if one.most_band is None else one.most_band / 1e3
+        rated = abs(one.rated) / 1e3
+        return self.found.value(
+            f"largest {name} [kN]", one.largest / 1e3, band, beside=rated, by="rated torque"
+        )
+
+    @property
+    def last(self) -> str:
+        """Torque of the last shaft."""
+        return list(self.of_kind("torque"))[-1]
+
+    def over(self, name: str, least: bool = False) -> KeyFigure:
+        """Largest or least value of a channel over its rated one."""
+        one = self.extremes[name]
+        band = one.least_band if least else one.most_band
+        return self.found.value(
+            f"{'least' if least else 'largest'} {name}, over rated",
+            one.least_over_rated if least else one.over_rated,
+            None if band is None else band / abs(one.rated),
+        )
+
+
+def state_answer(
+    found: Findings,
+    event: str,
+    extremes: Mapping[str, Extreme],
+    run: LevelRun,
+    runs: Sequence[LevelRun],
+    number: int,
+    files: Mapping[str, FileDigest],
+    quantity: Kind,
+) -> None:
+    """State what the event does, with the level that it needs.
+
+    Parameters
+    ----------
+    found : Findings
+        Takes the answer.
+    event : str
+        Name of the event.
+    extremes : Mapping[str, Extreme]
+        Extremes by channel.
+    run : LevelRun
+        The run that is reported.
+    runs : sequence of LevelRun
+        All levels.
+    number : int
+        Number of the level that is reported.
+    files : Mapping[str, FileDigest]
+        What happened over each history.
+    quantity : str
+        For which the level has to be enough.
+    """
+    of = _Answered(found, extremes, run)
+    verdict, figures = _VERDICTS[event](of, files)
+    if len(runs) > 1:
+        error = level_error(runs[number], runs[-1], quantity).error
+        _say_level(found, runs, number, quantity, error)
+    found.answer(QUESTIONS[event], verdict, figures[:6], cautions=_cautions(event, run, files))
+
+
+def _say_level(
+    found: Findings, runs: Sequence[LevelRun], number: int, quantity: Kind, error: float
+) -> None:
+    level, what = runs[number].level.value, QUANTITIES[quantity]
+    if number == len(runs) - 1:
+        found.say(f"Only the finest level, {level}, is within the tolerance for {what}.")
+        return
+    found.say(
+        f"The level {level} is enough for {what}: its error against {runs[-1].level.value} is "
+        f"{percent_text(error)}."
+    )
+
+
+def _cautions(event: str, run: LevelRun, files: Mapping[str, FileDigest]) -> list[str]:
+    """What limits the verdict, most severe first."""
+    said = []
+    if event == "stop":
+        said.append("Peaks depend on the instant of the brake within a swing of the first mode.")
+    if event in ("stop", "grid_loss", "dip"):
+        said.append("Times and controls of the event, where not stated, are assumptions.")
+    if event == "dip":
+        said.append("The generator's torque follows the table at any speed, without damping.")
+    if event == "run_up":
+        said.append("Meshes vary as square waves of their contact ratio, without tip relief.")
+    absent = sorted({one.absent for one in files.values() if one.absent})
+    if absent:
+        said.append(f"Histories have no {' and no '.join(absent)}: counted as zero.")
+    if any(not one.own_generator for one in files.values()):
+        said.append("A file has no torque of its generator: a line of slip stands for it.")
+    if run.level is not Level.TORSIONAL:
+        said.append("Planets stand at one azimuth: forces of their bearings are of that.")
+    said.append("Damping is by ratios; swings decay as these say.")
+    return said[:3]
+
+
+def _stop(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigure]]:
+    last = of.last
+    one, stands = of.extremes[last], of.run.marks.get("disc stands")
+    turned = one.least_over_rated < -0.005
+    verdict = (
+        f"The stop loads the {last.removeprefix('torque of ')} to {one.over_rated:.2f} of rated "
+        f"torque{f' and back to {one.least_over_rated:.2f}' if turned else ''}; "
+        + (
+            f"its disc first stands after {value_text(stands, 's')}."
+            if stands
+            else "it still turns."
+        )
+    )
+    figures = [of.over(last), of.over(last, least=True), *_others(of)]
+    if stands:
+        figures.append(of.found.value("disc first stands at [s]", stands))
+    return verdict, figures
+
+
+def _grid_loss(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigure]]:
+    one, speed = of.extremes[of.last], of.extremes["speed of generator"]
+    turned = one.least_over_rated < -0.005
+    verdict = (
+        f"Losing the grid {'reverses' if turned else 'lowers'} the torque of the "
+        f"{of.last.removeprefix('torque of ')} to {one.least_over_rated:.2f} of rated; the "
+        f"generator reaches {speed.over_rated:.2f} of its speed."
+    )
+    figures = [of.over(of.last, least=True), of.over("speed of generator"), of.over(of.last)]
+    return verdict, [*figures, *_others(of)]
+
+
+def _dip(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigure]]:
+    one = of.extremes[of.last]
+    verdict = (
+        f"The dip swings the torque of the {of.last.removeprefix('torque of ')} between "
+        f"{one.least_over_rated:.2f} and {one.over_rated:.2f} of rated."
+    )
+    figures = [of.over(of.last), of.over(of.last, least=True), *_others(of)]
+    return verdict, [*figures, of.over("speed of generator")]
+
+
+def _run_up(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigure]]:
+    mesh = of.worst("mesh")
+    one = of.extremes[mesh]
+    rotor = of.extremes["speed of rotor"]
+    speed = float(np.interp(one.most_at, of.run.samples.times, of.run.samples.of("speed of rotor")))
+    verdict = (
+        f"On the way up the {mesh} reaches {one.over_rated:.2f} of rated, at "
+        f"{speed / rotor.rated:.2f} of rated speed."
+    )
+    figures = [of.over(mesh), of.found.value("rotor speed there, over rated", speed / rotor.rated)]
+    return verdict, [*figures, of.over(of.last), *_others(of)[1:]]
+
+
+def _offset(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigure]]:
+    rows = alternating_rows(of.run)
+    most = max(rows, key=lambda row: float(row["once a turn [kN]"] + row["twice a turn [kN]"]))
+    moved = max(rows, key=lambda row: abs(float(row["change of the mean [kN]"])))
+    name = str(moved["bearing"])
+    change = value_text(float(moved["change of the mean [kN]"]), "kN")
+    swing = float(most["once a turn [kN]"]) + float(most["twice a turn [kN]"])
+    verdict = (
+        f"The offset changes the {name} by {change}; the {most['bearing']} alternates by up to "
+        f"{value_text(swing, 'kN')} each turn."
+    )
+    figures = [of.found.value(f"{name}, change of its mean [kN]", moved["change of the mean [kN]"])]
+    figures += [
+        of.found.value(f"{most['bearing']}, {key}", most[key])
+        for key in ("once a turn [kN]", "twice a turn [kN]", "largest [kN]")
+    ]
+    return verdict, figures
+
+
+def _base(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigure]]:
+    worst = of.heaviest(lambda one: max(one.most - one.rated, one.rated - one.least))
+    one = of.extremes[worst]
+    least, most, rated = (value_text(v / 1e3, "kN") for v in (one.least, one.most, one.rated))
+    verdict = f"As the base moves, the {worst} is between {least} and {most}, beside {rated}."
+    return verdict, [of.force(worst), of.over(of.last), *_others(of)[:1]]
+
+
+def _operation(of: _Answered, files: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigure]]:
+    one = of.extremes[of.last]
+    count = len(files)
+    verdict = (
+        f"In {count} histor{'y' if count == 1 else 'ies'} the torque of the "
+        f"{of.last.removeprefix('torque of ')} is between {one.least_over_rated:.2f} and "
+        f"{one.over_rated:.2f} of rated."
+    )
+    apart = max(digest.against_file for digest in files.values())
+    against = of.found.value("torque against the files, RMS [% of rated]", 100.0 * apart)
+    return verdict, [of.over(of.last), of.over(of.last, least=True), *_others(of), against]
+
+
+def _others(of: _Answered) -> list[KeyFigure]:
+    """Mesh that is loaded most over rated, and bearing that is loaded most."""
+    mesh, bearing = of.worst("mesh"), of.heaviest()
+    return [*([of.over(mesh)] if mesh else []), *([of.force(bearing)] if bearing else [])]
+
+
+_VERDICTS = {
+    "stop": _stop,
+    "grid_loss": _grid_loss,
+    "dip": _dip,
+    "run_up": _run_up,
+    "offset": _offset,
+    "base": _base,
+    "operation": _operation,
+}

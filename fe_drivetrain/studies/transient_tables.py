@@ -1,0 +1,210 @@
+"""Tables of a drivetrain in time: extremes, levels, files, equivalent loads, duration spectra."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.studies.transient_digest import FileDigest, equivalent_range
+from fe_drivetrain.studies.transient_ladder import QUANTITIES, LevelError
+from fe_drivetrain.studies.transient_runs import SMALL, Extreme, LevelRun
+from fe_drivetrain.turbine_loads.histories.classes import Classes, added
+
+_SHOWN = {"N m": ("kN m", 1e3), "N": ("kN", 1e3), "rad/s": ("rpm", np.pi / 30.0)}
+"""Units that people use, and their size."""
+
+_SPECTRA = ("torque", "mesh")
+"""Kinds of channels of duration spectra."""
+
+
+def in_shown_unit(value: float, unit: str) -> tuple[float, str]:
+    """A value in the unit that people use, and that unit."""
+    name, size = _SHOWN[unit]
+    return value / size, name
+
+
+def extreme_rows(extremes: Mapping[str, Extreme]) -> list[Record]:
+    """A row for each channel."""
+    rows: list[Record] = []
+    for name, one in extremes.items():
+        unit, size = _SHOWN[one.unit]
+        row: Record = {
+            "channel": name,
+            "unit": unit,
+            "rated": one.rated / size,
+            "largest": one.most / size,
+            "± of it": None if one.most_band is None else one.most_band / size,
+            "at [s]": one.most_at,
+            "least": one.least / size,
+            "± of the least": None if one.least_band is None else one.least_band / size,
+            "least at [s]": one.least_at,
+            "largest over rated": one.over_rated,
+            "least over rated": one.least_over_rated,
+            "reversals": one.reversals,
+        }
+        rows.append(row | ({"file": one.file} if one.file else {}))
+    return rows
+
+
+def level_rows(
+    runs: Sequence[LevelRun], errors: Sequence[Sequence[LevelError]], chosen: int
+) -> list[Record]:
+    """A row for each level."""
+    return [
+        {
+            "level": run.level.value,
+            "degrees of freedom": run.degrees,
+            "time [s]": run.seconds,
+            "step [s]": run.step,
+            **{
+                f"error of {QUANTITIES[one.kind]} [%]": 100.0 * one.error
+                if np.isfinite(one.error)
+                else None
+                for one in of
+            },
+            **{f"largest at, {QUANTITIES[one.kind]}": one.worst for one in of},
+            "energy from nowhere": run.imbalance,
+            "": "reported" if k == chosen else "",
+        }
+        for k, (run, of) in enumerate(zip(runs, errors, strict=True))
+    ]
+
+
+def over_files(files: Mapping[str, FileDigest], run: LevelRun) -> dict[str, Extreme]:
+    """Extremes of each channel over all histories; bands as shares of those of the first one.
+
+    Parameters
+    ----------
+    files : Mapping[str, FileDigest]
+        Digests by the name of the history.
+    run : LevelRun
+        Beginning of the first history, with bands.
+    """
+    found: dict[str, Extreme] = {}
+    for name, begun in run.extremes.items():
+        of = {file: digest.channels[name] for file, digest in files.items()}
+        high = max(of, key=lambda file: of[file].most)
+        low = min(of, key=lambda file: of[file].least)
+        made = replace(
+            begun,
+            most=of[high].most,
+            most_at=of[high].most_at,
+            least=of[low].least,
+            least_at=of[low].least_at,
+            reversals=int(sum(one.reversals for one in of.values())),
+            file=high,
+        )
+        share = made.largest / begun.largest
+        bands = [
+            None if band is None else band * share for band in (begun.most_band, begun.least_band)
+        ]
+        found[name] = replace(made, most_band=bands[0], least_band=bands[1])
+    return found
+
+
+def equivalent_rows(
+    files: Mapping[str, FileDigest], extremes: Mapping[str, Extreme], slopes: Sequence[float]
+) -> list[Record]:
+    """Damage-equivalent ranges of each channel over all histories, at 1 Hz."""
+    seconds = sum(one.seconds for one in files.values())
+    rows: list[Record] = []
+    for name, one in extremes.items():
+        if one.kind == "speed":
+            continue
+        unit, size = _SHOWN[one.unit]
+        damage = np.sum([file.channels[name].damage for file in files.values()], axis=0)
+        row: Record = {"channel": name, "unit": unit}
+        for k, slope in enumerate(slopes):
+            row[f"equivalent range, m = {slope:g}"] = (
+                equivalent_range(float(damage[k]), seconds, slope) / size
+            )
+        rows.append(row)
+    return rows
+
+
+def spectrum_of(files: Mapping[str, FileDigest], name: str) -> Classes:
+    """Seconds of a channel at its levels, over all histories."""
+    return added([one.channels[name].levels for one in files.values()])
+
+
+def spectrum_rows(files: Mapping[str, FileDigest], extremes: Mapping[str, Extreme]) -> list[Record]:
+    """Duration spectra of torques and mesh forces: seconds at each level."""
+    rows: list[Record] = []
+    for name, one in extremes.items():
+        if one.kind not in _SPECTRA:
+            continue
+        unit, size = _SHOWN[one.unit]
+        found = spectrum_of(files, name)
+        edges = found.edges() / size
+        rows += [
+            {
+                "channel": name,
+                "unit": unit,
+                "from": float(edges[k]),
+                "to": float(edges[k + 1]),
+                "time [s]": float(amount),
+            }
+            for k, amount in enumerate(found.amount)
+            if amount > 0.0
+        ]
+    return rows
+
+
+def digest_rows(files: Mapping[str, FileDigest], extremes: Mapping[str, Extreme]) -> list[Record]:
+    """A row for each history: its length, and extremes of torques."""
+    torques = [name for name, one in extremes.items() if one.kind == "torque"]
+    rows: list[Record] = []
+    for file, one in files.items():
+        row: Record = {"file": file, "length [s]": one.seconds}
+        for name in torques:
+            of, rated = one.channels[name], extremes[name].rated
+            row[f"{name}, largest over rated"] = of.most / rated
+            row[f"{name}, least over rated"] = of.least / rated
+        row["torque against the file, RMS over rated"] = one.against_file
+        row["speed against the file, largest over rated"] = one.speed_against_file
+        row["generator"] = "torque of the file" if one.own_generator else "line of slip"
+        rows.append(row)
+    return rows
+
+
+def alternating_rows(run: LevelRun) -> list[Record]:
+    """Forces of bearings of a generator that stands beside the axis: steady, once and twice a turn.
+
+    Parameters
+    ----------
+    run : LevelRun
+        The event; its second half is taken.
+    """
+    late = run.samples.times >= 0.5 * run.samples.times[-1]
+    angle = run.angle[late]
+    waves = np.column_stack(
+        [np.ones_like(angle), *(f(k * angle) for k in (1, 2) for f in (np.cos, np.sin))]
+    )
+    rows: list[Record] = []
+    for name, one in run.extremes.items():
+        if one.kind != "bearing":
+            continue
+        values = run.samples.of(name)[late]
+        found = np.linalg.lstsq(waves, values, rcond=None)[0]
+        once, twice = np.hypot(*found[1:3]), np.hypot(*found[3:5])
+        rows.append(
+            {
+                "bearing": name,
+                "aligned [kN]": one.rated / 1e3,
+                "mean [kN]": float(found[0]) / 1e3,
+                "change of the mean [kN]": (float(found[0]) - one.rated) / 1e3,
+                "once a turn [kN]": float(once) / 1e3,
+                "twice a turn [kN]": float(twice) / 1e3,
+                "largest [kN]": float(values.max()) / 1e3,
+            }
+        )
+
+    def moved(row: Record) -> float:
+        keys = ("change of the mean [kN]", "once a turn [kN]", "twice a turn [kN]")
+        return max(abs(float(row[key])) for key in keys)
+
+    largest = max(map(moved, rows), default=0.0)
+    return [row for row in rows if moved(row) >= SMALL * largest]

@@ -1,0 +1,252 @@
+"""The study of a drivetrain in time: what it finds of two masses, of files, and what it refuses."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from answer_rules import broken_rules
+from numpy.testing import assert_allclose
+from small_drivetrain import GENERATOR, ROTOR, SPEED, TORQUE, two_mass_file, two_masses
+from tiny_case import Result
+
+from fe_drivetrain.common import InputError
+from fe_drivetrain.common.cache import CACHE_VARIABLE
+from fe_drivetrain.drivetrain_file import read_drivetrain
+from fe_drivetrain.report.results import read_results
+from fe_drivetrain.studies import TransientResult, transient, transient_digest
+from fe_drivetrain.studies.transient_digest import OperationOptions, equivalent_range
+from fe_drivetrain.studies.transient_ladder import cheapest_level, level_error
+
+PARK = {"operation.rated_power": 1.5e6, "operation.rotor_speed": [1.0, 1.8]}
+
+
+@pytest.fixture(scope="module")
+def stopped() -> TransientResult:
+    return transient(
+        two_masses(), "stop", {"off": 0.1, "pitched": 0.2, "braked": 0.5, "rise": 0.0, "brake": 2.0}
+    )
+
+
+@pytest.fixture(scope="module")
+def dipped() -> TransientResult:
+    """A drivetrain of the library at all of its levels."""
+    park = read_drivetrain("park_2021", PARK)
+    return transient(park, "dip", {"start": 0.2}, duration=0.8, quantity="torque")
+
+
+def write_torque(path: Path, amplitude: float, seconds: float = 40.0) -> None:
+    """Torque about three quarters of rated at 0.05 Hz, at rated speed, other loads constant."""
+    time = np.arange(0.0, seconds + 0.01, 0.05)
+    torque = 0.75 * TORQUE + amplitude * np.cos(2 * np.pi * 0.05 * time)
+    still = np.tile([1e3, 0.0, -1e5], (len(time), 1))
+    table = np.column_stack([time, still, torque, 0.0 * time, 0.0 * time, 0.0 * time + SPEED])
+    header = "time [s],Fx [N],Fy [N],Fz [N],Mx [N m],My [N m],Mz [N m],rotor speed [rad/s]"
+    np.savetxt(path, table, delimiter=",", header=header, comments="", fmt="%.9g")
+
+
+@pytest.fixture(scope="module")
+def operated(tmp_path_factory: pytest.TempPathFactory) -> TransientResult:
+    folder = tmp_path_factory.mktemp("histories")
+    write_torque(folder / "a.csv", 1e5)
+    write_torque(folder / "b.csv", 2e5)
+    options = OperationOptions(slopes=(4.0, 10.0), step=0.02)
+    return transient(two_masses(), "operation", loads=folder, options=options)
+
+
+def test_a_stop_has_the_extremes_of_its_samples_and_its_band(stopped: TransientResult) -> None:
+    assert stopped.level == "torsional"
+    one, values = stopped.extremes["torque of shaft"], stopped.samples.of("torque of shaft")
+    assert_allclose(one.rated, TORQUE, rtol=1e-9)
+    assert_allclose([one.most, one.least], [values.max(), values.min()], rtol=1e-4)
+    assert one.most_band is not None
+    assert 0.0 < one.most_band < 1e-2 * one.most
+    assert one.reversals > 0
+    assert stopped.imbalance < 1e-8
+    assert stopped.passed
+    # what both have of momentum, over twice the generator's torque
+    still = (ROTOR + GENERATOR) * SPEED / (2.0 * TORQUE) + 0.5
+    assert abs(stopped.marks["disc stands"] - still) < 1.0
+    assert "bodies only turn" in stopped.notes[0].lower()
+
+
+def test_assumed_values_of_the_event_are_stated_and_given_ones_are_not(
+    stopped: TransientResult,
+) -> None:
+    names = [row.name for row in stopped.assumptions]
+    assert "left of the event" in names
+    assert "braked of the event" not in names
+    assert not any("damping" in name for name in names)
+
+
+def test_the_brake_of_the_file_is_the_one_that_stops() -> None:
+    braked = two_masses(brake={"on": "shaft", "torque": 3e6, "rise": 0.1})
+    found = transient(braked, "stop", {"on": "generator"}, duration=8.0)
+    assert found.options["values"] == {"on": "generator", "brake_torque": 3e6, "rise": 0.1}
+    still = (ROTOR + GENERATOR) * SPEED / 3e6
+    assert 3.0 < found.marks["disc stands"] < 3.0 + still + 1.0
+
+
+def test_levels_are_compared_with_the_finest(dipped: TransientResult) -> None:
+    assert [run.degrees for run in dipped.runs] == [10, 60, 60]
+    finest = dipped.runs[-1]
+    assert level_error(finest, finest, "torque").error == 0.0
+    assert level_error(dipped.runs[0], finest, "bearing").error == np.inf
+    chosen = dipped.runs.index(dipped.chosen)
+    assert level_error(dipped.chosen, finest, "torque").error <= dipped.tolerance
+    assert cheapest_level(dipped.runs, "bearing", 0.05) > 0
+    # the error of each level is that of its extremes, the worst of the shafts
+    errors = [next(e for e in of if e.kind == "torque") for of in dipped.errors]
+    worst = errors[0].worst
+    own, its = dipped.runs[0].extremes[worst], finest.extremes[worst]
+    apart = max(abs(own.most - its.most), abs(own.least - its.least)) / its.largest
+    assert_allclose(errors[0].error, apart, rtol=1e-12)
+    assert [row[""] for row in dipped.tables["levels"]][chosen] == "reported"
+
+
+def test_the_json_holds_digests_and_no_samples(dipped: TransientResult) -> None:
+    found = json.loads(dipped.to_json())
+    assert found["schema"] == "fe-drivetrain/transient/1"
+    assert "samples" not in found["tables"]
+    assert len(found["tables"]["extremes"]) == len(dipped.extremes)
+    frame = dipped.frames()["samples"]
+    assert len(frame) == len(dipped.samples.times)
+    assert frame[0]["torque of HSS [N m]"] == dipped.samples.of("torque of HSS")[0]
+
+
+def test_histories_come_back_as_torque_cycles_and_time_at_level(operated: TransientResult) -> None:
+    """Two cycles of 0.2 and two of 0.4 of rated, slow: ranges by hand, of both files together."""
+    one = operated.extremes["torque of shaft"]
+    assert_allclose([one.most, one.least], [0.95e6, 0.55e6], rtol=5e-3)
+    assert one.file == "b"
+    (row,) = [r for r in operated.tables["equivalent_loads"] if r["channel"] == "torque of shaft"]
+    for slope in (4.0, 10.0):
+        known = ((2 * 2e5**slope + 2 * 4e5**slope) / 80.0) ** (1.0 / slope) / 1e3
+        assert_allclose(row[f"equivalent range, m = {slope:g}"], known, rtol=2e-2)
+    spectrum = [r for r in operated.tables["duration_spectra"] if r["channel"] == "torque of shaft"]
+    assert_allclose(sum(r["time [s]"] for r in spectrum), 80.0, rtol=2e-3)
+    below = sum(r["time [s]"] for r in spectrum if r["to"] <= 750.0)
+    assert_allclose(below, 40.0, atol=2.0)
+    assert all(digest.against_file < 0.01 for digest in operated.files.values())
+    assert operated.passed
+
+
+def test_an_equivalent_range_is_that_of_a_sine_of_a_hertz() -> None:
+    assert_allclose(equivalent_range(60.0 * 3.0**5, 60.0, 5.0), 3.0)
+
+
+def test_a_run_that_is_resumed_reads_what_is_done_no_more(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "cache"))
+    for name in ("a", "b", "c"):
+        write_torque(tmp_path / f"{name}.csv", 1e5, 4.0)
+    files = tmp_path / "?.csv"
+    options = OperationOptions(step=0.05)
+    first = transient(two_masses(), "operation", loads=files, options=options)
+
+    def refuse(path: Path, *_: object) -> None:
+        raise AssertionError(path)
+
+    monkeypatch.setattr(transient_digest, "read_drive", refuse)
+    again = transient(two_masses(), "operation", loads=files, options=options, resume=True)
+    assert again.tables["equivalent_loads"] == first.tables["equivalent_loads"]
+    with pytest.raises(AssertionError, match="b"):
+        transient(
+            two_masses(), "operation", loads=files, options=OperationOptions(step=0.1), resume=True
+        )
+
+
+@pytest.mark.parametrize(
+    ("event", "more", "said"),
+    [
+        ("halt", {}, "event"),
+        ("stop", {"quantity": "stress"}, "quantity"),
+        ("stop", {"tolerance": 0.0}, "`tolerance` is 0 but must be between 0 and 1"),
+        ("stop", {"duration": -1.0}, "`duration` is -1 s but must be above 0 s"),
+        ("stop", {"step": 0.0}, "`step` is 0 s but must be from 1e-07 to 1 s"),
+        ("stop", {"loads": "x.csv"}, "event stop takes no histories: leave `loads` out"),
+        ("stop", {"level": "rigid"}, "needs what its file does not state: rotor: mass"),
+        ("offset", {"values": {"coupling": 1e6}}, "event offset needs all motions of 'Two masses'"),
+        ("offset", {"values": {"coupling": 1e6}, "level": "torsional"}, "does not happen at"),
+        ("operation", {}, "operation needs histories"),
+        ("operation", {"loads": "none.csv"}, "none.csv"),
+    ],
+)
+def test_what_cannot_be_asked_is_refused(event: str, more: dict[str, object], said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        transient(two_masses(), event, **more)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("operation", "said"),
+    [
+        (None, "does not state the speed of its rotor: add operation"),
+        ({"rated_power": 1e6}, "does not state the speed of its rotor"),
+        ({"rotor_speed": [1.0, 1.5]}, "does not state its rated power"),
+    ],
+)
+def test_what_the_file_lacks_is_named(operation: dict[str, object] | None, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        transient(two_masses(operation=operation), "stop")
+
+
+def test_a_rated_torque_of_the_generator_stands_for_the_power() -> None:
+    generator = {"inertia": GENERATOR, "rated_torque": 4e5, "slip": 0.02}
+    slow = two_masses(operation={"rotor_speed": [1.0, 1.5]}, generator=generator)
+    found = transient(slow, "grid_loss", duration=1.2)
+    assert_allclose(found.extremes["torque of shaft"].rated, 4e5, rtol=1e-9)
+    assert found.options["rated"]["slip"] == 0.02
+
+
+def test_the_command_writes_a_page_and_samples(
+    invoke: Callable[..., Result], tmp_path: Path
+) -> None:
+    mine = tmp_path / "mine.yaml"
+    mine.write_text(yaml.safe_dump(two_mass_file()), encoding="utf-8")
+    write_torque(tmp_path / "a.csv", 1e5, 10.0)
+    out = tmp_path / "out"
+    status, printed, _ = invoke(
+        *("transient", str(mine), "grid-loss", "--value", "off=0.5", "--duration", "1"),
+        *("--csv", "--out", str(out)),
+    )
+    assert status == 0, printed
+    assert printed.startswith("Losing the grid reverses the torque of the shaft to -0.60 of rated")
+    results = read_results(out / "results.json")
+    assert broken_rules(results) == []
+    lines = (out / "samples.csv").read_text(encoding="utf-8").splitlines()
+    assert lines[0].startswith("time [s],torque of shaft [N m]")
+    assert len(lines) == 1002
+    status, printed, _ = invoke(
+        *("transient", str(mine), "operation", "--loads", str(tmp_path / "a.csv")),
+        *("--out", str(tmp_path / "driven"), "--json", "--slope", "4"),
+    )
+    assert status == 0, printed
+    assert json.loads(printed)["tables"]["files"][0]["file"] == "a"
+    assert broken_rules(read_results(tmp_path / "driven" / "results.json")) == []
+
+
+@pytest.mark.parametrize(
+    ("typed", "said"),
+    [
+        (("halt",), "no event 'halt': use one of operation, stop, grid-loss"),
+        (("stop", "--skip", "2"), "give --loads, too, or leave --skip out"),
+        (("stop", "--value", "off"), "--value 'off' must be KEY=VALUE"),
+        (("stop", "--value", "off=true"), "--value off: True must be a number or a word"),
+        (("stop", "--level", "solid"), "level"),
+        (("stop", "--duration", "0"), "--duration is 0 s but must be above 0 s"),
+        (("operation",), "operation needs histories: give --loads"),
+        (("dip", "--set", "rotor.inertia=-1"), "inertia"),
+    ],
+)
+def test_a_mistake_is_one_sentence_and_leaves_nothing(
+    invoke: Callable[..., Result], tmp_path: Path, typed: tuple[str, ...], said: str
+) -> None:
+    mine, out = tmp_path / "mine.yaml", tmp_path / "out"
+    mine.write_text(yaml.safe_dump(two_mass_file()), encoding="utf-8")
+    status, _, error = invoke("transient", str(mine), *typed, "--out", str(out))
+    assert status == 2
+    assert said in error
+    assert not (out / "results.json").exists()
