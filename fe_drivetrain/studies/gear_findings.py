@@ -23,6 +23,10 @@ UNREAD = (
     "ratings of the NREL 5 MW gears, the table of K_gamma and the least safety factors are "
     "second-hand."
 )
+TORQUE_ALONE = (
+    "Files have the torque without all other loads of the hub: only the rotor's weight acts beside "
+    "it, in all of them."
+)
 _ROUND_OFF = 1e-6
 
 
@@ -283,13 +287,19 @@ def _cautions(
         if len(mesh.spread.share[0]) > 1
         and mesh.spread.sharing < SHARING.get(len(mesh.spread.share[0]), SHARING[7])
     ]
-    if low and result["asked"].level != "torsional":
+    if train.machine.not_given:
+        found.note(
+            f"The file does not state {', '.join(train.machine.not_given)}: load is shared by "
+            "formula, not by statics.",
+            first=True,
+        )
+    if low and result["level"] != "torsional":
         table = SHARING.get(len(low[0].spread.share[0]), SHARING[7])
         found.note(
             "Errors of the pins' places are not in the file: K_gamma is that of perfect parts, and "
             f"IEC 61400-4 takes {table:g} unless measured."
         )
-    if result["asked"].level != "torsional":
+    if result["level"] != "torsional":
         found.note("Flanks have no modification along the face: lead corrections are not modelled.")
     if result["varies"] and (result["spectrum"].torques < 0.0).any():
         found.note(
