@@ -15,7 +15,7 @@ from fe_drivetrain.dynamics.bodies.levels import Level, machine_system
 from fe_drivetrain.dynamics.bodies.machine import machine_of
 from fe_drivetrain.studies.gear_options import GearOptions
 from fe_drivetrain.studies.gear_stresses import Conditions
-from fe_drivetrain.studies.mode_levels import named_level, rungs_of
+from fe_drivetrain.studies.mode_levels import named_level, plain_rungs
 
 RPM = 0.10471975511965977
 
@@ -110,7 +110,7 @@ def gear_train(drivetrain: Drivetrain, options: GearOptions, torque: float | Non
     level = named_level(options.level, machine)
     if level is not Level.TORSIONAL:
         machine_system(machine, level, held_generator=True)  # refuses what its data do not allow
-    levels = tuple(rung.level for rung in rungs_of(machine))
+    levels = tuple(rung.level for rung in plain_rungs(machine))
     return GearTrain(
         machine,
         levels,
