@@ -56,7 +56,7 @@ def named_level(level: str | None, machine: Machine) -> Level:
     if level is None:
         return plain_rungs(machine)[-1].level
     if level not in known:
-        raise InputError(f"no level {level!r} of modes: use one of {', '.join(known)}")
+        raise InputError(f"no level {level!r}: use one of {', '.join(known)}")
     return known[level]
 
 
