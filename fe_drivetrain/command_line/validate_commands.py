@@ -14,7 +14,7 @@ from fe_drivetrain.studies.project_validation import ValidateResult
 _MADE_AGAIN = frozenset({"missing", "edited", "stale", "quick", "of another drivetrain"})
 """States of evidence that a run may change."""
 
-_ON_DRIVETRAINS = ("advise", "check", "study", "uncertainty")
+_ON_DRIVETRAINS = ("advise", "check", "modes", "study", "uncertainty")
 """Commands whose only argument is a drivetrain."""
 
 

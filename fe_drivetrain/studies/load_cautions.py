@@ -119,8 +119,8 @@ def _sampling(found: LoadTotals) -> list[str]:
         said.append(
             f"{name} has {'a gap' if count == 1 else f'{count} gaps'}, "
             f"{steps.gaps[:, 1].sum():.4g} of {whole:.4g} s, the longest {longest:.4g} s from "
-            f"{at:.6g} s on (a step of more than {GAP:g} usual ones): nothing is filled in, and no "
-            "cycle, spectrum or loop leads over it."
+            f"{at:.12g} s on (a step of more than {GAP:g} usual ones): nothing is filled in, and "
+            "no cycle, spectrum or loop leads over it."
         )
     return said
 
@@ -137,8 +137,8 @@ def _lone(found: Suspects) -> list[str]:
             else "away from both neighbours, which are usually equal"
         )
         said.append(
-            f"{file}: {samples} alone in {channel}, {distance}, the first at {first:g} s: look at "
-            "it, since one range may decide the damage; "
+            f"{file}: {samples} alone in {channel}, {distance}, the first at {first:.12g} s: look "
+            "at it, since one range may decide the damage; "
             "nothing is taken out."
         )
     if len(found.lone) > _NAMED:

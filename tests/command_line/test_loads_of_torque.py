@@ -76,7 +76,7 @@ def test_gaps_and_uneven_steps_are_stated(invoke: Callable[..., Result], tmp_pat
     before, after = TIME[kept & (TIME < 40.0)][-1], TIME[kept & (TIME > 52.0)][0]
     gap, begin = f"{after - before:.4g}", TIME[kept][0]
     whole = f"{TIME[kept][-1] - begin:.4g} s"
-    place = f"the longest {gap} s from {before - begin:.6g} s on"
+    place = f"the longest {gap} s from {before - begin:.12g} s on"
     assert f"logger has a gap, {gap} of {whole}, {place}" in notes
     assert "0 s at 2024-03-01T12:00:00.100000" in (out / "files.csv").read_text()
 

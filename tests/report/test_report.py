@@ -23,6 +23,7 @@ from PIL import Image as Pixels
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.plots.style import PALETTE
 from fe_drivetrain.report.bundle import plotly_file
+from fe_drivetrain.report.chart_style import SWING
 from fe_drivetrain.report.charts import density_chart, heat_map
 from fe_drivetrain.report.index import write_index
 from fe_drivetrain.report.number_text import (
@@ -274,6 +275,18 @@ def drawn(folder: Path, *traces: dict[str, object], **layout: object) -> dict[st
 
 def lines(*names: str) -> list[dict[str, object]]:
     return [{"type": "scatter", "name": name, "x": [1, 2], "y": [1, 2]} for name in names]
+
+
+def test_only_a_chart_that_swings_brings_its_script_and_its_points(tmp_path: Path) -> None:
+    swing = {"trace": 0, "x": [1, 2], "y": [1, 2], "dx": [0, 0], "dy": [0.5, None]}
+    for figure, count in (({"data": lines("mode")}, 0), ({"data": lines("mode"), SWING: swing}, 1)):
+        items = [Chart(caption="A mode", figure=figure)]
+        content = results(sections=[Section(title="Modes", items=items)])
+        text = page_of(tmp_path, content.model_copy(update={"case": "a/b", "scene": ""}))
+        scripts = Page(text).scripts
+        assert sum("requestAnimationFrame" in inside for _, inside in scripts) == count
+        (drawn,) = [json.loads(inside) for of, inside in scripts if "data-chart" in of]
+        assert drawn.get(SWING) == (swing if count else None)
 
 
 def test_no_page_has_a_raw_backtick(tmp_path: Path) -> None:

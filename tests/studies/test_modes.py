@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.command_line import main
 from fe_drivetrain.common import InputError
 from fe_drivetrain.drivetrain_file import LumpedDrivetrain, read_drivetrain
@@ -22,6 +23,7 @@ from fe_drivetrain.dynamics import (
     torsional_frequency,
     turning_modes,
 )
+from fe_drivetrain.dynamics.torsion import gear_masses, natural_modes
 from fe_drivetrain.pages.mode_shapes import shape_charts
 from fe_drivetrain.procedure import Excitation, drivetrain_excitations, resonances
 from fe_drivetrain.procedure.assessment import needed_of
@@ -107,6 +109,13 @@ def test_three_inertias_by_hand() -> None:
     c = k1 * k2 * sum(J) / math.prod(J)
     squares = np.roots([1.0, -b, c])
     assert found.frequencies == pytest.approx(np.sort(np.sqrt(squares)) / (2 * math.pi), rel=1e-9)
+
+
+def test_a_library_machine_has_the_frequencies_of_its_published_table() -> None:
+    # the planets' masses are in the table's carrier already
+    mine = read_drivetrain("synthetic_2mw", {"gearbox.stages.0.planet.mass": 0.0})
+    table = natural_modes(gear_masses(published.table("drivetrain_c"), "free")).frequencies
+    assert modes(mine, level="torsional").frequencies == pytest.approx(table[table > 0.0], rel=1e-9)
 
 
 def test_energies_are_all_of_it_at_every_level(geared: ModesResult) -> None:
