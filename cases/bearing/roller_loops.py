@@ -286,8 +286,8 @@ def zones_and_edges(page: Page, bearing: Bearing, loads: Floats, every: int) -> 
         "larger share at rollers that are hardly loaded. An even load is 3.3 % on each lamina."
     )
     page.data("rollers", rows)
-    apart = {f"{row['wind [m/s]']:g} m/s": float(row[OPPOSITE]) for row in rows}
-    drawn = bars(ZONES, {"computed": apart}, "share of steps [%]")
+    of_wind = {f"{row['wind [m/s]']:g} m/s": float(row[OPPOSITE]) for row in rows}
+    drawn = bars(ZONES, {"computed": of_wind}, "share of steps [%]")
     drawn.figure["layout"]["xaxis"]["range"] = [0.0, 100.0]
     page.add(mark_events(drawn, {"most of the time: 50 %": 50.0}))
     least = min(row[OPPOSITE] for row in rows)

@@ -106,4 +106,4 @@ def brake_over_rated(drivetrain: Drivetrain, table: GearTable, torque: float) ->
         return None
     # over the rated torque of its own shaft, which is the same share at the generator's
     speeds = dict(zip((shaft.name for shaft in table.shafts), table.speeds, strict=True))
-    return brake.torque * speeds[brake.on] / torque
+    return brake.torque * speeds[brake.shaft] / torque

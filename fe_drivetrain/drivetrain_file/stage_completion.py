@@ -12,14 +12,12 @@ from typing import Any, Literal
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.gear_stages import (
-    GearPinion,
     ParallelData,
     ParallelStage,
     PlanetaryData,
     PlanetaryStage,
-    RingPlanetSun,
-    SunPlanet,
 )
+from fe_drivetrain.drivetrain_file.stage_fields import GearPinion, RingPlanetSun, SunPlanet
 from fe_drivetrain.drivetrain_file.stage_gears import stage_gears, stage_pairs
 from fe_drivetrain.drivetrain_file.turning_parts import STEEL, RotorBody
 from fe_drivetrain.gear.functions import inverse_involute, involute_of

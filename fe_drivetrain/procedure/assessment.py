@@ -266,7 +266,7 @@ def needed_of(
     figures = results.figures
     ladder = figures.get(f"ladder_{record.name}")
     rows = ladder or figures.get("levels")
-    machine = bool(ladder) or (bool(rows) and need.quantity in rows[0])
+    machine = bool(ladder or (rows and need.quantity in rows[0]))
     if not rows or (not machine and figures.get("quantity") != need.quantity):
         return None
     if not machine and OWN_ERROR not in rows[0]:  # of an older program

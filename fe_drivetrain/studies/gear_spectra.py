@@ -28,12 +28,9 @@ from fe_drivetrain.turbine_loads.histories.sites import (
     rounded_wind,
 )
 from fe_drivetrain.turbine_loads.hub_loads.channels import MOMENT_UNITS, existing_file, in_si
+from fe_drivetrain.turbine_loads.hub_loads.csv_columns import csv_channels
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
-from fe_drivetrain.turbine_loads.hub_loads.recorded import (
-    SPEED_UNITS,
-    csv_channels,
-    read_recorded,
-)
+from fe_drivetrain.turbine_loads.hub_loads.recorded import SPEED_UNITS, read_recorded
 
 TORQUE = 3
 """Number of Mx among the loads of the hub."""

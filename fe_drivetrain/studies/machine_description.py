@@ -144,7 +144,7 @@ def _stage_row(number: int, stage: PlanetaryData | ParallelData) -> Record:
             "ring": stage.along_line(stage.ring_planet) / 1e9,
         }
         if isinstance(stage, PlanetaryData)
-        else {"mesh": stage.along_line / 1e9}
+        else {"mesh": stage.along_line(stage.stiffness) / 1e9}
     )
     return {
         "stage": f"{number} {stage.name}".strip(),

@@ -14,13 +14,9 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.turbine_loads.hub_loads.channels import MOMENT_UNITS, Channel, in_si
+from fe_drivetrain.turbine_loads.hub_loads.csv_columns import csv_channels
 from fe_drivetrain.turbine_loads.hub_loads.openfast_output import openfast_channels
-from fe_drivetrain.turbine_loads.hub_loads.recorded import (
-    OWN_NAMES,
-    SPEED_UNITS,
-    csv_channels,
-    read_recorded,
-)
+from fe_drivetrain.turbine_loads.hub_loads.recorded import OWN_NAMES, SPEED_UNITS, read_recorded
 
 TORQUE, SPEED = "GenTq", "GenSpeed"
 """Names of the generator's torque and speed in files of OpenFAST, and in tables."""
