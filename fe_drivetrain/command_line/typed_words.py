@@ -29,13 +29,14 @@ class WithFiles(TyperCommand):
         -------
         list of str
         """
+        typed = list(args)
         try:
             return super().parse_args(ctx, args)
         except _UsageError as error:
-            left = str(error).partition("extra argument")[2]
-            if left and any(Path(word).exists() and word in left for word in args):
+            left = error.message.partition("extra argument")[2]
+            if left and any(Path(word).exists() and word in left for word in typed):
                 ctx.fail(
-                    f"{error}: put a pattern in quotes, as in --loads 'outputs/*.outb', give the "
+                    f"{error.message}: put a pattern in quotes, as in --loads 'outputs/*.outb', give the "
                     "folder, or repeat the option before each file"
                 )
             raise
