@@ -146,8 +146,10 @@ def own(run: Run, page: Page, chosen: ChosenDrivetrain, count: int) -> None:
     machine, torque = machine_of(chosen.drivetrain), chosen.rated_torque()
     chosen.state(page)
     _, pins = first_stage(machine)
-    moment = -1e3 * run.positive("moment", torque / 1e3)
-    if "moment" not in run.settings:
+    moment = -torque
+    if "moment" in run.settings:
+        moment = -1e3 * run.positive("moment")
+    else:
         page.assume("moment about y at the hub", moment / 1e3, "kN m", "as large as the torque")
     cases = {TURNS[0]: 0.0, TURNS[1]: moment}
     angles = azimuths(count)

@@ -198,9 +198,12 @@ def operations(run: Run) -> dict[str, Operation]:
     """Drivetrains and their loads: those of the case, or the one that the user names."""
     name = str(run.settings.get(SETTING, ""))
     if name and name not in OPERATIONS:
-        given = None if "torque" in run.settings else run.drivetrain("").rated_torque() / 1e3
-        torque = run.positive("torque", given)
-        return {name: Operation(1e3 * torque, 1e3 * run.positive("moment", torque))}
+        if "torque" in run.settings:
+            torque = 1e3 * run.positive("torque")
+        else:
+            torque = run.drivetrain("").rated_torque()
+        moment = 1e3 * run.positive("moment") if "moment" in run.settings else torque
+        return {name: Operation(torque, moment)}
     for key in ("torque", "moment", "speed"):
         if key in run.settings:
             raise InputError(
@@ -300,8 +303,9 @@ def rotor_speed(run: Run, name: str) -> float:
     """Speed of the rotor [rpm]: of the case, or the rated one of the drivetrain."""
     if name in RPM:
         return RPM[name]
-    given = None if "speed" in run.settings else run.drivetrain(name).rotor_speeds()[1]
-    return run.positive("speed", None if given is None else given * 30 / np.pi)
+    if "speed" in run.settings:
+        return run.positive("speed")
+    return run.drivetrain(name).rotor_speeds()[1] * 30 / np.pi
 
 
 def show_turning(page: Page, name: str, machine: Machine, rpm: float) -> None:
