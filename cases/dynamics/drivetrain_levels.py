@@ -196,7 +196,7 @@ def show_needed(page: Page, needed: list[Record]) -> None:
 
 def operations(run: Run) -> dict[str, Operation]:
     """Drivetrains and their loads: those of the case, or the one that the user names."""
-    name = str(run.settings.get(SETTING, ""))
+    name = str(run.settings[SETTING]) if SETTING in run.settings else ""
     if name and name not in OPERATIONS:
         if "torque" in run.settings:
             torque = 1e3 * run.positive("torque")
