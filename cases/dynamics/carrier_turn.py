@@ -41,7 +41,7 @@ TURNING = "Radial load of the bearings of planet 1, {}"
     source="Al-Hamadani 2018, section 7.1; NREL Gearbox Reliability Collaborative",
     settings={
         "drivetrain": "FILE, or a name of the library (otherwise nrel_750kw, and nrel_5mw)",
-        "moment": "NUMBER (kN m, against y at your own hub; otherwise as its torque)",
+        "moment": "NUMBER (kN m, against y at your own hub, otherwise as its torque)",
     },
 )
 def run(run: Run, page: Page) -> None:

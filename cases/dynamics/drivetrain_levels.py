@@ -50,9 +50,9 @@ FIRST = "first torsional frequency [Hz]"
     source="Al-Hamadani 2018, chapters 4 and 5; Nejad et al. 2016 for the 5 MW gearbox",
     settings={
         "drivetrain": "FILE, or a name of the library (otherwise three of these)",
-        "torque": "NUMBER (kN m, of the rotor of your own drivetrain; otherwise its rated one)",
-        "moment": "NUMBER (kN m, about y at its hub; otherwise as large as the torque)",
-        "speed": "NUMBER (rpm, of its rotor; otherwise its rated one)",
+        "torque": "NUMBER (kN m, of the rotor of your own drivetrain, otherwise its rated one)",
+        "moment": "NUMBER (kN m, about y at its hub, otherwise as large as the torque)",
+        "speed": "NUMBER (rpm, of its rotor, otherwise its rated one)",
     },
 )
 def run(run: Run, page: Page) -> None:

@@ -59,7 +59,7 @@ MAXIMUM, MINIMUM = (
     source="PROTEST 2010, ECN-E--10-100, section 4.2 and appendix A",
     settings={
         "drivetrain": "FILE, or a name of the library (otherwise nrel_750kw)",
-        "low": "21.9 (rpm, lowest speed of the rotor; of another drivetrain that of its operation)",
+        "low": "21.9 (rpm, lowest speed of the rotor, of another drivetrain that of its operation)",
         "high": "22.3 (rpm, highest speed of the rotor, likewise)",
         "torque": "325 (kN m, of the rotor before a dip, likewise)",
         "offset": "0.5 (mm, of each bearing of rotor, generator or a shaft)",
