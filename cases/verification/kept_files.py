@@ -27,6 +27,9 @@ from fe_drivetrain.report import bars
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run, column
 from fe_drivetrain.shafts.uncertainty.kept_rows import evaluated_rows
+from fe_drivetrain.studies import GearOptions
+from fe_drivetrain.studies.gear_spectra import Reading as GearReading
+from fe_drivetrain.studies.gear_spectra import file_spectrum
 from fe_drivetrain.studies.life_digest import Reading
 from fe_drivetrain.studies.life_digest import kept_digest as life_digest
 from fe_drivetrain.studies.load_digest import LoadOptions
@@ -105,10 +108,17 @@ class Maker:
         )
         return [np.asarray(value).tobytes() for value in astuple(found)[1:]]
 
+    def torque_spectrum(self) -> Any:
+        """The spectrum of a file by `gears`."""
+        reading = GearReading(GearOptions(rotor_speed_rpm=12.0), 1e5, None)
+        found = file_spectrum(silent, self.loads, reading, resume=True)
+        return {name: array.tobytes() for name, array in as_arrays(found).items()}
+
     def by_kind(self) -> dict[Kind, Callable[[], Any]]:
         """What makes each kind of kept file."""
         return {
             "figures": self.figures,
+            "gear-spectra": self.torque_spectrum,
             "hub-loads": self.hub_loads,
             "life-digests": self.damage,
             "load-digests": self.counted_loads,
