@@ -29,6 +29,7 @@ OPTIONS: Mapping[str, str] = {
     "cleanliness": "--cleanliness",
     "duration": "--duration",
     "every": "--every",
+    "generator": "--generator",
     "gearbox_cleanliness": "--gearbox-cleanliness",
     "gearbox_lubricant": "--gearbox-lubricant",
     "gearbox_temperature": "--gearbox-temperature",
@@ -73,6 +74,7 @@ WORDS: Mapping[tuple[str, object], str] = {
     ("profile", True): "--profile",
     ("profile", False): "--straight",
     ("kind", "summary"): "--what summary",
+    ("kind", "turning"): "--what turning",
     ("kind", "modes"): "--modes",
 }
 """What is typed for a value of an argument that is no option with the value behind it."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fe_drivetrain.drivetrain_file.scene import Scene
-from fe_drivetrain.export.files import format_rows
+from fe_drivetrain.export.turning_files import format_rows
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.report.suite.run import Run
@@ -67,6 +67,7 @@ def choices(scene: Scene) -> list[Record]:
     rows += [
         ("the free shaft with modes (Craig-Bampton)", "2 meridian", modes),
         ("numbers of a drivetrain model", "2 meridian", _MATRICES.format("summary", "summary")),
+        ("matrices of all that turns", "torsional to flexible", _MATRICES.format("turning", "all")),
         ("the whole model with unit loads", "solids", "fe-drivetrain export FILE --out model.inp"),
         ("its mesh", "solids", "fe-drivetrain export FILE --out mesh.vtu"),
     ]
