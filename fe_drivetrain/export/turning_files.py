@@ -54,6 +54,14 @@ TURNING_FORMATS: dict[str, TurningFormat] = {
         ".subvar", "SIMPACK substitution variables", "turning_matrices", "write_simpack"
     ),
     "exudyn": TurningFormat(".py", "Exudyn: a script that builds the model", "turning_exudyn"),
+    "rexs": TurningFormat(
+        ".rexs",
+        "REXS 1.6, gearbox programs: shafts, gears, stages, bearings",
+        "rexs_gearbox",
+        left_out="inertias, dampers, mesh stiffness, couplings between motions of a bearing, how "
+        "far both directions of a bearing differ, and of a shaft that is given by its torsional "
+        "stiffness all but its place",
+    ),
     ELASTODYN: TurningFormat(
         ".dat",
         "OpenFAST: DTTorSpr and DTTorDmp in a copy of an ElastoDyn file",

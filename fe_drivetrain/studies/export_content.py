@@ -38,8 +38,10 @@ Kind = Literal["superelement", "modes", "summary", "turning", "model", "mesh"]
 """A part condensed to points; the free shaft with fixed-interface modes, too; numbers of a
 drivetrain model; matrices of all that turns; the whole model with its unit loads; its mesh."""
 
-Content = Superelement | CraigBampton | SummaryFile | Turning | Model | Mesh
-"""What is written of each of these kinds, in their order."""
+OfPart = Superelement | CraigBampton | SummaryFile | Model | Mesh
+"""What is written of parts of a scene, or of a component."""
+Content = OfPart | Turning
+"""What is written of each of these kinds."""
 
 #: Level of a component's export where none is asked for.
 _COMPONENT_LEVEL = 3
@@ -150,7 +152,7 @@ def prepare_export(
             "it out"
         )
     drivetrain, level = _with_sections(drivetrain), _number(level)
-    content: Content
+    content: OfPart
     if kind in ("model", "mesh"):
         content = _model_or_mesh(found, steps, drivetrain, kind)
     else:
@@ -221,7 +223,7 @@ def _condensed(
     at: Sequence[str] | None,
     level: int | None,
     modes: int,
-) -> Content:
+) -> OfPart:
     """A superelement, with modes or without, or a summary."""
     if kind == "modes":
         scene = _scene_of_modes(drivetrain, what, level)
@@ -314,17 +316,17 @@ def _mesh_of(content: Model | Mesh) -> Mesh:
     return content.mesh if isinstance(content, Model) else content
 
 
-def _points(content: Content) -> tuple[str, ...]:
+def _points(content: OfPart) -> tuple[str, ...]:
     return content.points if isinstance(content, Superelement | CraigBampton) else ()
 
 
-def _level(content: Content) -> str:
+def _level(content: OfPart) -> str:
     if isinstance(content, SummaryFile):
         return content.reactions.level
     return content.origin.level if isinstance(content, Superelement | CraigBampton) else ""
 
 
-def _description(content: Content) -> str:
+def _description(content: OfPart) -> str:
     """What is written, as the command says it."""
     if isinstance(content, CraigBampton):
         return f"shaft at {', '.join(content.points)}, free, with {len(content.omega)} modes"
@@ -342,7 +344,7 @@ def _description(content: Content) -> str:
     return f"{len(mesh.cells):,} elements, {len(mesh.points):,} nodes"
 
 
-def _answer(found: Findings, drivetrain: Scene | Component, kind: Kind, content: Content) -> None:
+def _answer(found: Findings, drivetrain: Scene | Component, kind: Kind, content: OfPart) -> None:
     """State what is ready to be written, and how certain it is."""
     if isinstance(content, CraigBampton):
         verdict, figures = _of_modes(found, content)
@@ -405,7 +407,7 @@ def _of_superelement(found: Findings, content: Superelement) -> tuple[str, list[
     return f"{subject} is condensed to {n} points, {state}; {known}.", figures
 
 
-def _data(found: Findings, content: Content) -> None:
+def _data(found: Findings, content: OfPart) -> None:
     """Keep the facts of the headers, and what a reader can check."""
     if isinstance(content, SummaryFile):
         found.data("summary", content.model_dump(mode="json"))

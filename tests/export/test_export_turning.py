@@ -2,8 +2,10 @@
 
 import json
 import math
+from collections import Counter
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import jsonschema
 import numpy as np
@@ -159,8 +161,10 @@ def test_simpack_has_a_variable_for_each_entry_that_is_not_zero(
     assert f"drivetrain hash: {rigid.hash}" in text
 
 
+@pytest.mark.needs("h5py")
 def test_h5py_reads_the_matrices(rigid: Turning, tmp_path: Path) -> None:
-    h5py = pytest.importorskip("h5py")
+    import h5py
+
     write_turning(tmp_path / "a.h5", rigid, "hdf5")
     with h5py.File(tmp_path / "a.h5") as file:
         assert file.attrs["drivetrain hash"] == rigid.hash
@@ -168,8 +172,8 @@ def test_h5py_reads_the_matrices(rigid: Turning, tmp_path: Path) -> None:
             np.testing.assert_array_equal(file[kind], matrix)
 
 
+@pytest.mark.needs("exudyn")
 def test_exudyn_finds_the_frequencies_by_the_script(geared: Drivetrain, tmp_path: Path) -> None:
-    pytest.importorskip("exudyn")
     turning = turning_of(geared, Level.TORSIONAL)
     write_turning(tmp_path / "a.py", turning, "exudyn")
     space: dict[str, Any] = {"__name__": "model"}
@@ -195,6 +199,60 @@ def test_the_script_for_exudyn_holds_the_matrices(rigid: Turning, tmp_path: Path
     for kind, matrix in rigid.matrices.items():
         np.testing.assert_array_equal(space["matrix"](kind), matrix)
     assert f"# drivetrain hash: {rigid.hash}" in text
+
+
+def test_the_gear_unit_in_rexs_has_each_part_once(
+    geared: Drivetrain, rigid: Turning, tmp_path: Path
+) -> None:
+    """Components by kind, their relations, and geometry that is read back from positions."""
+    write_turning(tmp_path / "a.rexs", rigid, "rexs")
+    text = (tmp_path / "a.rexs").read_text("utf-8-sig")
+    assert f"drivetrain hash: {rigid.hash}" in text
+    assert "left out: inertias" in text
+    model = ElementTree.fromstring(text)
+    assert model.get("version") == "1.6"
+    found = {one.get("id"): one for one in model.iterfind("components/component")}
+    kinds = Counter(one.get("type") for one in found.values())
+    planets = 3
+    assert kinds["planetary_stage"] == kinds["ring_gear"] == kinds["planet_carrier"] == 1
+    assert kinds["cylindrical_stage"] == 2 * planets + 2
+    assert kinds["cylindrical_gear"] == 1 + planets + 2 * 2
+    machine = rigid.machine
+    pins = sum(len(getattr(stage, "pins", ())) for stage in machine.stages)
+    assert kinds["concept_bearing"] == len(machine.bearings) + planets * pins
+    assert kinds["shaft"] == len(machine.shafts) + 1 + 2 * planets
+    whole: dict[str, str] = {}
+    for relation in model.iterfind("relations/relation"):
+        ends = {ref.get("role", ""): ref for ref in relation.iterfind("ref")}
+        for ref in ends.values():
+            assert found[ref.get("id")].get("type") == ref.get("hint")
+        if relation.get("type") == "assembly" and ends["assembly"].get("hint") == "shaft":
+            whole[ends["part"].get("id", "")] = ends["assembly"].get("id", "")
+    for relation in model.iterfind("relations/relation[@type='stage']"):
+        ids = {ref.get("role", ""): ref.get("id", "") for ref in relation.iterfind("ref")}
+        one, two = (found[ids[role]] for role in ("gear_1", "gear_2"))
+        assert {ids["gear_1"], ids["gear_2"]} <= whole.keys()
+        apart = float(np.linalg.norm((place_of(one) - place_of(two))[1:]))
+        assert apart == pytest.approx(value_of(found[ids["stage"]], "center_distance"))
+        hands = [value_of(gear, "helix_angle_reference_diameter") for gear in (one, two)]
+        assert hands[1] == (hands[0] if two.get("type") == "ring_gear" else -hands[0])
+    teeth = {one.get("name"): value_of(one, "number_of_teeth") for one in gears_of(model)}
+    stage = geared.gearbox.stages[0]
+    assert stage.teeth is not None
+    assert [teeth[f"stage 1 {part}"] for part in ("ring", "planet 1", "sun")] == list(stage.teeth)
+
+
+def gears_of(model: ElementTree.Element) -> list[ElementTree.Element]:
+    return [c for c in model.iterfind("components/component") if "_gear" in (c.get("type") or "")]
+
+
+def value_of(component: ElementTree.Element, name: str) -> float:
+    return float(component.findtext(f"attribute[@id='{name}']") or "nan")
+
+
+def place_of(component: ElementTree.Element) -> Any:
+    cells = component.iterfind("attribute[@id='support_vector']/array/c")
+    return np.array([float(cell.text or "nan") for cell in cells])
 
 
 def test_a_copy_of_an_elastodyn_file_has_the_spring_and_says_whose(
@@ -235,6 +293,7 @@ def test_a_copy_of_an_elastodyn_file_has_the_spring_and_says_whose(
         (("--format", "json", "--at", "hub"), "--at is not used by an export of kind 'turning'"),
         (("--format", "json", "--level", "rigid"), "needs what its file does not state"),
         (("--format", "json", "--generator", "loose"), "generator is 'loose': choose"),
+        (("--format", "rexs", "--what", "turning"), "as a gear unit needs what its file does not"),
         (("--format", "json", "--template", "a"), "does not use --template"),
         ((), "ends in ''"),
     ],
