@@ -363,7 +363,7 @@ def _written(found: Drivetrain | Component, wanted: Export) -> ExportResult:
     if not (left_out := wanted.left_out):
         return result
     note = f"Format {wanted.format} leaves out {left_out}."
-    return replace(result, notes=(*result.notes, note))
+    return replace(result, notes=(note, *result.notes))
 
 
 def _check_format(wanted: Export, kind: Kind) -> None:

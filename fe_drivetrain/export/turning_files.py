@@ -16,7 +16,8 @@ from fe_drivetrain.export.turning import Turning
 
 class TurningFormat(NamedTuple):
     """A file format: usual ending, what reads it, its module and function, the extra it needs, and
-    what of the matrices it leaves out."""
+    what of the matrices it leaves out.
+    """
 
     suffix: str
     reader: str

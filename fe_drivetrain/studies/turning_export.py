@@ -81,7 +81,7 @@ def state_turning(found: Findings, drivetrain: Drivetrain, turning: Turning) -> 
             "The file states no damping, so that DTTorDmp and the damping matrix are 0: give "
             "damping: {shafts: ..., meshes: ...}."
         )
-    found.note(
+    found.say(
         "One spring with the inertias of rotor and generator alone has its first frequency at "
         f"{one.free_of_two / one.free:.4g} times that of the whole, free-free."
     )

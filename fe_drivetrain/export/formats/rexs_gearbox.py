@@ -104,35 +104,26 @@ def write(path: Path, turning: Turning) -> None:
             f"{', '.join(machine.not_given)}: add it, or export matrices of level 'torsional'"
         )
     model = _Model(turning)
-    shafts = [
-        _shaft(model, shaft, at) for shaft, at in zip(machine.shafts, machine.axes, strict=True)
-    ]
-    holding = {shaft.name: number for shaft, number in zip(machine.shafts, shafts, strict=True)}
-    begins = {shaft.name: at for shaft, at in zip(machine.shafts, machine.axes, strict=True)}
+    axes = machine.axes
+    shafts = [_shaft(model, shaft, at) for shaft, at in zip(machine.shafts, axes, strict=True)]
+    names = [shaft.name for shaft in machine.shafts]
+    seats = dict(zip(names, zip(shafts, axes, strict=True), strict=True))
+    seats["rotor"] = shafts[0], axes[0]
+    x, y, z = axes[-1]
+    seats["generator"] = shafts[-1], (x + machine.shafts[-1].length, y, z)
     for k, stage in enumerate(machine.stages):
-        name = f"stage {k + 1}"
-        ends = (machine.axes[k + 1][0], *machine.axes[k][1:])
+        name, on = f"stage {k + 1}", (shafts[k], shafts[k + 1])
+        places = (axes[k + 1][0], *axes[k][1:]), axes[k + 1]
         if isinstance(stage, PlanetaryData):
-            _planetary(model, name, stage, (shafts[k], shafts[k + 1]), ends)
-            bodies = (f"{name} carrier", f"{name} sun")
+            _planetary(model, name, stage, on, places[0])
         else:
-            _parallel(model, name, stage, (shafts[k], shafts[k + 1]), (ends, machine.axes[k + 1]))
-            bodies = (f"{name} gear", f"{name} pinion")
-        for body, shaft, at in zip(
-            bodies, shafts[k : k + 2], (ends, machine.axes[k + 1]), strict=True
-        ):
-            holding[body], begins[body] = shaft, at
+            _parallel(model, name, stage, on, places)
+        parts = ("carrier", "sun") if isinstance(stage, PlanetaryData) else ("gear", "pinion")
+        for part, seat in zip(parts, zip(on, places, strict=True), strict=True):
+            seats[f"{name} {part}"] = seat
     for bearing in machine.bearings:
-        if bearing.holds in holding:
-            x, y, z = begins[bearing.holds]
-            _bearing(
-                model,
-                bearing.name,
-                bearing,
-                (x + bearing.at, y, z),
-                holding[bearing.holds],
-                model.casing,
-            )
+        shaft, (x, y, z) = seats[bearing.holds]
+        _bearing(model, bearing.name, bearing, (x + bearing.at, y, z), shaft, model.casing)
     ET.indent(model.root)
     # REXS asks for the mark of UTF-8
     head = '<?xml version="1.0" encoding="UTF-8"?>\n'
