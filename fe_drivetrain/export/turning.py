@@ -66,6 +66,11 @@ class OneSpring(NamedTuple):
     free_of_two: float
     held_of_two: float
 
+    @property
+    def ratio(self) -> float:
+        """Damping ratio of rotor and generator on the one spring, free-free."""
+        return float(np.pi * self.free_of_two * self.torsion.damper / self.torsion.spring)
+
 
 @dataclass(frozen=True)
 class Turning:
@@ -150,6 +155,7 @@ class Turning:
             "first torsional frequency, generator held [Hz]": one.held,
             "frequency of the one spring, free-free [Hz]": one.free_of_two,
             "frequency of the one spring, generator held [Hz]": one.held_of_two,
+            "damping ratio of the one spring, free-free [-]": one.ratio,
         }
 
 

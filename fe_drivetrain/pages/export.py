@@ -67,10 +67,12 @@ def choices(scene: Scene) -> list[Record]:
     rows += [
         ("the free shaft with modes (Craig-Bampton)", "2 meridian", modes),
         ("numbers of a drivetrain model", "2 meridian", _MATRICES.format("summary", "summary")),
-        ("matrices of all that turns", "torsional to flexible", _MATRICES.format("turning", "all")),
         ("the whole model with unit loads", "solids", "fe-drivetrain export FILE --out model.inp"),
         ("its mesh", "solids", "fe-drivetrain export FILE --out mesh.vtu"),
     ]
+    if scene.rotor is not None and scene.generator is not None:
+        turning = _MATRICES.format("turning", "turning")
+        rows.append(("matrices of all that turns", "torsional to flexible", turning))
     return [
         {"what": what, "level": level, "command": f"`{command}`"} for what, level, command in rows
     ]

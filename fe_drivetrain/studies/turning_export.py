@@ -83,7 +83,8 @@ def state_turning(found: Findings, drivetrain: Drivetrain, turning: Turning) -> 
         )
     found.say(
         "One spring with the inertias of rotor and generator alone has its first frequency at "
-        f"{one.free_of_two / one.free:.4g} times that of the whole, free-free."
+        f"{one.free_of_two / one.free:.4g} times that of the whole, free-free, and a damping ratio "
+        f"of {100.0 * one.ratio:.3g} %."
     )
     found.assume_all(turning.machine.assumptions())
     _answer(found, drivetrain, figures)

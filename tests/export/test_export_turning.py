@@ -67,6 +67,7 @@ def test_two_masses_on_a_shaft_are_the_one_spring_by_hand() -> None:
     both = ROTOR * GENERATOR / (ROTOR + GENERATOR)
     for found in (one.free, one.free_of_two):
         assert found == pytest.approx(math.sqrt(STIFFNESS / both) / math.tau, rel=1e-12)
+    assert one.ratio == pytest.approx(DAMPER / (2.0 * math.sqrt(STIFFNESS * both)), rel=1e-12)
     for found in (one.held, one.held_of_two):
         assert found == pytest.approx(math.sqrt(STIFFNESS / ROTOR) / math.tau, rel=1e-12)
 

@@ -242,7 +242,7 @@ def _gear(
     if stage.shifts is not None:
         flank["addendum_modification_coefficient"] = ("none", stage.shifts[which])
     left, right = (
-        model.component("flank_geometry", f"{name}, {side} flank", **flank)
+        model.component("flank_geometry", f"{name}, {side} flank", None, **flank)
         for side in ("left", "right")
     )
     model.relate("flank", gear=number, left=left, right=right)
