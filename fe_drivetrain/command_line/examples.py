@@ -61,6 +61,7 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
     "export": (
         "two_bearings --out shaft.json --format json",
         "mine.yaml --out model.inp",
+        "nrel_750kw --what turning --level rigid --format json --out system.json",
         "--list",
     ),
     "part": ("housing.step --picture faces.png", "housing.csv --bore bore"),

@@ -30,6 +30,7 @@ OPTIONS: Mapping[str, str] = {
     "condensed": "--condensed",
     "duration": "--duration",
     "every": "--every",
+    "generator": "--generator",
     "gearbox_cleanliness": "--gearbox-cleanliness",
     "gearbox_lubricant": "--gearbox-lubricant",
     "gearbox_temperature": "--gearbox-temperature",
@@ -74,6 +75,7 @@ WORDS: Mapping[tuple[str, object], str] = {
     ("profile", True): "--profile",
     ("profile", False): "--straight",
     ("kind", "summary"): "--what summary",
+    ("kind", "turning"): "--what turning",
     ("kind", "modes"): "--modes",
 }
 """What is typed for a value of an argument that is no option with the value behind it."""

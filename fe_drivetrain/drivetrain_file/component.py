@@ -6,7 +6,6 @@ level says which component it is: "gearbox_housing" or "planet_carrier".
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
 from typing import Annotated, NamedTuple, TypeVar
 
@@ -170,11 +169,6 @@ COMPONENTS: dict[str, type[HousingComponent] | type[CarrierComponent]] = {
 def material_of(component: Component) -> Material:
     """What the component is made of."""
     return known_materials(component.materials)[component.body.material]
-
-
-def component_hash(component: Component) -> str:
-    """SHA-256 of all values of a component, whatever its file looks like."""
-    return hashlib.sha256(component.model_dump_json().encode()).hexdigest()
 
 
 def check_component_standing(component: Component) -> None:

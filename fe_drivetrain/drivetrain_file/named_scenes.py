@@ -63,10 +63,10 @@ def named_scene(name: str | Path, changes: Mapping[str, Any] | None = None) -> S
     return with_sections(read_drivetrain(name, changes), str(name))
 
 
-def named_scene_or_component(
+def named_drivetrain_or_component(
     name: str, changes: Mapping[str, Any] | None = None
-) -> Scene | Component:
-    """The scene or component in a file or of the library; see `read_drivetrain`."""
+) -> Drivetrain | Component:
+    """The drivetrain or component in a file or of the library; see `read_drivetrain`."""
     from fe_drivetrain.common.reading import read_text
     from fe_drivetrain.drivetrain_file.reading import (
         is_component,
@@ -78,7 +78,7 @@ def named_scene_or_component(
     of_file = _is_file(name)
     text = read_text(name, "scene") if of_file else library_text(name)
     if not is_component(text):
-        return named_scene(name, changes)
+        return read_drivetrain(name, changes)
     return read_component(name, changes) if of_file else parse_component(text, changes, name)
 
 

@@ -35,3 +35,6 @@ from .scene_export import SEATS as SEATS
 from .scene_export import SHAFT as SHAFT
 from .scene_export import superelement_of as superelement_of
 from .superelement import Superelement as Superelement
+from .turning import Turning as Turning
+from .turning import turning_of as turning_of
+from .turning_files import write_turning as write_turning

@@ -25,6 +25,7 @@ from fe_drivetrain.export.calculix_plan import (
     plan_deck,
 )
 from fe_drivetrain.export.superelement import FRAME
+from fe_drivetrain.report.seal import drivetrain_hash
 from fe_drivetrain.shafts.response.model import Model
 
 _TERMS = 4  # of an equation on a line: the most that are read
@@ -161,6 +162,7 @@ def _model_lines(model: Model, plan: DeckPlan) -> Iterator[str]:
 
 def _header(model: Model, plan: DeckPlan) -> Iterator[str]:
     yield f"** {' '.join(model.scene.title.split())}"
+    yield f"** scene hash: {drivetrain_hash(model.scene)}"
     yield f"** written by fe-drivetrain {version('fe-drivetrain')}"
     yield "** units: m, kg, s, N, Pa, rad"
     yield f"** frame: {FRAME}"

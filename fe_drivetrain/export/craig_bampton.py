@@ -32,8 +32,8 @@ from fe_drivetrain.elasticity.revolution import harmonics
 from fe_drivetrain.elasticity.revolution.meridian_mesh import Meridian
 from fe_drivetrain.elasticity.solve.condensation import Condensed, keep_points
 from fe_drivetrain.elasticity.solve.vibration import lowest_modes
-from fe_drivetrain.export.from_scene import scene_hash
 from fe_drivetrain.export.superelement import Origin, Superelement, refuse_one_point
+from fe_drivetrain.report.seal import drivetrain_hash
 from fe_drivetrain.shafts.fidelity.shafts import (
     harmonic_mass,
     meridian_shaft,
@@ -184,7 +184,7 @@ def craig_bampton_shaft(
         np.column_stack(columns) if columns else np.zeros((6 * n, 0)),
         Origin(
             scene.title,
-            scene_hash(scene),
+            drivetrain_hash(scene),
             f"2 meridian in harmonics, {len(omegas)} fixed-interface modes",
             f"{len(mesh.nodes):,} nodes in the meridian, order {mesh.element.order}",
             f"fe-drivetrain {version('fe-drivetrain')}",

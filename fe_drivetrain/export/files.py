@@ -48,19 +48,6 @@ FORMATS: dict[str, Format] = {
 }
 
 
-def format_rows() -> list[dict[str, str]]:
-    """Formats as records: name, usual ending, programs that read it, and what it needs."""
-    return [
-        {
-            "format": one.name,
-            "ending": one.suffix,
-            "read by": one.reader,
-            "needs": f"fe-drivetrain[{one.extra}]" if one.extra else "",
-        }
-        for one in FORMATS.values()
-    ]
-
-
 def write_superelement(
     path: str | Path, element: Superelement, format: str, overwrite: bool = False
 ) -> None:

@@ -8,10 +8,11 @@ from importlib.metadata import version
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.stiffness_bands import StiffnessBands
-from fe_drivetrain.drivetrain_file.component import Component, HousingComponent, component_hash
+from fe_drivetrain.drivetrain_file.component import Component, HousingComponent
 from fe_drivetrain.elasticity.mesh.measures import mean_size
 from fe_drivetrain.elasticity.solve.condensation import Condensed, keep_points
 from fe_drivetrain.export.superelement import Origin, Superelement, refuse_one_point
+from fe_drivetrain.report.seal import drivetrain_hash
 from fe_drivetrain.shafts.fidelity.component_frames import carrier_frame, housing_frame
 from fe_drivetrain.shafts.fidelity.component_levels import (
     motions_on_supports,
@@ -100,7 +101,7 @@ def component_superelement(
             change = StiffnessBands.of_difference(others[0].stiffness, fine.stiffness)
             band = band | change.each(lambda c: c / (ratio**ORDER - 1.0))
     program = f"fe-drivetrain {version('fe-drivetrain')}"
-    origin = Origin(component.title, component_hash(component), level_title, mesh, program)
+    origin = Origin(component.title, drivetrain_hash(component), level_title, mesh, program)
     return Superelement(
         kind,
         fine.names,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Sequence
 from importlib.metadata import version
 
@@ -13,6 +12,7 @@ from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.elasticity.solve.condensation import Condensed, keep_points
 from fe_drivetrain.export.superelement import Origin, Superelement, refuse_one_point
+from fe_drivetrain.report.seal import drivetrain_hash
 from fe_drivetrain.shafts.fidelity.bearing_units import banded_unit, unit_matrices
 from fe_drivetrain.shafts.fidelity.ladder import LevelModel
 from fe_drivetrain.shafts.fidelity.shaft_bands import banded_meridian, banded_solid, meridian_order
@@ -138,12 +138,7 @@ def unit_superelement(scene: Scene, name: str, mass: bool = False) -> Supereleme
     )
 
 
-def scene_hash(scene: Scene) -> str:
-    """SHA-256 of all values of a scene, whatever its file looks like."""
-    return hashlib.sha256(scene.model_dump_json().encode()).hexdigest()
-
-
 def scene_origin(scene: Scene, level: str, mesh: str) -> Origin:
     """Where a superelement of a scene comes from: its level and mesh in words."""
     program = f"fe-drivetrain {version('fe-drivetrain')}"
-    return Origin(scene.title, scene_hash(scene), level, mesh, program)
+    return Origin(scene.title, drivetrain_hash(scene), level, mesh, program)

@@ -70,7 +70,7 @@ class Origin:
     scene : str
         Title.
     scene_hash : str
-        SHA-256 of the scene's values.
+        Hash of all values of the scene or component, as results state it.
     level : str
         Level of the ladder, with its name.
     mesh : str

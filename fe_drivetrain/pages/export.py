@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fe_drivetrain.drivetrain_file.scene import Scene
-from fe_drivetrain.export.files import format_rows
+from fe_drivetrain.export.turning_files import format_rows
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.report.suite.run import Run
@@ -70,6 +70,9 @@ def choices(scene: Scene) -> list[Record]:
         ("the whole model with unit loads", "solids", "fe-drivetrain export FILE --out model.inp"),
         ("its mesh", "solids", "fe-drivetrain export FILE --out mesh.vtu"),
     ]
+    if scene.rotor is not None and scene.generator is not None:
+        turning = _MATRICES.format("turning", "turning")
+        rows.append(("matrices of all that turns", "torsional to flexible", turning))
     return [
         {"what": what, "level": level, "command": f"`{command}`"} for what, level, command in rows
     ]

@@ -1,4 +1,4 @@
-"""What an export writes: a part condensed to points, modes, a summary, a model or its mesh."""
+"""What an export writes: a part at points, modes, a summary, all that turns, a model, a mesh."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.common.stiffness_bands import KINDS, StiffnessBands
 from fe_drivetrain.drivetrain_file.component import Component
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.reading import with_sections
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.elasticity.mesh.mesh import Mesh
 from fe_drivetrain.export.craig_bampton import CraigBampton, craig_bampton_shaft
@@ -20,6 +22,7 @@ from fe_drivetrain.export.formats.summary import SummaryFile, summary
 from fe_drivetrain.export.from_component import BODY, component_superelement
 from fe_drivetrain.export.scene_export import AUTO, SHAFT, superelement_of
 from fe_drivetrain.export.superelement import Superelement
+from fe_drivetrain.export.turning import Turning
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.charts import bars, stiffness_chart
 from fe_drivetrain.report.number_text import certain_value, formatted
@@ -29,13 +32,16 @@ from fe_drivetrain.shafts.fidelity.component_solid import component_mesh
 from fe_drivetrain.shafts.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.studies.part_survey import place_records
 from fe_drivetrain.studies.result import Result
+from fe_drivetrain.studies.turning_export import state_turning, turning_chart, turning_content
 
-Kind = Literal["superelement", "modes", "summary", "model", "mesh"]
+Kind = Literal["superelement", "modes", "summary", "turning", "model", "mesh"]
 """A part condensed to points; the free shaft with fixed-interface modes, too; numbers of a
-drivetrain model; the whole model with its unit loads; its mesh alone."""
+drivetrain model; matrices of all that turns; the whole model with its unit loads; its mesh."""
 
-Content = Superelement | CraigBampton | SummaryFile | Model | Mesh
-"""What is written of each of these kinds, in their order."""
+OfPart = Superelement | CraigBampton | SummaryFile | Model | Mesh
+"""What is written of parts of a scene, or of a component."""
+Content = OfPart | Turning
+"""What is written of each of these kinds."""
 
 #: Level of a component's export where none is asked for.
 _COMPONENT_LEVEL = 3
@@ -49,7 +55,7 @@ class ExportResult(Result):
 
     Attributes
     ----------
-    drivetrain : Scene or Component
+    drivetrain : Drivetrain or Component
         What it is of.
     kind : str
         Which of `Kind`.
@@ -66,7 +72,7 @@ class ExportResult(Result):
 
     STUDY: ClassVar[str] = "export"
 
-    drivetrain: Scene | Component
+    drivetrain: Drivetrain | Component
     kind: Kind
     content: Content = field(repr=False)
     points: tuple[str, ...]
@@ -76,6 +82,8 @@ class ExportResult(Result):
     def chart(self) -> Chart:
         """Stiffness between points; masses of a summary; elements of each part of a mesh."""
         content = self.content
+        if isinstance(content, Turning):
+            return turning_chart(content)
         if isinstance(content, CraigBampton):
             return stiffness_chart("shaft", content.points, content.point_stiffness)
         if isinstance(content, Superelement):
@@ -89,34 +97,39 @@ class ExportResult(Result):
 
 
 def prepare_export(
-    drivetrain: Scene | Component,
+    drivetrain: Drivetrain | Component,
     kind: Kind = "superelement",
     what: str = "",
     at: Sequence[str] | None = None,
-    level: int | None = None,
+    level: int | str | None = None,
     modes: int = 0,
     *,
+    generator: str = "free",
     report: Progress = silent,
 ) -> ExportResult:
     """Prepare what other programs take of a drivetrain: choose level and points, and condense.
 
     Parameters
     ----------
-    drivetrain : Scene or Component
-        What is exported.
+    drivetrain : Drivetrain or Component
+        What is exported; only "turning" takes one whose main shaft has no sections.
     kind : str
-        "superelement", "modes" (a superelement of the free shaft with modes), "summary", "model" or
-        "mesh".
+        "superelement", "modes" (a superelement of the free shaft with modes), "summary", "turning"
+        (matrices of all that turns, and its torsion as one spring), "model" or "mesh".
     what : str
         Part of a scene for a superelement: "shaft", "drivetrain", "seats" or a bearing's name, see
         `fe_drivetrain.export.superelement_of`; of a component "body" or "supported". The first of
         each where left out.
     at : sequence of str or None
         Names of the points to keep; None for the usual ones.
-    level : int or None
+    level : int, str or None
         Model level; None for the usual one: of scenes 4 for bearings and else 2, of components 3.
+        For "turning" it is "torsional", "rigid" or "flexible", or the finest of them that the data
+        allow.
     modes : int
         Number of fixed-interface modes.
+    generator : str
+        For "turning": whether the generator is "free" to turn, or "held".
     report : Progress
         Called with the name of each step as it begins.
 
@@ -131,7 +144,15 @@ def prepare_export(
     found.seed = None
     require_known("kind of export", kind, get_args(Kind))
     _refuse_unused(kind, what, at, level, modes)
-    content: Content
+    if kind == "turning":
+        return _of_turning(found, steps, drivetrain, level, generator)
+    if generator != "free":
+        raise InputError(
+            f"{argument('generator', generator)} is not used by an export of kind {kind!r}: leave "
+            "it out"
+        )
+    drivetrain, level = _with_sections(drivetrain), _number(level)
+    content: OfPart
     if kind in ("model", "mesh"):
         content = _model_or_mesh(found, steps, drivetrain, kind)
     else:
@@ -150,6 +171,50 @@ def prepare_export(
     )
 
 
+def _of_turning(
+    found: Findings,
+    steps: Steps,
+    drivetrain: Drivetrain | Component,
+    level: int | str | None,
+    generator: str,
+) -> ExportResult:
+    """All that turns as matrices."""
+    content = steps.timed("matrices", turning_content, drivetrain, level, generator)
+    assert isinstance(drivetrain, Drivetrain)
+    state_turning(found, drivetrain, content)
+    return ExportResult(
+        drivetrain=drivetrain,
+        kind="turning",
+        content=content,
+        points=(),
+        level=content.options["level"],
+        band=None,
+        **found.frozen(steps.times, kind="turning", level=level, generator=generator),
+    )
+
+
+def _with_sections(drivetrain: Drivetrain | Component) -> Scene | Component:
+    """The drivetrain as what has a main shaft with sections, or a component."""
+    if isinstance(drivetrain, Drivetrain):
+        return with_sections(drivetrain, drivetrain.title)
+    return drivetrain
+
+
+def _number(level: int | str | None) -> int | None:
+    """The number of a level.
+
+    Raises
+    ------
+    InputError
+        It is a word, which only all that turns has.
+    """
+    if isinstance(level, str):
+        raise InputError(
+            f"{argument('level', level)} must be a number, but for all that turns: change it"
+        )
+    return level
+
+
 def _condensed(
     steps: Steps,
     drivetrain: Scene | Component,
@@ -158,7 +223,7 @@ def _condensed(
     at: Sequence[str] | None,
     level: int | None,
     modes: int,
-) -> Content:
+) -> OfPart:
     """A superelement, with modes or without, or a summary."""
     if kind == "modes":
         scene = _scene_of_modes(drivetrain, what, level)
@@ -171,7 +236,7 @@ def _condensed(
 
 
 def _refuse_unused(
-    kind: Kind, what: str, at: Sequence[str] | None, level: int | None, modes: int
+    kind: Kind, what: str, at: Sequence[str] | None, level: int | str | None, modes: int
 ) -> None:
     """Refuse arguments that a kind of export does not use."""
     if kind == "summary" and at is not None:
@@ -180,7 +245,7 @@ def _refuse_unused(
             f"points of the scene: leave {argument('at')} out"
         )
     given = {"what": what, "at": at, "level": level, "modes": modes}
-    used = {"superelement": ("what", "at", "level"), "summary": ("level",)}
+    used = {"superelement": ("what", "at", "level"), "summary": ("level",), "turning": ("level",)}
     used["modes"] = ("what", "at", "level", "modes")
     unused = [name for name, value in given.items() if value and name not in used.get(kind, ())]
     if unused:
@@ -251,17 +316,17 @@ def _mesh_of(content: Model | Mesh) -> Mesh:
     return content.mesh if isinstance(content, Model) else content
 
 
-def _points(content: Content) -> tuple[str, ...]:
+def _points(content: OfPart) -> tuple[str, ...]:
     return content.points if isinstance(content, Superelement | CraigBampton) else ()
 
 
-def _level(content: Content) -> str:
+def _level(content: OfPart) -> str:
     if isinstance(content, SummaryFile):
         return content.reactions.level
     return content.origin.level if isinstance(content, Superelement | CraigBampton) else ""
 
 
-def _description(content: Content) -> str:
+def _description(content: OfPart) -> str:
     """What is written, as the command says it."""
     if isinstance(content, CraigBampton):
         return f"shaft at {', '.join(content.points)}, free, with {len(content.omega)} modes"
@@ -279,7 +344,7 @@ def _description(content: Content) -> str:
     return f"{len(mesh.cells):,} elements, {len(mesh.points):,} nodes"
 
 
-def _answer(found: Findings, drivetrain: Scene | Component, kind: Kind, content: Content) -> None:
+def _answer(found: Findings, drivetrain: Scene | Component, kind: Kind, content: OfPart) -> None:
     """State what is ready to be written, and how certain it is."""
     if isinstance(content, CraigBampton):
         verdict, figures = _of_modes(found, content)
@@ -342,7 +407,7 @@ def _of_superelement(found: Findings, content: Superelement) -> tuple[str, list[
     return f"{subject} is condensed to {n} points, {state}; {known}.", figures
 
 
-def _data(found: Findings, content: Content) -> None:
+def _data(found: Findings, content: OfPart) -> None:
     """Keep the facts of the headers, and what a reader can check."""
     if isinstance(content, SummaryFile):
         found.data("summary", content.model_dump(mode="json"))

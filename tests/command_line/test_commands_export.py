@@ -11,6 +11,7 @@ from fe_drivetrain import export
 from fe_drivetrain.command_line.app import main
 from fe_drivetrain.export.files import FORMATS
 from fe_drivetrain.export.scene_export import superelement_of
+from fe_drivetrain.export.turning_files import TURNING_FORMATS
 from fe_drivetrain.shafts.fidelity.ladder import housing_springs, shaft_level
 
 CONDENSED = ("main_bearing_bonded", "--out", "a", "--format", "csv")
@@ -28,9 +29,12 @@ def test_export_lists_every_format(
 ) -> None:
     assert exported(monkeypatch, "--list") == 0
     head, *lines = capsys.readouterr().out.splitlines()
-    assert head.split() == ["format", "ending", "read", "by", "needs"]
-    assert [line.split()[0] for line in lines] == list(FORMATS)
-    for line, form in zip(lines, FORMATS.values(), strict=True):
+    assert head.split() == ["format", "holds", "ending", "read", "by", "needs"]
+    assert [line.split()[:2] for line in lines] == [
+        *([name, "part"] for name in FORMATS),
+        *([name, "turning"] for name in TURNING_FORMATS),
+    ]
+    for line, form in zip(lines, (*FORMATS.values(), *TURNING_FORMATS.values()), strict=True):
         assert form.suffix in line
         assert form.reader in line
         assert (f"fe-drivetrain[{form.extra}]" in line) == bool(form.extra)

@@ -15,7 +15,9 @@ import pytest
 from test_report import limit, results
 from tiny_case import Result
 
+from fe_drivetrain.cases.export.sample_elastodyn import TEXT
 from fe_drivetrain.elasticity.mesh.measures import volume
+from fe_drivetrain.export.formats.elastodyn import read_torsion
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -227,6 +229,15 @@ def test_a_housing_with_its_inertia_has_the_frequencies_of_the_solids(run_page: 
     assert np.abs(error[4:]).max() < 0.005
     assert massless[4:].round(3) == pytest.approx([0.162, 0.090, 0.119, 0.042], abs=0.002)
     assert names["element"].mass == pytest.approx(names["unit"].mass)
+
+
+def test_all_that_turns_in_other_programs(run_page: Runner) -> None:
+    Path("ElastoDyn.dat").write_text(TEXT)
+    turning = run_page("how-to/turning-in-other-programs.md")["turning"]
+    assert read_torsion("ElastoDyn_mine.dat").spring == pytest.approx(turning.spring.torsion.spring)
+    one = turning.spring
+    assert one.free == pytest.approx(one.free_of_two, rel=0.02)
+    assert one.torsion.damper > 0.0
 
 
 @pytest.mark.needs("exudyn", "ross")

@@ -15,7 +15,10 @@ from fe_drivetrain.cases.main_bearing.housing_dimensions import solved
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.drivetrain_file.component import COMPONENTS
-from fe_drivetrain.drivetrain_file.named_scenes import named_scene_or_component, read_drivetrain
+from fe_drivetrain.drivetrain_file.named_scenes import (
+    named_drivetrain_or_component,
+    read_drivetrain,
+)
 from fe_drivetrain.drivetrain_file.reading import (
     change_scene,
     library_names,
@@ -107,10 +110,10 @@ def test_a_component_is_read_by_its_name_or_from_a_file(tmp_path: Path) -> None:
     file.write_text(TEXTS["planet_carrier"])
     changes = {"planet_carrier.material": "steel"}
     of_name, of_file = (
-        named_scene_or_component(name, changes) for name in ("planet_carrier", str(file))
+        named_drivetrain_or_component(name, changes) for name in ("planet_carrier", str(file))
     )
     assert of_name == of_file == read_component(file, changes)
-    assert named_scene_or_component("two_bearings") == library_scene("two_bearings")
+    assert named_drivetrain_or_component("two_bearings") == library_scene("two_bearings")
 
 
 @pytest.mark.parametrize("name", SCENES)

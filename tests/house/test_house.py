@@ -16,6 +16,7 @@ sys.path.insert(0, str(ROOT / "docs"))
 import house  # noqa: E402
 
 from fe_drivetrain.export.files import FORMATS  # noqa: E402
+from fe_drivetrain.export.turning_files import TURNING_FORMATS  # noqa: E402
 
 LIBRARY = sorted(path.parent.name for path in (ROOT / "fe_drivetrain").glob("*/__init__.py"))
 FACES = sorted(house.faces().keys() - {""})
@@ -126,7 +127,8 @@ def of_library(module: str) -> bool:
 
 
 def test_the_library_has_no_module_for_one_case_alone() -> None:
-    formats = {f"export.formats.{row.module}" for row in FORMATS.values()}
+    rows = (*FORMATS.values(), *TURNING_FORMATS.values())
+    formats = {f"export.formats.{row.module}" for row in rows}
     alone = {
         name
         for name in filter(of_library, house.modules())

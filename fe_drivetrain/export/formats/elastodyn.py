@@ -32,7 +32,11 @@ class Torsion(NamedTuple):
 
 
 def write_torsion(
-    source: str | Path, target: str | Path, torsion: Torsion, overwrite: bool = False
+    source: str | Path,
+    target: str | Path,
+    torsion: Torsion,
+    overwrite: bool = False,
+    stated: str = "",
 ) -> Torsion:
     """Write an ElastoDyn input with another drivetrain spring and damper.
 
@@ -49,6 +53,9 @@ def write_torsion(
         The new values.
     overwrite : bool
         Whether an existing ``target`` is replaced.
+    stated : str
+        What the values are of, in brackets at the end of the spring's line, where ElastoDyn reads
+        nothing; in place of what an earlier export stated there.
 
     Returns
     -------
@@ -75,9 +82,19 @@ def write_torsion(
         # the new value ends where the old one did, where there is room for it
         new = repr(float(value)).rjust(line.end("value") - line.start())
         text = text[: line.start()] + new + text[line.end("value") :]
+    if stated:
+        text = _with_statement(text, _line(source, text, SPRING), " ".join(stated.split()))
     with atomic_path(target) as unfinished:
-        unfinished.write_bytes(text.encode(_ENCODING))
+        unfinished.write_bytes(text.encode(_ENCODING, "replace"))
     return before
+
+
+def _with_statement(text: str, line: re.Match[str], stated: str) -> str:
+    """The text with what the values are of at the end of a line."""
+    rest = re.compile(r"[^\r\n]*").match(text, line.end())
+    assert rest is not None
+    kept = re.sub(r" \[program: .*\]$", "", rest[0])
+    return f"{text[: line.end()]}{kept} [{stated}]{text[rest.end() :]}"
 
 
 def read_torsion(path: str | Path) -> Torsion:

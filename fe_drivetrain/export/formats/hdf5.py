@@ -22,7 +22,7 @@ def write(path: Path, element: Superelement) -> None:
         h5py is not installed.
     """
     # an unfinished file is locked already, by `files.atomic_path`
-    with _h5py().File(path, "w", locking=False) as file:
+    with h5py_module().File(path, "w", locking=False) as file:
         file.attrs.update(statement(element))
         file["positions"] = element.positions
         file["positions"].attrs["units"] = "m"
@@ -44,7 +44,7 @@ def read(path: Path) -> Superelement:
     MissingToolError
         h5py is not installed.
     """
-    h5py = _h5py()
+    h5py = h5py_module()
     try:
         with h5py.File(path, "r") as file:
             entries = {key: str(value) for key, value in file.attrs.items()}
@@ -63,7 +63,7 @@ def read(path: Path) -> Superelement:
 _UNITS = {"stiffness": "N/m, N, N m/rad", "mass": "kg, kg m, kg m^2"}
 
 
-def _h5py() -> ModuleType:
+def h5py_module() -> ModuleType:
     try:
         return import_module("h5py")
     except ImportError as error:

@@ -23,7 +23,7 @@ from fe_drivetrain.export.formats.statement import (
 )
 from fe_drivetrain.export.superelement import Superelement
 
-_HEADER = "!file.version=3.5! Removing this line will make the file unreadable"
+HEADER = "!file.version=3.5! Removing this line will make the file unreadable"
 _LINE = re.compile(r"^subvar\(\$_(?P<name>\w+), str= '(?P<value>[^']*)'\)")
 
 
@@ -36,7 +36,7 @@ def write(path: Path, element: Superelement) -> None:
     """
     entries = statement(element)
     labels = dof_labels(element)
-    lines = [_HEADER, "", *comment_lines(entries, "!"), ""]
+    lines = [HEADER, "", *comment_lines(entries, "!"), ""]
 
     def add(name: str, value: float, comment: str) -> None:
         lines.append(f"subvar($_{element.name}_{name}, str= '{float(value)!r}') ! {comment}")

@@ -182,7 +182,7 @@ def write(path: Path, element: Superelement, axes: Floats | None = None) -> None
     ]
     text = _INPUT.format(
         name=element.name,
-        scene=element.origin.scene_hash[:16] or "unknown",
+        scene=element.origin.scene_hash or "unknown",
         modes=6 if mass else 0,
         zeros="\n".join([" ".join(["0.0"] * 6)] * 6),
         point=element.points[0],

@@ -56,7 +56,7 @@ class OriginFile(_File):
     """Where the matrices come from."""
 
     scene: str
-    scene_hash: str = Field(description="SHA-256 of the scene's values")
+    scene_hash: str = Field(description="of all values of the scene, as results state it")
     level: str
     mesh: str
     program: str

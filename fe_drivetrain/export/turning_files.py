@@ -1,0 +1,135 @@
+"""All that turns of a drivetrain out to files: one writer for all formats."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+from typing import NamedTuple
+
+from fe_drivetrain.common.errors import InputError, require_known
+from fe_drivetrain.common.files import atomic_path
+from fe_drivetrain.export.files import FORMATS
+from fe_drivetrain.export.formats.elastodyn import write_torsion
+from fe_drivetrain.export.turning import Turning
+
+
+class TurningFormat(NamedTuple):
+    """A file format: usual ending, what reads it, its module and function, the extra it needs, and
+    what of the matrices it leaves out.
+    """
+
+    suffix: str
+    reader: str
+    module: str
+    function: str = "write"
+    extra: str = ""
+    left_out: str = ""
+
+
+ELASTODYN = "elastodyn"
+"""Name of the format that is a copy of a user's ElastoDyn file."""
+
+_OTHERS = "the other matrices: write each with its own format"
+
+TURNING_FORMATS: dict[str, TurningFormat] = {
+    "json": TurningFormat(".json", "anything: docs/turning.schema.json", "turning_json"),
+    "csv": TurningFormat(".csv", "spreadsheets, pandas", "turning_matrices", "write_csv"),
+    **{
+        name: TurningFormat(
+            ".mtx",
+            f"Matrix Market readers: the {kind}",
+            "turning_matrices",
+            f"write_{kind}",
+            left_out=_OTHERS,
+        )
+        for name, kind in (
+            ("mtx", "stiffness"),
+            ("mtx-mass", "mass"),
+            ("mtx-damping", "damping"),
+            ("mtx-gyroscopic", "gyroscopic"),
+        )
+    },
+    "hdf5": TurningFormat(".h5", "HDF5 readers", "turning_matrices", "write_hdf5", "hdf5"),
+    "simpack": TurningFormat(
+        ".subvar", "SIMPACK substitution variables", "turning_matrices", "write_simpack"
+    ),
+    "exudyn": TurningFormat(".py", "Exudyn: a script that builds the model", "turning_exudyn"),
+    "rexs": TurningFormat(
+        ".rexs",
+        "REXS 1.6, gearbox programs: shafts, gears, stages, bearings",
+        "rexs_gearbox",
+        left_out="inertias, dampers, mesh stiffness, couplings between motions of a bearing, how "
+        "far both directions of a bearing differ, and of a shaft that is given by its torsional "
+        "stiffness all but its place",
+    ),
+    ELASTODYN: TurningFormat(
+        ".dat",
+        "OpenFAST: DTTorSpr and DTTorDmp in a copy of an ElastoDyn file",
+        "elastodyn",
+        left_out="inertias between rotor and generator, and all modes but the first torsional one",
+    ),
+}
+"""Formats of all that turns, by name."""
+
+
+def format_rows() -> list[dict[str, str]]:
+    """Formats as records: name, what they hold, usual ending, programs that read them, extra."""
+    return [
+        {
+            "format": name,
+            "holds": what,
+            "ending": one.suffix,
+            "read by": one.reader,
+            "needs": f"fe-drivetrain[{one.extra}]" if one.extra else "",
+        }
+        for what, formats in (("part", FORMATS), ("turning", TURNING_FORMATS))
+        for name, one in formats.items()
+    ]
+
+
+def write_turning(
+    path: str | Path,
+    turning: Turning,
+    format: str,
+    overwrite: bool = False,
+    template: str | Path | None = None,
+) -> None:
+    """Write all that turns of a drivetrain; the file appears whole or not at all.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    turning : Turning
+        What is written.
+    format : str
+        A name of `TURNING_FORMATS`.
+    overwrite : bool
+        Whether an existing file is replaced.
+    template : str or Path or None
+        An ElastoDyn file, of which "elastodyn" writes a copy with two other values.
+
+    Raises
+    ------
+    InputError
+        The format is unknown, the file exists, or the template is left out, or no ElastoDyn file.
+    MissingToolError
+        What the format needs is not installed.
+    """
+    path = Path(path)
+    require_known("format", format, TURNING_FORMATS)
+    if path.exists() and not overwrite:
+        raise InputError(f"{path} exists: name another file, or allow to overwrite it")
+    if format == ELASTODYN:
+        if template is None:
+            raise InputError("format 'elastodyn' changes two values of a file: give it as template")
+        facts = "; ".join(f"{key}: {value}" for key, value in turning.source().items())
+        write_torsion(template, path, turning.spring.torsion, overwrite, stated=facts)
+        return
+    one = TURNING_FORMATS[format]
+    write: Callable[[Path, Turning], None] = getattr(
+        import_module(f"fe_drivetrain.export.formats.{one.module}"), one.function
+    )
+    with atomic_path(path) as unfinished:
+        write(unfinished, turning)
