@@ -31,6 +31,6 @@ _NOTE = (
     "whose seats keep their shape and those whose seats move on average. A level is enough if its "
     "error plus that own error is within the tolerance, and so of all finer ones. Frequencies are "
     "those of the mode that moves most like that of the finest level. Gears are under the torque "
-    "of the rated power and the weight of the rotor. Time is by itself, with all that was condensed "
-    "for the level."
+    "of the rated power and the weight of the rotor. Time is by itself, with all that was "
+    "condensed for the level."
 )

@@ -200,8 +200,8 @@ _BAND = (
     "standard error of the band is from resampling the samples as if they were independent."
 )
 _FACES = (
-    "The bands are for housings with a rigid face; the column for averaged faces is the other bound, "
-    "and the true support of the shaft is between the two."
+    "The bands are for housings with a rigid face; the column for averaged faces is the other "
+    "bound, and the true support of the shaft is between the two."
 )
 _SLOPE = (
     "Central differences at the level that was sampled. A bar of a chart is the change of the "

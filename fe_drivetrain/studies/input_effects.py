@@ -11,7 +11,8 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.drivetrain_file.scene import Spread
 from fe_drivetrain.shafts.fidelity.adviser import Advice
-from fe_drivetrain.shafts.uncertainty.input_study import ModelError, Reported, Study
+from fe_drivetrain.shafts.fidelity.quantity import Reported
+from fe_drivetrain.shafts.uncertainty.input_study import ModelError, Study
 from fe_drivetrain.shafts.uncertainty.numbers import (
     changes_by_spread,
     first_order,

@@ -172,6 +172,7 @@ def turning_ladder(
     rungs: Sequence[Rung],
     tolerance: float,
     steps: Steps,
+    reference: Asked | None = None,
 ) -> TurningLadder:
     """A quantity at all rungs of a drivetrain.
 
@@ -187,20 +188,22 @@ def turning_ladder(
         Allowed error, relative.
     steps : Steps
         Times each level, and shows it while it runs.
+    reference : Asked or None
+        Machine whose modes number frequencies; None for this one at its finest level.
 
     Raises
     ------
     InputError
         The finest level has no value, or it is zero, which has no relative error.
     """
-    reference = finest_modes(drivetrain, rungs)
+    numbered_by = finest_modes(drivetrain, rungs) if reference is None else reference
     if quantity.numbered:  # solved before the clocks start, so that no level pays for it
-        steps.timed("modes of the finest level", lambda: reference.modes)
+        steps.timed("modes of the finest level", lambda: numbered_by.modes)
     found = []
     for rung in rungs:
         with steps.step(rung.name):
             start = perf_counter()
-            model = TurningModel(drivetrain, rung, reference)
+            model = TurningModel(drivetrain, rung, numbered_by)
             value = quantity.of(model)
             found.append((rung, value, perf_counter() - start + rung.seconds))
     finest = quantity.value(model)

@@ -116,6 +116,11 @@ class TurningModel:
         found = gear_damage(rated, made.given.spectrum, made.chosen, application)
         return {name: one.damage.largest for name, one in found.items()}
 
+    def damage_band(self, flank: str) -> float:
+        """Numerical uncertainty of the damage of a flank, by coarser spreads of the loads."""
+        made, _ = self.rating, self.meshes
+        return made.damage()[flank][1].damage
+
 
 @dataclass(frozen=True)
 class TurningQuantity:
@@ -358,6 +363,6 @@ def _endured(flank: str) -> list[TurningQuantity]:
             f"gears.{flank}.damage",
             "-",
             lambda model: model.damage.get(flank),
-            lambda model: float("nan"),
+            lambda model: model.damage_band(flank),
         ),
     ]

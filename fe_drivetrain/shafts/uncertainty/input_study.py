@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, field, replace
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
@@ -31,7 +31,7 @@ from fe_drivetrain.shafts.fidelity.quantities import (
     stiffness_names,
     without_zeros,
 )
-from fe_drivetrain.shafts.fidelity.quantity import Quantity
+from fe_drivetrain.shafts.fidelity.quantity import Quantity, Reported
 from fe_drivetrain.shafts.fidelity.shafts import condensed_shaft, meridian_shaft
 from fe_drivetrain.shafts.response.cached import whole_content
 from fe_drivetrain.shafts.response.entering import Factors, factor_values
@@ -78,18 +78,6 @@ class ModelError:
 
     share: float
     source: str
-
-
-class Reported(Protocol):
-    """A quantity that is reported: its name, and the unit of its value."""
-
-    @property
-    def name(self) -> str:
-        """Name of the quantity."""
-
-    @property
-    def unit(self) -> str:
-        """Unit of the value."""
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.drivetrain_file.scene import Spread
-from fe_drivetrain.shafts.uncertainty.input_study import Reported, Study
+from fe_drivetrain.shafts.fidelity.quantity import Reported
+from fe_drivetrain.shafts.uncertainty.input_study import Study
 from fe_drivetrain.shafts.uncertainty.sampling import Samples, distribution, spreads_of
 
 
