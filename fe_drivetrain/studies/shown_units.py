@@ -84,6 +84,9 @@ def quantity_in_words(name: str) -> str:
     if where == "modes":
         kind, _, number = what.partition(".")
         return f"{'torsional frequency' if kind == 'torsional' else 'frequency'} {number}"
+    if where == "transient":
+        event, _, channel = what.removesuffix(".peak").partition(".")
+        return f"peak {channel} ({event.replace('_', ' ')})"
     if where == "gears":
         part, _, factor = what.rpartition(".")
         return f"{_FACTORS.get(factor, factor)} of {part}"

@@ -11,7 +11,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
-from fe_drivetrain.dynamics import RUNGS, Asked, Operation, Rung, machine_of, rungs_of
+from fe_drivetrain.dynamics import RUNGS, Asked, Operation, Rung, Rungs, machine_of, rungs_of
 from fe_drivetrain.dynamics.bodies.condensed_rungs import SOFT_SEATS, STIFF_SEATS
 from fe_drivetrain.plots.figures import MINIMUM, error_range, error_traces
 from fe_drivetrain.report.charts import chart
@@ -19,6 +19,7 @@ from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.studies.mode_levels import rungs_of as without_condensed
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.shown_units import quantity_in_words
 from fe_drivetrain.studies.turning_quantities import (
@@ -151,7 +152,7 @@ def advise_turning(
     found, steps = Findings(), Steps(report)
     found.seed = None
     found.about(drivetrain)
-    rungs = rungs_of(drivetrain, solids=solids, steps=steps)
+    rungs = _rungs(drivetrain, asked, solids, steps)
     ladder = turning_ladder(drivetrain, asked, rungs.rungs, tolerance, steps)
     _state(found, ladder)
     if rungs.left_out:
@@ -163,6 +164,15 @@ def advise_turning(
     options = {"quantity": quantity, "tolerance": tolerance, "solids": solids}
     return TurningAdvice(
         drivetrain=drivetrain, ladder=ladder, **found.frozen(steps.times, **options)
+    )
+
+
+def _rungs(drivetrain: Drivetrain, quantity: TurningQuantity, solids: bool, steps: Steps) -> Rungs:
+    """The ladder for a quantity; in time without condensed parts."""
+    if quantity.condensed:
+        return rungs_of(drivetrain, solids=solids, steps=steps)
+    return Rungs(
+        without_condensed(machine_of(drivetrain)), {"condensed parts": "it is one in time"}
     )
 
 

@@ -2,13 +2,15 @@
 
 ``modes.torsional.1`` is the first torsional frequency, ``modes.frequency.3`` the third of all,
 ``gears.stage 1 sun-planet.sharing`` the load of the most loaded planet over the mean,
-``gears.stage 3 mesh.K_Hbeta`` that along the face, ``gears.stage 3 pinion.S_H`` a safety factor.
+``gears.stage 3 mesh.K_Hbeta`` that along the face, ``gears.stage 3 pinion.S_H`` a safety factor,
+``transient.stop.force of stage 3 mesh.peak`` the largest force of a mesh in an emergency stop.
 Each is asked of a drivetrain at a rung of its ladder.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -32,7 +34,10 @@ from fe_drivetrain.dynamics import (
     torsional_frequency,
 )
 from fe_drivetrain.dynamics.bodies.mesh_loads import mesh_springs
+from fe_drivetrain.dynamics.time.machine_channels import UNITS, machine_channels
 from fe_drivetrain.dynamics.torsion.system import natural_modes
+from fe_drivetrain.procedure.drivetrain_events import EVENTS
+from fe_drivetrain.studies.drivetrain_transient import rated_of, transient
 from fe_drivetrain.studies.gear_answers import GearAnswer, MeshAnswer
 from fe_drivetrain.studies.gear_loads import GearLoading, loads_of
 from fe_drivetrain.studies.gear_options import GearOptions
@@ -41,10 +46,12 @@ from fe_drivetrain.studies.gear_stresses import MeshStresses
 from fe_drivetrain.studies.mode_levels import BANDED, element_bands
 from fe_drivetrain.studies.rated_gears import GearRating
 from fe_drivetrain.studies.tooth_damage import gear_damage
+from fe_drivetrain.studies.transient_result import LEVELS
+from fe_drivetrain.studies.transient_runs import Extreme
 
 FIRST = "modes.torsional.1"
 """What is asked for where nothing is, of a main shaft without sections."""
-STUDIES = ("modes", "gears")
+STUDIES = ("modes", "gears", "transient")
 """Studies whose quantities have a name, the first part of it."""
 _FREQUENCIES = 16
 """Number of the first frequencies that have a name, of drivetrains with all motions."""
@@ -68,6 +75,7 @@ class TurningModel:
     def __init__(self, drivetrain: Drivetrain, rung: Rung, reference: Asked | None = None) -> None:
         self.drivetrain, self.rung = drivetrain, rung
         self._reference = reference
+        self._events: dict[str, Mapping[str, Extreme]] = {}
 
     @cached_property
     def machine(self) -> Machine:
@@ -121,6 +129,16 @@ class TurningModel:
         made, _ = self.rating, self.meshes
         return made.damage()[flank][1].damage
 
+    def peak(self, event: str, channel: str) -> Extreme | None:
+        """Extremes of a channel in an event; None where this level does not have them."""
+        if self.rung.level not in EVENTS[event].levels:
+            return None
+        if event not in self._events:
+            word = next(word for word, level in LEVELS.items() if level is self.rung.level)
+            found = transient(self.drivetrain, event, level=word, quantity="torque")
+            self._events[event] = found.extremes
+        return self._events[event].get(channel)
+
 
 @dataclass(frozen=True)
 class TurningQuantity:
@@ -134,12 +152,15 @@ class TurningQuantity:
         Its value of a `TurningModel`; None where the model's level has none.
     own : callable
         Numerical uncertainty of the value [unit]; NaN where it is not known.
+    condensed : bool
+        Whether levels with condensed parts have it, too.
     """
 
     name: str
     unit: str
     of: Callable[[TurningModel], float | None]
     own: Callable[[TurningModel], float]
+    condensed: bool = True
 
     @property
     def numbered(self) -> bool:
@@ -235,10 +256,16 @@ def turning_quantities(drivetrain: Drivetrain) -> dict[str, TurningQuantity]:
     found = [_torsional(number) for number in range(1, count + 1)]
     every = count if machine.not_given else _FREQUENCIES
     found += [_frequency(number) for number in range(1, every + 1)]
-    try:
-        _, rated, _ = prepared(drivetrain, None, GearOptions(), _NO_LOADS)
-    except InputError:  # without gears, or a torque: no quantity of gears
-        return {one.name: one for one in found}
+    for quantities in (_of_gears, _of_events):
+        with suppress(InputError):  # without gears, a torque or a speed: none of these
+            found += quantities(drivetrain, machine)
+    return {one.name: one for one in found}
+
+
+def _of_gears(drivetrain: Drivetrain, machine: Machine) -> list[TurningQuantity]:
+    """Quantities of gears."""
+    _, rated, _ = prepared(drivetrain, None, GearOptions(), _NO_LOADS)
+    found = []
     for mesh, springs in mesh_springs(machine).items():
         found += [_sharing(mesh)] if len(springs) > 1 else []
         found.append(_face_load(mesh))
@@ -246,7 +273,34 @@ def turning_quantities(drivetrain: Drivetrain) -> dict[str, TurningQuantity]:
         for flank in one.flanks:
             found += [_stress(flank.name)]
             found += [] if one.strength is None else _endured(flank.name)
-    return {one.name: one for one in found}
+    return found
+
+
+def _of_events(drivetrain: Drivetrain, machine: Machine) -> list[TurningQuantity]:
+    """Peaks of all channels in all events that can happen to a drivetrain."""
+    level = Level.TORSIONAL if machine.not_given else Level.FLEXIBLE
+    running = rated_of(drivetrain).running(machine, level)
+    channels = machine_channels(running)
+    return [
+        _peak(event, name, UNITS[kind])
+        for event, kind_of in EVENTS.items()
+        if level in kind_of.levels
+        for name, kind in zip(channels.names, channels.kinds, strict=True)
+    ]
+
+
+def _peak(event: str, channel: str, unit: str) -> TurningQuantity:
+    def own(model: TurningModel) -> float:
+        """What the step leaves uncertain."""
+        one = model.peak(event, channel)
+        bands = () if one is None else (one.most_band, one.least_band)
+        return max((band for band in bands if band is not None), default=float("nan"))
+
+    def of(model: TurningModel) -> float | None:
+        one = model.peak(event, channel)
+        return None if one is None else one.largest
+
+    return TurningQuantity(f"transient.{event}.{channel}.peak", unit, of, own, condensed=False)
 
 
 def turning_quantity(drivetrain: Drivetrain, name: str) -> TurningQuantity:
@@ -275,12 +329,20 @@ def turning_quantity(drivetrain: Drivetrain, name: str) -> TurningQuantity:
 
 
 def _shortened(names: Sequence[str]) -> list[str]:
-    """Names with those of the frequencies as a range."""
+    """Names with those of the frequencies as a range, of peaks by event and channel."""
     shown = []
     for kind in ("torsional", "frequency"):
         of = [name for name in names if name.startswith(f"modes.{kind}.")]
         shown += of if len(of) < 3 else [f"{of[0]} to {of[-1]}"]
-    return shown + [name for name in names if not name.startswith("modes.")]
+    shown += [name for name in names if name.startswith("gears.")]
+    peaks = [name.split(".", 2)[1:] for name in names if name.startswith("transient.")]
+    if peaks:
+        events, channels = (list(dict.fromkeys(part)) for part in zip(*peaks, strict=True))
+        shown.append(
+            f"transient.EVENT.CHANNEL.peak, EVENT of {', '.join(events)}, CHANNEL of "
+            f"{', '.join(one.removesuffix('.peak') for one in channels)}"
+        )
+    return shown
 
 
 def _torsional(number: int) -> TurningQuantity:
