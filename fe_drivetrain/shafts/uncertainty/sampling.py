@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
@@ -188,7 +188,7 @@ def with_values(scene: Stated, values: Mapping[str, float]) -> Stated:
     """
     if not isinstance(scene, Scene):
         return changed(scene, values, "drivetrain")
-    whole = with_materials(scene)
+    whole = cast("Stated", with_materials(scene))
     try:
         return changed(whole, values, "scene")
     except InputError:
