@@ -34,7 +34,6 @@ from .studies import AdviseResult as AdviseResult
 from .studies import CheckResult as CheckResult
 from .studies import CompareResult as CompareResult
 from .studies import ExportResult as ExportResult
-from .studies import GearOptions as GearOptions
 from .studies import GearsResult as GearsResult
 from .studies import LifeOptions as LifeOptions
 from .studies import LifeResult as LifeResult

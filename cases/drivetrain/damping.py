@@ -73,7 +73,7 @@ def run(run: Run, page: Page) -> None:
     swinging = damped_modes(models["free"]["2 masses, as meant"]).ratios[0]
     grid = np.geomspace(0.1, 1e4, QUICK_POINTS if run.quick else POINTS)
     check_as_meant(run, page, models, float(swinging), grid)
-    page.about(TABLE)
+    page.about(published.drivetrain("nrel_750kw"))
     rows = check_eigenvalues(page, models)
     series = check_series(page, models["free"])
     check_planets(page, models["fixed"]["11 masses, as tabled"])

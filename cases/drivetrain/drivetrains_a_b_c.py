@@ -93,7 +93,7 @@ def run(run: Run, page: Page) -> None:
     for letter in published.OTHERS:
         with run.step(f"drivetrain {letter}"):
             found[letter] = by_tables(letter)
-            page.about(found[letter].table, f"drivetrain {letter}")
+            page.about(published.drivetrain(f"drivetrain_{letter.lower()}"), f"drivetrain {letter}")
             check_tables(page, found[letter])
             if letter in RESTORED:
                 others[letter] = restored(found[letter])

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.optimize import brentq, fsolve
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.drivetrain.own_model import own_model
 from fe_drivetrain.cases.drivetrain.printed import (
     check_printed,
     frequency_rows,
@@ -37,6 +38,7 @@ from fe_drivetrain.dynamics.torsion import (
 from fe_drivetrain.report import Cell
 from fe_drivetrain.report.number_text import certain_value, percent_text
 from fe_drivetrain.report.suite import Page, Run
+from fe_drivetrain.report.suite.chosen import SETTING
 
 #: Modes of Table 6.1 that do not follow from the inputs of Table 4.2; shown, and restored below.
 ASTRAY = frozenset({3, 4})
@@ -63,10 +65,14 @@ class Restored(NamedTuple):
 @case(
     "NREL 750 kW drivetrain as five masses, generator fixed and free",
     source="Al-Hamadani 2018, Eq 4.8-4.26, Tables 4.2, 6.1 and 6.2",
+    settings={"drivetrain": "FILE, or a name of the library (otherwise drivetrain D)"},
 )
 def run(run: Run, page: Page) -> None:
     """Frequencies and shapes with the generator fixed and free; what restores both tables."""
-    page.about(TABLE)
+    if SETTING in run.settings:
+        own_model(run, page, "a mass for each stage")
+        return
+    page.about(published.drivetrain(NAME))
     with run.step("frequencies of Table 4.2"):
         found = {state: natural_modes(system) for state, system in SYSTEMS.items()}
         bands = published.rounding_bands(NAME, stage_masses)

@@ -1,48 +1,24 @@
 """Any drivetrain in torsion, of its file: ``--set drivetrain=mine.yaml``."""
 
-import numpy as np
-
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.drivetrain.own_model import (
+    GEARS,
+    MAKERS,
+    check_gears_and_stages,
+    frequency_rows,
+)
 from fe_drivetrain.cases.drivetrain.printed import check_count, show_energy, show_shapes
 from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.cases.references.independent_torsion import certified
-from fe_drivetrain.comparison import round_off
 from fe_drivetrain.dynamics import gear_table
 from fe_drivetrain.dynamics.torsion import (
-    GENERATOR,
-    ROTOR,
-    GearTable,
-    Modes,
-    Torsional,
     damped_modes,
     gear_masses,
     gear_speeds,
-    modal_damping,
     natural_modes,
-    stage_masses,
-    static_stiffness,
-    two_masses,
 )
 from fe_drivetrain.report.number_text import percent_text, value_text
 from fe_drivetrain.report.suite import Page, Record, Run
-
-GEARS = "a mass for each gear"
-MAKERS = {"two masses": two_masses, "a mass for each stage": stage_masses, GEARS: gear_masses}
-
-
-def frequency_rows(model: str, system: Torsional, modes: Modes, state: str) -> list[Record]:
-    """Frequencies and damping ratios of one model."""
-    ratios = modal_damping(system)
-    return [
-        {
-            "model": model,
-            "generator": state,
-            "mode": m,
-            "frequency [Hz]": float(f),
-            "damping ratio": float(z) if np.isfinite(z) else None,
-        }
-        for m, (f, z) in enumerate(zip(modes.frequencies, ratios, strict=True), start=1)
-    ]
 
 
 @case(
@@ -113,33 +89,3 @@ def answer(page: Page, first: list[float], whole: float, meshes: float, hero: st
         ],
         hero,
     )
-
-
-def check_gears_and_stages(page: Page, table: GearTable) -> tuple[float, float]:
-    """Angular momentum and stiffness, generator free.
-
-    Returns
-    -------
-    whole, rigid : float
-        Stiffness from the rotor to the held generator, of all and of the shafts alone [N m/rad].
-    """
-    speeds, gears = gear_speeds(table), gear_masses(table, "free")
-    momentum = np.array([speeds[n] for n in gears.names]) * gears.J
-    carried = momentum @ natural_modes(gears).shapes
-    page.vanishes(
-        "a mass for each gear, generator free: largest angular momentum of a mode that swings, "
-        "over that of free turning",
-        float(np.abs(carried[1:] / carried[0]).max()),
-        within=1e-8,
-        why="modes are orthogonal to free turning but for rounding",
-        source="no torque from outside",
-    )
-    rigid = static_stiffness(stage_masses(table, "free"), ROTOR, GENERATOR)
-    page.equals(
-        "shafts of the stages, generator held: torque on the rotor over its angle [N m/rad]",
-        rigid,
-        float(two_masses(table, "free").k[0]),
-        **round_off(1e4, "an orthogonal elimination of two angles, and three ratios squared"),
-        source="sum of compliances",
-    )
-    return static_stiffness(gears, ROTOR, GENERATOR), rigid

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.drivetrain.own_model import own_model
 from fe_drivetrain.cases.drivetrain.printed import check_printed, frequency_rows, show_shapes
 from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.cases.references.independent_torsion import two_mass_frequencies
@@ -25,6 +26,7 @@ from fe_drivetrain.report import trace
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import certain_value
 from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.report.suite.chosen import SETTING
 
 NAME = "nrel_750kw"
 TABLE = published.table(NAME)
@@ -67,10 +69,14 @@ class Restored(NamedTuple):
 @case(
     "NREL 750 kW drivetrain as two masses, generator fixed and free",
     source="Al-Hamadani 2018, Eq 4.28-4.35, Tables 4.2, 6.1 and 6.2",
+    settings={"drivetrain": "FILE, or a name of the library (otherwise drivetrain D)"},
 )
 def run(run: Run, page: Page) -> None:
     """Frequencies with the generator fixed and free, against the quadratic and the tables."""
-    page.about(TABLE)
+    if SETTING in run.settings:
+        own_model(run, page, "two masses")
+        return
+    page.about(published.drivetrain(NAME))
     with run.step("frequencies"):
         found = {state: natural_modes(system) for state, system in SYSTEMS.items()}
         bands = published.rounding_bands(NAME, two_masses)

@@ -120,7 +120,7 @@ def answer(page: Page, lines: list[float], flat: float, space: float, resolved: 
             "Bearings and bending lower the first mode here, and with it the distance; bearings "
             "are assumed, as the source does not print them."
         ],
-        claim="holds" if farther else "holds in part",
+        claim="holds" if farther else "does not hold",
     )
     page.say(
         "An eccentric gear 3 adds sidebands at its own speed from the line: defects of gears stand "

@@ -87,11 +87,11 @@ def run(run: Run, page: Page) -> None:
             for load in catalogue.uncovered
         ],
     )
-    with run.step("resonance"), page.of(TABLE):
+    with run.step("resonance"), page.of(published.drivetrain("drivetrain_c")):
         met = resonance(page)
     with run.step("misalignment"), page.of(None):
         support, force = misalignment(page)
-    with run.step("voltage dips"), page.of(TABLE):
+    with run.step("voltage dips"), page.of(published.drivetrain("drivetrain_c")):
         least = dips(page)
     with run.step("interfaces"), page.of(None):
         interfaces(run, page)

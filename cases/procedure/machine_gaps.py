@@ -88,7 +88,8 @@ def run(run: Run, page: Page) -> None:
 
 def answer(page: Page, speeds: tuple[float, float], torque: float, offset: float) -> None:
     """State the margin to resonance, and what dips and offsets load."""
-    margin = page.judged(MARGIN, f"least margin to a resonance, {speeds[0]:g} to {speeds[1]:g} rpm")
+    low, high = speeds
+    margin = page.judged(MARGIN, f"least margin to a resonance, {low:.4g} to {high:.4g} rpm")
     most = page.judged(MAXIMUM, "largest torque of the main shaft in a dip")
     least = page.judged(MINIMUM, "least torque of the main shaft in a dip")
     over = page.judged(
@@ -113,7 +114,7 @@ def answer(page: Page, speeds: tuple[float, float], torque: float, offset: float
         hero=TORQUE,
         cautions=[
             f"Damping is assumed, {100 * RATIO:g} % of critical: the drivetrain's file has none.",
-            f"Torque before a dip is {torque:g} kN m; the generator's torque falls by up to all "
+            f"Torque before a dip is {torque:.4g} kN m; the generator's torque falls by up to all "
             "of it.",
         ],
     )
@@ -162,7 +163,7 @@ def resonance(page: Page, machine: Machine, speeds: tuple[float, float]) -> None
     page.found(MARGIN, met[0].margin, loads=(RESONANCE,))
     page.section("Resonance")
     page.table(
-        f"Nearest of {len(met)} excited, from {speeds[0]:g} to {speeds[1]:g} rpm",
+        f"Nearest of {len(met)} excited, from {speeds[0]:.4g} to {speeds[1]:.4g} rpm",
         [
             {
                 "excitation": m.excitation,
@@ -176,7 +177,7 @@ def resonance(page: Page, machine: Machine, speeds: tuple[float, float]) -> None
         ],
     )
     page.text(
-        f"From {speeds[0]:g} to {speeds[1]:g} rpm the least margin is {met[0].margin:.3g}: "
+        f"From {speeds[0]:.4g} to {speeds[1]:.4g} rpm the least margin is {met[0].margin:.3g}: "
         f"{met[0].excitation} at {met[0].frequency:.4g} Hz."
     )
 

@@ -131,7 +131,8 @@ def _answer_parts(
     for caution in cautions[:MAX_CAUTIONS]:
         yield Text(f"Caution: {caution}".translate(_TYPED), style="yellow")
     if len(cautions) > MAX_CAUTIONS:
-        yield f"{len(cautions) - MAX_CAUTIONS} more cautions are on the page."
+        more = len(cautions) - MAX_CAUTIONS
+        yield f"{more} more caution{'s are' if more > 1 else ' is'} on the page."
 
 
 def figures_table(figures: Sequence[KeyFigure]) -> RenderableType:

@@ -42,6 +42,7 @@ from fe_drivetrain.command_line.studies import advise_command, check_command
 from fe_drivetrain.command_line.study import study_command
 from fe_drivetrain.command_line.terminal import ended, prepare_streams, write
 from fe_drivetrain.command_line.transient import transient_command
+from fe_drivetrain.command_line.typed_words import WithFiles
 from fe_drivetrain.command_line.uncertainty import uncertainty_command
 from fe_drivetrain.command_line.validate import validate_command
 from fe_drivetrain.common.memory import collect_lasting_seldom
@@ -82,7 +83,7 @@ _WITHOUT_PAGE = ("new", "list", "history", "compare-runs", "export", "part")
 for _panel, _name, _function in _COMMANDS:
     app.command(
         _name,
-        cls=HelpOfCases if _name == "run" else None,
+        cls=HelpOfCases if _name == "run" else WithFiles,
         help=unfolded(_function.__doc__ or ""),
         epilog=examples_text(_name),
         rich_help_panel=_panel,

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fe_drivetrain.command_line.names import complete_scene
 from fe_drivetrain.command_line.options import (
     Channels,
     Mapping,
     Resume,
-    SceneName,
     Scheduler,
     Skip,
 )
@@ -31,7 +31,15 @@ _HUB = ("hub.Fx", "hub.Fy", "hub.Fz", "hub.My", "hub.Mz")
 class GearsRequest:
     """Arguments and options of ``gears`` as typed; each help text says what one is."""
 
-    drivetrain: SceneName
+    drivetrain: Annotated[
+        str,
+        typer.Argument(
+            metavar="DRIVETRAIN",
+            autocompletion=complete_scene,
+            help="A drivetrain file with rotor, gearbox and generator, or a name of the library, "
+            "as in nrel_5mw.",
+        ),
+    ]
     torque: Annotated[
         float | None,
         typer.Option(
@@ -84,14 +92,14 @@ class GearsRequest:
         ),
     ] = None
     level: Annotated[
-        str,
+        str | None,
         typer.Option(
             "--level",
-            metavar="NAME",
-            help="Level of the rating: torsional (sharing by formula), 'rigid bodies', 'flexible "
-            "shafts'.",
+            metavar="LEVEL",
+            help="Level of the rating: torsional (load shared by formula), rigid, flexible. "
+            "Default: the finest that the data allow.",
         ),
-    ] = GearOptions.level
+    ] = None
     tolerance: Annotated[
         str,
         typer.Option(
@@ -159,7 +167,7 @@ class GearsRequest:
         from fe_drivetrain.command_line.option_values import parse_mapping
 
         return GearOptions(
-            level=self.level,  # type: ignore[arg-type]
+            level=self.level,
             tolerance=parse_tolerance(self.tolerance),
             azimuths=self.azimuths,
             slices=self.slices,

@@ -88,6 +88,14 @@ class ModesRequest:
             help="Error of a frequency that a simpler level may have, as in 5% or 0.05.",
         ),
     ] = "5%"
+    condensed: Annotated[
+        bool,
+        typer.Option(
+            "--condensed",
+            help="Compare levels with those beyond, too: housings of main bearings at both bounds, "
+            "gearbox on its mount, carriers, main shaft in its meridian. Meshes the housings once.",
+        ),
+    ] = False
     out: Annotated[
         Path | None,
         typer.Option(
@@ -136,6 +144,7 @@ def modes_command(context: typer.Context, asked: ModesRequest) -> int:
             blades=asked.blades,
             excitations=excitations,
             tolerance=share,
+            condensed=asked.condensed,
             report=run.report,
         )
 

@@ -27,6 +27,7 @@ OPTIONS: Mapping[str, str] = {
     "changes": "--set",
     "channels": "--channel",
     "cleanliness": "--cleanliness",
+    "condensed": "--condensed",
     "duration": "--duration",
     "every": "--every",
     "gearbox_cleanliness": "--gearbox-cleanliness",

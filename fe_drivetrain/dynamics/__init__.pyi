@@ -51,6 +51,7 @@ from .bodies.gear_pairs import mesh_stresses as mesh_stresses
 from .bodies.gear_pairs import pitch_contacts as pitch_contacts
 from .bodies.gear_pairs import with_iso_stiffness as with_iso_stiffness
 from .bodies.gearbox_mount import gearbox_housing as gearbox_housing
+from .bodies.gearbox_mount import on_mount as on_mount
 from .bodies.housing_bounds import Between as Between
 from .bodies.housing_bounds import HousingBounds as HousingBounds
 from .bodies.housing_bounds import housing_bounds as housing_bounds

@@ -41,10 +41,10 @@ def show_gears(run: Run, page: Page, result: GearsResult) -> None:
 
 def _safety(page: Page, result: GearsResult) -> None:
     rows: list[Record] = result.tables["gears"]
+    page.section("Safety of all gears" if rows else "Loads of all meshes")
+    page.add(result.chart())
     if not rows:
         return
-    page.section("Safety of all gears")
-    page.add(result.chart())
     page.table("Stresses and safety at the reference torque", rows, list(_RATINGS))
     if result.varies and any(row["S_H"] is not None for row in rows):
         page.table(

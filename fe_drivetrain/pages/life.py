@@ -39,7 +39,8 @@ def show_life(run: Run, page: Page, result: LifeResult) -> None:
     _levels(page, result)
     _assumed(page, result)
     for life in result.lives:
-        page.section(f"Bearing {life.name}: {life.bearing.entry.title}")
+        each = f", of each of {life.bearing.planets} planets" if life.bearing.planets else ""
+        page.section(f"Bearing {life.name}{each}: {life.bearing.entry.title}")
         winds(page, life)
         places(page, life, ring_rows(life))
         laminae(page, life)

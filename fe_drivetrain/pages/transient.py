@@ -72,6 +72,9 @@ def _extremes(page: Page, result: TransientResult) -> None:
         "Torques, forces of meshes and speeds are positive as at rated torque; forces of bearings "
         "are those across the axis. ± is what the step leaves uncertain."
     )
+    if "instants" in result.tables:
+        page.section("Instants of the brake")
+        page.table("Peak of the last shaft by the instant of the brake", result.tables["instants"])
     if "alternating" in result.tables:
         page.section("Bearings beside the axis")
         page.table(

@@ -99,7 +99,9 @@ class ThreePoints:
         )
 
 
-def three_points_of(scene: Scene, between_arms: float) -> ThreePoints:
+def three_points_of(
+    scene: Scene, between_arms: float, generator_mass: float | None = None
+) -> ThreePoints:
     """Places and masses of a drivetrain's file that has one main bearing and a geared gearbox.
 
     The gearbox is where its weight and its mount are: at the main shaft's rear face.
@@ -107,9 +109,11 @@ def three_points_of(scene: Scene, between_arms: float) -> ThreePoints:
     Parameters
     ----------
     scene : Scene
-        The drivetrain, with ``gearbox.weight`` and ``generator.mass``.
+        The drivetrain, with ``gearbox.weight``.
     between_arms : float
         Distance of the torque arms across the shaft [m], which no file states.
+    generator_mass : float, optional
+        Mass of a generator that only turns in the file [kg]; ``generator.mass`` where left out.
 
     Returns
     -------
@@ -127,7 +131,7 @@ def three_points_of(scene: Scene, between_arms: float) -> ThreePoints:
             "one: use a file with one bearing unit"
         )
     machine = machine_of(scene)
-    mass = machine.generator.mass
+    mass = generator_mass or machine.generator.mass
     lacks = {"gearbox.stages": machine.stages, "gearbox.weight": scene.gearbox.weight}
     for key, value in {**lacks, "generator.mass": mass}.items():
         if not value:

@@ -11,7 +11,15 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file import Drivetrain, Scene
-from fe_drivetrain.dynamics import Level, Machine, machine_of, machine_system, system_modes
+from fe_drivetrain.dynamics import (
+    Level,
+    Machine,
+    Rungs,
+    machine_of,
+    machine_system,
+    rungs_of,
+    system_modes,
+)
 from fe_drivetrain.dynamics.bodies.damping_ratios import with_damping_ratios
 from fe_drivetrain.procedure import Excitation, drivetrain_excitations
 from fe_drivetrain.report.results import Chart
@@ -69,6 +77,7 @@ def modes(
     blades: int = 3,
     excitations: Sequence[Excitation] = (),
     tolerance: float = 0.05,
+    condensed: bool = False,
     report: Progress = silent,
 ) -> ModesResult:
     """Compute natural modes of a drivetrain, and which excitations meet them in operation.
@@ -93,6 +102,10 @@ def modes(
         Others beside those that follow from blades, planets, teeth and shafts, as a controller's.
     tolerance : float
         Relative error of a frequency that a simpler level may have.
+    condensed : bool
+        Whether levels are compared with those beyond, too, as far as the file states what they
+        need: housings of main bearings at both bounds, the gearbox on its mount, carriers, the main
+        shaft in its meridian; see `fe_drivetrain.dynamics.rungs_of`. Housings are meshed once.
     report : Progress
         Called with the name of each step as it begins.
 
@@ -110,7 +123,10 @@ def modes(
     acting = (*drivetrain_excitations(machine.stages, blades, PASSINGS), *excitations)
     asked = _Asked(named_level(level, machine), generator == "held", tolerance)
     over = _speeds_of(drivetrain) if speeds is None else speeds
-    record = _record(drivetrain, machine, asked, acting, over, speed, steps)
+    rungs = rungs_of(drivetrain, steps=steps) if condensed else None
+    record = _record(drivetrain, machine, asked, acting, over, speed, steps, rungs)
+    if rungs is not None:
+        _state_rungs(found, rungs)
     if asked.level is not Level.TORSIONAL:
         _note_housings(found, drivetrain)
     state_modes(found, machine, record, SHOWN)
@@ -121,7 +137,12 @@ def modes(
         machine=machine,
         **vars(record),
         **found.frozen(
-            steps.times, **options, blades=blades, excitations=others, tolerance=tolerance
+            steps.times,
+            **options,
+            blades=blades,
+            excitations=others,
+            tolerance=tolerance,
+            condensed=condensed,
         ),
     )
 
@@ -130,6 +151,14 @@ def _note_housings(found: Findings, drivetrain: Drivetrain) -> None:
     """State that housings of main bearings are left out."""
     if isinstance(drivetrain, Scene) and drivetrain.bearing_units:
         found.note("Housings of the main bearings are rigid here: soft ones lower frequencies.")
+
+
+def _state_rungs(found: Findings, rungs: Rungs) -> None:
+    """State what the condensed levels assume, and what the file lacks for others."""
+    for what in rungs.rungs[-1].assumes:
+        found.assume(what.partition(":")[0], "see source", "", f"assumed: {what}")
+    rows = [{"level or part": name, "because": why} for name, why in rungs.left_out.items()]
+    found.data("levels left out", rows)
 
 
 class _Asked(NamedTuple):
@@ -148,6 +177,7 @@ def _record(
     speeds: tuple[float, float] | None,
     speed: float | None,
     steps: Steps,
+    rungs: Rungs | None,
 ) -> Modes:
     """What is known of the modes."""
     with steps.step("modes at rest"):
@@ -157,7 +187,8 @@ def _record(
         solved = system_modes(system)
         own = described(machine, system, solved, SHOWN)
     with steps.step("levels"):
-        answers, enough = compared_levels(machine, asked.held, asked.tolerance)
+        finer = None if rungs is None else rungs.rungs
+        answers, enough = compared_levels(machine, asked.held, asked.tolerance, finer)
     with steps.step("bands"):
         bands = frequency_bands(machine, asked.level, asked.held, len(own.frequencies))
     with steps.step("modes in operation"):

@@ -33,6 +33,7 @@ from fe_drivetrain.studies.transient_findings import (
     state_assumptions,
     state_figures,
 )
+from fe_drivetrain.studies.transient_instants import ByInstant, by_instant
 from fe_drivetrain.studies.transient_ladder import (
     QUANTITIES,
     cheapest_level,
@@ -52,6 +53,7 @@ from fe_drivetrain.studies.transient_tables import (
     digest_rows,
     equivalent_rows,
     extreme_rows,
+    instant_rows,
     level_rows,
     over_files,
     spectrum_rows,
@@ -247,7 +249,7 @@ def _of_file(drivetrain: Drivetrain, event: str) -> dict[str, float | str]:
     brake = drivetrain.brake
     if event != "stop" or brake is None:
         return {}
-    return {"on": brake.shaft, "brake_torque": brake.torque, "rise": brake.rise}
+    return {"shaft": brake.shaft, "brake_torque": brake.torque, "rise": brake.rise}
 
 
 def _happened(asked: _Asked, steps: Steps) -> TransientResult:
@@ -255,15 +257,22 @@ def _happened(asked: _Asked, steps: Steps) -> TransientResult:
     event = event_of(asked.event, asked.values)
     duration = _duration(asked, event)
 
+    made: dict[Level, Prepared] = {}
+
     def at(level: Level) -> Callable[[float | None], LevelRun]:
-        of = Prepared(asked.machine, level, asked.rated, event.teeth)
+        of = made[level] = Prepared(asked.machine, level, asked.rated, event.teeth)
         planned = event.plan(of.of, duration, asked.rated.slip)
         return lambda step: of.event(planned, event.step(of.of) if step is None else step)
 
     found = _findings(asked)
     runs, number = _compared(asked, asked.levels(event.levels), at, asked.step, steps)
     run = runs[number]
-    return _result(asked, found, steps, runs, number, run.extremes, run.samples, {}, {})
+    torques = [name for name, one in run.extremes.items() if one.kind == "torque"]
+    instants = None
+    if torques and asked.event == "stop":
+        with steps.step("instants of the brake"):
+            instants = by_instant(made[run.level], event, torques[-1], run.step)
+    return _result(asked, found, steps, runs, number, run.extremes, run.samples, {}, {}, instants)
 
 
 def _duration(asked: _Asked, event: Event) -> float:
@@ -374,6 +383,7 @@ def _result(
     samples: Samples,
     files: Mapping[str, FileDigest],
     more: Mapping[str, Any],
+    instants: ByInstant | None = None,
 ) -> TransientResult:
     """State what was found, and freeze it."""
     run = runs[number]
@@ -384,10 +394,12 @@ def _result(
     found.data("levels", level_rows(runs, errors, number))
     if asked.event == "offset":
         found.data("alternating", alternating_rows(run))
+    if instants is not None:
+        found.data("instants", instant_rows(instants))
     judge_run(found, asked.event, run, imbalance, asked.rated)
     state_assumptions(found, asked.event, asked.values, asked.drivetrain)
     state_figures(found, extremes, run)
-    state_answer(found, asked.event, extremes, run, runs, number, files, asked.quantity)
+    state_answer(found, asked.event, extremes, run, runs, number, files, asked.quantity, instants)
     word = next(word for word, one in LEVELS.items() if one is run.level)
     return TransientResult(
         event=asked.event,
@@ -401,5 +413,6 @@ def _result(
         imbalance=imbalance,
         samples=samples,
         files=files,
+        by_instant=instants,
         **found.frozen(steps.times, **{**asked.plain(), **more}),
     )

@@ -23,19 +23,30 @@ UNREAD = (
     "ratings of the NREL 5 MW gears, the table of K_gamma and the least safety factors are "
     "second-hand."
 )
+TORQUE_ALONE = (
+    "Files have the torque without all other loads of the hub: only the rotor's weight acts beside "
+    "it, in all of them."
+)
 _ROUND_OFF = 1e-6
 
 
-def gear_chart(gears: Mapping[str, GearAnswer], varies: bool) -> Chart:
-    """Safety factors of all gears over the least that is asked for; stresses without strength.
+def gear_chart(
+    gears: Mapping[str, GearAnswer], meshes: Mapping[str, MeshAnswer], varies: bool
+) -> Chart:
+    """Safety factors of all gears over those required; stresses, or loads, without what they need.
 
     Parameters
     ----------
     gears : mapping of str to GearAnswer
         All flanks.
+    meshes : mapping of str to MeshAnswer
+        All meshes.
     varies : bool
         Whether safety is over a spectrum.
     """
+    if not gears:
+        loads = {name: float(one.along.max()) for name, one in meshes.items()}
+        return bars("Largest local load of each mesh", {"load": loads}, "load over the mean [-]")
     rated = {name: safeties(one, varies) for name, one in gears.items() if one.required}
     if not rated:
         stress = {name: one.contact_stress / 1e6 for name, one in gears.items()}
@@ -276,13 +287,19 @@ def _cautions(
         if len(mesh.spread.share[0]) > 1
         and mesh.spread.sharing < SHARING.get(len(mesh.spread.share[0]), SHARING[7])
     ]
-    if low and result["asked"].level != "torsional":
+    if train.machine.not_given:
+        found.note(
+            f"The file does not state {', '.join(train.machine.not_given)}: load is shared by "
+            "formula, not by statics.",
+            first=True,
+        )
+    if low and result["level"] != "torsional":
         table = SHARING.get(len(low[0].spread.share[0]), SHARING[7])
         found.note(
             "Errors of the pins' places are not in the file: K_gamma is that of perfect parts, and "
             f"IEC 61400-4 takes {table:g} unless measured."
         )
-    if result["asked"].level != "torsional":
+    if result["level"] != "torsional":
         found.note("Flanks have no modification along the face: lead corrections are not modelled.")
     if result["varies"] and (result["spectrum"].torques < 0.0).any():
         found.note(

@@ -46,6 +46,8 @@ class GearLoads:
         Whether the rotor has its weight; loads of a hub hold it already.
     varies : bool
         Whether the spectrum has several torques.
+    alone : bool
+        Whether files have the torque alone, so that the rotor's weight acts beside it.
     hours : float
         Life asked for [h]: of a site all hours of its years, those outside of the winds of the
         files without load.
@@ -56,6 +58,7 @@ class GearLoads:
     weight: bool
     varies: bool
     hours: float
+    alone: bool = False
 
 
 @dataclass(frozen=True)
@@ -163,7 +166,7 @@ def loads_of(
     hours = HOURS if asked.hours is None else asked.hours
     if files:
         reading = Reading(asked, width, train.entrance)
-        whole = files_spectrum(files, reading, site, given.resume, report)
+        whole, alone = files_spectrum(files, reading, site, given.resume, report)
         if len(whole.torques) > _MOST * asked.classes:
             raise InputError(
                 f"gears: the torque of the files goes to {_MOST} times the reference torque, "
@@ -173,7 +176,7 @@ def loads_of(
             whole = whole.times(hours / whole.hours)
         nearest = int(np.abs(whole.torques - train.torque).argmin())
         asked_for = hours if site is None else site.years * HOURS_A_YEAR
-        return GearLoads(whole, whole.hub[nearest], False, True, asked_for)
+        return GearLoads(whole, whole.hub[nearest], alone, True, asked_for, alone)
     if spectrum is not None:
         if speed is None and any(len(row) < 3 for row in spectrum):
             raise InputError(

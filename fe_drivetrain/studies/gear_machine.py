@@ -11,9 +11,11 @@ from fe_drivetrain.drivetrain_file.entrance import Entrance
 from fe_drivetrain.drivetrain_file.gear_strength import GearStrength
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.dynamics.bodies.levels import Level, machine_system
 from fe_drivetrain.dynamics.bodies.machine import machine_of
 from fe_drivetrain.studies.gear_options import GearOptions
 from fe_drivetrain.studies.gear_stresses import Conditions
+from fe_drivetrain.studies.mode_levels import named_level, plain_rungs
 
 RPM = 0.10471975511965977
 
@@ -26,6 +28,10 @@ class GearTrain:
     ----------
     machine : MachineTable
         Bodies, shafts and stages.
+    levels : tuple of Level
+        Levels that its data allow, from the simplest to the finest.
+    level : Level
+        Level of the rating.
     strengths : dict of int to GearStrength
         Strength of stages by their number, from 1.
     conditions : Conditions
@@ -41,6 +47,8 @@ class GearTrain:
     """
 
     machine: MachineTable
+    levels: tuple[Level, ...]
+    level: Level
     strengths: dict[int, GearStrength]
     conditions: Conditions
     torque: float
@@ -99,6 +107,18 @@ def gear_train(drivetrain: Drivetrain, options: GearOptions, torque: float | Non
     where = drivetrain.entrance if isinstance(drivetrain, Scene) else None
     missing = ["operation.rotor_speed"] if speed is None else []
     missing += ["operation.lubricant"] if oil is None else []
+    level = named_level(options.level, machine)
+    if level is not Level.TORSIONAL:
+        machine_system(machine, level, held_generator=True)  # refuses what its data do not allow
+    levels = tuple(rung.level for rung in plain_rungs(machine))
     return GearTrain(
-        machine, strengths, Conditions(speed, oil), torque, where, stated, tuple(missing)
+        machine,
+        levels,
+        level,
+        strengths,
+        Conditions(speed, oil),
+        torque,
+        where,
+        stated,
+        tuple(missing),
     )

@@ -21,6 +21,8 @@ from fe_drivetrain.gear.strength import GearMaterial
 NOMINAL_STEEL = GearMaterial("case-hardened", 1500e6, 430e6)
 """Steel whose elasticity counts where the file states no strength."""
 
+_NEEDED, _SIZES = ("teeth", "module", "shifts"), ("centre_distance", "face_width")
+
 ALTERNATING = 0.7
 """Y_M of a planet, whose roots are bent both ways (ISO 6336-3)."""
 
@@ -170,8 +172,9 @@ def gear_meshes(
     for number, stage in enumerate(machine.stages, start=1):
         name = f"stage {number}"
         of_stage = [mesh for mesh in mesh_springs(machine) if mesh.startswith(f"{name} ")]
-        if stage.teeth is None or stage.module is None or stage.shifts is None:
-            lacking = [k for k in ("teeth", "module", "shifts") if getattr(stage, k) is None]
+        lacking = [key for key in _NEEDED if getattr(stage, key) is None]
+        lacking += [key for key in _SIZES if f"{name}: {key}" in machine.not_given]
+        if lacking:
             left_out |= dict.fromkeys(of_stage, f"{name}: {', '.join(lacking)}")
             continue
         strength = strengths.get(number)

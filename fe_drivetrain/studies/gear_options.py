@@ -3,16 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
 
-from fe_drivetrain.common.errors import InputError, require_known
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.studies.history_options import HistoryOptions, require_between
-
-if TYPE_CHECKING:
-    from fe_drivetrain.dynamics.bodies.levels import Level
-
-LEVELS = ("torsional", "rigid bodies", "flexible shafts")
-"""Levels of the ladder, from the simplest."""
 
 HOURS = 175200.0
 """Hours of twenty years, of a torque without a site."""
@@ -27,8 +20,9 @@ class GearOptions(HistoryOptions):
     channels, rotor_speed_rpm, skip
         How files are read, see `HistoryOptions`; the rotor speed is that of the rating, too, where
         the drivetrain states none.
-    level : str
-        One of `LEVELS`, by which gears are rated.
+    level : str or None
+        Level by which gears are rated, "torsional", "rigid" or "flexible"; None takes the finest
+        that the file's data allow.
     tolerance : float
         Relative difference in contact stress within which a cheaper level is enough.
     azimuths : int
@@ -48,7 +42,7 @@ class GearOptions(HistoryOptions):
         A value is out of its range.
     """
 
-    level: Literal["torsional", "rigid bodies", "flexible shafts"] = "flexible shafts"
+    level: str | None = None
     tolerance: float = 0.05
     azimuths: int = 24
     slices: int = 9
@@ -58,7 +52,6 @@ class GearOptions(HistoryOptions):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_known("level of a rating of gears", self.level, LEVELS)
         for name, low, high in (("azimuths", 4, 720), ("slices", 3, 99), ("classes", 4, 1000)):
             value = getattr(self, name)
             if not (isinstance(value, int) and low <= value <= high):
@@ -80,10 +73,3 @@ class GearOptions(HistoryOptions):
                 )
         if self.lubricant is not None:
             require_between("viscosity of the oil", self.lubricant, "mm2/s", 1.0, 2000.0)
-
-    @property
-    def ladder(self) -> tuple[Level, ...]:
-        """Levels from the simplest to the finest."""
-        from fe_drivetrain.dynamics.bodies.levels import Level
-
-        return tuple(Level(name) for name in LEVELS)

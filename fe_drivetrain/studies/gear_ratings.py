@@ -10,11 +10,10 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
-from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.gear_answers import GearAnswer, LevelAnswer, MeshAnswer
-from fe_drivetrain.studies.gear_findings import gear_chart, state_findings
+from fe_drivetrain.studies.gear_findings import TORQUE_ALONE, gear_chart, state_findings
 from fe_drivetrain.studies.gear_loads import GearLoading, Rows, check_loading, loads_of
 from fe_drivetrain.studies.gear_machine import GearTrain, gear_train
 from fe_drivetrain.studies.gear_meshes import GearMesh, gear_meshes
@@ -52,6 +51,8 @@ class GearsResult(Result):
         Torques and turns of the life asked for; None where no speed of the rotor is known.
     hours : float
         Hours of the life asked for.
+    level : str
+        Level of the rating.
     asked : GearOptions
         Choices of the rating.
     site : Site or None
@@ -71,13 +72,14 @@ class GearsResult(Result):
     hub: Floats
     spectrum: TorqueSpectrum | None
     hours: float
+    level: str
     asked: GearOptions
     site: Site | None
     varies: bool
 
     def chart(self) -> Chart:
         """Safety factors of all gears with their limits; contact stresses without strength."""
-        return gear_chart(self.gears, self.varies)
+        return gear_chart(self.gears, self.meshes, self.varies)
 
 
 def gears(
@@ -133,7 +135,7 @@ def gears(
         given = loads_of(train, asked, loading, report)
     made = GearRating(train, asked, stresses, given, steps)
     levels, by_level = made.ladder()
-    mesh_answers = made.mesh_answers(by_level[Level(asked.level)])
+    mesh_answers = made.mesh_answers(by_level[train.level])
     damage = made.damage()
     answers = made.gear_answers(mesh_answers, damage)
     enough = next(one.name for one in levels if one.difference <= asked.tolerance)
@@ -146,10 +148,13 @@ def gears(
         "hub": given.hub,
         "spectrum": given.spectrum,
         "hours": given.hours,
+        "level": train.level.value,
         "asked": asked,
         "site": site,
         "varies": given.varies,
     }
+    if given.alone:
+        found.note(TORQUE_ALONE, first=True)
     state_findings(found, train, left_out, result)
     stated = _plain(asked, loading, torque)
     return GearsResult(**result, **found.frozen(steps.times, **stated))

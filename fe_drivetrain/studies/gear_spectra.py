@@ -110,7 +110,23 @@ class Reading:
         return [options.skip, options.rotor_speed_rpm, self.width, repr(self.entrance)]
 
     def loads(self, history: LoadHistory) -> Floats:
-        """(n, 6) loads of a history about the point where they enter [N, N m]."""
+        """(n, 6) loads of a history about the point where they enter; zeros where some are absent.
+
+        Raises
+        ------
+        InputError
+            The history has no torque of the rotor.
+        """
+        if "Mx" in history.absent or history.torque_of:
+            which = f"that of the {history.torque_of}" if history.torque_of else "none"
+            raise InputError(
+                f"hub loads: {history.name} has no torque of the rotor but {which}: name its "
+                "channel, or give gearbox_ratio in a mapping"
+            )
+        if history.absent:
+            found = np.zeros_like(history.loads)
+            found[:, TORQUE] = history.loads[:, TORQUE]
+            return found
         return (history if self.entrance is None else at_front(_At(self.entrance), history)).loads
 
 
@@ -131,14 +147,17 @@ class FileSpectrum:
         Torque and other loads.
     wind : float
         Mean wind speed [m/s]; NaN where the file has none.
+    alone : float
+        1 where the file has the torque, and not all other loads of the hub; else 0.
     """
 
     spectrum: TorqueSpectrum
     wind: float
+    alone: float
 
 
 def spectrum_of(
-    torque: Floats, loads: Floats, turns: Floats, step: float, width: float
+    torque: Floats, loads: Floats, turns: Floats, seconds: Floats, width: float
 ) -> TorqueSpectrum:
     """Spectrum of samples.
 
@@ -150,14 +169,14 @@ def spectrum_of(
         Loads of the hub [N, N m].
     turns : ndarray, (n,)
         Turns of the rotor in each sample.
-    step : float
-        Between two samples [s].
+    seconds : ndarray, (n,)
+        Time that each sample stands for [s].
     width : float
         Width of the classes [N m].
     """
     other = loads.copy()
     other[:, TORQUE] = 0.0
-    return _in_classes(torque, np.full(len(torque), step), turns, other, width)
+    return _in_classes(torque, seconds, turns, other, width)
 
 
 def merged(spectra: Iterable[TorqueSpectrum], width: float) -> TorqueSpectrum:
@@ -293,7 +312,7 @@ def file_spectrum(report: Progress, file: Path, reading: Reading, resume: bool) 
 
 def _read(file: Path, reading: Reading) -> FileSpectrum:
     options = reading.options
-    found = read_recorded(file, options.names, options.skip)
+    found = read_recorded(file, options.names, options.skip, measured=True)
     history, speed = found.history, found.rotor_speed
     if speed is None and options.rotor_speed_rpm is None:
         raise InputError(
@@ -303,11 +322,12 @@ def _read(file: Path, reading: Reading) -> FileSpectrum:
         )
     if speed is None:
         speed = np.full(len(history), (options.rotor_speed_rpm or 0.0) * np.pi / 30.0)
-    turns = np.abs(speed) * history.step / (2.0 * np.pi)
+    seconds = np.broadcast_to(np.asarray(history.sampling.weights), len(history)).astype(float)
+    turns = np.abs(speed) * seconds / (2.0 * np.pi)
     loads = reading.loads(history)
     wind = np.nan if found.wind_speed is None else float(found.wind_speed.mean())
-    spectrum = spectrum_of(loads[:, TORQUE], loads, turns, history.step, reading.width)
-    return FileSpectrum(spectrum, wind)
+    spectrum = spectrum_of(loads[:, TORQUE], loads, turns, seconds, reading.width)
+    return FileSpectrum(spectrum, wind, float(bool(history.absent)))
 
 
 def files_spectrum(
@@ -316,7 +336,7 @@ def files_spectrum(
     site: Site | None,
     resume: bool,
     report: Progress,
-) -> TorqueSpectrum:
+) -> tuple[TorqueSpectrum, bool]:
     """The spectrum of files together, or of the life of a site whose winds weight them.
 
     Parameters
@@ -332,6 +352,13 @@ def files_spectrum(
     report : Progress
         Told which file is read.
 
+    Returns
+    -------
+    spectrum : TorqueSpectrum
+        Torque and other loads.
+    alone : bool
+        Whether a file has no other loads of the hub, so that they are zero in all.
+
     Raises
     ------
     InputError
@@ -341,8 +368,9 @@ def files_spectrum(
     items = [(file, reading, resume) for file in files]
     local = len(items) if len(items) >= _MANY else 1
     found = list(mapped(file_spectrum, items, local, report))
+    alone = any(one.alone for one in found)
     if site is None:
-        return merged((one.spectrum for one in found), width)
+        return _kept(merged((one.spectrum for one in found), width), alone), alone
     require_winds(files, [one.wind for one in found])
     at: dict[float, list[TorqueSpectrum]] = {}
     for one in found:
@@ -353,4 +381,9 @@ def files_spectrum(
     for speed, share in zip(speeds, shares.tolist(), strict=True):
         pooled = merged(at[speed], width)
         parts.append(pooled.times(share * site.years * HOURS_A_YEAR / pooled.hours))
-    return merged(parts, width)
+    return _kept(merged(parts, width), alone), alone
+
+
+def _kept(spectrum: TorqueSpectrum, alone: bool) -> TorqueSpectrum:
+    """The spectrum, without other loads of the hub where those of a file are not known."""
+    return replace(spectrum, hub=np.zeros_like(spectrum.hub)) if alone else spectrum

@@ -17,19 +17,19 @@ from fe_drivetrain.bearing_life.life.lubricants import GRADES, Lubricant
 from fe_drivetrain.bearing_life.life.rated import RatedBearing, rated_from_catalogue
 from fe_drivetrain.bearing_life.life.roller_models import rigid_rings
 from fe_drivetrain.common.arguments import argument
-from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.joint_springs import as_numbers
-from fe_drivetrain.drivetrain_file.scene import RIGID, Scene
+from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.dynamics.bodies.bearing_reactions import (
     BearingModel,
     Reactions,
     planet_bearing_name,
 )
-from fe_drivetrain.dynamics.bodies.flexible import Flexible, Housing
-from fe_drivetrain.dynamics.bodies.levels import Level, assembly
+from fe_drivetrain.dynamics.bodies.flexible import Flexible
+from fe_drivetrain.dynamics.bodies.gearbox_mount import on_mount
+from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of
 from fe_drivetrain.studies.rolling_bearings import (
     Choices,
@@ -191,7 +191,7 @@ def machine_with_bearings(drivetrain: Drivetrain) -> Machine | str | None:
 def gearbox_mount(drivetrain: Drivetrain, machine: Machine) -> Flexible | None:
     """The gearbox's housing on the springs that a file gives its mount; None where it has none.
 
-    The housing is rigid in itself, and has the gearbox's weight without that of its stages.
+    See `fe_drivetrain.dynamics.on_mount`.
 
     Parameters
     ----------
@@ -202,15 +202,9 @@ def gearbox_mount(drivetrain: Drivetrain, machine: Machine) -> Flexible | None:
     """
     if not isinstance(drivetrain, Scene):
         return None
-    stiffness = as_numbers(drivetrain.gearbox.stiffness)
-    if not stiffness.any():
+    if not as_numbers(drivetrain.gearbox.stiffness).any():
         return None
-    stages = [body for body in assembly(machine, Level.RIGID).bodies if body.name[:5] == "stage"]
-    mass = drivetrain.gearbox.weight / GRAVITY - sum(body.mass for body in stages)
-    K = np.diag(np.where(np.isfinite(stiffness), stiffness, RIGID))
-    at = (drivetrain.shaft.rear - drivetrain.shaft.front, 0.0, 0.0)
-    housing = Housing(at, K, max(mass, 0.0), 0.0, 0.0)
-    return Flexible(housing=housing, apart=frozenset(main_names(machine)))
+    return on_mount(drivetrain, machine)
 
 
 def main_names(machine: Machine) -> tuple[str, ...]:
@@ -294,7 +288,7 @@ class _Maker:
                 OtherPath(
                     "the stiffness of this bearing as stated",
                     words,
-                    self._path(rated, model.reactions({self.name: factor})[self.name]),
+                    self._path(rated, model.reactions({self.name: factor}, {self.name})[self.name]),
                 )
                 for factor, words in FACTORS
             ),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
@@ -52,19 +54,19 @@ def named_level(level: str | None, machine: Machine) -> Level:
     """
     known = {one.name.lower(): one for one in Level}
     if level is None:
-        return rungs_of(machine)[-1].level
+        return plain_rungs(machine)[-1].level
     if level not in known:
-        raise InputError(f"no level {level!r} of modes: use one of {', '.join(known)}")
+        raise InputError(f"no level {level!r}: use one of {', '.join(known)}")
     return known[level]
 
 
-def rungs_of(machine: Machine) -> tuple[Rung, ...]:
+def plain_rungs(machine: Machine) -> tuple[Rung, ...]:
     """Levels that the data of a machine allow, from the simplest."""
     return RUNGS[:1] if machine.not_given else RUNGS
 
 
 def compared_levels(
-    machine: Machine, held: bool, tolerance: float
+    machine: Machine, held: bool, tolerance: float, rungs: Sequence[Rung] | None = None
 ) -> tuple[list[Answer], dict[str, str]]:
     """Frequencies of some modes of the finest level at every level, with their times.
 
@@ -76,6 +78,9 @@ def compared_levels(
         Whether the generator is held.
     tolerance : float
         Relative error that a simpler level may have.
+    rungs : sequence of Rung, optional
+        Levels from the simplest, as with what is condensed; those of bodies and beam shafts where
+        left out.
 
     Returns
     -------
@@ -85,7 +90,7 @@ def compared_levels(
     enough : dict of str to str
         Simplest level that is within the tolerance, by the same names.
     """
-    rungs, load = rungs_of(machine), Operation(0.0)
+    rungs, load = rungs or plain_rungs(machine), Operation(0.0)
     finest = Asked(machine, rungs[-1], load, held)
     # solved before the clocks start, so that no level pays for the finest
     kinds = [
@@ -123,7 +128,7 @@ def frequency_bands(machine: Machine, level: Level, held: bool, count: int) -> F
     count : int
         Number of frequencies.
     """
-    if rungs_of(machine)[-1].level is not Level.FLEXIBLE:
+    if plain_rungs(machine)[-1].level is not Level.FLEXIBLE:
         return np.full(count, np.nan)
     if level is Level.FLEXIBLE:
         return element_bands(machine, held, count)

@@ -55,7 +55,7 @@ class GearRating:
     ) -> None:
         self.train, self.asked, self.stresses = train, asked, stresses
         self.given, self.steps = given, steps
-        self.level = Level(asked.level)
+        self.level = train.level
 
     def _spread(self, level: Level, slices: int, flexible: Flexible | None = None) -> LoadSpread:
         return LoadSpread(
@@ -81,7 +81,7 @@ class GearRating:
         found: dict[Level, dict[str, Spread]] = {}
         factors, seconds = {}, {}
         with self.steps.step("levels"):
-            for level in self.asked.ladder:
+            for level in self.train.levels:
                 start = perf_counter()
                 loads = self._spread(level, self.asked.slices)
                 if level is self.level:
@@ -90,7 +90,7 @@ class GearRating:
                 seconds[level] = perf_counter() - start
                 factors[level] = {n: (s.sharing, s.face_load) for n, s in found[level].items()}
             self.coarse = self._spread(self.level, (self.asked.slices + 1) // 2)
-        finest = factors[self.asked.ladder[-1]]
+        finest = factors[self.train.levels[-1]]
         levels = tuple(
             LevelAnswer(one.value, seconds[one], of, largest_difference(of, finest))
             for one, of in factors.items()

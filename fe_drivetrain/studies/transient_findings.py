@@ -17,6 +17,7 @@ from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import percent_text, value_text
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.transient_digest import FileDigest
+from fe_drivetrain.studies.transient_instants import ByInstant
 from fe_drivetrain.studies.transient_ladder import COUNTED, QUANTITIES, level_error
 from fe_drivetrain.studies.transient_runs import Extreme, LevelRun, Rated
 from fe_drivetrain.studies.transient_tables import alternating_rows, in_shown_unit
@@ -225,6 +226,7 @@ def state_answer(
     number: int,
     files: Mapping[str, FileDigest],
     quantity: Kind,
+    instants: ByInstant | None = None,
 ) -> None:
     """State what the event does, with the level that it needs.
 
@@ -246,9 +248,19 @@ def state_answer(
         What happened over each history.
     quantity : str
         For which the level has to be enough.
+    instants : ByInstant, optional
+        Peak of a stop by the instant of its brake.
     """
     of = _Answered(found, extremes, run)
     verdict, figures = _VERDICTS[event](of, files)
+    if instants is not None:
+        low, high = min(instants.peaks), max(instants.peaks)
+        found.say(
+            f"By the instant of the brake within {instants.period:.3g} s, a period of the first "
+            f"mode, the {instants.channel} comes to {low:.2f} to {high:.2f} of rated after it."
+        )
+        name = f"largest {instants.channel} by the instant of the brake, over rated"
+        figures.insert(2, found.value(name, high))
     if len(runs) > 1:
         error = level_error(runs[number], runs[-1], quantity).error
         _say_level(found, runs, number, quantity, error)
@@ -272,7 +284,7 @@ def _cautions(event: str, run: LevelRun, files: Mapping[str, FileDigest]) -> lis
     """What limits the verdict, most severe first."""
     said = []
     if event == "stop":
-        said.append("Peaks depend on the instant of the brake within a swing of the first mode.")
+        said.append("Peaks are of one instant of the brake within a swing of the first mode.")
     if event in ("stop", "grid_loss", "dip"):
         said.append("Times and controls of the event, where not stated, are assumptions.")
     if event == "dip":
@@ -281,7 +293,7 @@ def _cautions(event: str, run: LevelRun, files: Mapping[str, FileDigest]) -> lis
         said.append("Meshes vary as square waves of their contact ratio, without tip relief.")
     absent = sorted({one.absent for one in files.values() if one.absent})
     if absent:
-        said.append(f"Histories have no {' and no '.join(absent)}: counted as zero.")
+        said.append(f"Histories have no {' and no '.join(absent)}: their torque acts alone.")
     if any(not one.own_generator for one in files.values()):
         said.append("A file has no torque of its generator: a line of slip stands for it.")
     if run.level is not Level.TORSIONAL:

@@ -14,6 +14,7 @@ from fe_drivetrain.report.charts import chart, trace
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.transient_digest import FileDigest
+from fe_drivetrain.studies.transient_instants import ByInstant
 from fe_drivetrain.studies.transient_ladder import QUANTITIES, LevelError
 from fe_drivetrain.studies.transient_runs import Extreme, LevelRun, Samples
 
@@ -55,6 +56,8 @@ class TransientResult(Result):
         Values over time; of operation those of the first history. Not part of the JSON.
     files : Mapping[str, FileDigest]
         What it did over each history, by its name; empty of an event.
+    by_instant : ByInstant or None
+        Peak of the last shaft's torque by the instant of the brake of a stop.
     """
 
     STUDY: ClassVar[str] = "transient"
@@ -71,6 +74,7 @@ class TransientResult(Result):
     imbalance: float
     samples: Samples = field(repr=False)
     files: Mapping[str, FileDigest]
+    by_instant: ByInstant | None
 
     @property
     def chosen(self) -> LevelRun:

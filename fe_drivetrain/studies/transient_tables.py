@@ -9,6 +9,7 @@ import numpy as np
 
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.transient_digest import FileDigest, equivalent_range
+from fe_drivetrain.studies.transient_instants import ByInstant
 from fe_drivetrain.studies.transient_ladder import QUANTITIES, LevelError
 from fe_drivetrain.studies.transient_runs import SMALL, Extreme, LevelRun
 from fe_drivetrain.turbine_loads.histories.classes import Classes, added
@@ -168,6 +169,14 @@ def digest_rows(files: Mapping[str, FileDigest], extremes: Mapping[str, Extreme]
         row["generator"] = "torque of the file" if one.own_generator else "line of slip"
         rows.append(row)
     return rows
+
+
+def instant_rows(found: ByInstant) -> list[Record]:
+    """Peak of a stop by the instant of its brake."""
+    return [
+        {"brake later by [s]": late, f"largest {found.channel} after it, over rated": peak}
+        for late, peak in zip(found.delays, found.peaks, strict=True)
+    ]
 
 
 def alternating_rows(run: LevelRun) -> list[Record]:

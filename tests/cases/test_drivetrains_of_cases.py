@@ -8,12 +8,16 @@ import pytest
 
 import fe_drivetrain.cases
 from fe_drivetrain.cases.drivetrain import two_masses
-from fe_drivetrain.cases.dynamics import park_bending, planet_bearings
+from fe_drivetrain.cases.dynamics import normal_operation, park_bending, planet_bearings
+from fe_drivetrain.cases.references import published_drivetrains as published
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.reading import parse_drivetrain
 from fe_drivetrain.dynamics import library_machine
 from fe_drivetrain.procedure.answers import quantities_of
 from fe_drivetrain.report.results import Results
 from fe_drivetrain.report.seal import drivetrain_hash
 from fe_drivetrain.report.suite.case import Case, all_cases
+from fe_drivetrain.report.suite.chosen import chosen_drivetrain
 from fe_drivetrain.report.suite.findings import OF_NONE
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.run import Run
@@ -242,7 +246,7 @@ def ran(run: object, tmp_path: Path, **settings: object) -> Page:
 def test_what_a_source_restores_is_not_of_the_table(tmp_path: Path) -> None:
     page = ran(two_masses.run, tmp_path)
     (record,) = page.drivetrains
-    own = drivetrain_hash(two_masses.TABLE)
+    own = drivetrain_hash(published.drivetrain("nrel_750kw"))
     assert record.hash == own
     of = {verdict.quantity: verdict.of for verdict in page.checks}
     assert set(of.values()) == {own, OF_NONE}
@@ -286,7 +290,7 @@ def test_a_machine_that_a_case_changes_is_stated_as_it_was_solved(
 
 def test_of_ends_where_its_block_ends() -> None:
     page, machine = Page(), library_machine("park_2021")
-    page.about(two_masses.TABLE)
+    page.about(published.drivetrain("nrel_750kw"))
     with page.of(machine, "other"):
         page.found("inside", 1.0)
     page.found("outside", 1.0)
@@ -294,7 +298,156 @@ def test_of_ends_where_its_block_ends() -> None:
         page.found("none", 1.0)
     assert [figure.of for figure in page.figures] == [
         drivetrain_hash(machine),
-        drivetrain_hash(two_masses.TABLE),
+        drivetrain_hash(published.drivetrain("nrel_750kw")),
         OF_NONE,
     ]
     assert [record.name for record in page.drivetrains] == ["", "other"]
+
+
+GROUPS = ("drivetrain/", "dynamics/", "gear/", "procedure/")
+"""Groups of cases that show methods on a drivetrain."""
+
+OF_NO_OTHER = {
+    name: reason
+    for reason, names in {
+        "of equations, matrices and integrators, tried on problems with exact answers": (
+            "dynamics/integrators",
+            "dynamics/mathieu",
+            "drivetrain/vm57_torsion_of_a_drill_pipe",
+        ),
+        "of stages as printed in a paper, or made for a closed form": (
+            "dynamics/cooley_parker",
+            "dynamics/elastic_ring",
+            "dynamics/helical_planets",
+            "dynamics/lin_parker",
+            "dynamics/load_sharing",
+            "dynamics/transmission_error",
+        ),
+        "of the equations that Park et al. print, put right on their own drivetrain": (
+            "dynamics/park_bending",
+            "dynamics/park_sidebands",
+            "dynamics/park_time",
+        ),
+        "of what a thesis prints of its drivetrain: values and sentences are held to its data": (
+            "drivetrain/damping",
+            "drivetrain/drivetrains_a_b_c",
+            "drivetrain/fe_low_speed_shaft",
+            "dynamics/carrier_travels",
+            "dynamics/planet_bearings",
+            "gear/nrel_750kw",
+            "gear/time_factors",
+        ),
+        "of single gears and meshes, with data that no drivetrain's file states": (
+            "gear/gear_damage",
+            "gear/iso_example",
+            "gear/iso_tr_example",
+            "gear/mesh_wave",
+            "gear/nrel_5mw_rating",
+            "gear/slices",
+            "gear/subsurface",
+            "gear/tooth_stiffness",
+        ),
+        "of what a procedure prints, and of methods of measurement on a drivetrain that is known": (
+            "procedure/campaign",
+            "procedure/checks",
+            "procedure/errata",
+            "procedure/gaps",
+            "procedure/identification",
+            "procedure/interfaces",
+            "procedure/measured_tables",
+            "procedure/measurement_cases",
+        ),
+        "of blades' bearings and yaw drives, which are no part of a drivetrain's file": (
+            "procedure/pitch_and_yaw",
+            "procedure/pitch_bearing",
+        ),
+    }.items()
+    for name in names
+}
+"""Why a case of these groups takes no drivetrain of a user."""
+
+
+def test_cases_of_drivetrains_take_another_or_say_here_why_not() -> None:
+    cases = {name: case for name, case in all_cases().items() if name.startswith(GROUPS)}
+    taking_another = {name for name, case in cases.items() if "drivetrain" in case.settings}
+    assert cases.keys() - taking_another == OF_NO_OTHER.keys()
+    for name in taking_another:
+        assert "otherwise" in cases[name].settings["drivetrain"], name  # type: ignore[call-overload]
+
+
+OWN = """
+title: Turbine of a user
+rotor: {inertia: 5.0e5}
+shaft: {name: slow, torsion: 3.0e7}
+gearbox:
+  stages:
+    - {kind: planetary, teeth: {ring: 99, planet: 39, sun: 21}, planets: 3, stiffness_of: axis,
+       carrier: {inertia: 60}, planet: {inertia: 3}, sun: {inertia: 1}, ring_planet: 5.0e7,
+       sun_planet: 5.0e7}
+    - {kind: parallel, teeth: {gear: 88, pinion: 22}, stiffness_of: axis, gear: {inertia: 20},
+       pinion: {inertia: 0.3}, stiffness: 5.0e7}
+  shafts:
+    - {name: middle, torsion: 2.0e7}
+    - {name: quick, torsion: 2.0e6}
+generator: {inertia: 30}
+operation: {rated_power: 7.5e5, rotor_speed: [1.0, 2.3]}
+"""
+
+PRINTED_NAMES = ("750 kW", "5 MW", "2 MW", "thesis", "Al-Hamadani", "drivetrain A", "drivetrain D")
+"""Words of the cases' own drivetrains, which have no place in the answer on another one."""
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "drivetrain/two_masses",
+        "drivetrain/five_masses",
+        "drivetrain/eleven_masses",
+        "drivetrain/from_table",
+        "dynamics/campbell_table",
+        "dynamics/hss_stiffness",
+        "dynamics/normal_operation",
+        "dynamics/two_mass_transients",
+    ],
+)
+def test_a_case_answers_for_a_drivetrain_of_the_users(name: str, tmp_path: Path) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text(OWN, "utf-8")
+    case = all_cases()[name]
+    results = case.results(Run({"drivetrain": str(file)}, True, tmp_path))
+    own = drivetrain_hash(parse_drivetrain(OWN))
+    assert [record.hash for record in results.drivetrains] == [own]
+    assert {verdict.of for verdict in results.verdicts} <= {own}
+    assert results.verdicts
+    assert results.passed
+    answer = results.answer.model_dump_json()
+    assert not [word for word in PRINTED_NAMES if word in answer]
+    assert any("printed numbers" in note for note in results.notes)
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"drivetrain": 3}, "drivetrain = 3 must be a file or a name of the library"),
+        ({"drivetrain": "nrel_6mw"}, "no scene 'nrel_6mw' in the library"),
+        ({"drivetrain": "mine.yaml"}, "mine.yaml' does not state operation: add it, as in"),
+        ({"drivetrain": "park_2021"}, "shaft of gear 2' of .* is rigid"),
+    ],
+)
+def test_a_drivetrain_that_a_case_cannot_take_is_refused(
+    settings: dict[str, object],
+    message: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.yaml").write_text(OWN.partition("operation:")[0], "utf-8")
+    with pytest.raises(InputError, match=message):
+        ran(normal_operation.run, tmp_path, **settings)
+
+
+def test_the_default_by_name_is_the_default() -> None:
+    own = chosen_drivetrain("nrel_750kw", "nrel_750kw")
+    assert not own.own
+    assert chosen_drivetrain("nrel_5mw", "nrel_750kw").own
+    assert chosen_drivetrain(None, "nrel_750kw") == own

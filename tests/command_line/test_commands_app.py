@@ -62,3 +62,13 @@ def test_a_script_of_a_case_has_the_same_options(
     helped = invoke("--help", main=lambda: main_of_case(case))[1]
     for words in ("Depth [mm]", "Lee [3]", "--set changes: p=[a, b] (or one)"):
         assert words in helped
+
+
+def test_files_of_a_pattern_without_quotes_are_explained(
+    invoke: Callable[..., Result], tmp_path: Path
+) -> None:
+    for name in ("one.csv", "two.csv"):
+        (tmp_path / name).write_text("time\n", "utf-8")
+    status, _, err = invoke("life", "two_bearings", "--loads", "one.csv", "two.csv")
+    assert status == 2
+    assert "put a pattern in quotes" in " ".join(err.replace("│", "").split())

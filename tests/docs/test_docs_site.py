@@ -2,6 +2,7 @@
 
 import os
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -9,12 +10,15 @@ import pytest
 from test_docs_pages import BLOCK, DOCS, PAGES
 from test_report import results
 
+from fe_drivetrain.command_line.report import TITLES
+from fe_drivetrain.drivetrain_file import library_names
 from fe_drivetrain.report import Results
 from fe_drivetrain.report.answer import Answer
 from fe_drivetrain.report.suite import Case
 
 sys.path.insert(0, str(DOCS))
 
+import dossier_pages
 import result_pages
 
 VERDICT = "The force is 1 N < 2 N, and that is enough."
@@ -167,3 +171,39 @@ def test_runs_of_notebooks_are_kept_until_the_program_changes(
     assert other != kept
     assert list(tmp_path.iterdir()) == [other]
     assert not (other / "found").exists()
+
+
+# --- the dossier ---
+
+
+def ended(program: str) -> subprocess.Popen[bytes]:
+    """A process that does what Python is given, in place of making a dossier."""
+    return subprocess.Popen(
+        [sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+
+
+def test_a_dossier_is_put_into_the_site_where_its_page_leads(tmp_path: Path) -> None:
+    made, site = tmp_path / "made", tmp_path / "site"
+    site.mkdir()
+    for name in dossier_pages.PAGES:
+        page = made / "dossier" / name / "report.html"
+        page.parent.mkdir(parents=True)
+        page.write_text(name)
+    (made / "plotly-1.js").write_text("draws")
+    dossier_pages.finish(ended("pass"), made, site)
+    links = re.findall(r'href="\.\./([^"]+)"', dossier_pages.dossier_page())
+    assert len(links) == len(dossier_pages.PAGES)
+    assert all((site / link).is_file() for link in links)
+    # two folders above a page, where it looks for it
+    assert (site / links[0] / "../../../plotly-1.js").resolve().is_file()
+
+
+def test_a_dossier_that_is_not_made_ends_the_build(tmp_path: Path) -> None:
+    with pytest.raises(RuntimeError, match="not made: no such turbine"):
+        dossier_pages.finish(ended("exit('no such turbine')"), tmp_path, tmp_path)
+
+
+def test_the_dossier_is_one_of_the_library_with_the_pages_of_the_command() -> None:
+    assert dossier_pages.DRIVETRAIN in library_names()
+    assert dossier_pages.PAGES.keys() <= TITLES.keys()

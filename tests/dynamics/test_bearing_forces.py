@@ -20,6 +20,8 @@ from fe_drivetrain.dynamics.bodies.machine import Machine, library_machine
 from fe_drivetrain.dynamics.bodies.planetary import springs_of
 from fe_drivetrain.dynamics.bodies.springs import Place, bushing
 from fe_drivetrain.dynamics.bodies.static import Static, Turn, over_a_turn, static
+from fe_drivetrain.dynamics.time.machine_channels import machine_channels
+from fe_drivetrain.dynamics.time.running import running
 
 FIVE_MW = library_machine("nrel_5mw")
 HUB = np.array([0.0, 0.0, 0.0, 0.0, 2e6, 0.0])
@@ -126,6 +128,21 @@ def test_over_a_turn_loads_of_six_rows_are_those_of_six_numbers() -> None:
     np.testing.assert_allclose(two.resultant(name), one.resultant(name), rtol=1e-7)
     by_springs = np.hypot(one.of(f"{name} uy"), one.of(f"{name} uz"))
     np.testing.assert_allclose(one.resultant(name), by_springs, rtol=1e-12)
+
+
+def test_channels_of_pins_of_six_rows_are_those_of_six_numbers() -> None:
+    stage = FIVE_MW.stages[0]
+    assert isinstance(stage, PlanetaryData)
+    own = np.diag(np.array(stage.pins[0].stiffness, dtype=float))
+    found: dict[str, list[float]] = {}
+    for machine in (FIVE_MW, with_pins(FIVE_MW, own)):
+        channels = machine_channels(running(machine, Level.RIGID, 3.9e6, 1.267))
+        rated = dict(zip(channels.names, channels.rated.tolist(), strict=True))
+        for name in ("force of stage 1 pin 2 upwind", "force of PLC-B"):
+            found.setdefault(name, []).append(rated[name])
+    for one, two in found.values():
+        assert one > 0
+        assert two == pytest.approx(one, rel=1e-6)
 
 
 def test_what_is_no_bearing_is_refused_by_name() -> None:

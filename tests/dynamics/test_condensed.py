@@ -17,7 +17,14 @@ from fe_drivetrain.drivetrain_file.joint_springs import free_to_turn
 from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 from fe_drivetrain.drivetrain_file.reading import change_scene, library_component, library_text
 from fe_drivetrain.drivetrain_file.scene import Scene, main_bearings
-from fe_drivetrain.dynamics.bodies.advice import Operation, ladder
+from fe_drivetrain.dynamics.bodies.advice import (
+    RUNGS,
+    Asked,
+    Operation,
+    Rung,
+    ladder,
+    like_mode,
+)
 from fe_drivetrain.dynamics.bodies.condensed_rungs import (
     SOFT_SEATS,
     STIFF_SEATS,
@@ -38,6 +45,7 @@ from fe_drivetrain.shafts.fidelity.shafts import beam_shaft, meridian_shaft
 from fe_drivetrain.shafts.response.bearing_stiffness import bearing_unit_stiffness, without_gearbox
 from fe_drivetrain.shafts.response.model import Model, build_model
 from fe_drivetrain.shafts.response.unit_loads import unit_load_response
+from fe_drivetrain.studies.drivetrain_modes import modes
 
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
 
@@ -174,6 +182,29 @@ def test_a_soft_mount_lowers_the_first_torsional_mode(scene: Scene, rungs: Rungs
     assert held is not None
     assert moved is not None
     assert moved < held
+
+
+def test_modes_are_compared_at_every_level_that_the_file_states(scene: Scene) -> None:
+    found = modes(scene, condensed=True)
+    assert [answer.name for answer in found.ladder[:5]] == list(NAMES)
+    assert found.ladder[-1].name == "main shaft in its meridian"
+    first = [answer.values["first torsional frequency [Hz]"] for answer in found.ladder]
+    assert all(value is not None and value > 0 for value in first)
+    assert found.options["condensed"] is True
+    assert any("gearbox's housing" in row.name for row in found.assumptions)
+
+
+def test_nodes_of_a_condensed_shaft_are_not_those_of_the_beam(
+    scene: Scene, machine: Machine
+) -> None:
+    """The same shaft with other nodes has the same modes, though nodes share names."""
+    body = beam_shaft(scene, rings=False)
+    solid = Rung(Level.FLEXIBLE, Flexible(shafts={scene.shaft.name: body}), "condensed beam")
+    load = Operation(TORQUE)
+    finest, plain = Asked(machine, solid, load), Asked(machine, RUNGS[-1], load)
+    for number in range(1, 5):
+        one, other = (like_mode(finest, number)(asked) for asked in (finest, plain))
+        assert other == pytest.approx(one, rel=1e-2)
 
 
 def test_a_stepped_shaft_is_the_condensed_beam(scene: Scene, machine: Machine) -> None:

@@ -17,7 +17,7 @@ from fe_drivetrain.dynamics.time.running import Running, running
 from fe_drivetrain.procedure.coupling_offset import CouplingOffset
 from fe_drivetrain.procedure.drivetrain_events import event_of
 from fe_drivetrain.procedure.drivetrain_operation import AT_ONCE, EnergyAccount, operation
-from fe_drivetrain.turbine_loads.hub_loads.drive_history import DriveHistory
+from fe_drivetrain.turbine_loads.hub_loads.drive_history import DriveHistory, read_drive
 
 J = np.array([ROTOR, GENERATOR])
 
@@ -183,3 +183,27 @@ def test_pieces_of_an_operation_are_one_motion(
     assert [len(part.times) - 1 for part in parts] == [60, 60, 60, 20]
     joined = np.concatenate([part.forces[1:] for part in parts])
     assert_allclose(joined, whole.forces[1:], rtol=1e-7, atol=1e-7 * TORQUE)
+
+
+def table_of(path: Path, columns: dict[str, Floats]) -> Path:
+    lines = [
+        ",".join(columns),
+        *(",".join(map(str, row)) for row in zip(*columns.values(), strict=True)),
+    ]
+    path.write_text("\n".join(lines), encoding="utf-8")
+    return path
+
+
+def test_a_torque_alone_drives_and_a_gap_in_time_is_refused(tmp_path: Path) -> None:
+    time = np.arange(0.0, 3.0, 0.1)
+    torque = {"time [s]": time, "Mx [kN m]": 800.0 + time}
+    found = read_drive(table_of(tmp_path / "torque.csv", torque))
+    assert found.absent == ("Fx", "Fy", "Fz", "My", "Mz")
+    assert not found.has_all
+    assert_allclose(found.torque, 1e3 * torque["Mx [kN m]"])
+    assert not np.delete(found.loads, 3, axis=1).any()
+    torque["time [s]"] = np.where(time > 1.0, time + 5.0, time)
+    with pytest.raises(InputError, match="time step"):
+        read_drive(table_of(tmp_path / "gap.csv", torque))
+    with pytest.raises(InputError, match="no torque Mx"):
+        read_drive(table_of(tmp_path / "none.csv", {"time [s]": time, "Fx [N]": time}))

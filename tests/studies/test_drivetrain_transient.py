@@ -9,7 +9,7 @@ import pytest
 import yaml
 from answer_rules import broken_rules
 from numpy.testing import assert_allclose
-from small_drivetrain import GENERATOR, ROTOR, SPEED, TORQUE, two_mass_file, two_masses
+from small_drivetrain import GENERATOR, ROTOR, SPEED, STIFFNESS, TORQUE, two_mass_file, two_masses
 from tiny_case import Result
 
 from fe_drivetrain.common import InputError
@@ -72,6 +72,23 @@ def test_a_stop_has_the_extremes_of_its_samples_and_its_band(stopped: TransientR
     assert "bodies only turn" in stopped.notes[0].lower()
 
 
+def test_the_peak_of_a_stop_is_one_of_those_by_the_instant_of_the_brake(
+    stopped: TransientResult,
+) -> None:
+    """Over a period of the first mode; at no delay it is that of the stop itself."""
+    found = stopped.by_instant
+    assert found is not None
+    reduced = ROTOR * GENERATOR / (ROTOR + GENERATOR)
+    assert_allclose(found.period, 2 * np.pi * np.sqrt(reduced / STIFFNESS), rtol=1e-9)
+    assert len(found.delays) == len(found.peaks) == 8
+    later = stopped.samples.times >= 0.5
+    first = stopped.samples.times < 0.5 + 2.5 * found.period
+    own = stopped.samples.of("torque of shaft")[later & first].max() / TORQUE
+    assert_allclose(found.peaks[0], own, rtol=1e-4)
+    # undamped, the swing that the brake meets adds to its own or takes from it
+    assert max(found.peaks) > 1.2 * min(found.peaks)
+
+
 def test_assumed_values_of_the_event_are_stated_and_given_ones_are_not(
     stopped: TransientResult,
 ) -> None:
@@ -82,9 +99,9 @@ def test_assumed_values_of_the_event_are_stated_and_given_ones_are_not(
 
 
 def test_the_brake_of_the_file_is_the_one_that_stops() -> None:
-    braked = two_masses(brake={"on": "shaft", "torque": 3e6, "rise": 0.1})
-    found = transient(braked, "stop", {"on": "generator"}, duration=8.0)
-    assert found.options["values"] == {"on": "generator", "brake_torque": 3e6, "rise": 0.1}
+    braked = two_masses(brake={"shaft": "shaft", "torque": 3e6, "rise": 0.1})
+    found = transient(braked, "stop", {"shaft": "generator"}, duration=8.0)
+    assert found.options["values"] == {"shaft": "generator", "brake_torque": 3e6, "rise": 0.1}
     still = (ROTOR + GENERATOR) * SPEED / 3e6
     assert 3.0 < found.marks["disc stands"] < 3.0 + still + 1.0
 
@@ -218,7 +235,7 @@ def test_the_command_writes_a_page_and_samples(
     assert broken_rules(results) == []
     lines = (out / "samples.csv").read_text(encoding="utf-8").splitlines()
     assert lines[0].startswith("time [s],torque of shaft [N m]")
-    assert len(lines) == 1002
+    assert len(lines) == 2002
     status, printed, _ = invoke(
         *("transient", str(mine), "operation", "--loads", str(tmp_path / "a.csv")),
         *("--out", str(tmp_path / "driven"), "--json", "--slope", "4"),

@@ -82,7 +82,7 @@ def _rated(drivetrain: Drivetrain, torque: float | None = None, **options: Any) 
 
 def test_planets_share_equally_where_nothing_is_uneven(small: Drivetrain) -> None:
     """No weight to speak of, bearings the same in all directions, spur teeth."""
-    for level in ("rigid bodies", "flexible shafts"):
+    for level in ("rigid", "flexible"):
         found = _rated(small, level=level)
         for mesh in found.meshes.values():
             assert mesh.spread.share == pytest.approx(np.ones((6, 3)), abs=1e-6)
@@ -209,8 +209,8 @@ def test_a_negative_torque_uses_up_the_other_flank(small: Drivetrain) -> None:
 
 
 def test_a_moment_on_the_hub_loads_the_ends_of_the_face(small: Drivetrain) -> None:
-    still = _rated(small, level="rigid bodies")
-    options = GearOptions(**{**FEW, "level": "rigid bodies"})
+    still = _rated(small, level="rigid")
+    options = GearOptions(**{**FEW, "level": "rigid"})
     tilted = gears(small, options=options, hub={"My": 2e5})
     name = "stage 1 ring-planet"
     assert tilted.meshes[name].spread.face_load > 1.01 * still.meshes[name].spread.face_load
@@ -247,6 +247,14 @@ def test_the_750kw_gears_have_stresses_and_no_safety() -> None:
     assert "strength of stage 1, stage 2, stage 3" in found.notes[0]
 
 
+def test_gears_without_teeth_have_loads_alone() -> None:
+    found = _rated(read_drivetrain("park_2021"), 1e6, level="rigid")
+    assert not found.gears
+    assert found.chart().figure["data"][0]["x"]
+    assert "teeth, module, shifts of stage 1, stage 2, stage 3" in found.notes[0]
+    assert found.meshes["stage 1 ring-planet"].spread.sharing >= 1.0
+
+
 def _write(path: Path, torque: float, wind: float, tail: str = "") -> None:
     rows = [
         f"{0.5 * k},0,0,0,{torque},0,0,19.0985932,{wind + 0.1 * (k % 3 - 1)}" for k in range(60)
@@ -279,6 +287,35 @@ def test_files_make_the_spectrum_and_a_site_weights_them(small: Drivetrain, tmp_
     again = gears(small, 2e5, str(tmp_path / "*.csv"), site, options, resume=True)
     assert again.spectrum is not None
     assert again.spectrum.turns == pytest.approx(found.spectrum.turns, rel=1e-15)
+
+
+def test_a_measured_torque_alone_is_enough(small: Drivetrain, tmp_path: Path) -> None:
+    """The sharing is that of the rotor's weight, and turns are as those of all six loads."""
+    rows = [f"{0.5 * k},{2.2e5},19.0985932" for k in range(60)]
+    head = "time [s],Mx [N m],rotor speed [rpm]"
+    (tmp_path / "torque.csv").write_text("\n".join([head, *rows]) + "\n")
+    _write(tmp_path / "all.csv", 2.2e5, 8.0)
+    options = GearOptions(**{**FEW, "level": "torsional"})
+    alone, whole = (
+        gears(small, 2e5, tmp_path / name, options=options) for name in ("torque.csv", "all.csv")
+    )
+    assert alone.notes[0].startswith("Files have the torque without all other loads")
+    for name, one in alone.gears.items():
+        life, other = one.life, whole.gears[name].life
+        assert life is not None
+        assert other is not None
+        assert life.damage.flank == pytest.approx(other.damage.flank, rel=1e-6)
+
+
+def test_a_file_of_what_turns_alone_has_ratings_by_formula(tmp_path: Path) -> None:
+    """Without the rotor's mass there are no statics in three dimensions."""
+    file = _file(tmp_path, **{"rotor: {inertia: 1.0, mass: 1.0e-3}": "rotor: {inertia: 1.0}"})
+    found = _rated(read_drivetrain(file))
+    assert found.level == "torsional"
+    assert [one.name for one in found.levels] == ["torsional"]
+    assert "rotor: mass" in found.notes[0]
+    with pytest.raises(InputError, match="rotor: mass"):
+        _rated(read_drivetrain(file), level="rigid")
 
 
 def test_moments_of_files_are_moved_to_where_loads_enter(tmp_path: Path) -> None:
@@ -320,7 +357,7 @@ def test_the_command_writes_a_page_and_tables(
     [
         (("--torque", "-3"), "torque of the rotor is -3 N m but must be above 0"),
         (("--site", "II"), "--site weights files of hub loads: give --loads, too"),
-        (("--level", "solid"), "level"),
+        (("--level", "solid"), "no level 'solid': use one of torsional, rigid, flexible"),
         (("--azimuths", "7"), "azimuths is 7 but must be even"),
         (("--slices", "1"), "slices is 1 but must be a whole number from 3"),
         (("--hours", "0"), "hours is 0 h but must be above 0"),

@@ -245,7 +245,7 @@ def test_what_a_level_needs_is_named() -> None:
         modes(two_inertias(), level="rigid")
     with pytest.raises(InputError, match=r"does not state its generator"):
         modes(two_inertias(generator=None))
-    with pytest.raises(InputError, match="no level 'beam' of modes: use one of torsional, rigid"):
+    with pytest.raises(InputError, match="no level 'beam': use one of torsional, rigid"):
         modes(two_inertias(), level="beam")
     found = modes(two_inertias())
     assert any("rotor: mass" in note for note in found.notes)

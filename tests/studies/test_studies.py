@@ -28,6 +28,7 @@ from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.pages.advise import show_advise
 from fe_drivetrain.pages.check import show_check
 from fe_drivetrain.pages.compare import show_compare
+from fe_drivetrain.pages.gears import show_gears
 from fe_drivetrain.pages.life import show_life
 from fe_drivetrain.pages.loads import show_loads
 from fe_drivetrain.pages.modes import show_modes
@@ -44,6 +45,8 @@ from fe_drivetrain.studies import (
     CheckResult,
     CompareResult,
     ExportResult,
+    GearOptions,
+    GearsResult,
     LifeOptions,
     LifeResult,
     LoadOptions,
@@ -58,6 +61,7 @@ from fe_drivetrain.studies import (
     advise,
     check,
     compare,
+    gears,
     life,
     loads,
     modes,
@@ -151,6 +155,12 @@ def vibrating() -> ModesResult:
 
 
 @pytest.fixture(scope="module")
+def meshed() -> GearsResult:
+    options = GearOptions(azimuths=6, slices=3, level="rigid")
+    return gears(read_drivetrain("nrel_5mw"), options=options)
+
+
+@pytest.fixture(scope="module")
 def lived(tmp_path_factory: pytest.TempPathFactory) -> LifeResult:
     folder = tmp_path_factory.mktemp("histories")
     for wind in (8.0, 14.0):
@@ -179,13 +189,14 @@ PAGES: dict[str, Callable[[Run, Page, Any], None]] = {
     "loaded": show_loads,
     "timed": show_transient,
     "vibrating": show_modes,
+    "meshed": show_gears,
 }
 """What shows a result on a page."""
 
 RESULTS = (
     "studied",
     *("checked", "compared", "advised", "uncertain", "validated", "lived", "loaded"),
-    *("timed", "vibrating", "shaped", "condensed", "exported"),
+    *("timed", "vibrating", "meshed", "shaped", "condensed", "exported"),
 )
 
 

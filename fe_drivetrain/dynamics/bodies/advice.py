@@ -174,7 +174,8 @@ def like_mode(finest: Asked, number: int) -> Question:
     Parameters
     ----------
     finest : Asked
-        Machine at the finest level; all that moves at others moves there.
+        Machine at the finest level; shapes are compared in what moves at both levels. Nodes of
+        shafts that one of them has condensed are left out: they are at other places.
     number : int
         Number of its mode, from 1.
     """
@@ -183,9 +184,14 @@ def like_mode(finest: Asked, number: int) -> Question:
         chosen = int(np.flatnonzero(finest.modes.frequencies > 0)[number - 1])
         if of.rung is finest.rung and of.machine is finest.machine:
             return float(finest.modes.frequencies[chosen])
-        rows = [finest.system.place(name) for name in of.system.names]
+        solid = tuple(
+            f"{shaft} node " for one in (of, finest) for shaft in one.rung.flexible.shafts
+        )
+        there = set(finest.system.names)
+        both = [k for k, n in enumerate(of.system.names) if n in there and not n.startswith(solid)]
+        rows = [finest.system.place(of.system.names[k]) for k in both]
         shape = finest.modes.shapes[rows, chosen]
-        shares = (of.modes.shapes.T @ (of.system.mass @ shape)) ** 2
+        shares = (of.modes.shapes[both].T @ (of.system.mass[np.ix_(both, both)] @ shape)) ** 2
         shares[of.modes.frequencies == 0.0] = 0.0
         best: tuple[float, float | None] = (0.5, None)
         first = 0
@@ -282,7 +288,7 @@ class Answer:
     degrees : int
         Number of degrees of freedom.
     seconds : float
-        Time taken for all questions [s].
+        Time taken for all questions, and to condense what gives [s].
     values : Mapping[str, float or None]
         Answers by question; None where the level has no answer.
     """
@@ -315,13 +321,13 @@ def ladder(
     held : bool
         Whether the generator is held in modes, too.
     """
-    found = []
+    found, condensed = [], 0.0
     for rung in rungs:
-        start = perf_counter()
+        start, condensed = perf_counter(), condensed + rung.seconds
         asked = Asked(machine, rung, operation, held)
         values = {name: ask(asked) for name, ask in questions.items()}
         size = len(asked.system.names)
-        found.append(Answer(rung.name, size, perf_counter() - start, values))
+        found.append(Answer(rung.name, size, perf_counter() - start + condensed, values))
     return found
 
 

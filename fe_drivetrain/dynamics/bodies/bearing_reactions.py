@@ -7,7 +7,7 @@ carrier: a planet's bearing has such a matrix for each azimuth of the carrier, i
 pin, on which its inner ring stands.
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from math import cos, sin
 
@@ -136,7 +136,9 @@ class BearingModel:
         stages = range(1, len(machine.stages) + 1)
         self._at = [_Azimuth(machine, level, dict.fromkeys(stages, a), a, flexible) for a in turned]
 
-        self._steady = {name for name, loads in self._loads({}).items() if _same(loads)}
+        self._steady = frozenset(
+            name for name, loads in self._loads({}, False).items() if _same(loads)
+        )
 
     @property
     def degrees(self) -> int:
@@ -148,13 +150,17 @@ class BearingModel:
         """Names of all bearings: in the housing in the order of the machine, then of planets."""
         return tuple(self._at[0].rings)
 
-    def reactions(self, factors: Mapping[str, float] | None = None) -> dict[str, Reactions]:
-        """Loads of all bearings.
+    def reactions(
+        self, factors: Mapping[str, float] | None = None, of: Collection[str] | None = None
+    ) -> dict[str, Reactions]:
+        """Loads of bearings.
 
         Parameters
         ----------
         factors : mapping of str to float, optional
             Factors on the stiffness of bearings by name; 1 where none is given.
+        of : collection of str, optional
+            Names of the bearings whose loads are asked for; all where left out.
 
         Returns
         -------
@@ -166,19 +172,21 @@ class BearingModel:
         InputError
             There is no bearing of a name.
         """
-        for name in factors or {}:
+        names = self.names if of is None else tuple(of)
+        for name in (*(factors or {}), *names):
             require_known("bearing", name, self.names)
-        found, each = {}, self._loads(factors or {})
-        for name, ring in self._at[0].rings.items():
+        found, each = {}, self._loads(factors or {}, self._steady.issuperset(names))
+        for name in names:
+            ring = self._at[0].rings[name]
             loads = each[name][:1] if name in self._steady else each[name]
             found[name] = Reactions(
                 name, loads[:, :, :6], loads[:, :, 6], ring.speed_ratio, ring.planets
             )
         return found
 
-    def _loads(self, factors: Mapping[str, float]) -> dict[str, Floats]:
-        """(a, 6, 7) loads of all bearings at all azimuths."""
-        each = [at.loads(factors) for at in self._at]
+    def _loads(self, factors: Mapping[str, float], first: bool) -> dict[str, Floats]:
+        """(a, 6, 7) loads of all bearings at all azimuths, or at the first alone."""
+        each = [at.loads(factors) for at in (self._at[:1] if first else self._at)]
         return {name: np.array([of[name] for of in each]) for name in self._at[0].rings}
 
 

@@ -21,7 +21,7 @@ from fe_drivetrain.drivetrain_file.joint_springs import free_to_turn
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.dynamics.bodies.advice import RUNGS, UNCONDENSED, Rung
 from fe_drivetrain.dynamics.bodies.flexible import Flexible
-from fe_drivetrain.dynamics.bodies.gearbox_mount import gearbox_housing
+from fe_drivetrain.dynamics.bodies.gearbox_mount import on_mount
 from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of
 from fe_drivetrain.elasticity.solve.condensation import Condensed
@@ -194,15 +194,13 @@ def _add_mount(built: _Built, scene: Scene, machine: Machine) -> None:
     """Add the gearbox's housing on its mount; main bearings and generator stand beside it."""
     name = "gearbox housing on its mount"
     try:
-        housing = gearbox_housing(scene, machine)
+        given = on_mount(scene, machine, built.gives)
     except InputError as error:
         built.left_out[name] = str(error)
         return
-    outside = {b.name for b in scene.gearbox.bearings if b.holds in ("rotor", "generator")}
-    mains = {bearing.name for bearing in machine.bearings} & set(scene.bearing_names)
-    given = replace(built.gives, housing=housing, apart=frozenset(outside | mains))
-    assumed = [_REST if housing.mass > 0 else _NO_MASS]
-    if housing.mass > 0 and scene.gearbox.housing_inertia is None:
+    heavy = scene.gearbox.weight > 0
+    assumed = [_REST if heavy else _NO_MASS]
+    if heavy and scene.gearbox.housing_inertia is None:
         assumed.append(_TUBE)
     built.add(name, given, (_MOUNT,), "a gearbox housing that deforms", tuple(assumed))
 

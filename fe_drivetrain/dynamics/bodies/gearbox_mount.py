@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import fsum
 
 import numpy as np
@@ -12,7 +13,7 @@ from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.drivetrain_file.joint_springs import as_numbers
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.drivetrain_file.scene import RIGID, Scene
-from fe_drivetrain.dynamics.bodies.flexible import Housing
+from fe_drivetrain.dynamics.bodies.flexible import Flexible, Housing
 from fe_drivetrain.dynamics.bodies.machine_shafts import shaft_slices
 
 
@@ -63,6 +64,29 @@ def gearbox_housing(scene: Scene, machine: MachineTable) -> Housing:
     polar, transverse = given or assumed_inertia(machine, mass)
     at = (machine.shafts[0].length, 0.0, 0.0)
     return Housing(at, np.diag(k), mass, polar, transverse)
+
+
+def on_mount(scene: Scene, machine: MachineTable, gives: Flexible | None = None) -> Flexible:
+    """What gives with the gearbox's housing on its mount, its ring and bearings in it.
+
+    Main bearings, and those of rotor and generator, stand on the ground beside it.
+
+    Parameters
+    ----------
+    scene, machine : Scene, MachineTable
+        The drivetrain and its rows.
+    gives : Flexible, optional
+        What gives beside the housing.
+
+    Raises
+    ------
+    InputError
+        See `gearbox_housing`.
+    """
+    housing = gearbox_housing(scene, machine)
+    outside = {b.name for b in scene.gearbox.bearings if b.holds in ("rotor", "generator")}
+    mains = {bearing.name for bearing in machine.bearings} & set(scene.bearing_names)
+    return replace(gives or Flexible(), housing=housing, apart=frozenset(outside | mains))
 
 
 def mass_inside(machine: MachineTable) -> float:

@@ -54,13 +54,26 @@ def wrench_of(names: Sequence[str], directions: Floats, name: str, forces: Float
     name, forces : str, ndarray (..., m)
         Name of the bearing, and forces of all springs [N, N m].
     """
-    own = {f"{name} {end}" for end in (*MOTIONS, *range(1, 7))}
-    found = [k for k, spring in enumerate(names) if spring in own and directions[k].any()]
+    found = bearing_springs(names, name)
     if not found:
         ends = tuple(f" {motion}" for motion in (*MOTIONS, "1"))
         known = dict.fromkeys(n.rpartition(" ")[0] for n in names if n.endswith(ends))
         raise InputError(f"no bearing {name!r}: use one of {', '.join(list(known)[:40])}")
     return np.asarray(np.asarray(forces, dtype=float)[..., found] @ directions[found])
+
+
+def bearing_springs(names: Sequence[str], name: str) -> list[int]:
+    """Numbers of the springs of a bearing: "NAME ux" and so on, or "NAME 1" to "NAME 6".
+
+    Parameters
+    ----------
+    names : sequence of str
+        Names of all springs.
+    name : str
+        Name of the bearing.
+    """
+    own = {f"{name} {end}" for end in (*MOTIONS, *range(1, 7))}
+    return [k for k, spring in enumerate(names) if spring in own]
 
 
 @dataclass(frozen=True)

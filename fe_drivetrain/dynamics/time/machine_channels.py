@@ -10,13 +10,12 @@ from typing import Literal
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.dynamics.bodies.damping_ratios import element_of, mesh_names
 from fe_drivetrain.dynamics.bodies.equations import CONSTANT
-from fe_drivetrain.dynamics.bodies.springs import along_eigenvectors
 from fe_drivetrain.dynamics.bodies.steady_state import wind_up
+from fe_drivetrain.dynamics.bodies.system import bearing_springs
 from fe_drivetrain.dynamics.time.motion import Motion
 from fe_drivetrain.dynamics.time.running import Running
 
@@ -128,8 +127,8 @@ def machine_channels(of: Running) -> Channels:
     for mesh in mesh_names(of.machine):
         slices = {k: 1.0 for k, name in enumerate(names) if name == mesh}
         rows.add(f"force of {mesh}", "mesh", slices)
-    for bearing, stiffness in _bearings(of):
-        _add_bearing(rows, of, bearing, stiffness)
+    for bearing in _bearings(of):
+        _add_bearing(rows, of, bearing)
     for body in _turning_bodies(of):
         rows.add(f"speed of {body}", "speed", rate=of.row(body))
     labels, kinds, along, across, rates, both = zip(*rows.rows, strict=True)
@@ -167,27 +166,23 @@ def _with_rated(made: Channels, of: Running) -> Channels:
     )
 
 
-def _bearings(of: Running) -> list[tuple[str, Floats]]:
-    """Bearings in the housing, then those of planets, with six stiffnesses or a matrix."""
-    found = [(bearing.name, np.asarray(bearing.stiffness)) for bearing in of.machine.bearings]
+def _bearings(of: Running) -> list[str]:
+    """Names of bearings in the housing, then of those of planets."""
+    found = [bearing.name for bearing in of.machine.bearings]
     for number, stage in enumerate(of.machine.stages, start=1):
         if isinstance(stage, PlanetaryData):
             found += [
-                (f"stage {number} pin {k + 1} {pin.name}".strip(), np.ones(6))  # its own axes
+                f"stage {number} pin {k + 1} {pin.name}".strip()
                 for k in range(stage.planets)
                 for pin in stage.pins
             ]
     return found
 
 
-def _add_bearing(rows: _Rows, of: Running, name: str, stiffness: Floats) -> None:
+def _add_bearing(rows: _Rows, of: Running, name: str) -> None:
     """Force across the axis of a bearing, and that along it where it carries one."""
-    if stiffness.ndim == 2:
-        directions = {f"{name} {k}": d for k, (d, _) in along_eigenvectors(name, stiffness).items()}
-    else:
-        directions = dict(zip((f"{name} {m}" for m in MOTIONS), np.eye(6), strict=True))
     felt = np.abs(of.system.rows).max(axis=1) > 0.0
-    by = {k: directions[n] for k, n in enumerate(rows.springs) if n in directions and felt[k]}
+    by = {k: of.system.directions[k] for k in bearing_springs(rows.springs, name) if felt[k]}
     x, y, z = ({k: float(d[axis]) for k, d in by.items() if d[axis]} for axis in range(3))
     if y or z:
         rows.add(f"force of {name}", "bearing", y, z, both=True)

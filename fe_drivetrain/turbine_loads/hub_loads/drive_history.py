@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +15,7 @@ from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.turbine_loads.hub_loads.channels import MOMENT_UNITS, Channel, in_si
 from fe_drivetrain.turbine_loads.hub_loads.csv_columns import csv_channels
+from fe_drivetrain.turbine_loads.hub_loads.histories import require_all_loads, require_even
 from fe_drivetrain.turbine_loads.hub_loads.openfast_output import openfast_channels
 from fe_drivetrain.turbine_loads.hub_loads.recorded import OWN_NAMES, SPEED_UNITS, read_recorded
 
@@ -35,7 +36,8 @@ class DriveHistory:
     time : ndarray, (n,)
         [s].
     loads : ndarray, (n, 6)
-        Fx, Fy, Fz, Mx, My, Mz that the shaft feels at the hub [N, N m]; 0 where not recorded.
+        Fx, Fy, Fz, Mx, My, Mz that the shaft feels at the hub [N, N m]; the torque Mx alone where
+        others were not recorded.
     absent : tuple of str
         Loads that were not recorded.
     rotor_speed : ndarray, (n,) or None
@@ -92,24 +94,30 @@ def read_drive(path: Path, mapping: ChannelMap = OWN_NAMES, skip: float = 0.0) -
     table = path.suffix.lower() == ".csv"
     there = csv_channels(path, ()) if table else openfast_channels(path, ())
     also = [name for name in (TORQUE, SPEED) if name.lower() in there]
-    recorded = read_recorded(path, mapping, skip, also)
+    recorded = read_recorded(path, mapping, skip, also, measured=True)
     beside = dict(zip(also, recorded.others.values(), strict=True))
     of_generator = {
         name: in_si(str(path), Channel(name, there[name.lower()].unit, values), _UNITS[name])
         for name, values in beside.items()
     }
-    history = recorded.history
-    missing = [name for name, c in zip(FORCES, history.loads.T, strict=True) if np.isnan(c).any()]
-    if "Mx" in missing:
+    history, torque = recorded.history, FORCES.index("Mx")
+    if history.torque_of:
+        require_all_loads(replace(history, loads=np.nan_to_num(history.loads)))
+    if "Mx" in history.absent:
         raise InputError(
             f"hub loads '{path}': it has no torque Mx, which drives a drivetrain: add RotTorq to "
             "OutList, or map yours"
         )
+    require_even(history)
+    loads = history.loads
+    if history.absent:
+        loads = np.zeros_like(loads)
+        loads[:, torque] = history.loads[:, torque]
     return DriveHistory(
         history.name,
         history.time,
-        np.nan_to_num(history.loads),
-        tuple(missing),
+        loads,
+        history.absent,
         recorded.rotor_speed,
         of_generator.get(TORQUE),
         of_generator.get(SPEED),
