@@ -24,7 +24,6 @@ from fe_drivetrain.command_line.terminal import as_typed, guarded
 from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
 from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
-from fe_drivetrain.drivetrain_file.reading import with_sections
 
 if TYPE_CHECKING:
     from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
@@ -110,6 +109,7 @@ def advise_command(
         drivetrain = read_drivetrain(scene, parse_settings(set_ or ()))
         loads = parse_loads(load or (), loads_of_drivetrain(drivetrain))
         share = parse_tolerance(tolerance)
+        from fe_drivetrain.drivetrain_file.reading import with_sections
         from fe_drivetrain.studies.turning_quantities import turning_names
 
         turning = turning_names(drivetrain, (quantity,) if quantity else (), loads)
@@ -129,14 +129,14 @@ def _of_turning(
     drivetrain: Drivetrain, name: str, tolerance: float, to_the_top: bool
 ) -> Shown[Any]:
     """The adviser for a frequency or a factor of gears; a name that is unknown is refused."""
-    from fe_drivetrain.pages.turning_advice import show_turning_advice
+    from fe_drivetrain.pages.advise_turning import show_advise_turning
     from fe_drivetrain.studies.turning_advice import advise_turning
     from fe_drivetrain.studies.turning_quantities import turning_quantity
 
     turning_quantity(drivetrain, name)
     return Shown(
         lambda run: advise_turning(drivetrain, name, tolerance, to_the_top, report=run.report),
-        show_turning_advice,
+        show_advise_turning,
     )
 
 

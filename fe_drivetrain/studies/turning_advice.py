@@ -19,7 +19,7 @@ from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
-from fe_drivetrain.studies.mode_levels import rungs_of as without_condensed
+from fe_drivetrain.studies.mode_levels import plain_rungs
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.shown_units import quantity_in_words
 from fe_drivetrain.studies.turning_quantities import (
@@ -171,9 +171,7 @@ def _rungs(drivetrain: Drivetrain, quantity: TurningQuantity, solids: bool, step
     """The ladder for a quantity; in time without condensed parts."""
     if quantity.condensed:
         return rungs_of(drivetrain, solids=solids, steps=steps)
-    return Rungs(
-        without_condensed(machine_of(drivetrain)), {"condensed parts": "it is one in time"}
-    )
+    return Rungs(plain_rungs(machine_of(drivetrain)), {"condensed parts": "it is one in time"})
 
 
 def turning_ladder(
@@ -209,13 +207,13 @@ def turning_ladder(
     numbered_by = finest_modes(drivetrain, rungs) if reference is None else reference
     if quantity.numbered:  # solved before the clocks start, so that no level pays for it
         steps.timed("modes of the finest level", lambda: numbered_by.modes)
-    found = []
+    found, condensed = [], 0.0
     for rung in rungs:
         with steps.step(rung.name):
-            start = perf_counter()
+            start, condensed = perf_counter(), condensed + rung.seconds
             model = TurningModel(drivetrain, rung, numbered_by)
             value = quantity.of(model)
-            found.append((rung, value, perf_counter() - start + rung.seconds))
+            found.append((rung, value, perf_counter() - start + condensed))
     finest = quantity.value(model)
     if finest == 0.0:
         raise InputError(f"{quantity.name} is zero, and has no relative error: ask for another")

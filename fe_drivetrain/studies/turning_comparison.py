@@ -12,7 +12,7 @@ from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.dynamics import machine_of
 from fe_drivetrain.shafts.fidelity.change_bands import OnSprings
 from fe_drivetrain.shafts.fidelity.designs import Difference, Value, check_comparison, ranked
-from fe_drivetrain.studies.mode_levels import rungs_of
+from fe_drivetrain.studies.mode_levels import plain_rungs
 from fe_drivetrain.studies.turning_advice import TurningLadder, finest_modes, turning_ladder
 from fe_drivetrain.studies.turning_quantities import turning_quantity
 
@@ -53,7 +53,7 @@ def turning_differences(
     asked = {design: [turning_quantity(of, one) for one in names] for design, of in designs.items()}
     machines = [machine_of(of) for of in designs.values()]
     # the same levels of all, or their changes are those of levels
-    rungs = min((rungs_of(machine) for machine in machines), key=len)
+    rungs = min((plain_rungs(machine) for machine in machines), key=len)
     reference = finest_modes(next(iter(designs.values())), rungs)
     steps = Steps(report)
     found = []

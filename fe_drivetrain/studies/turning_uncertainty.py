@@ -18,7 +18,7 @@ from fe_drivetrain.shafts.uncertainty.sampling import (
     sobol_shares,
     spreads_of,
 )
-from fe_drivetrain.studies.mode_levels import named_level, rungs_of
+from fe_drivetrain.studies.mode_levels import named_level, plain_rungs
 from fe_drivetrain.studies.turning_advice import TurningLadder, finest_modes, turning_ladder
 from fe_drivetrain.studies.turning_quantities import TurningModel, turning_quantity
 
@@ -73,7 +73,7 @@ def turning_study(
     check_spreads(drivetrain)
     quantities = [turning_quantity(drivetrain, name) for name in asked.names]
     machine, steps = machine_of(drivetrain), Steps(report)
-    rungs = rungs_of(machine)
+    rungs = plain_rungs(machine)
     wanted = None if asked.level is None else named_level(str(asked.level), machine)
     ladders = [turning_ladder(drivetrain, one, rungs, asked.tolerance, steps) for one in quantities]
     if wanted is None:

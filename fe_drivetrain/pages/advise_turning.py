@@ -7,7 +7,7 @@ from fe_drivetrain.report.suite.run import Run
 from fe_drivetrain.studies.turning_advice import TurningAdvice, level_rows
 
 
-def show_turning_advice(run: Run, page: Page, result: TurningAdvice) -> None:
+def show_advise_turning(run: Run, page: Page, result: TurningAdvice) -> None:
     """Show the model levels of a drivetrain for a quantity of what turns.
 
     Parameters
