@@ -41,7 +41,7 @@ TURNING = "Radial load of the bearings of planet 1, {}"
     source="Al-Hamadani 2018, section 7.1; NREL Gearbox Reliability Collaborative",
     settings={
         "drivetrain": "FILE, or a name of the library (otherwise nrel_750kw, and nrel_5mw)",
-        "moment": "NUMBER (kN m, against y at your own hub; otherwise as its torque)",
+        "moment": "NUMBER (kN m, against y at your own hub, otherwise as its torque)",
     },
 )
 def run(run: Run, page: Page) -> None:
@@ -146,8 +146,10 @@ def own(run: Run, page: Page, chosen: ChosenDrivetrain, count: int) -> None:
     machine, torque = machine_of(chosen.drivetrain), chosen.rated_torque()
     chosen.state(page)
     _, pins = first_stage(machine)
-    moment = -1e3 * run.positive("moment", torque / 1e3)
-    if "moment" not in run.settings:
+    moment = -torque
+    if "moment" in run.settings:
+        moment = -1e3 * run.positive("moment")
+    else:
         page.assume("moment about y at the hub", moment / 1e3, "kN m", "as large as the torque")
     cases = {TURNS[0]: 0.0, TURNS[1]: moment}
     angles = azimuths(count)

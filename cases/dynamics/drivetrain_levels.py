@@ -50,9 +50,9 @@ FIRST = "first torsional frequency [Hz]"
     source="Al-Hamadani 2018, chapters 4 and 5; Nejad et al. 2016 for the 5 MW gearbox",
     settings={
         "drivetrain": "FILE, or a name of the library (otherwise three of these)",
-        "torque": "NUMBER (kN m, of the rotor of your own drivetrain; otherwise its rated one)",
-        "moment": "NUMBER (kN m, about y at its hub; otherwise as large as the torque)",
-        "speed": "NUMBER (rpm, of its rotor; otherwise its rated one)",
+        "torque": "NUMBER (kN m, of the rotor of your own drivetrain, otherwise its rated one)",
+        "moment": "NUMBER (kN m, about y at its hub, otherwise as large as the torque)",
+        "speed": "NUMBER (rpm, of its rotor, otherwise its rated one)",
     },
 )
 def run(run: Run, page: Page) -> None:
@@ -196,11 +196,14 @@ def show_needed(page: Page, needed: list[Record]) -> None:
 
 def operations(run: Run) -> dict[str, Operation]:
     """Drivetrains and their loads: those of the case, or the one that the user names."""
-    name = str(run.settings.get(SETTING, ""))
+    name = str(run.settings[SETTING]) if SETTING in run.settings else ""
     if name and name not in OPERATIONS:
-        given = None if "torque" in run.settings else run.drivetrain("").rated_torque() / 1e3
-        torque = run.positive("torque", given)
-        return {name: Operation(1e3 * torque, 1e3 * run.positive("moment", torque))}
+        if "torque" in run.settings:
+            torque = 1e3 * run.positive("torque")
+        else:
+            torque = run.drivetrain("").rated_torque()
+        moment = 1e3 * run.positive("moment") if "moment" in run.settings else torque
+        return {name: Operation(torque, moment)}
     for key in ("torque", "moment", "speed"):
         if key in run.settings:
             raise InputError(
@@ -300,8 +303,9 @@ def rotor_speed(run: Run, name: str) -> float:
     """Speed of the rotor [rpm]: of the case, or the rated one of the drivetrain."""
     if name in RPM:
         return RPM[name]
-    given = None if "speed" in run.settings else run.drivetrain(name).rotor_speeds()[1]
-    return run.positive("speed", None if given is None else given * 30 / np.pi)
+    if "speed" in run.settings:
+        return run.positive("speed")
+    return run.drivetrain(name).rotor_speeds()[1] * 30 / np.pi
 
 
 def show_turning(page: Page, name: str, machine: Machine, rpm: float) -> None:

@@ -59,7 +59,7 @@ MAXIMUM, MINIMUM = (
     source="PROTEST 2010, ECN-E--10-100, section 4.2 and appendix A",
     settings={
         "drivetrain": "FILE, or a name of the library (otherwise nrel_750kw)",
-        "low": "21.9 (rpm, lowest speed of the rotor; of another drivetrain that of its operation)",
+        "low": "21.9 (rpm, lowest speed of the rotor, of another drivetrain that of its operation)",
         "high": "22.3 (rpm, highest speed of the rotor, likewise)",
         "torque": "325 (kN m, of the rotor before a dip, likewise)",
         "offset": "0.5 (mm, of each bearing of rotor, generator or a shaft)",
@@ -122,12 +122,17 @@ def answer(page: Page, speeds: tuple[float, float], torque: float, offset: float
 
 def operation(run: Run, chosen: ChosenDrivetrain) -> tuple[float, float, float]:
     """Lowest and highest speed of the rotor [rpm], and its torque before a dip [kN m]."""
-    low, high, torque = 21.9, 22.3, 325.0
-    if chosen.own and not {"low", "high"} <= run.settings.keys():
-        low, high = (speed / RPM for speed in chosen.rotor_speeds())
-    if chosen.own and "torque" not in run.settings:
+    low, high = run.positive("low", 21.9), run.positive("high", 22.3)
+    torque = run.positive("torque", 325.0)
+    if not chosen.own:
+        return low, high, torque
+    if "low" not in run.settings:
+        low = chosen.rotor_speeds()[0] / RPM
+    if "high" not in run.settings:
+        high = chosen.rotor_speeds()[1] / RPM
+    if "torque" not in run.settings:
         torque = chosen.rated_torque() / 1e3
-    return run.positive("low", low), run.positive("high", high), run.positive("torque", torque)
+    return low, high, torque
 
 
 def resonance(page: Page, machine: Machine, speeds: tuple[float, float]) -> None:

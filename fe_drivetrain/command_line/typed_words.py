@@ -36,7 +36,7 @@ class WithFiles(TyperCommand):
             left = error.message.partition("extra argument")[2]
             if left and any(Path(word).exists() and word in left for word in typed):
                 ctx.fail(
-                    f"{error.message}: put a pattern in quotes, as in --loads 'outputs/*.outb', give the "
-                    "folder, or repeat the option before each file"
+                    f"{error.message}: put a pattern in quotes, as in --loads 'outputs/*.outb', "
+                    "give the folder, or repeat the option before each file"
                 )
             raise
