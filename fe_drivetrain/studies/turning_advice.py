@@ -21,7 +21,7 @@ from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.mode_levels import plain_rungs
 from fe_drivetrain.studies.result import Result
-from fe_drivetrain.studies.shown_units import quantity_in_words
+from fe_drivetrain.studies.shown_units import in_large_unit, quantity_in_words
 from fe_drivetrain.studies.turning_quantities import (
     TurningModel,
     TurningQuantity,
@@ -306,12 +306,12 @@ def _state(found: Findings, ladder: TurningLadder) -> None:
         why="the tolerance that was requested",
         source=f"the level {finest}, and its own error",
     )
-    unit = "" if ladder.quantity.unit == "-" else f" [{ladder.quantity.unit}]"
     assert known.value is not None  # the finest has one, and so has one that is near it
-    band = abs(known.value) * ladder.bound(number)
-    found.found(f"{ladder.quantity.name}{unit}", known.value, band)
+    value, large = in_large_unit(known.value, ladder.quantity.unit)
+    unit, band = "" if large == "-" else f" [{large}]", abs(value) * ladder.bound(number)
+    found.found(f"{ladder.quantity.name}{unit}", value, band)
     figures = [
-        found.value(f"{ladder.quantity.name}{unit}", known.value, band),
+        found.value(f"{ladder.quantity.name}{unit}", value, band),
         found.value(
             "error of the level [%]",
             100.0 * known.error,

@@ -14,6 +14,7 @@ from fe_drivetrain.drivetrain_file import LumpedDrivetrain, read_drivetrain
 from fe_drivetrain.dynamics import RUNGS, Asked, Operation, like_mode, machine_of
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.shafts.fidelity import Quantity
+from fe_drivetrain.shafts.uncertainty import sensitivities
 from fe_drivetrain.studies import advise_turning, compare, gears, uncertainty
 from fe_drivetrain.studies.gear_options import GearOptions
 from fe_drivetrain.studies.turning_advice import turning_ladder
@@ -134,6 +135,17 @@ def test_factors_of_gears_are_those_of_the_rating() -> None:
         assert known[f"gears.{name}.K_Hbeta"].of(model) == mesh.spread.face_load
     for name, gear in rated.gears.items():
         assert known[f"gears.{name}.sigma_H"].of(model) == gear.contact_stress
+
+
+def test_contact_stress_goes_with_the_root_of_the_load() -> None:
+    """By hand: sigma_H of Hertz grows with the root of the torque, falls with that of the width."""
+    drivetrain = read_drivetrain("synthetic_2mw")
+    stress = turning_quantity(drivetrain, "gears.stage 3 pinion.sigma_H")
+    keys = ["operation.rated_power", "gearbox.stages.2.face_width"]
+    slopes = sensitivities(
+        drivetrain, lambda one: {stress.name: stress.value(TurningModel(one, RUNGS[0]))}, keys
+    )
+    assert list(slopes[stress.name].values()) == pytest.approx([0.5, -0.5], rel=1e-5)
 
 
 def test_mode_of_another_drivetrain_is_followed() -> None:
