@@ -39,8 +39,8 @@ def in_large_unit(value: float, unit: str) -> tuple[float, str]:
     value : float
         In the other unit.
     unit : str
-        "kN" of "N", "kN m" of "N m", "MN/m" of "N/m", "MN m/rad" of "N m/rad", "MPa" of "Pa"; else the
-        same.
+        "kN" of "N", "kN m" of "N m", "MN/m" of "N/m", "MN m/rad" of "N m/rad",
+        "MPa" of "Pa"; else the same.
     """
     factor, large = _LARGE.get(unit, (1.0, unit))
     return value / factor, large
