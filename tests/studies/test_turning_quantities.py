@@ -15,7 +15,7 @@ from fe_drivetrain.dynamics import RUNGS, Asked, Operation, like_mode, machine_o
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.shafts.fidelity import Quantity
 from fe_drivetrain.shafts.uncertainty import sensitivities
-from fe_drivetrain.studies import advise_turning, compare, gears, uncertainty
+from fe_drivetrain.studies import advise_turning, compare, gears, transient, uncertainty
 from fe_drivetrain.studies.gear_options import GearOptions
 from fe_drivetrain.studies.turning_advice import turning_ladder
 from fe_drivetrain.studies.turning_quantities import (
@@ -135,6 +135,20 @@ def test_factors_of_gears_are_those_of_the_rating() -> None:
         assert known[f"gears.{name}.K_Hbeta"].of(model) == mesh.spread.face_load
     for name, gear in rated.gears.items():
         assert known[f"gears.{name}.sigma_H"].of(model) == gear.contact_stress
+
+
+def test_peaks_are_those_of_the_event() -> None:
+    """A peak of a name is the largest value that `transient` finds at that level."""
+    running = {"rated_power": 5e6, "rotor_speed": [0.7, 1.3]}
+    drivetrain = LumpedDrivetrain.model_validate({**_data(), "operation": running})
+    found = transient(drivetrain, "grid_loss", level="torsional", quantity="torque")
+    name = "torque of main shaft"
+    peak = turning_quantity(drivetrain, f"transient.grid_loss.{name}.peak")
+    model = TurningModel(drivetrain, RUNGS[0])
+    assert peak.unit == "N m"
+    assert peak.value(model) == found.extremes[name].largest
+    assert peak.value(model) > 0.9 * 5e6 / 1.3  # where it began
+    assert 0.0 < peak.own(model) < 0.01 * peak.value(model)
 
 
 def test_contact_stress_goes_with_the_root_of_the_load() -> None:
