@@ -14,7 +14,6 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 
-from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.near_words import did_you_mean
 from fe_drivetrain.common.short_repr import short_repr
@@ -232,8 +231,8 @@ def turning_names(
         )
     if turning and load is not None:
         raise InputError(
-            f"{argument('load')} is for reactions: leave it out, gears are under the torque of the "
-            "rated power and the weight of the rotor"
+            f"a load is given for {turning[0]} but is for reactions: leave it out, gears are under "
+            "the torque of the rated power and the weight of the rotor"
         )
     return turning
 

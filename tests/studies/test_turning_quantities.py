@@ -207,7 +207,7 @@ def test_load_and_reactions_do_not_go_with_what_turns(
     """Each is of another model."""
     with pytest.raises(InputError, match="ask for them one by one"):
         uncertainty(read_drivetrain("two_bearings"), ["modes.torsional.1", "hub.stiffness.uz"])
-    with pytest.raises(InputError, match="is for reactions"):
+    with pytest.raises(InputError, match="but is for reactions"):
         uncertainty(read_drivetrain(two), ["modes.torsional.1"], {"hub.Fz": 1e5})
     with pytest.raises(InputError, match="no sections"):
         uncertainty(read_drivetrain(two), ["hub.stiffness.uz"])
