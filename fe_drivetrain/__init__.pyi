@@ -44,9 +44,11 @@ from .studies import PartResult as PartResult
 from .studies import Result as Result
 from .studies import StudyResult as StudyResult
 from .studies import TransientResult as TransientResult
+from .studies import TurningAdvice as TurningAdvice
 from .studies import UncertaintyResult as UncertaintyResult
 from .studies import ValidateResult as ValidateResult
 from .studies import advise as advise
+from .studies import advise_turning as advise_turning
 from .studies import check as check
 from .studies import compare as compare
 from .studies import gears as gears

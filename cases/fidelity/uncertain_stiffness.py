@@ -39,6 +39,7 @@ from fe_drivetrain.shafts.uncertainty import (
     first_order,
     nominal_value,
     relative_spread,
+    spreads_of,
     study,
     with_values,
 )
@@ -304,7 +305,7 @@ def _check_deviations(page: Page, found: Study, top: Slopes, coarse: Slopes) -> 
 
 def _deviation(found: Study, slopes: Mapping[str, float], keys: Iterable[str]) -> float:
     """Relative standard deviation for the spreads of some values."""
-    spreads = found.scene.uncertainty
+    spreads = spreads_of(found.scene)
     return float(np.linalg.norm([slopes[key] * relative_spread(spreads[key]) for key in keys]))
 
 

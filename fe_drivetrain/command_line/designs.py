@@ -20,13 +20,13 @@ from fe_drivetrain.command_line.settings import (
     parse_tolerance,
 )
 from fe_drivetrain.command_line.showing import Shown
-from fe_drivetrain.command_line.studies import OutFolder, run_on_scene
+from fe_drivetrain.command_line.studies import OutFolder, loads_of_drivetrain, run_on_scene
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import hold_threads
-from fe_drivetrain.drivetrain_file.named_scenes import named_scene
+from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 
 if TYPE_CHECKING:
-    from fe_drivetrain.drivetrain_file.scene import Scene
+    from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
     from fe_drivetrain.shafts.fidelity.quantity import Quantity
     from fe_drivetrain.studies.design_comparison import Varied
 
@@ -62,7 +62,8 @@ class CompareRequest:
             "--quantity",
             metavar="NAME",
             help="What is compared: a reaction, as in main_bearing.My, or a stiffness, "
-            "hub.stiffness.ux to hub.stiffness.rz. May be repeated. Default: all of them.",
+            "hub.stiffness.ux to hub.stiffness.rz; or what turns, as in modes.torsional.1. May be "
+            "repeated. Default: all reactions and stiffnesses.",
         ),
     ] = None
     tolerance: Tolerance = "5%"
@@ -87,10 +88,9 @@ def compare_command(context: typer.Context, asked: CompareRequest) -> int:
     varied = None if asked.vary is None else parse_values(asked.vary)
     designs = _designs(scenes, changes, varied)
     from fe_drivetrain.pages.compare import show_compare
-    from fe_drivetrain.shafts.response.model import scene_loads
     from fe_drivetrain.studies.design_comparison import compare
 
-    load = parse_loads(asked.load or (), scene_loads(next(iter(designs.values()))))
+    load = parse_loads(asked.load or (), loads_of_drivetrain(next(iter(designs.values()))))
     quantities = _quantities(asked.quantity, designs.values())
     share = parse_tolerance(asked.tolerance)
     title = f"{' against '.join(reversed(scenes))}: what changes"
@@ -109,16 +109,23 @@ def compare_command(context: typer.Context, asked: CompareRequest) -> int:
     )
 
 
-def _quantities(names: Sequence[str] | None, scenes: Collection[Scene]) -> list[Quantity] | None:
-    """Quantities of ``--quantity``, which every scene must have; None for all."""
+def _quantities(
+    names: Sequence[str] | None, designs: Collection[Drivetrain]
+) -> list[Quantity] | None:
+    """Quantities of ``--quantity``, which every design must have; None for all."""
+    from fe_drivetrain.drivetrain_file.reading import with_sections
     from fe_drivetrain.shafts.fidelity.quantity import Quantity
+    from fe_drivetrain.studies.turning_quantities import is_turning, turning_quantity
 
     if not names:
         return None
     found = [Quantity(name) for name in names]
     for one in found:
-        for scene in scenes:
-            one.check(scene)
+        for design in designs:
+            if is_turning(one.name, design):
+                turning_quantity(design, one.name)
+            else:
+                one.check(with_sections(design, design.title))
     return found
 
 
@@ -161,13 +168,13 @@ def parse_values(text: str) -> Varied:
 
 def _designs(
     scenes: Sequence[str], changes: Mapping[str, object], varied: Varied | None
-) -> dict[str, Scene]:
+) -> dict[str, Drivetrain]:
     """Scenes by a name for tables: their own, or that of their value."""
     if varied is not None:
         if len(scenes) > 1:
             raise InputError("--vary changes one scene: give one, or leave --vary out")
         return {
-            f"{value:g}": named_scene(scenes[0], {**changes, varied.key: value})
+            f"{value:g}": read_drivetrain(scenes[0], {**changes, varied.key: value})
             for value in varied.values
         }
     if len(scenes) < 2:
@@ -182,4 +189,4 @@ def _designs(
     names = stems if unique else list(scenes)
     if len(set(names)) < len(names):
         raise InputError(f"{' and '.join(names)}: one scene is given twice; give each of them once")
-    return {name: named_scene(one, changes) for name, one in zip(names, scenes, strict=True)}
+    return {name: read_drivetrain(one, changes) for name, one in zip(names, scenes, strict=True)}

@@ -15,6 +15,7 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
     "advise": (
         "main_bearing_bonded --quantity main_bearing.My --tolerance 2%",
         "mine.yaml --load hub.My=1e6",
+        "mine.yaml --quantity modes.torsional.1 --tolerance 5%",
     ),
     "modes": (
         "nrel_5mw --speeds 6.9:12.1 --open",
@@ -43,8 +44,12 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
     "compare": (
         "mine.yaml stiffer.yaml",
         "two_bearings --vary shaft.front=-1.2:-0.8:5",
+        "synthetic_2mw --vary generator.inertia=60:120:4 --quantity modes.torsional.1",
     ),
-    "uncertainty": ("mine.yaml --quantity main_bearing.My --sobol",),
+    "uncertainty": (
+        "mine.yaml --quantity main_bearing.My --sobol",
+        "mine.yaml --quantity modes.torsional.1",
+    ),
     "report": (
         "mine.yaml --loads 'outputs/*.outb' --site class-II --open",
         "mine.yaml --loads outputs --pdf",

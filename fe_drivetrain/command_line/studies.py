@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -23,9 +23,11 @@ from fe_drivetrain.command_line.showing import Shown
 from fe_drivetrain.command_line.terminal import as_typed, guarded
 from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
-from fe_drivetrain.drivetrain_file.named_scenes import named_scene, read_drivetrain
+from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 
 if TYPE_CHECKING:
+    from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+    from fe_drivetrain.drivetrain_file.scene import Scene
     from fe_drivetrain.report.results import Results
 
 OutFolder = Annotated[
@@ -74,7 +76,8 @@ def advise_command(
             "--quantity",
             metavar="NAME",
             help="The quantity that must be accurate: a reaction, as in main_bearing.My or "
-            "gearbox.Fz, or a stiffness, hub.stiffness.ux to hub.stiffness.rz. Default: Fz of the "
+            "gearbox.Fz; a stiffness, hub.stiffness.ux to hub.stiffness.rz; or one of all that "
+            "turns, as in modes.torsional.1 or 'gears.stage 3 mesh.K_Hbeta'. Default: Fz of the "
             "first bearing.",
         ),
     ] = None,
@@ -83,7 +86,9 @@ def advise_command(
     to_the_top: Annotated[
         bool,
         typer.Option(
-            "--to-the-top", help="Run every level, even if a cheaper one is accurate enough."
+            "--to-the-top",
+            help="Run every level, even if a cheaper one is accurate enough; of modes and gears "
+            "a main shaft and carriers of solids, too.",
         ),
     ] = False,
     out: OutFolder = None,
@@ -93,35 +98,79 @@ def advise_command(
 
     Runs models of rising cost until one is accurate enough: statics, beam, meridian in Fourier
     harmonics, assembly of solids. Ranks the details of the scene by the change that leaving each
-    one out causes.
+    one out causes. For a frequency or a factor of gears it runs what the file has data for:
+    torsion, rigid bodies, flexible shafts, housings, mount, carriers, main shaft in its meridian.
 
     The exit status is 0 if a level is known to be within the tolerance, 1 if none is.
     """
 
     def work() -> int:
         hold_threads()
-        found = named_scene(scene, parse_settings(set_ or ()))
-        from fe_drivetrain.pages.advise import show_advise
-        from fe_drivetrain.shafts.fidelity.quantity import Quantity
-        from fe_drivetrain.shafts.response.model import scene_loads
-        from fe_drivetrain.studies.level_advice import advise
-
-        name = quantity or f"{found.bearing_names[0]}.Fz"
-        loads = parse_loads(load or (), scene_loads(found))
-        Quantity(name).check(found)
+        drivetrain = read_drivetrain(scene, parse_settings(set_ or ()))
+        loads = parse_loads(load or (), loads_of_drivetrain(drivetrain))
         share = parse_tolerance(tolerance)
-        return run_on_scene(
-            "advise",
-            [scene],
-            f"{found.title}: the model level that {name} needs",
-            out,
-            Shown(
-                lambda run: advise(found, name, share, loads, to_the_top, report=run.report),
-                show_advise,
-            ),
-        )
+        from fe_drivetrain.drivetrain_file.reading import with_sections
+        from fe_drivetrain.studies.turning_quantities import turning_names
+
+        turning = turning_names(drivetrain, (quantity,) if quantity else (), loads)
+        if turning:
+            name, shown = turning[0], _of_turning(drivetrain, turning[0], share, to_the_top)
+        else:
+            found = with_sections(drivetrain, scene)
+            name = quantity or f"{found.bearing_names[0]}.Fz"
+            shown = _of_reactions(found, name, share, loads, to_the_top)
+        title = f"{drivetrain.title}: the model level that {name} needs"
+        return run_on_scene("advise", [scene], title, out, shown)
 
     raise typer.Exit(guarded(work))
+
+
+def _of_turning(
+    drivetrain: Drivetrain, name: str, tolerance: float, to_the_top: bool
+) -> Shown[Any]:
+    """The adviser for a frequency or a factor of gears; a name that is unknown is refused."""
+    from fe_drivetrain.pages.advise_turning import show_advise_turning
+    from fe_drivetrain.studies.turning_advice import advise_turning
+    from fe_drivetrain.studies.turning_quantities import turning_quantity
+
+    turning_quantity(drivetrain, name)
+    return Shown(
+        lambda run: advise_turning(drivetrain, name, tolerance, to_the_top, report=run.report),
+        show_advise_turning,
+    )
+
+
+def _of_reactions(
+    scene: Scene,
+    name: str,
+    tolerance: float,
+    loads: Mapping[str, float] | None,
+    to_the_top: bool,
+) -> Shown[Any]:
+    """The adviser for a reaction or a stiffness; a name that is unknown is refused."""
+    from fe_drivetrain.pages.advise import show_advise
+    from fe_drivetrain.shafts.fidelity.quantity import Quantity
+    from fe_drivetrain.studies.level_advice import advise
+
+    Quantity(name).check(scene)
+    return Shown(
+        lambda run: advise(scene, name, tolerance, loads, to_the_top, report=run.report),
+        show_advise,
+    )
+
+
+def loads_of_drivetrain(drivetrain: Drivetrain) -> tuple[str, ...]:
+    """Names of loads that reactions may be asked under; none without sections of the main shaft.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        The drivetrain.
+    """
+    from fe_drivetrain.drivetrain_file.scene import Scene
+    from fe_drivetrain.shafts.response.model import scene_loads
+
+    return tuple(scene_loads(drivetrain)) if isinstance(drivetrain, Scene) else ()
 
 
 def run_on_scene(

@@ -17,10 +17,10 @@ from fe_drivetrain.command_line.settings import (
     parse_tolerance,
 )
 from fe_drivetrain.command_line.showing import Shown
-from fe_drivetrain.command_line.studies import OutFolder, run_on_scene
+from fe_drivetrain.command_line.studies import OutFolder, loads_of_drivetrain, run_on_scene
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import hold_threads
-from fe_drivetrain.drivetrain_file.named_scenes import named_scene
+from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.suite.run import Run
@@ -38,19 +38,20 @@ class UncertaintyRequest:
             "--quantity",
             metavar="NAME",
             help="A quantity for which the model level must be accurate, as in main_bearing.My; it "
-            "is reported in addition to every stiffness. May be repeated. Default: "
-            "hub.stiffness.uz.",
+            "is reported in addition to every stiffness. Or one of all that turns, as in "
+            "modes.torsional.1. May be repeated. Default: hub.stiffness.uz.",
         ),
     ] = None
     load: Loads = None
     tolerance: Tolerance = "5%"
     level: Annotated[
-        int | None,
+        str | None,
         typer.Option(
             "--level",
             metavar="LEVEL",
-            help="Sample level 1 (beam) or 2 (meridian) without running the adviser. The assembly "
-            "of solids is then not solved, and the model error is known only as bounds.",
+            help="Sample level 1 (beam) or 2 (meridian) without running the adviser; of modes and "
+            "gears torsional, rigid or flexible. The assembly of solids is then not solved, and "
+            "the model error is known only as bounds.",
         ),
     ] = None
     samples: Annotated[
@@ -91,13 +92,13 @@ def uncertainty_command(context: typer.Context, asked: UncertaintyRequest) -> in
     The exit status is 0 if the level is known to be within the tolerance, 1 if not.
     """
     hold_threads()
-    scene = named_scene(asked.scene, parse_settings(asked.set_ or ()))
+    scene = read_drivetrain(asked.scene, parse_settings(asked.set_ or ()))
     from fe_drivetrain.pages.uncertainty import show_uncertainty
-    from fe_drivetrain.shafts.response.model import scene_loads
     from fe_drivetrain.studies.input_uncertainty import uncertainty
 
-    loads = parse_loads(asked.load or (), scene_loads(scene))
+    loads = parse_loads(asked.load or (), loads_of_drivetrain(scene))
     share = parse_tolerance(asked.tolerance)
+    level = int(asked.level) if asked.level and asked.level.lstrip("-").isdecimal() else asked.level
     if asked.level is not None and not left_out(context, "tolerance"):
         raise InputError(
             f"--tolerance {asked.tolerance} is for the adviser, which --level {asked.level} leaves "
@@ -110,7 +111,7 @@ def uncertainty_command(context: typer.Context, asked: UncertaintyRequest) -> in
             tuple(asked.quantity or ()),
             loads,
             share,
-            asked.level,
+            level,
             asked.samples,
             asked.seed,
             asked.sobol,

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from pydantic import field_validator, model_validator
 
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.scene import Spread, check_spreads
 from fe_drivetrain.drivetrain_file.turning_gate import check_turning
 from fe_drivetrain.drivetrain_file.turning_parts import ShaftRow
 from fe_drivetrain.geometry.part import in_its_field
@@ -20,6 +22,7 @@ class LumpedDrivetrain(Drivetrain):
     """
 
     shaft: ShaftRow
+    uncertainty: Mapping[str, Spread] = {}
 
     @field_validator("shaft", mode="wrap")
     @classmethod
@@ -30,6 +33,7 @@ class LumpedDrivetrain(Drivetrain):
 
     @model_validator(mode="after")
     def _sound(self) -> LumpedDrivetrain:
+        check_spreads(self, self.uncertainty)
         check_turning(self, self.shaft)
         return self
 

@@ -128,7 +128,7 @@ class Scene(Drivetrain):
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":
         check_scene(self, self.gearbox.stiffness, [point.name for point in self.load_points])
-        check_spreads(self)
+        check_spreads(self, self.uncertainty)
         check_turning(self, main_shaft(self), main_bearings(self))
         return self
 
@@ -298,13 +298,13 @@ def with_materials(scene: Scene) -> Scene:
     return scene.model_copy(update={"materials": own | dict(scene.materials)})
 
 
-def nominal_values(scene: Scene, keys: Sequence[str]) -> list[float]:
+def nominal_values(scene: Drivetrain, keys: Sequence[str]) -> list[float]:
     """The numbers that dotted keys lead to; a bearing unit is addressed by its bearing's name.
 
     Parameters
     ----------
-    scene : Scene
-        The scene.
+    scene : Drivetrain
+        The scene, or another drivetrain.
     keys : Sequence[str]
         Keys as `fe_drivetrain.drivetrain_file.change_scene` takes them.
 
@@ -313,7 +313,8 @@ def nominal_values(scene: Scene, keys: Sequence[str]) -> list[float]:
     InputError
         There is none, or it is no number.
     """
-    data = with_materials(scene).model_dump(mode="json")
+    stated = with_materials(scene) if isinstance(scene, Scene) else scene
+    data = stated.model_dump(mode="json")
     return [_number(data, key) for key in keys]
 
 
@@ -327,22 +328,24 @@ def _number(data: Any, key: str) -> float:
     return float(value)
 
 
-def check_spreads(scene: Scene) -> None:
+def check_spreads(scene: Drivetrain, spreads: Mapping[str, Spread]) -> None:
     """Refuse uncertain values that cannot be uncertain.
 
     Parameters
     ----------
-    scene : Scene
-        With spreads, or without any.
+    scene : Drivetrain
+        The scene, or another drivetrain.
+    spreads : mapping of str to Spread
+        Its uncertain values by key; may be empty.
 
     Raises
     ------
     InputError
         A key leads to no number, or to zero, which has no relative spread.
     """
-    if not scene.uncertainty:
+    if not spreads:
         return
-    keys = list(scene.uncertainty)
+    keys = list(spreads)
     for key, value in zip(keys, nominal_values(scene, keys), strict=True):
         if value == 0.0:
             raise InputError(

@@ -9,18 +9,18 @@ from typing import Any
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 
 _SPRINGS = ("N/m", "N/m", "N/m", "N m/rad", "N m/rad", "N m/rad")
 
 
-def unit_of_key(scene: Scene, key: str) -> str:
+def unit_of_key(scene: Drivetrain, key: str) -> str:
     """Unit of a value of a scene.
 
     Parameters
     ----------
-    scene : Scene
-        The scene.
+    scene : Drivetrain
+        The scene, or another drivetrain.
     key : str
         Dotted, as for `fe_drivetrain.drivetrain_file.change_scene`.
 

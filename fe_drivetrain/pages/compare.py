@@ -46,11 +46,13 @@ def show_compare(run: Run, page: Page, result: CompareResult) -> None:
         "A change is relative to the value of the first design. Its band is estimated from the "
         "change itself, in the way of a value's band, since errors that both designs share cancel. "
         "It is widened by a share of both values' own bands: the relative change, or what the "
-        "squared element sizes differ by. A change smaller than its band may be zero. "
-        "Without a load, a reaction is "
-        "compared by its response to each of the six hub loads, moments scaled to forces by the "
-        "length of the shaft, and its change has no sign."
+        "squared element sizes differ by. A change smaller than its band may be zero."
     )
+    if any(len(one.values[0].values) > 1 for one in result.differences):
+        page.text(
+            "Without a load, a reaction is compared by its response to each of the six hub loads, "
+            "moments scaled to forces by the length of the shaft, and its change has no sign."
+        )
     page.section("What differs in the scenes")
     for name, changed in result.inputs.items():
         if not changed:

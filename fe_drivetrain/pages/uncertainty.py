@@ -95,6 +95,8 @@ def bands(found: InputEffects) -> Section:
         sources.setdefault(one.error.source, []).append(one.name)
     origins = "; ".join(f"for {', '.join(names)}: {source}" for source, names in sources.items())
     items: list[Table | Text | Chart] = [half_bands(found), table, Text(text=_BAND)]
+    if any(one.soft_half is not None for one in found.quantities):
+        items.append(Text(text=_FACES))
     items.append(Text(text=f"The model error is, {origins}."))
     items += [_histogram(one, one.scatter) for one in found.charted if one.scatter]
     return Section(title="Uncertainty of the results", items=items)
@@ -195,9 +197,11 @@ def _ladder(found: InputEffects) -> Section:
 _BAND = (
     "Half the band of the inputs is compared with the error of the model: if that of the inputs is "
     "larger, better input data help; if that of the model is larger, a better model helps. The "
-    "standard error of the band is from resampling the samples as if they were independent. The "
-    "bands are for housings with a rigid face; the column for averaged faces is the other bound, "
-    "and the true support of the shaft is between the two."
+    "standard error of the band is from resampling the samples as if they were independent."
+)
+_FACES = (
+    "The bands are for housings with a rigid face; the column for averaged faces is the other "
+    "bound, and the true support of the shaft is between the two."
 )
 _SLOPE = (
     "Central differences at the level that was sampled. A bar of a chart is the change of the "

@@ -10,6 +10,8 @@ import numpy as np
 
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.reading import with_sections
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.drivetrain_file.units import unit_of_key
 from fe_drivetrain.report.answer import KeyFigure
@@ -23,6 +25,8 @@ from fe_drivetrain.shafts.fidelity.ladder import TITLES
 from fe_drivetrain.shafts.fidelity.quantity import Quantity
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.shown_units import in_large_unit, quantity_in_words
+from fe_drivetrain.studies.turning_comparison import TURNING_RULE, turning_differences
+from fe_drivetrain.studies.turning_quantities import turning_names
 
 #: Changes that the answer names, and that have a curve of their own.
 _NAMED, _CURVES = 3, 6
@@ -31,6 +35,10 @@ _FROM_ZERO = 0.9
 #: Share of the largest value that is round-off.
 _NOTHING = 1e-6
 _WIDEST = "largest band of a change, relative to the larger value"
+_SHAFT_RULE = (
+    "the adviser's rule, applied to the change: half of what two bounds of the housings differ by "
+    "and the change from beam to meridian; of the assembly, its discretization error"
+)
 #: The level of the assembly of solids.
 _ASSEMBLY = 4
 
@@ -87,7 +95,7 @@ class CompareResult(Result):
 
     Attributes
     ----------
-    designs : Mapping[str, Scene]
+    designs : Mapping[str, Drivetrain]
         By name, the first one first.
     differences : Sequence[Difference]
         Each quantity of all designs; changes larger than their bands first, the largest first.
@@ -100,7 +108,7 @@ class CompareResult(Result):
     STUDY: ClassVar[str] = "compare"
     SCHEMA_VERSION: ClassVar[int] = 3
 
-    designs: Mapping[str, Scene]
+    designs: Mapping[str, Drivetrain]
     differences: Sequence[Difference]
     tolerance: float
     varied: Varied | None
@@ -144,7 +152,7 @@ class CompareResult(Result):
 
 
 def compare(
-    designs: Mapping[str, Scene],
+    designs: Mapping[str, Drivetrain],
     quantities: Sequence[Quantity] | None = None,
     tolerance: float = 0.05,
     load: Mapping[str, float] | None = None,
@@ -152,14 +160,15 @@ def compare(
     *,
     report: Progress = silent,
 ) -> CompareResult:
-    """Compare designs: changes of their stiffnesses and reactions against the first one.
+    """Compare designs: changes of their stiffnesses and reactions, or of what turns.
 
     Parameters
     ----------
-    designs : mapping of str to Scene
+    designs : mapping of str to Drivetrain
         By name; the others are compared with the first.
     quantities : sequence of Quantity or None
-        What is compared; see `fe_drivetrain.shafts.fidelity.compare_designs`.
+        What is compared; see `fe_drivetrain.shafts.fidelity.compare_designs`. Or what turns, as
+        ``Quantity("modes.torsional.1")``, which is the default without sections of a main shaft.
     tolerance : float
         Allowed error of a change, relative.
     load : mapping of str to float or None
@@ -177,11 +186,16 @@ def compare(
     found, steps = Findings(), Steps(report)
     found.seed = None
     with steps.step("designs at their levels"):
-        differences = compare_designs(designs, quantities, tolerance, load, report)
+        turning = _turning(designs, quantities, load)
+        if turning:
+            differences = turning_differences(designs, turning, tolerance, report)
+        else:
+            whole = {name: with_sections(one, name) for name, one in designs.items()}
+            differences = compare_designs(whole, quantities, tolerance, load, report)
     for name, scene in designs.items():
         found.concerns(scene, name)
     _explain(found, differences, list(designs))
-    _judge(found, differences, tolerance)
+    _judge(found, differences, tolerance, TURNING_RULE if turning else _SHAFT_RULE)
     _answer(found, differences, list(designs), varied)
     found.data("changes", [_change(one) for one in differences])
     options = {
@@ -197,6 +211,18 @@ def compare(
         varied=varied,
         **found.frozen(steps.times, **options),
     )
+
+
+def _turning(
+    designs: Mapping[str, Drivetrain],
+    quantities: Sequence[Quantity] | None,
+    load: Mapping[str, float] | None,
+) -> tuple[str, ...]:
+    """Names of what turns, where that is compared."""
+    every = list(designs.values())
+    without_sections = [one for one in every if not isinstance(one, Scene)]
+    names = [one.name for one in quantities or ()]
+    return turning_names([*without_sections, *every][0], names, load) if every else ()
 
 
 def _explain(found: Findings, differences: Sequence[Difference], names: Sequence[str]) -> None:
@@ -264,15 +290,14 @@ def _change_text(one: Difference) -> str:
     return f"{sign}{value_text(change, '%', band, with_band=False)}"
 
 
-def _judge(found: Findings, differences: Sequence[Difference], tolerance: float) -> None:
+def _judge(found: Findings, differences: Sequence[Difference], tolerance: float, rule: str) -> None:
     """Check the widest band against the tolerance."""
     found.at_most(
         f"{_WIDEST} [%]",
         100 * float(max(one.rank_bands.max() for one in differences)),
         100 * tolerance,
         why="the tolerance that was requested, relative to the larger of the two values",
-        source="the adviser's rule, applied to the change: half of what two bounds of the housings "
-        "differ by and the change from beam to meridian; of the assembly, its discretization error",
+        source=rule,
     )
 
 
@@ -298,8 +323,8 @@ def _sentence(one: Difference, names: Sequence[str]) -> str:
         text = f"from {_number(both[0])} to {_number(both[k + 1])} {_unit(one)}"
     level = one.values[0].level
     return (
-        f"{one.quantity.name} of {names[k + 1]} against {names[0]}: {text} (level {level}, "
-        f"{TITLES[level]})."
+        f"{one.quantity.name} of {names[k + 1]} against {names[0]}: {text} (level "
+        f"{level if isinstance(level, str) else f'{level}, {TITLES[level]}'})."
     )
 
 

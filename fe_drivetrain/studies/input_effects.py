@@ -11,7 +11,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.drivetrain_file.scene import Spread
 from fe_drivetrain.shafts.fidelity.adviser import Advice
-from fe_drivetrain.shafts.fidelity.quantities import Number
+from fe_drivetrain.shafts.fidelity.quantity import Reported
 from fe_drivetrain.shafts.uncertainty.input_study import ModelError, Study
 from fe_drivetrain.shafts.uncertainty.numbers import (
     changes_by_spread,
@@ -27,6 +27,7 @@ from fe_drivetrain.shafts.uncertainty.sampling import (
     Shares,
     distribution,
     nominal_value,
+    spreads_of,
 )
 
 _CHARTED = 6  # quantities with their own charts; the tables have all of them
@@ -128,8 +129,10 @@ class InputEffects:
 
     Attributes
     ----------
-    level, samples : int
-        Model level that was sampled, and how often.
+    level : int or str
+        Model level that was sampled; one of all that turns has a name.
+    samples : int
+        How often.
     values : tuple of ValueSpread
         The uncertain values.
     quantities : tuple of QuantityEffects
@@ -142,7 +145,7 @@ class InputEffects:
         Errors of the model levels; none where the level was given.
     """
 
-    level: int
+    level: int | str
     samples: int
     values: tuple[ValueSpread, ...]
     quantities: tuple[QuantityEffects, ...]
@@ -172,7 +175,7 @@ def input_effects(study: Study) -> InputEffects:
         len(next(iter(study.samples.values())).values),
         tuple(
             _value(key, nominal_value(study.scene, key), spread)
-            for key, spread in study.scene.uncertainty.items()
+            for key, spread in spreads_of(study.scene).items()
         ),
         tuple(quantities.values()),
         tuple(quantities[name] for name in charted[:_CHARTED]),
@@ -187,7 +190,7 @@ def _value(key: str, nominal: float, spread: Spread) -> ValueSpread:
     return ValueSpread(key, nominal, low, high, spread, relative_spread(spread))
 
 
-def _effects(study: Study, number: Number) -> QuantityEffects:
+def _effects(study: Study, number: Reported) -> QuantityEffects:
     name, samples = number.name, study.samples[number.name]
     band, soft = samples.band(), study.soft_samples.get(name)
     changes = changes_by_spread(study, number)

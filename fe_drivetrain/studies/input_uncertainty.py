@@ -6,11 +6,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
-from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.reading import with_sections
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.charts import chart
 from fe_drivetrain.report.number_text import certain_value, formatted, value_text
@@ -30,6 +32,8 @@ from fe_drivetrain.shafts.uncertainty.sampling import SHARE, Band, Shares
 from fe_drivetrain.studies.input_effects import InputEffects, QuantityEffects, input_effects
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.shown_units import in_large_unit, quantity_in_words
+from fe_drivetrain.studies.turning_quantities import turning_names
+from fe_drivetrain.studies.turning_uncertainty import TurningSamples, turning_study
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -48,8 +52,8 @@ class UncertaintyResult(Result):
     effects: InputEffects = field(repr=False)
 
     @property
-    def level(self) -> int:
-        """Model level that was sampled: 1 beam, 2 meridian."""
+    def level(self) -> int | str:
+        """Model level that was sampled: 1 beam, 2 meridian; of all that turns its name."""
         return self.effects.level
 
     @property
@@ -112,33 +116,36 @@ MIN_SAMPLES = 40
 
 
 def uncertainty(
-    scene: Scene,
+    scene: Drivetrain,
     quantities: Sequence[str] = (),
     load: Mapping[str, float] | None = None,
     tolerance: float = 0.05,
-    level: int | None = None,
+    level: int | str | None = None,
     samples: int = 128,
     seed: int = 0,
     sobol: bool = False,
     *,
     report: Progress = silent,
 ) -> UncertaintyResult:
-    """Propagate the uncertain values of a scene to its reactions and stiffnesses.
+    """Propagate the uncertain values of a drivetrain to its results.
 
     Parameters
     ----------
-    scene : Scene
+    scene : Drivetrain
         Its `uncertainty` states how each uncertain value is distributed.
     quantities : sequence of str
-        Quantities for which the level must be accurate, as in "main_bearing.My"; they are reported
-        beside every stiffness.
+        Quantities for which the level must be accurate, as in "main_bearing.My", reported beside
+        every stiffness; or of all that turns alone, as in "modes.torsional.1" or
+        "gears.stage 3 mesh.K_Hbeta". Without any, every stiffness; of a main shaft without
+        sections "modes.torsional.1".
     load : mapping of str to float or None
         Load that causes the reactions, by component [N, N m, m/s^2]; None for each hub load by
         itself.
     tolerance : float
         Allowed error of the level, relative.
-    level : int or None
-        Level to sample, 1 or 2; None: the cheapest that the adviser finds accurate enough.
+    level : int, str or None
+        Level to sample, 1 or 2, for what turns "torsional", "rigid" or "flexible"; None: the
+        cheapest that the adviser finds accurate enough.
     samples : int
         Samples of the Latin hypercube.
     seed : int
@@ -152,23 +159,48 @@ def uncertainty(
     Raises
     ------
     InputError
-        See `fe_drivetrain.shafts.uncertainty.input_study.study`; the load has an unknown name, or
-        there are too few samples for a band.
+        See `fe_drivetrain.shafts.uncertainty.input_study.study`; the load has an unknown name,
+        there are too few samples for a band, or quantities of reactions and of what turns are asked
+        for together.
     """
     _require_samples(samples)
     found, steps = Findings(), Steps(report)
     found.about(scene)
     found.seed = seed
-    factors = None if load is None else named_load(scene, load)
     base = 2 ** (samples.bit_length() - 1) if sobol else 0
+    turning = turning_names(scene, quantities, load)
     with steps.step("uncertainty"):
-        known = study(
-            scene, quantities, factors, tolerance, level, samples, seed, base, steps.report
-        )
+        if turning:
+            asked = TurningSamples(turning, tolerance, level, samples, seed, base)
+            known = turning_study(scene, asked, found, steps.report)
+        else:
+            whole = with_sections(scene, scene.title)
+            factors = None if load is None else named_load(whole, load)
+            known = study(
+                whole,
+                quantities,
+                factors,
+                tolerance,
+                _shaft_level(level),
+                samples,
+                seed,
+                base,
+                steps.report,
+            )
     effects = _digested(found, known, tolerance)
     options = {"quantities": quantities, "load": load, "tolerance": tolerance, "level": level}
     options |= {"samples": samples, "sobol": sobol}
     return UncertaintyResult(effects=effects, **found.frozen(steps.times, **options))
+
+
+def _shaft_level(level: int | str | None) -> int | None:
+    """Level of the main shaft; that of what turns is refused."""
+    if isinstance(level, str):
+        raise InputError(
+            f"{argument('level', level)} is one of all that turns: use 1 (beam) or 2 (meridian) "
+            "for reactions and stiffnesses"
+        )
+    return level
 
 
 def _digested(found: Findings, known: Study, tolerance: float) -> InputEffects:

@@ -9,6 +9,8 @@ from time import perf_counter
 import numpy as np
 
 from fe_drivetrain.common.steps import Steps
+from fe_drivetrain.dynamics.bodies.advice import Rung
+from fe_drivetrain.dynamics.bodies.flexible import Flexible
 from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.gear.load_factors import LoadFactors
 from fe_drivetrain.studies.gear_answers import (
@@ -55,7 +57,7 @@ class GearRating:
         self.given, self.steps = given, steps
         self.level = train.level
 
-    def _spread(self, level: Level, slices: int) -> LoadSpread:
+    def _spread(self, level: Level, slices: int, flexible: Flexible | None = None) -> LoadSpread:
         return LoadSpread(
             self.train.machine,
             self.stresses,
@@ -64,7 +66,15 @@ class GearRating:
             slices,
             self.given.weight,
             self.train.torque,
+            flexible,
         )
+
+    def spread_at(self, rung: Rung) -> dict[str, Spread]:
+        """Spread at the reference torque at one rung, at which all that follows is rated."""
+        slices = self.asked.slices
+        self.chosen = self._spread(rung.level, slices, rung.flexible)
+        self.coarse = self._spread(rung.level, (slices + 1) // 2, rung.flexible)
+        return self.chosen.under(self.train.torque, self.given.hub)
 
     def ladder(self) -> tuple[tuple[LevelAnswer, ...], dict[Level, dict[str, Spread]]]:
         """All levels at the reference torque; the finest is what others are compared with."""

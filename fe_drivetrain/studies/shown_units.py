@@ -20,6 +20,7 @@ _LARGE = {
     "N m": (1e3, "kN m"),
     "N/m": (1e6, "MN/m"),
     "N m/rad": (1e6, "MN m/rad"),
+    "Pa": (1e6, "MPa"),
 }
 
 
@@ -38,7 +39,8 @@ def in_large_unit(value: float, unit: str) -> tuple[float, str]:
     value : float
         In the other unit.
     unit : str
-        "kN" of "N", "kN m" of "N m", "MN/m" of "N/m", "MN m/rad" of "N m/rad"; else the same.
+        "kN" of "N", "kN m" of "N m", "MN/m" of "N/m", "MN m/rad" of "N m/rad",
+        "MPa" of "Pa"; else the same.
     """
     factor, large = _LARGE.get(unit, (1.0, unit))
     return value / factor, large
@@ -59,24 +61,37 @@ def bearing_in_words(name: str) -> str:
     return f"the {name.replace('_', ' ')}" if "bearing" in name else f"bearing {name}"
 
 
+_FACTORS = {"sharing": "load sharing", "sigma_H": "contact stress"}
+
+
 def quantity_in_words(name: str) -> str:
     """A quantity by what it is at, for sentences.
 
     Parameters
     ----------
     name : str
-        As "main_bearing.My", "gearbox.Fz", "gearbox.Fz of hub.My" or "hub.stiffness.rz"; another
-        stays as it is.
+        As "main_bearing.My", "gearbox.Fz", "gearbox.Fz of hub.My", "hub.stiffness.rz",
+        "modes.torsional.1" or "gears.stage 3 mesh.K_Hbeta"; another stays as it is.
 
     Returns
     -------
     str
-        As "My on the main bearing", "Fz on the gearbox", "stiffness of the hub about z".
+        As "My on the main bearing", "Fz on the gearbox", "stiffness of the hub about z",
+        "torsional frequency 1", "K_Hbeta of stage 3 mesh".
     """
     name, of, load = name.partition(" of hub.")
     if of:
         return f"{quantity_in_words(name)} by {load}"
     where, dot, what = name.partition(".")
+    if where == "modes":
+        kind, _, number = what.partition(".")
+        return f"{'torsional frequency' if kind == 'torsional' else 'frequency'} {number}"
+    if where == "transient":
+        event, _, channel = what.removesuffix(".peak").partition(".")
+        return f"peak {channel} ({event.replace('_', ' ')})"
+    if where == "gears":
+        part, _, factor = what.rpartition(".")
+        return f"{_FACTORS.get(factor, factor)} of {part}"
     if not dot or " " in name:
         return name
     place = f"the {where}" if where in ("hub", "gearbox") else bearing_in_words(where)

@@ -182,7 +182,7 @@ def like_mode(finest: Asked, number: int) -> Question:
 
     def asked(of: Asked) -> float | None:
         chosen = int(np.flatnonzero(finest.modes.frequencies > 0)[number - 1])
-        if of.rung is finest.rung:
+        if of.rung is finest.rung and of.machine is finest.machine:
             return float(finest.modes.frequencies[chosen])
         solid = tuple(
             f"{shaft} node " for one in (of, finest) for shaft in one.rung.flexible.shafts

@@ -19,6 +19,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
+from fe_drivetrain.dynamics.bodies.flexible import Flexible
 from fe_drivetrain.dynamics.bodies.levels import Level, azimuths, machine_system
 from fe_drivetrain.dynamics.bodies.static import solved
 from fe_drivetrain.dynamics.bodies.system import System, springs_named
@@ -61,6 +62,8 @@ class MeshResponses:
         Number of slices of each mesh.
     weight : bool
         Whether the rotor has its weight: loads of a hub as files have them hold it already.
+    flexible : Flexible or None
+        What gives beside meshes, bearings and shafts; None for nothing.
 
     Raises
     ------
@@ -75,6 +78,7 @@ class MeshResponses:
         count: int,
         slices: int,
         weight: bool = True,
+        flexible: Flexible | None = None,
     ) -> None:
         sliced = machine.model_copy(
             update={
@@ -84,7 +88,8 @@ class MeshResponses:
         self.azimuths = azimuths(count)
         self.meshes = mesh_springs(machine)
         self._at = [
-            _responses(sliced, level, float(at), self.meshes, weight) for at in self.azimuths
+            _responses(sliced, level, float(at), self.meshes, weight, flexible)
+            for at in self.azimuths
         ]
 
     def under(self, torque: float, hub: ArrayLike = (0.0,) * 6) -> MeshLoads:
@@ -171,9 +176,10 @@ def _responses(
     azimuth: float,
     meshes: dict[str, tuple[str, ...]],
     weight: bool,
+    flexible: Flexible | None,
 ) -> _Responses:
     """Responses of the meshes with the rotor at an azimuth [rad]."""
-    system = machine_system(machine, level, azimuth, held_generator=True)
+    system = machine_system(machine, level, azimuth, held_generator=True, flexible=flexible)
     chosen, places = _chosen(system, meshes)
     rows, k = system.rows[chosen], system.stiffness[chosen]
     loads = np.column_stack([_gravity(system, weight), _hub(system)])

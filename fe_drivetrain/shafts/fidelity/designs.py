@@ -6,7 +6,7 @@ of every design has a band, and a level is enough where the bands of both are wi
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -18,12 +18,13 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.reading import value_changes
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.scene import Scene, coarser_scene
 from fe_drivetrain.shafts.fidelity.adviser import assembly_series
 from fe_drivetrain.shafts.fidelity.change_bands import OnMeshes, OnSprings, change_band
 from fe_drivetrain.shafts.fidelity.ladder import housing_springs, shaft_level, statics_level
 from fe_drivetrain.shafts.fidelity.quantities import NOISE
-from fe_drivetrain.shafts.fidelity.quantity import Quantity, named_load
+from fe_drivetrain.shafts.fidelity.quantity import Quantity, Reported, named_load
 from fe_drivetrain.shafts.fidelity.shafts import condensed_shaft
 from fe_drivetrain.shafts.response.entering import Factors
 
@@ -38,8 +39,8 @@ class Value:
         (k,) see `Quantity.of`.
     band : float
         Largest error of their norm, relative; NaN where it is not known.
-    level : int
-        At which they were found.
+    level : int or str
+        At which they were found; one of all that turns has a name.
     cheaper : tuple[float, float] or None
         The two parts of the band at level 2: half of what the bounds of the housings differ by, and
         the change from beam to meridian; None of what statics decides.
@@ -49,7 +50,7 @@ class Value:
 
     values: Floats
     band: float
-    level: int
+    level: int | str
     cheaper: tuple[float, float] | None = None
     rests_on: OnSprings | OnMeshes | None = None
 
@@ -66,13 +67,13 @@ class Difference:
 
     Attributes
     ----------
-    quantity : Quantity
+    quantity : Reported
         What it is.
     values : tuple[Value, ...]
         Value of each design, the first one that the others are compared with.
     """
 
-    quantity: Quantity
+    quantity: Reported
     values: tuple[Value, ...]
 
     @property
@@ -181,10 +182,7 @@ def compare_designs(
     InputError
         There are fewer than two designs, or a quantity is none of theirs.
     """
-    if len(designs) < 2:
-        raise InputError("there is one design: give at least two to compare")
-    if not 0 < tolerance < 1:
-        raise InputError(f"tolerance is {100 * tolerance:g} % but must be between 0 and 100 %")
+    check_comparison(len(designs), tolerance)
     # a thinner wall than the sizes were made for needs smaller ones
     designs = {
         name: coarser_scene(scene, 1.0, scene.mesh.elements_per_turn)
@@ -221,10 +219,36 @@ def compare_designs(
         Difference(quantity, tuple(found[d][quantity.name] for d in designs))
         for quantity in _chosen(asked[first], common)
     ]
+    return ranked(differences)
+
+
+def check_comparison(count: int, tolerance: float) -> None:
+    """Refuse a lone design, and a tolerance out of its range.
+
+    Parameters
+    ----------
+    count : int
+        Number of designs.
+    tolerance : float
+        Allowed error of a change, relative.
+
+    Raises
+    ------
+    InputError
+        See above.
+    """
+    if count < 2:
+        raise InputError("there is one design: give at least two to compare")
+    if not 0 < tolerance < 1:
+        raise InputError(f"tolerance is {100 * tolerance:g} % but must be between 0 and 100 %")
+
+
+def ranked(differences: Iterable[Difference]) -> list[Difference]:
+    """Changes larger than their bands first, the largest before the others."""
     return sorted(differences, key=lambda d: (not d.is_known, -float(d.ranks.max())))
 
 
-def scene_changes(before: Scene, after: Scene) -> list[tuple[str, Any, Any]]:
+def scene_changes(before: Drivetrain, after: Drivetrain) -> list[tuple[str, Any, Any]]:
     """What two scenes state differently: dotted key, and both values (None where there is none)."""
     found = value_changes(before.model_dump(mode="json"), after.model_dump(mode="json"))
     return [change for change in found if change[0] != "title"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -18,6 +19,18 @@ from fe_drivetrain.shafts.response.model import scene_loads
 #: Errors of a level in the results of an advice: its own, and that against the last level.
 OWN_ERROR = "own error [-]"
 ERROR_AGAINST_LAST = "error against the last level [-]"
+
+
+class Reported(Protocol):
+    """A quantity that is reported: its name, and the unit of its value."""
+
+    @property
+    def name(self) -> str:
+        """Name of the quantity."""
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value."""
 
 
 @dataclass(frozen=True)

@@ -8,5 +8,6 @@ from .sampling import nominal_value as nominal_value
 from .sampling import sample as sample
 from .sampling import sensitivities as sensitivities
 from .sampling import sobol_shares as sobol_shares
+from .sampling import spreads_of as spreads_of
 from .sampling import variance_shares as variance_shares
 from .sampling import with_values as with_values

@@ -20,6 +20,7 @@ from fe_drivetrain.common.jobs import Pool, pool
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.provenance import program_hash
 from fe_drivetrain.common.threads import cores
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.scene import Coupling, Scene, Spread
 from fe_drivetrain.shafts.fidelity.adviser import Advice, LevelResult, advise
 from fe_drivetrain.shafts.fidelity.quantities import (
@@ -30,7 +31,7 @@ from fe_drivetrain.shafts.fidelity.quantities import (
     stiffness_names,
     without_zeros,
 )
-from fe_drivetrain.shafts.fidelity.quantity import Quantity
+from fe_drivetrain.shafts.fidelity.quantity import Quantity, Reported
 from fe_drivetrain.shafts.fidelity.shafts import condensed_shaft, meridian_shaft
 from fe_drivetrain.shafts.response.cached import whole_content
 from fe_drivetrain.shafts.response.entering import Factors, factor_values
@@ -85,11 +86,11 @@ class Study:
 
     Attributes
     ----------
-    scene, level : Scene, int
-        What was studied, and at which level.
+    scene, level : Drivetrain, int or str
+        What was studied, and at which level; one of all that turns has a name.
     advices : Sequence[Advice]
         Ladders that were evaluated to select that level; none where the user named it.
-    numbers : Sequence[Number]
+    numbers : Sequence[Reported]
         All that are reported, those that were asked for first.
     asked : Sequence[str]
         Names of what was asked for.
@@ -104,10 +105,10 @@ class Study:
         Sobol's, of those numbers that vary; empty where not wanted.
     """
 
-    scene: Scene
-    level: int
+    scene: Drivetrain
+    level: int | str
     advices: Sequence[Advice]
-    numbers: Sequence[Number]
+    numbers: Sequence[Reported]
     asked: Sequence[str]
     slopes: Mapping[str, Mapping[str, float]]
     samples: Mapping[str, Samples]
@@ -117,7 +118,7 @@ class Study:
     surfaces: Sequence[UnitSurface]
     shares: Mapping[str, Shares] = field(default_factory=dict)
 
-    def is_asked(self, number: Number) -> bool:
+    def is_asked(self, number: Reported) -> bool:
         """Whether the user asked for it."""
         return number.name.partition(" of ")[0] in self.asked
 
@@ -273,12 +274,12 @@ def _soft(values: Mapping[str, _T]) -> dict[str, _T]:
     return {k.removeprefix(_SOFT): v for k, v in values.items() if k.startswith(_SOFT)}
 
 
-def result_at(advice: Advice, level: int) -> LevelResult:
+def result_at(advice: Advice, level: int | str) -> LevelResult:
     """The last result at a level: that with housings as springs."""
     return [result for result in advice.results if result.model.level == level][-1]
 
 
-def level_error(advice: Advice, level: int) -> float:
+def level_error(advice: Advice, level: int | str) -> float:
     """Error bound of a level: its distance to the top plus the band of the top itself."""
     return result_at(advice, level).error + advice.top.estimate
 

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.drivetrain_file.scene import Spread
-from fe_drivetrain.shafts.fidelity.quantities import Number
+from fe_drivetrain.shafts.fidelity.quantity import Reported
 from fe_drivetrain.shafts.uncertainty.input_study import Study
-from fe_drivetrain.shafts.uncertainty.sampling import Samples, distribution
+from fe_drivetrain.shafts.uncertainty.sampling import Samples, distribution, spreads_of
 
 
 def half_band(samples: Samples) -> float:
@@ -16,16 +16,16 @@ def half_band(samples: Samples) -> float:
     return (band.high - band.low) / 2 / abs(samples.nominal)
 
 
-def first_order(found: Study, number: Number) -> float:
+def first_order(found: Study, number: Reported) -> float:
     """Relative standard deviation predicted by the sensitivities, for independent inputs."""
     return float(np.linalg.norm(list(changes_by_spread(found, number).values())))
 
 
-def changes_by_spread(found: Study, number: Number) -> dict[str, float]:
+def changes_by_spread(found: Study, number: Reported) -> dict[str, float]:
     """Relative change of a quantity for one standard deviation of each uncertain value."""
     return {
         key: found.slopes[number.name][key] * relative_spread(spread)
-        for key, spread in found.scene.uncertainty.items()
+        for key, spread in spreads_of(found.scene).items()
     }
 
 

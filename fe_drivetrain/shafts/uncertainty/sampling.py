@@ -11,19 +11,23 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.reading import changed
 from fe_drivetrain.common.short_repr import short_repr
-from fe_drivetrain.drivetrain_file.reading import change_scene
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.lumped import LumpedDrivetrain
 from fe_drivetrain.drivetrain_file.scene import Scene, Spread, nominal_values, with_materials
 from fe_drivetrain.shafts.uncertainty.kept_rows import evaluated_rows
 
-Evaluate = Callable[[Scene], Mapping[str, float]]
-"""Numbers of a scene by name."""
+Stated = TypeVar("Stated", bound=Drivetrain)
+
+Evaluate = Callable[[Stated], Mapping[str, float]]
+"""Numbers of a scene, or of another drivetrain, by name."""
 
 #: Relative step of a central difference: its error is some 1e-6 of a smooth function's.
 STEP = 1e-3
@@ -166,7 +170,7 @@ class Shares:
     __repr__ = short_repr
 
 
-def nominal_value(scene: Scene, key: str) -> float:
+def nominal_value(scene: Drivetrain, key: str) -> float:
     """The number that a dotted key leads to; a bearing unit is addressed by its bearing's name.
 
     Raises
@@ -177,22 +181,31 @@ def nominal_value(scene: Scene, key: str) -> float:
     return nominal_values(scene, [key])[0]
 
 
-def with_values(scene: Scene, values: Mapping[str, float]) -> Scene:
+def with_values(scene: Stated, values: Mapping[str, float]) -> Stated:
     """The scene with other values by dotted key, materials that come with the program included.
 
     Where a thinner wall does not allow the scene's mesh sizes, half of these.
     """
-    scene = with_materials(scene)
+    if not isinstance(scene, Scene):
+        return changed(scene, values, "drivetrain")
+    whole = cast("Stated", with_materials(scene))
     try:
-        return change_scene(scene, values)
+        return changed(whole, values, "scene")
     except InputError:
-        finer = scene.model_copy(update={"mesh": scene.mesh.scaled(0.5)})
+        finer = whole.model_copy(update={"mesh": scene.mesh.scaled(0.5)})
         with suppress(InputError):
-            return change_scene(finer, values)
+            return changed(finer, values, "scene")
         raise
 
 
-def check_spreads(scene: Scene) -> None:
+def spreads_of(drivetrain: Drivetrain) -> Mapping[str, Spread]:
+    """Uncertain values of a drivetrain, by key; empty where its file states none."""
+    if isinstance(drivetrain, Scene | LumpedDrivetrain):
+        return drivetrain.uncertainty
+    return {}
+
+
+def check_spreads(scene: Drivetrain) -> None:
     """Refuse a scene without uncertain values; those that it has were checked as it was read.
 
     Raises
@@ -200,15 +213,16 @@ def check_spreads(scene: Scene) -> None:
     InputError
         Nothing is uncertain.
     """
-    if not scene.uncertainty:
+    if not spreads_of(scene):
+        key = "shaft.sections.0.outer_diameter" if isinstance(scene, Scene) else "rotor.inertia"
         raise InputError(
             f"scene {scene.title!r} has no uncertain values: add some under "
-            "'uncertainty', as in shaft.sections.0.outer_diameter: {uniform: 0.01}"
+            f"'uncertainty', as in {key}: {{uniform: 0.01}}"
         )
 
 
 def sensitivities(
-    scene: Scene, evaluate: Evaluate, keys: Sequence[str], step: float = STEP
+    scene: Stated, evaluate: Evaluate[Stated], keys: Sequence[str], step: float = STEP
 ) -> dict[str, dict[str, float]]:
     """Relative change of each result for the relative change of each value: central differences.
 
@@ -246,8 +260,8 @@ def sensitivities(
 
 
 def sample(
-    scene: Scene,
-    evaluate: Evaluate,
+    scene: Stated,
+    evaluate: Evaluate[Stated],
     count: int = 128,
     seed: int = 0,
     report: Callable[[str], object] = lambda step: None,
@@ -275,7 +289,7 @@ def sample(
         Nothing is uncertain, or a sample is no scene.
     """
     check_spreads(scene)
-    keys = tuple(scene.uncertainty)
+    keys = tuple(spreads_of(scene))
     from scipy.stats import qmc
 
     quantiles = qmc.LatinHypercube(d=len(keys), rng=seed).random(count)
@@ -293,8 +307,8 @@ def sample(
 
 
 def sobol_shares(
-    scene: Scene,
-    evaluate: Evaluate,
+    scene: Stated,
+    evaluate: Evaluate[Stated],
     names: Sequence[str],
     count: int = 64,
     seed: int = 0,
@@ -319,7 +333,7 @@ def sobol_shares(
         Content of the key, see `sample`.
     """
     check_spreads(scene)
-    keys = tuple(scene.uncertainty)
+    keys = tuple(spreads_of(scene))
     total = count * (len(keys) + 2)
     done = 0
 
@@ -403,13 +417,14 @@ def distribution(spread: Spread, nominal: float) -> Any:
     return stats.lognorm(np.sqrt(np.log1p(float(spread.lognormal or 0.0) ** 2)), scale=nominal)
 
 
-def _spreads(scene: Scene) -> list[Any]:
-    nominal = nominal_values(scene, list(scene.uncertainty))
-    return [distribution(s, v) for s, v in zip(scene.uncertainty.values(), nominal, strict=True)]
+def _spreads(scene: Drivetrain) -> list[Any]:
+    spreads = spreads_of(scene)
+    nominal = nominal_values(scene, list(spreads))
+    return [distribution(s, v) for s, v in zip(spreads.values(), nominal, strict=True)]
 
 
 def _evaluated(
-    scene: Scene, evaluate: Evaluate, keys: Sequence[str], row: Floats
+    scene: Stated, evaluate: Evaluate[Stated], keys: Sequence[str], row: Floats
 ) -> Mapping[str, float]:
     values = dict(zip(keys, row.tolist(), strict=True))
     try:
