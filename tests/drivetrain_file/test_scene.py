@@ -64,7 +64,7 @@ def test_round_trip_through_a_change():
         ({"shaft.sections.0.length": 0}, "length.* 0"),
         ({"shaft.sections.0.inner_diameter": 0.4}, "inner"),
         ({"shaft.sections.0.inner_diameter": 0.5}, "inner"),
-        ({"shaft.colour": "red"}, "Shaft: unknown key 'colour': use one of front, sections"),
+        ({"shaft.colour": "red"}, "Shaft: unknown key 'colour': use one of name, front, sections"),
         ({"colour": "red"}, "unknown key 'colour'.*gearbox"),
         ({"shaft.material": "cheese"}, "material 'cheese' of shaft is unknown: use one of steel"),
         ({"bearing_units.0.housing.material": "chees"}, "'chees' of main_bearing.housing"),

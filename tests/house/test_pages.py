@@ -19,8 +19,8 @@ from fe_drivetrain.report.suite.page import Page  # noqa: E402
 from fe_drivetrain.report.suite.run import Run  # noqa: E402
 from fe_drivetrain.studies.result import Result  # noqa: E402
 
-#: Studies whose result a command prints or writes to a file.
-WITHOUT_PAGE = {"export", "part"}
+#: Studies whose result a command prints.
+WITHOUT_PAGE = {"part"}
 
 RESULTS = {
     found.STUDY: found
