@@ -14,7 +14,7 @@ from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.time.machine_channels import Kind
 from fe_drivetrain.procedure.drivetrain_events import EVENTS, SLIP
 from fe_drivetrain.report.answer import KeyFigure
-from fe_drivetrain.report.number_text import percent_text, value_text
+from fe_drivetrain.report.number_text import certain_value, percent_text, value_text
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.transient_digest import FileDigest
 from fe_drivetrain.studies.transient_instants import ByInstant
@@ -306,16 +306,17 @@ def _stop(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigu
     last = of.last
     one, stands = of.extremes[last], of.run.marks.get("disc stands")
     turned = one.least_over_rated < -0.005
+    most, least = of.over(last), of.over(last, least=True)
     verdict = (
-        f"The stop loads the {last.removeprefix('torque of ')} to {one.over_rated:.2f} of rated "
-        f"torque{f' and back to {one.least_over_rated:.2f}' if turned else ''}; "
+        f"The stop loads the {last.removeprefix('torque of ')} to {certain_value(most)} of rated "
+        f"torque{f' and back to {certain_value(least)}' if turned else ''}; "
         + (
             f"its disc first stands after {value_text(stands, 's')}."
             if stands
             else "it still turns."
         )
     )
-    figures = [of.over(last), of.over(last, least=True), *_others(of)]
+    figures = [most, least, *_others(of)]
     if stands:
         figures.append(of.found.value("disc first stands at [s]", stands))
     return verdict, figures
@@ -323,23 +324,23 @@ def _stop(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigu
 
 def _grid_loss(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigure]]:
     one, speed = of.extremes[of.last], of.extremes["speed of generator"]
-    turned = one.least_over_rated < -0.005
+    turned, least = one.least_over_rated < -0.005, of.over(of.last, least=True)
     verdict = (
         f"Losing the grid {'reverses' if turned else 'lowers'} the torque of the "
-        f"{of.last.removeprefix('torque of ')} to {one.least_over_rated:.2f} of rated; the "
+        f"{of.last.removeprefix('torque of ')} to {certain_value(least)} of rated; the "
         f"generator reaches {speed.over_rated:.2f} of its speed."
     )
-    figures = [of.over(of.last, least=True), of.over("speed of generator"), of.over(of.last)]
+    figures = [least, of.over("speed of generator"), of.over(of.last)]
     return verdict, [*figures, *_others(of)]
 
 
 def _dip(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigure]]:
-    one = of.extremes[of.last]
+    most, least = of.over(of.last), of.over(of.last, least=True)
     verdict = (
         f"The dip swings the torque of the {of.last.removeprefix('torque of ')} between "
-        f"{one.least_over_rated:.2f} and {one.over_rated:.2f} of rated."
+        f"{certain_value(least)} and {certain_value(most)} of rated."
     )
-    figures = [of.over(of.last), of.over(of.last, least=True), *_others(of)]
+    figures = [most, least, *_others(of)]
     return verdict, [*figures, of.over("speed of generator")]
 
 
@@ -384,16 +385,16 @@ def _base(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigu
 
 
 def _operation(of: _Answered, files: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigure]]:
-    one = of.extremes[of.last]
+    most, least = of.over(of.last), of.over(of.last, least=True)
     count = len(files)
     verdict = (
         f"In {count} histor{'y' if count == 1 else 'ies'} the torque of the "
-        f"{of.last.removeprefix('torque of ')} is between {one.least_over_rated:.2f} and "
-        f"{one.over_rated:.2f} of rated."
+        f"{of.last.removeprefix('torque of ')} is between {certain_value(least)} and "
+        f"{certain_value(most)} of rated."
     )
     apart = max(digest.against_file for digest in files.values())
     against = of.found.value("torque against the files, RMS [% of rated]", 100.0 * apart)
-    return verdict, [of.over(of.last), of.over(of.last, least=True), *_others(of), against]
+    return verdict, [most, least, *_others(of), against]
 
 
 def _others(of: _Answered) -> list[KeyFigure]:

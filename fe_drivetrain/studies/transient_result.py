@@ -109,8 +109,7 @@ class TransientResult(Result):
             if one.kind == "bearing"
         }
         names = sorted(size, key=lambda name: -size[name])[:most]
-        shown = self.samples.thinned(4000)
-        last, begin = float(shown.times[-1]), float(shown.times[0])
+        last, begin = float(self.samples.times[-1]), float(self.samples.times[0])
         few = f", the {most} largest of {len(size)}" if len(size) > most else ""
         caption = f"Change of the forces of bearings{few}"
         if self.event == "offset":
@@ -119,11 +118,10 @@ class TransientResult(Result):
                 max(begin, last - 4.0 * turn),
                 f"{caption}; last turns of the generator",
             )
-        kept = shown.times >= begin
-        traces = [
-            trace(name, shown.times[kept], (shown.of(name)[kept] - self.extremes[name].rated) / 1e3)
-            for name in sorted(names, key=list(self.extremes).index)
-        ]
+        traces = []
+        for name in sorted(names, key=list(self.extremes).index):
+            times, values = self.samples.course(name, 4000, begin)
+            traces.append(trace(name, times, (values - self.extremes[name].rated) / 1e3))
         return chart(caption, traces, "time [s]", "force less that at rated torque [kN]")
 
     def over_time(self, kind: Kind, most: int = 8) -> Chart:
@@ -144,15 +142,11 @@ class TransientResult(Result):
             if one.kind == kind and (not relative or np.isfinite(one.over_rated))
         }
         names = sorted(size, key=lambda name: -size[name])[:most]
-        shown = self.samples.thinned(2000)
-        traces = [
-            trace(
-                name,
-                shown.times,
-                shown.of(name) / (self.extremes[name].rated if relative else 1e3),
-            )
-            for name in sorted(names, key=list(self.extremes).index)
-        ]
+        traces = []
+        for name in sorted(names, key=list(self.extremes).index):
+            times, values = self.samples.course(name, 2000)
+            unit = self.extremes[name].rated if relative else 1e3
+            traces.append(trace(name, times, values / unit))
         few = f", the {most} largest of {len(size)}" if len(size) > most else ""
         caption = f"{of[0].upper()}{of[1:]}{' over their rated values' if relative else ''}{few}"
         y = "over rated" if relative else "force [kN]"

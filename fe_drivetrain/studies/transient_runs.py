@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from time import perf_counter
 from typing import Any
 
@@ -152,10 +153,30 @@ class Samples:
         """(k,) values of a channel; ValueError where there is none of that name."""
         return np.asarray(self.values[:, self.names.index(name)])
 
-    def thinned(self, count: int) -> Samples:
-        """At most about so many samples."""
-        every = slice(None, None, max(1, len(self.times) // count))
-        return replace(self, times=self.times[every], values=self.values[every])
+    def course(self, name: str, count: int, begin: float = -np.inf) -> tuple[Floats, Floats]:
+        """Times and values of a channel for a chart: of each short span its least and its largest.
+
+        Parameters
+        ----------
+        name : str
+            The channel.
+        count : int
+            At most about so many samples.
+        begin : float
+            Time from which on [s].
+        """
+        kept = np.flatnonzero(self.times >= begin)
+        times, values = self.times[kept], self.of(name)[kept]
+        spans = max(1, count // 2)
+        if len(times) <= 2 * spans:
+            return times, values
+        edges = np.linspace(0, len(times), spans + 1).astype(int)
+        of_spans = [
+            edge + np.array([np.argmin(values[edge:end]), np.argmax(values[edge:end])])
+            for edge, end in pairwise(edges.tolist())
+        ]
+        which = np.unique(np.concatenate(of_spans))
+        return times[which], values[which]
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from fe_drivetrain.report.results import read_results
 from fe_drivetrain.studies import TransientResult, transient, transient_digest
 from fe_drivetrain.studies.transient_digest import OperationOptions, equivalent_range
 from fe_drivetrain.studies.transient_ladder import cheapest_level, level_error
+from fe_drivetrain.studies.transient_runs import Samples
 
 PARK = {"operation.rated_power": 1.5e6, "operation.rotor_speed": [1.0, 1.8]}
 
@@ -230,7 +231,7 @@ def test_the_command_writes_a_page_and_samples(
         *("--csv", "--out", str(out)),
     )
     assert status == 0, printed
-    assert printed.startswith("Losing the grid reverses the torque of the shaft to -0.60 of rated")
+    assert printed.startswith("Losing the grid reverses the torque of the shaft to -0.6 of rated")
     results = read_results(out / "results.json")
     assert broken_rules(results) == []
     lines = (out / "samples.csv").read_text(encoding="utf-8").splitlines()
@@ -267,3 +268,17 @@ def test_a_mistake_is_one_sentence_and_leaves_nothing(
     assert status == 2
     assert said in error
     assert not (out / "results.json").exists()
+
+
+def test_a_chart_of_many_samples_keeps_a_peak_of_one() -> None:
+    times = np.linspace(0.0, 1.0, 100_001)
+    values = np.sin(40.0 * times)
+    values[73_217] = -5.0
+    samples = Samples(times, values[:, None], ("torque of HSS",), ("N m",))
+    at, shown = samples.course("torque of HSS", 2000)
+    assert len(at) <= 2000
+    assert shown.min() == -5.0
+    assert at[shown.argmin()] == times[73_217]
+    assert (np.diff(at) > 0).all()
+    late, _ = samples.course("torque of HSS", 2000, begin=0.5)
+    assert late[0] >= 0.5
