@@ -49,6 +49,9 @@ TITLES: Mapping[str, str] = {
     "loads": "Loads",
     "reactions": "Reactions",
     "life": "Life",
+    "modes": "Modes",
+    "gears": "Gears",
+    "stop": "Emergency stop",
     "model": "Which model",
     "check": "The drivetrain",
     "export": "Export",
@@ -278,6 +281,7 @@ def _works(asked: ReportRequest, scene: Scene, own: StudyLoads) -> dict[str, Wor
             show_life,
             write_life,
         ),
+        **turning_works(asked, scene),
         "model": Shown(lambda run: advise(scene, first, TOLERANCE, report=run.report), show_advise),
         "check": Shown(lambda run: check(scene, catalogues, report=run.report), show_check),
         "export": Shown(
@@ -286,6 +290,56 @@ def _works(asked: ReportRequest, scene: Scene, own: StudyLoads) -> dict[str, Wor
     }
     if not catalogue_entries(scene):
         del works["life"]
+    return works
+
+
+def turning_works(asked: ReportRequest, scene: Scene) -> dict[str, Work]:
+    """What makes the parts of all that turns; none where the file does not state it.
+
+    Parameters
+    ----------
+    asked : ReportRequest
+        Names the files of loads.
+    scene : Scene
+        The drivetrain.
+
+    Returns
+    -------
+    dict
+        By name: modes of what has rotor and generator, gears of what has stages, and an emergency
+        stop of what has a brake, too.
+    """
+    from fe_drivetrain.command_line.gears_files import write_gears
+    from fe_drivetrain.dynamics import machine_of
+    from fe_drivetrain.pages.gears import show_gears
+    from fe_drivetrain.pages.modes import show_modes
+    from fe_drivetrain.pages.transient import show_transient
+    from fe_drivetrain.studies.drivetrain_modes import modes
+    from fe_drivetrain.studies.drivetrain_transient import transient
+    from fe_drivetrain.studies.gear_options import GearOptions
+    from fe_drivetrain.studies.gear_ratings import gears
+
+    if scene.rotor is None or scene.generator is None or machine_of(scene).not_given:
+        return {}
+    works: dict[str, Work] = {
+        "modes": Shown(lambda run: modes(scene, report=run.report), show_modes)
+    }
+    if not scene.gearbox.stages:
+        return works
+    options = GearOptions(
+        skip=asked.skip, channels=asked.channels, rotor_speed_rpm=asked.rotor_speed
+    )
+    works["gears"] = Shown(
+        lambda run: gears(
+            scene, loads=asked.loads, site=asked.place, options=options, report=run.report
+        ),
+        show_gears,
+        write_gears,
+    )
+    if scene.brake is not None:
+        works["stop"] = Shown(
+            lambda run: transient(scene, "stop", report=run.report), show_transient
+        )
     return works
 
 

@@ -22,9 +22,9 @@ from fe_drivetrain.studies.scene_study import StudyResult
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
 
 REACTIONS, LIFE, LOADS, MODEL, CHECK = "reactions", "life", "loads", "model", "check"
-EXPORT = "export"
+MODES, GEARS, STOP, EXPORT = "modes", "gears", "stop", "export"
 """Parts of a dossier."""
-_SEVERE_FIRST = (LIFE, REACTIONS, LOADS, MODEL, CHECK, EXPORT)
+_SEVERE_FIRST = (LIFE, GEARS, REACTIONS, STOP, MODES, LOADS, MODEL, CHECK, EXPORT)
 DESIGN_LIFE = 20.0
 """Years that a wind turbine is designed for, at least (IEC 61400-1, 6.2)."""
 
@@ -88,7 +88,8 @@ def dossier(scene: Scene, parts: Mapping[str, Results]) -> DossierResult:
     scene : Scene
         The drivetrain.
     parts : mapping of str to Results
-        By `REACTIONS`, which has to be there, `LIFE`, `LOADS`, `MODEL`, `CHECK` and `EXPORT`.
+        By `REACTIONS`, which has to be there, `LIFE`, `LOADS`, `MODEL`, `CHECK`, `MODES`,
+        `GEARS`, `STOP` and `EXPORT`.
 
     Returns
     -------

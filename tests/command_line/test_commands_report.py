@@ -10,9 +10,9 @@ from answer_rules import broken_rules
 from tiny_case import Result
 
 from fe_drivetrain.command_line import printing
-from fe_drivetrain.command_line.report import ReportRequest, content_of
+from fe_drivetrain.command_line.report import ReportRequest, content_of, turning_works
 from fe_drivetrain.common.components import FORCES
-from fe_drivetrain.drivetrain_file import library_scene, read_drivetrain
+from fe_drivetrain.drivetrain_file import change_scene, library_scene, read_drivetrain
 from fe_drivetrain.drivetrain_file.without_weight import weightless
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.report.suite.case import QUICK
@@ -65,6 +65,16 @@ def test_a_dossier_answers_and_is_made_once(
     made = {path: path.stat().st_mtime_ns for path in (out / "dossier").rglob("results.json")}
     assert invoke(*words)[0] == 0
     assert {path: path.stat().st_mtime_ns for path in made} == made
+
+
+def test_a_whole_drivetrain_has_parts_of_all_that_turns(loads: Path) -> None:
+    asked = ReportRequest("mine", [str(loads)])
+    assert turning_works(asked, library_scene(SCENE)) == {}
+    assert turning_works(asked, library_scene("iea_15mw_main_shaft")).keys() == {"modes"}
+    whole = library_scene("grc_750kw")
+    assert turning_works(asked, whole).keys() == {"modes", "gears"}
+    braked = change_scene(whole, {"brake": {"shaft": "HSS", "torque": 7e3}})
+    assert turning_works(asked, braked).keys() == {"modes", "gears", "stop"}
 
 
 def test_a_file_that_has_changed_is_other_content(loads: Path) -> None:
