@@ -12,7 +12,6 @@ DIGITS = 4
 """Significant digits of a number without a band; results.json keeps all of them."""
 
 _NOTHING = 0.1  # share of its band below which a value has no digit
-_LEAST_PERCENT = 1e-4  # of a band that is told in percent
 _MAX_DIGITS = 7  # of a value with a band
 _PRINTED_DIGITS = 7  # of a number that somebody has given; what was computed has more
 _ROUND_OFF = 1e-13  # of one that was converted to another unit
@@ -103,9 +102,8 @@ def value_text(
     """
     text = with_unit(_digits_of(value, unit, band, with_band), unit)
     if band and with_band and abs(value) > band * 10.0**_MAX_DIGITS:
-        percent = max(100.0 * band / abs(value), _LEAST_PERCENT)
-        sign = "<" if percent == _LEAST_PERCENT else ""
-        return f"{text} ± {sign}{formatted(percent, 2, '%')}\u00a0%"
+        percent = formatted(100.0 * band / abs(value), 2, "%")
+        return f"{text} ± {percent}\u00a0%"
     return text
 
 

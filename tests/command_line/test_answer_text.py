@@ -129,7 +129,7 @@ def test_json_of_a_study_is_that_of_its_result(invoke: Invoke, tmp_path: Path) -
         (("list", "tiny"), [{"name", "title", "source"}]),
         (("new", "--list"), {"three-point", "two-bearings"}),
         (("new", "mine.yaml"), {"file", "title"}),
-        (("export", "--list"), [{"format", "ending", "read by", "needs"}]),
+        (("export", "--list"), [{"format", "ending", "holds", "read by", "needs"}]),
     ],
 )
 def test_commands_without_a_page_have_json_too(

@@ -130,7 +130,7 @@ def test_a_check_into_the_folder_of_the_scene_loses_nothing(
         with pytest.raises(SystemExit) as ended:
             app.main([*command, "--out", "."])
         assert ended.value.code == 2, command
-        assert "loads.csv" in capsys.readouterr().err, command
+        assert "drivetrain.schema.json" in capsys.readouterr().err, command
     (tmp_path / "loads.csv").unlink()
     assert everything(tmp_path) == before
 
