@@ -17,6 +17,7 @@ from fe_drivetrain.studies.gear_answers import GearAnswer, LevelAnswer, MeshAnsw
 from fe_drivetrain.studies.gear_machine import GearTrain
 from fe_drivetrain.studies.gear_options import HOURS
 from fe_drivetrain.studies.gear_stresses import SHARING
+from fe_drivetrain.studies.machine_description import ON_THE_GROUND
 
 UNREAD = (
     "ISO 6336, ISO 1328 and IEC 61400-4 were not read: equations agree with printed KISSsoft "
@@ -301,6 +302,11 @@ def _cautions(
         )
     if result["level"] != "torsional":
         found.note("Flanks have no modification along the face: lead corrections are not modelled.")
+        found.note(
+            "Housings are rigid and stand on the ground: on a soft mount planets and faces share "
+            "otherwise."
+        )
+        found.assume(*ON_THE_GROUND)
     if result["varies"] and (result["spectrum"].torques < 0.0).any():
         found.note(
             "Negative torques load the other flanks, and are spread over planets and face as those "

@@ -18,6 +18,15 @@ from fe_drivetrain.dynamics.bodies.machine import Machine, derived_values, machi
 from fe_drivetrain.dynamics.torsion.system import natural_modes
 from fe_drivetrain.report.suite.records import Record
 
+ON_THE_GROUND = (
+    "housings of main bearings and gearbox",
+    "rigid, on the ground",
+    "",
+    "assumed: housings and mounts that give change frequencies and loads; the adviser has them as "
+    "levels, lives have the gearbox on its mount",
+)
+"""What is assumed of housings where a model has none, as a row of assumptions."""
+
 _UNITS = (*3 * ("N/m",), *3 * ("N m/rad",))
 
 

@@ -16,6 +16,7 @@ from fe_drivetrain.procedure.drivetrain_events import EVENTS, SLIP
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import certain_value, percent_text, value_text
 from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.studies.machine_description import ON_THE_GROUND
 from fe_drivetrain.studies.transient_digest import FileDigest
 from fe_drivetrain.studies.transient_instants import ByInstant
 from fe_drivetrain.studies.transient_ladder import COUNTED, QUANTITIES, level_error
@@ -131,6 +132,7 @@ def state_assumptions(
     known = generator is not None and generator.slip is not None
     if not known and event not in ("dip", "run_up"):
         found.assume("slip of the generator at rated torque", SLIP, "-", "assumed: not stated")
+    found.assume(*ON_THE_GROUND)
 
 
 def state_figures(found: Findings, extremes: Mapping[str, Extreme], run: LevelRun) -> None:
@@ -297,7 +299,10 @@ def _cautions(event: str, run: LevelRun, files: Mapping[str, FileDigest]) -> lis
     if any(not one.own_generator for one in files.values()):
         said.append("A file has no torque of its generator: a line of slip stands for it.")
     if run.level is not Level.TORSIONAL:
-        said.append("Planets stand at one azimuth: forces of their bearings are of that.")
+        said.append(
+            "Planets stand at one azimuth, housings rigidly on the ground: forces of bearings are "
+            "of that."
+        )
     said.append("Damping is by ratios; swings decay as these say.")
     return said[:3]
 
