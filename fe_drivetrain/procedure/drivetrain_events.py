@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, dataclass, fields, replace
-from typing import ClassVar, Protocol
+from typing import ClassVar
 
 import numpy as np
 
@@ -61,25 +61,32 @@ class Planned:
     marks: Mapping[str, float]
 
 
-class Event(Protocol):
-    """An event: its values are the fields of a dataclass, all numbers or words."""
+@dataclass(frozen=True)
+class Event:
+    """An event: its values are the fields of a dataclass, all numbers or words.
 
-    levels: ClassVar[tuple[Level, ...]]
-    teeth: ClassVar[bool]
+    Most are of any level, with teeth of mean stiffness, a known duration, and short steps.
+    """
+
+    levels: ClassVar[tuple[Level, ...]] = tuple(Level)
+    teeth: ClassVar[bool] = False
     seconds: ClassVar[float]
 
     def plan(self, of: Running, duration: float, slip: float) -> Planned:
         """Phases of the event."""
+        raise NotImplementedError
 
     def step(self, of: Running) -> float:
-        """Step that resolves what excites the event [s]."""
+        """Half a millisecond: what comes at once excites modes of some hundred hertz."""
+        return 5e-4
 
     def lasts(self, of: Running) -> float:
         """Duration that shows the event where none is asked for [s]."""
+        return self.seconds
 
 
 @dataclass(frozen=True)
-class EmergencyStop:
+class EmergencyStop(Event):
     """The generator is off, blades pitch, a disc brake stops the drivetrain.
 
     Attributes
@@ -100,8 +107,6 @@ class EmergencyStop:
         Shaft at whose beginning the disc is, or body.
     """
 
-    levels: ClassVar[tuple[Level, ...]] = tuple(Level)
-    teeth: ClassVar[bool] = False
     seconds: ClassVar[float] = 20.0
 
     off: float = 1.0
@@ -149,13 +154,9 @@ class EmergencyStop:
         rated = of.turning.generator_torque * of.turning.generator_speed / speed
         return self.brake * abs(rated)
 
-    def step(self, of: Running) -> float:
-        """Half a millisecond: what comes at once excites modes of some hundred hertz."""
-        return 5e-4
-
 
 @dataclass(frozen=True)
-class GridLoss:
+class GridLoss(Event):
     """The generator's torque is lost at once; blades begin to pitch some time later.
 
     Attributes
@@ -170,8 +171,6 @@ class GridLoss:
         Torque of the rotor that is left, over rated torque.
     """
 
-    levels: ClassVar[tuple[Level, ...]] = tuple(Level)
-    teeth: ClassVar[bool] = False
     seconds: ClassVar[float] = 10.0
 
     off: float = 1.0
@@ -181,10 +180,6 @@ class GridLoss:
 
     def __post_init__(self) -> None:
         _in_range(self, off=(0.0, 1e4), delay=(0.0, 60.0), pitch=(1e-3, 60.0), left=(-1.0, 1.5))
-
-    def lasts(self, of: Running) -> float:
-        """Duration that shows the event where none is asked for [s]."""
-        return self.seconds
 
     def plan(self, of: Running, duration: float, slip: float) -> Planned:
         """Phases of the loss; marks are the loss itself, and the blades."""
@@ -198,13 +193,9 @@ class GridLoss:
         marks = {"grid lost": self.off, "blades begin to pitch": begins, "blades pitched": ends}
         return Planned((*phases[:-1], last), start, marks)
 
-    def step(self, of: Running) -> float:
-        """Half a millisecond: what comes at once excites modes of some hundred hertz."""
-        return 5e-4
-
 
 @dataclass(frozen=True)
-class VoltageDip:
+class VoltageDip(Event):
     """The generator's torque falls and comes back, as a table has it, whatever its speed.
 
     Attributes
@@ -219,8 +210,6 @@ class VoltageDip:
         Time to the bottom, and from it back to the full torque [s].
     """
 
-    levels: ClassVar[tuple[Level, ...]] = tuple(Level)
-    teeth: ClassVar[bool] = False
     seconds: ClassVar[float] = 6.0
 
     start: float = 1.0
@@ -237,10 +226,6 @@ class VoltageDip:
     def dip(self) -> Dip:
         """The dip as a table."""
         return Dip(self.start, self.depth, self.length, self.fall, self.recovery)
-
-    def lasts(self, of: Running) -> float:
-        """Duration that shows the event where none is asked for [s]."""
-        return self.seconds
 
     def plan(self, of: Running, duration: float, slip: float) -> Planned:
         """One phase; marks are the begin of the dip, of the recovery, and its end."""
@@ -265,7 +250,7 @@ class VoltageDip:
 
 
 @dataclass(frozen=True)
-class RunUp:
+class RunUp(Event):
     """Speed rises evenly, so that teeth pass all resonances on the way.
 
     Attributes
@@ -276,7 +261,6 @@ class RunUp:
         Torque that the generator holds on the way, over rated torque.
     """
 
-    levels: ClassVar[tuple[Level, ...]] = tuple(Level)
     teeth: ClassVar[bool] = True
     seconds: ClassVar[float] = 5.0
 
@@ -287,10 +271,6 @@ class RunUp:
     def __post_init__(self) -> None:
         _in_range(self, begin=(0.0, 3.0), end=(1e-3, 3.0), share=(0.0, 2.0))
         _in_order(self, "begin", "end")
-
-    def lasts(self, of: Running) -> float:
-        """Duration that shows the event where none is asked for [s]."""
-        return self.seconds
 
     def plan(self, of: Running, duration: float, slip: float) -> Planned:
         """One phase; its mark is where the speed is the rated one."""
@@ -314,16 +294,11 @@ class RunUp:
 
 
 @dataclass(frozen=True)
-class Offset(CouplingOffset):
+class Offset(CouplingOffset, Event):
     """The generator stands beside the axis of the gearbox; both turn steadily."""
 
     levels: ClassVar[tuple[Level, ...]] = SIX_MOTIONS
-    teeth: ClassVar[bool] = False
     seconds: ClassVar[float] = 2.0
-
-    def lasts(self, of: Running) -> float:
-        """Duration that shows the event where none is asked for [s]."""
-        return self.seconds
 
     def plan(self, of: Running, duration: float, slip: float) -> Planned:
         """One phase with the coupling's springs; nothing is marked."""
@@ -339,7 +314,7 @@ class Offset(CouplingOffset):
 
 
 @dataclass(frozen=True)
-class BaseMoves:
+class BaseMoves(Event):
     """The base of the drivetrain moves, as a file says; the drivetrain turns steadily.
 
     Attributes
@@ -349,7 +324,6 @@ class BaseMoves:
     """
 
     levels: ClassVar[tuple[Level, ...]] = SIX_MOTIONS
-    teeth: ClassVar[bool] = False
     seconds: ClassVar[float] = 0.0
 
     file: str = ""
@@ -360,10 +334,6 @@ class BaseMoves:
                 "the motion of a base needs a file: give it, as in file=base.csv, with columns "
                 "'time [s]' and some of ux [m] to rz [rad]"
             )
-
-    def lasts(self, of: Running) -> float:
-        """Duration that shows the event where none is asked for [s]."""
-        return self.seconds
 
     def plan(self, of: Running, duration: float, slip: float) -> Planned:
         """One phase; nothing is marked."""
