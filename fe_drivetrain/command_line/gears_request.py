@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fe_drivetrain.command_line.names import complete_scene
 from fe_drivetrain.command_line.options import (
     Channels,
+    DrivetrainName,
     Mapping,
     Resume,
     Scheduler,
     Skip,
 )
-from fe_drivetrain.command_line.settings import SceneSettings, parse_loads, parse_tolerance
+from fe_drivetrain.command_line.settings import DrivetrainSettings, parse_loads, parse_tolerance
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.studies.gear_options import GearOptions
 
@@ -31,15 +31,7 @@ _HUB = ("hub.Fx", "hub.Fy", "hub.Fz", "hub.My", "hub.Mz")
 class GearsRequest:
     """Arguments and options of ``gears`` as typed; each help text says what one is."""
 
-    drivetrain: Annotated[
-        str,
-        typer.Argument(
-            metavar="DRIVETRAIN",
-            autocompletion=complete_scene,
-            help="A drivetrain file with rotor, gearbox and generator, or a name of the library, "
-            "as in nrel_5mw.",
-        ),
-    ]
+    drivetrain: DrivetrainName
     torque: Annotated[
         float | None,
         typer.Option(
@@ -142,7 +134,7 @@ class GearsRequest:
         Path | None,
         typer.Option("--out", metavar="DIR", help="Result folder. Default: reports/gears/NAME."),
     ] = None
-    set_: SceneSettings = None
+    set_: DrivetrainSettings = None
 
     @property
     def folder(self) -> Path:

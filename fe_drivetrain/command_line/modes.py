@@ -12,7 +12,12 @@ import typer
 
 from fe_drivetrain.command_line.names import complete_scene
 from fe_drivetrain.command_line.options import with_options
-from fe_drivetrain.command_line.settings import parse_settings, parse_tolerance, refuse_again
+from fe_drivetrain.command_line.settings import (
+    DrivetrainSettings,
+    parse_settings,
+    parse_tolerance,
+    refuse_again,
+)
 from fe_drivetrain.command_line.showing import Shown
 from fe_drivetrain.command_line.studies import run_on_scene
 from fe_drivetrain.common.errors import InputError
@@ -102,15 +107,7 @@ class ModesRequest:
             "--out", metavar="DIR", help="Result folder. Default: reports/modes/DRIVETRAIN."
         ),
     ] = None
-    set_: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="KEY=VALUE",
-            help="Change a value of the drivetrain, as in --set generator.inertia=500. "
-            "May be repeated.",
-        ),
-    ] = None
+    set_: DrivetrainSettings = None
 
 
 @with_options(ModesRequest)

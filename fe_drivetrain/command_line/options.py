@@ -28,6 +28,15 @@ SceneName = Annotated[
         help="A scene file, or a name of the library, as in two_bearings.",
     ),
 ]
+DrivetrainName = Annotated[
+    str,
+    typer.Argument(
+        metavar="DRIVETRAIN",
+        autocompletion=complete_scene,
+        help="A drivetrain file with rotor, gearbox and generator, or a name of the library, as in "
+        "nrel_5mw.",
+    ),
+]
 LoadFiles = Annotated[
     list[str],
     typer.Option(

@@ -27,6 +27,15 @@ SceneSettings = Annotated[
         "May be repeated.",
     ),
 ]
+DrivetrainSettings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Change a value of the drivetrain, as in --set generator.inertia=500. "
+        "May be repeated.",
+    ),
+]
 Loads = Annotated[
     list[str] | None,
     typer.Option(

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fe_drivetrain.command_line.names import complete_scene
 from fe_drivetrain.command_line.options import (
     Channels,
+    DrivetrainName,
     Mapping,
     Resume,
     Scheduler,
     Skip,
     Slopes,
 )
-from fe_drivetrain.command_line.settings import SceneSettings, Tolerance, parse_settings
+from fe_drivetrain.command_line.settings import DrivetrainSettings, Tolerance, parse_settings
 from fe_drivetrain.common.errors import InputError
 
 if TYPE_CHECKING:
@@ -42,15 +42,7 @@ def complete_event(incomplete: str) -> list[str]:
 class TransientRequest:
     """Arguments and options of ``transient`` as typed; each help text says what one is."""
 
-    drivetrain: Annotated[
-        str,
-        typer.Argument(
-            metavar="DRIVETRAIN",
-            autocompletion=complete_scene,
-            help="A drivetrain file with rotor, gearbox and generator, or a name of the library, "
-            "as in nrel_5mw.",
-        ),
-    ]
+    drivetrain: DrivetrainName
     event: Annotated[
         str,
         typer.Argument(
@@ -135,7 +127,7 @@ class TransientRequest:
             help="Result folder. Default: reports/transient/DRIVETRAIN-EVENT.",
         ),
     ] = None
-    set_: SceneSettings = None
+    set_: DrivetrainSettings = None
 
     @property
     def name(self) -> str:
