@@ -54,6 +54,12 @@ class Drivetrain(Keys):
     operation: Operation | None = Field(default=None, description="operating range")
     damping: DampingRatios | None = Field(default=None, description="damping of shafts and meshes")
 
+    @property
+    def states_gears(self) -> bool:
+        """Whether something that turns is stated beside the main shaft and the rotor."""
+        gears = self.gearbox
+        return bool(gears.stages or gears.shafts or self.brake or self.generator)
+
     _bodies = field_validator("rotor", "generator", "brake", "operation", "damping", mode="wrap")(
         in_its_field
     )

@@ -129,7 +129,8 @@ class Scene(Drivetrain):
     def _consistent(self) -> "Scene":
         check_scene(self, self.gearbox.stiffness, [point.name for point in self.load_points])
         check_spreads(self, self.uncertainty)
-        check_turning(self, main_shaft(self), main_bearings(self))
+        if self.states_gears:
+            check_turning(self, main_shaft(self), main_bearings(self))
         return self
 
     def __repr__(self) -> str:

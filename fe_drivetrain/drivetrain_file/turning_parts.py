@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import AfterValidator, Field, field_validator, model_validator
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
+from fe_drivetrain.common.scaling import min_eigenvalue, symmetry_error
 from fe_drivetrain.drivetrain_file.materials import Material
 from fe_drivetrain.geometry.part import MINIMUM, Assumption, Part, dimension, rows_of
 from fe_drivetrain.geometry.shaft import Section
@@ -38,10 +38,9 @@ def _elastic(value: Six | tuple[Row, ...]) -> Six | tuple[Row, ...]:
     """Refuse a matrix that is not symmetric, or drives a motion."""
     if isinstance(value[0], tuple):
         K = np.array(value)
-        scaled = scaled_to_unit_diagonal(K, np.maximum(K.diagonal(), 1e-300))
-        if np.abs(scaled - scaled.T).max() > ROUND_OFF:
+        if symmetry_error(K) > ROUND_OFF:
             raise InputError("stiffness must be six numbers, or six symmetric rows of six")
-        if np.linalg.eigvalsh(scaled)[0] < -ROUND_OFF:
+        if min_eigenvalue(K) < -ROUND_OFF:
             raise InputError(
                 "stiffness must be positive semidefinite, but it drives a motion: check its signs"
             )

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import prod
 
-from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.typeset import with_prefix
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.gear_stages import ParallelData, PlanetaryData
@@ -15,8 +14,10 @@ from fe_drivetrain.drivetrain_file.stage_completion import NotGivenError
 from fe_drivetrain.drivetrain_file.turning_parts import ShaftData, SixOrMatrix, diagonal
 from fe_drivetrain.dynamics.bodies.levels import Level, machine_system, torsional
 from fe_drivetrain.dynamics.bodies.machine import Machine, derived_values, machine_of
+from fe_drivetrain.dynamics.torsion.gear_table import GRID
 from fe_drivetrain.dynamics.torsion.system import natural_modes
 from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.studies.scene_description import springs_in_words
 
 ON_THE_GROUND = (
     "housings of main bearings and gearbox",
@@ -26,8 +27,6 @@ ON_THE_GROUND = (
     "levels, lives have the gearbox on its mount",
 )
 """What is assumed of housings where a model has none, as a row of assumptions."""
-
-_UNITS = (*3 * ("N/m",), *3 * ("N m/rad",))
 
 
 @dataclass(frozen=True)
@@ -70,9 +69,9 @@ def turning_parts(drivetrain: Drivetrain) -> tuple[Turning | None, str]:
     except NotGivenError as error:
         return None, str(error)
     levels = [Level.TORSIONAL] if machine.not_given else list(Level)
-    free = machine.generator.model_copy(update={"stiffness": 0.0})
-    of_free = machine.model_copy(update={"generator": free})
-    first = natural_modes(torsional(of_free)).frequencies[1]
+    system = torsional(machine)
+    off_grid = tuple(one for one in system.elements if one.name != GRID)
+    first = natural_modes(replace(system, elements=off_grid)).frequencies[1]
     return Turning(
         machine,
         abs(machine.speeds[-1]),
@@ -187,7 +186,6 @@ def _shaft_row(shaft: ShaftData, speed: float) -> Record:
 
 
 def _springs(stiffness: SixOrMatrix) -> str:
-    """Springs in words, those that are 0 left out."""
-    values = zip(MOTIONS, diagonal(stiffness), _UNITS, strict=True)
-    found = [f"{motion} {with_prefix(k, unit)}" for motion, k, unit in values if k]
-    return ", ".join(found) + (", with couplings" if isinstance(stiffness[0], tuple) else "")
+    """Springs in words; of a matrix its diagonal."""
+    coupled = ", with couplings" if isinstance(stiffness[0], tuple) else ""
+    return springs_in_words(diagonal(stiffness)) + coupled

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Literal
 
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.typeset import with_prefix
-from fe_drivetrain.drivetrain_file.bearing_unit import SPHERICAL_JOINTS, BearingUnit, Springs
+from fe_drivetrain.drivetrain_file.bearing_unit import SPHERICAL_JOINTS, BearingUnit
 from fe_drivetrain.drivetrain_file.nose import NoseBearing
 from fe_drivetrain.drivetrain_file.scene import Scene, coarser_scene
 from fe_drivetrain.geometry import FurtherPart
@@ -72,7 +74,7 @@ def _point_rows(scene: Scene) -> list[Record]:
             "x [m]": scene.shaft.rear,
             "coupling": scene.gearbox.coupling,
             "weight [N]": scene.gearbox.weight,
-            "held by": _springs(scene.gearbox.stiffness),
+            "held by": springs_in_words(scene.gearbox.stiffness),
         },
     ]
     points[1:1] = [
@@ -154,7 +156,7 @@ def _bearing_row(unit: BearingUnit) -> Record:
         else "yes"
         if unit.interface == "bonded"
         else "as its stiffness says",
-        "stands on": "the ground" if unit.bedplate is None else _springs(unit.bedplate),
+        "stands on": "the ground" if unit.bedplate is None else springs_in_words(unit.bedplate),
         "rolling bearing": unit.catalogue,
     }
 
@@ -167,12 +169,18 @@ def _nose_bearing_row(scene: Scene, bearing: NoseBearing) -> Record:
         "width [m]": bearing.width,
         "diameter on the nose [m]": 2 * scene.nose.body.outer_radius(bearing.x),
         "diameter in the shaft [m]": 2 * scene.shaft.inner_radius(bearing.x),
-        "holds": _springs(bearing.stiffness),
+        "holds": springs_in_words(bearing.stiffness),
     }
 
 
-def _springs(stiffness: Springs) -> str:
-    """Springs in words, those that are 0 left out."""
+def springs_in_words(stiffness: Iterable[float | Literal["rigid"]]) -> str:
+    """Six springs in words, those that are 0 left out.
+
+    Parameters
+    ----------
+    stiffness : iterable of float or "rigid"
+        Along and about x, y, z [N/m, N m/rad].
+    """
     found = [
         f"{motion} {k}" if k == "rigid" else f"{motion} {with_prefix(k, unit)}"
         for motion, k, unit in zip(MOTIONS, stiffness, _UNITS, strict=True)
