@@ -9,7 +9,7 @@ from fe_drivetrain.drivetrain_file import Drivetrain, parse_drivetrain
 ROTOR, GENERATOR = 4e6, 1e6
 """Inertias [kg m^2]."""
 STIFFNESS, TORQUE, SPEED = 2e8, 1e6, 1.5
-"""Of the shaft [N m/rad]; rated torque and speed of the rotor [N m, rad/s]."""
+"""Stiffness of the shaft [N m/rad]; rated torque and speed of the rotor [N m, rad/s]."""
 
 
 def two_mass_file(**more: Any) -> dict[str, Any]:

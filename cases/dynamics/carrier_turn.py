@@ -132,7 +132,7 @@ def first_stage(machine: Machine) -> tuple[PlanetaryData, list[str]]:
     return stage, [pin.name for pin in stage.pins]
 
 
-def alike(stage: PlanetaryData, machine: Machine) -> bool:
+def isotropic(stage: PlanetaryData, machine: Machine) -> bool:
     """Whether all bearings are as stiff in both radial directions, and see gravity once a turn."""
     held = [
         *(bearing.stiffness for bearing in machine.bearings),
@@ -298,7 +298,7 @@ def check(
             why="round-off; planets are equal",
             source="symmetry",
         )
-    if alike(stage, machine):
+    if isotropic(stage, machine):
         check_gravity(page, alone, pins)
 
 

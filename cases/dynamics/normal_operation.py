@@ -82,7 +82,7 @@ def run(run: Run, page: Page) -> None:
 
 
 def check_apart(page: Page, apart: float) -> None:
-    """All shafts of the thesis's drivetrains swing alike."""
+    """All shafts of the thesis's drivetrains swing by the same share of their torque."""
     page.at_most(
         APART,
         apart,

@@ -135,8 +135,8 @@ _BANDS = (
 )
 _SHAPES = (
     "Drawn obliquely from the side, to scale but for the rotor and the generator. Turning is drawn "
-    "over the gear ratio, so that all bodies of a drivetrain that turns as one turn alike. Motions "
-    "are as large as can be seen: only their proportions count."
+    "over the gear ratio, so that all bodies of a drivetrain that turns as one turn together. "
+    "Motions are as large as can be seen: only their proportions count."
 )
 _REGISTER = (
     "An excitation can drive a mode where the parts at which it acts have 1 % or more of its "

@@ -29,7 +29,7 @@ LEAST_ERROR = 1e-3
 SMALL = 1e-4
 """Band over the value below which four digits are certain."""
 ROUND_OFF = 1e-6
-"""Of sums of energy: free motions and all others come of one solution."""
+"""Round-off of sums of energy: free motions and all others come of one solution."""
 
 
 def state_modes(found: Findings, machine: Machine, modes: Modes, shown: int) -> None:

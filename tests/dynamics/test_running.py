@@ -46,7 +46,7 @@ def stopped(machine: Machine, level: Level, when: StopSequence) -> tuple[Motion,
 
 
 def test_a_stop_is_that_of_the_torsional_table() -> None:
-    """Of the same inertias: planets of the table have no mass that goes round with a carrier."""
+    """Inertias are the same: planets of the table have no mass that goes round with a carrier."""
     when = StopSequence(off=0.2, pitched=1.0, braked=1.0, end=3.0)
     machine = library_machine("synthetic_2mw")
     motion, channels = stopped(machine, Level.TORSIONAL, when)

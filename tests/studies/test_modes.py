@@ -165,7 +165,7 @@ def test_crossings_of_whirling_modes_are_on_their_curves(geared: ModesResult) ->
 
 
 def test_whirls_keep_apart_over_the_speed(geared: ModesResult) -> None:
-    """Of a rotor that bends alike in both planes, one falls and one rises, without a jump."""
+    """Whirls of a rotor that is equally stiff in both planes: one falls, one rises, no jump."""
     for found in (geared, modes(read_drivetrain("park_2021"), level="rigid", speeds=RANGE)):
         assert found.campbell is not None
         first, second = [k for k in range(4) if found.kinds[k] == "lateral"][:2]

@@ -231,8 +231,8 @@ def likest_modes(system: System, shapes: Floats | Complex, turning: TurningModes
     """For each shape the number of the mode of a turning system that is most like it.
 
     Each mode is taken once, so that the likeness of all pairs, by the mass, is the largest in sum.
-    The two whirls of a shaft that bends alike in all planes are equally like both of its modes at
-    rest: the slower one goes with the first.
+    The two whirls of a shaft that is equally stiff in all planes are equally like both of its modes
+    at rest: the slower one goes with the first.
 
     Parameters
     ----------
