@@ -6,13 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.bearing_life.coupled import CoupledEquilibrium, coupled_equilibrium, factors_of
-from fe_drivetrain.cases.references.thesis_beam import BEAM, beam_body, bearing_s
+from fe_drivetrain.cases.references.thesis_beam import BEAM, BEARINGS, beam_body, bearing_s
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report.suite import Record, grouped
 from fe_drivetrain.shafts.beam import MainBearingBeam, torsional_spring_model
 from fe_drivetrain.turbine_loads.hub_loads import Condition, TurbineHistory
 
 ROLLERS, FIXED = "rollers in the beam", "constant K_R"
+ARRANGED, OTHERWISE = "X, 38 deg", "O, 20 deg"
+"""Arrangement and contact angle of bearing S, neither of which is printed, and another."""
 #: As the loads on the bearing are named, with what they are of Fx, Fy, Fz, My, Mz.
 LOADS: dict[str, Callable[[Floats], Floats]] = {
     "axial force [kN]": lambda loads: loads[:, 0],
@@ -32,15 +34,15 @@ class OfCondition:
     ----------
     rows : list of Record
         Least, mean and largest loads, a row for each bearing.
-    mean, largest : Floats
-        (72,) loads of each place of a roller, those of the upwind row first [kN].
+    mean, largest : dict of str to Floats
+        (72,) loads of each place of a roller, those of the upwind row first, by arrangement [kN].
     settled : bool
         Whether the equilibrium converged in every step.
     """
 
     rows: list[Record]
-    mean: Floats
-    largest: Floats
+    mean: dict[str, Floats]
+    largest: dict[str, Floats]
     settled: bool
 
 
@@ -49,10 +51,10 @@ def set_name(condition: Condition) -> str:
     return f"{condition.turbulence}, shear {condition.shear:g}"
 
 
-def on_rollers(hub_loads: Floats) -> CoupledEquilibrium:
+def on_rollers(hub_loads: Floats, entry: str = BEARINGS[ARRANGED]) -> CoupledEquilibrium:
     """Beam and rollers of bearing S in balance under hub loads (n, 6) [N, N m]."""
     factors = factors_of(hub_loads, BEAM.gearbox_weight)
-    return coupled_equilibrium(beam_body(), {"bearing": bearing_s()}, factors)
+    return coupled_equilibrium(beam_body(), {"bearing": bearing_s(entry)}, factors)
 
 
 def on_springs(hub_loads: Floats) -> Floats:
@@ -70,14 +72,14 @@ def bearing_loads(hub_loads: Floats, model: str) -> Floats:
 def of_condition(condition: Condition, history: TurbineHistory) -> OfCondition:
     """Loads on the bearing of one history, on its rollers and on constant springs."""
     hub_loads = history.history.loads
-    found = on_rollers(hub_loads)
-    rollers = 1e-3 * found.rollers("bearing")
-    both = {ROLLERS: found.of("bearing"), FIXED: on_springs(hub_loads)}
+    found = {name: on_rollers(hub_loads, BEARINGS[name]) for name in (ARRANGED, OTHERWISE)}
+    rollers = {name: 1e-3 * one.rollers("bearing") for name, one in found.items()}
+    both = {ROLLERS: found[ARRANGED].of("bearing"), FIXED: on_springs(hub_loads)}
     return OfCondition(
         [_row(condition, history, name, 1e-3 * loads) for name, loads in both.items()],
-        rollers.mean(axis=0),
-        rollers.max(axis=0),
-        bool(found.converged.all()),
+        {name: one.mean(axis=0) for name, one in rollers.items()},
+        {name: one.max(axis=0) for name, one in rollers.items()},
+        all(one.converged.all() for one in found.values()),
     )
 
 

@@ -69,7 +69,7 @@ def run(run: Run, page: Page) -> None:
     show(page, means)
     page.data("histories", rows)
     statements(page, means)
-    operating_rollers.show(page, operating_rollers.by_set(grid, found))
+    operating_rollers.show(page, grid, found)
 
 
 def show(page: Page, means: Sequence[Record]) -> None:
