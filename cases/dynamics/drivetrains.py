@@ -21,7 +21,8 @@ class Rated(NamedTuple):
     ``table`` is of `published_drivetrains` or of a user's file, ``ratios`` are damping ratios where
     it has no dampers, ``peak`` is the printed peak of the torque's spectrum in a shutdown [Hz],
     ``held`` what two masses swing at with the generator's shaft held [Hz], ``brake`` the torque of
-    a brake at the generator over the generator's rated one.
+    a brake at the generator over the generator's rated one, ``rise`` the time in which it grows to
+    that [s].
     """
 
     letter: str
@@ -33,6 +34,7 @@ class Rated(NamedTuple):
     held: float
     tripped: float
     brake: float | None = None
+    rise: float = 0.0
 
     @property
     def slow(self) -> str:
@@ -93,8 +95,9 @@ def own_or_published(run: Run, page: Page) -> list[Rated]:
     nan = float("nan")
     per_minute = speed * 30.0 / np.pi
     of_brake = brake_over_rated(chosen.drivetrain, table, torque)
+    rise = 0.0 if chosen.drivetrain.brake is None else chosen.drivetrain.brake.rise
     own = Rated(
-        chosen.title, table, torque * speed, per_minute, ratios, nan, nan, tripped, of_brake
+        chosen.title, table, torque * speed, per_minute, ratios, nan, nan, tripped, of_brake, rise
     )
     return [own]
 
