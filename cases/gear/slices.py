@@ -15,6 +15,7 @@ from fe_drivetrain.gear import (
     Pair,
     SlicedMesh,
     contacts,
+    even_phases,
     face_factor,
     loaded,
     loaded_with_coupling,
@@ -45,16 +46,6 @@ def mesh(slices: int, misalignment: float = 0.0, pair: Pair = PAIR) -> SlicedMes
     change = Modifications(slope=misalignment)
     stiffness = parabolic_law(pair, RATIO, C_SINGLE)
     return SlicedMesh(pair, stiffness, change, slices, PLAY)
-
-
-def even_phases(ratio: float, least: int, most: int) -> int:
-    """Number of phases at which every slice is in contact equally often, as nearly as can be.
-
-    A pair of teeth is in contact over the transverse contact ratio of periods. Where that many
-    periods hold a whole number of phases, all slices count the same number, wherever they begin;
-    otherwise one more or one less, at random, which the peak over the mean picks out.
-    """
-    return min(range(least, most), key=lambda n: abs(n * ratio - round(n * ratio)) / n)
 
 
 PHASES = even_phases(PAIR.transverse_ratio, 128, 256)
