@@ -408,9 +408,9 @@ def twenty_years(
         f"{RATED_WIND} m/s, and scatters normally by {100 * SCATTER:.0f} % of its mean "
         f"(assumed); {STOPS:.0f} stops a year, each a swing of 1.2 of the rated torque at "
         f"{duty.swing:.3g} Hz that dies out in 30 s (assumed). Histories, measured or simulated, "
-        "come in by `damage_of_history` or `damage_of_levels`. Load factors are those of the rating without "
-        "K_A, whose place the distribution takes. Without an endless limit the line from the knee "
-        "to 1e10 cycles goes on below."
+        "come in by `damage_of_history` or `damage_of_levels`. Load factors are those of the "
+        "rating without K_A, whose place the distribution takes. Without an endless limit the line "
+        "from the knee to 1e10 cycles goes on below."
     )
     return rows
 
