@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import pi
 from typing import NamedTuple
 
 from fe_drivetrain.cases.references.rated_gears import HOURS, RatedMesh
 from fe_drivetrain.common import InputError
+from fe_drivetrain.drivetrain_file.gear_strength import GearStrength
+from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.gear import LoadFactors, Running
 from fe_drivetrain.report.suite import Page
 from fe_drivetrain.report.suite.chosen import ChosenDrivetrain
 from fe_drivetrain.studies import GearOptions
-from fe_drivetrain.studies.gear_loads import GearLoading
-from fe_drivetrain.studies.gear_machine import GearTrain
-from fe_drivetrain.studies.gear_meshes import GearMesh
-from fe_drivetrain.studies.gear_ratings import prepared
+from fe_drivetrain.studies.gear_machine import GearTrain, gear_train
+from fe_drivetrain.studies.gear_meshes import GearMesh, gear_meshes
 from fe_drivetrain.studies.gear_stresses import MeshStresses
 
 TORSIONAL = GearOptions(level="torsional")
@@ -30,17 +31,14 @@ class OwnMeshes(NamedTuple):
         The machine, its rated torque and speed.
     meshes : dict of str to GearMesh
         Meshes with their gears.
-    left_out : dict of str to str
-        Keys that other meshes lack.
     """
 
     train: GearTrain
     meshes: dict[str, GearMesh]
-    left_out: dict[str, str]
 
 
 def own_meshes(chosen: ChosenDrivetrain, page: Page) -> OwnMeshes:
-    """Meshes of a user's drivetrain; those without full data are named on the page.
+    """Meshes of a user's drivetrain under its rated torque; see `given_meshes`.
 
     Raises
     ------
@@ -48,19 +46,48 @@ def own_meshes(chosen: ChosenDrivetrain, page: Page) -> OwnMeshes:
         No mesh has all of its gears' data, or the file does not state its operation.
     """
     chosen.rated_torque()  # names operation where it is missing
-    loading = GearLoading((), None, None, None, False)
-    train, meshes, left_out = prepared(chosen.drivetrain, None, TORSIONAL, loading)
+    train = gear_train(chosen.drivetrain, TORSIONAL, None)
+    return OwnMeshes(train, given_meshes(chosen, train.machine, train.strengths, page))
+
+
+def given_meshes(
+    chosen: ChosenDrivetrain,
+    machine: MachineTable,
+    strengths: Mapping[int, GearStrength],
+    page: Page,
+) -> dict[str, GearMesh]:
+    """Meshes of a user's drivetrain; those without full data are named on the page.
+
+    Parameters
+    ----------
+    chosen : ChosenDrivetrain
+        The drivetrain.
+    machine : MachineTable
+        Its machine.
+    strengths : mapping of int to GearStrength
+        Strength of stages by their number, from 1.
+    page : Page
+        The page.
+
+    Raises
+    ------
+    InputError
+        No mesh has all of its gears' data.
+    """
+    if not machine.stages:
+        raise InputError(f"drivetrain {chosen.name!r} has no gears: give gearbox.stages")
+    meshes, left_out = gear_meshes(machine, strengths)
     if not meshes:
         raise InputError(
             f"drivetrain {chosen.name!r} has no mesh whose gears are given in full, which this "
             f"case needs: give {'; '.join(dict.fromkeys(left_out.values()))}"
         )
     _name_left_out(page, left_out)
-    page.assume_all(train.machine.assumptions())
-    return OwnMeshes(train, meshes, left_out)
+    page.assume_all(machine.assumptions())
+    return meshes
 
 
-def _name_left_out(page: Page, missing: dict[str, str]) -> None:
+def _name_left_out(page: Page, missing: Mapping[str, str]) -> None:
     if missing:
         words = "; ".join(f"{name} ({keys})" for name, keys in missing.items())
         page.note(f"Left out, since the file lacks what stands in brackets: {words}.")
