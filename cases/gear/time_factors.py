@@ -4,7 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.gear import published_hours as printed
-from fe_drivetrain.cases.gear.gear_damage import RATED_WIND, Duty, operation
+from fe_drivetrain.cases.gear.turbine_years import RATED_WIND, Duty, operation
 from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.dynamics import Machine, machine_of
@@ -82,7 +82,7 @@ def own(run: Run, page: Page) -> None:
     if not machine.stages:
         raise InputError(f"drivetrain {chosen.name!r} has no gears: give gearbox.stages")
     turns = loads_per_turn([counted_stage(stage) for stage in machine.stages])
-    duty = Duty(chosen.rated_torque() * speed, least, speed, 1.0)
+    duty = Duty(1.0, least, speed, 1.0)  # turns do not depend on the power
     rotor = {wind: float(n.sum()) for wind, _, n in operation(duty)}
     total = sum(rotor.values())
     check_counts(page, machine, turns)
