@@ -140,8 +140,10 @@ def show(
     page.add(bars(HERO, {"stiffness": {k: v / 1e6 for k, v in ways.items()}}, "[MN m/rad]"))
     page.table(
         "Torsional stiffness of the main shaft",
-        [[how, K, K / sections] for how, K in ways.items()],
-        ["how", "K [N m/rad]", "over the sections'"],
+        [
+            {"how": how, "K [N m/rad]": K, "over the sections'": K / sections}
+            for how, K in ways.items()
+        ],
     )
     page.text(f"In three dimensions: {solid.series.sentence('N m/rad')}.")
     page.section("Frequencies")

@@ -123,10 +123,10 @@ def own_ratings(chosen: ChosenDrivetrain, page: Page) -> tuple[OwnMeshes, list[O
         if (keys := (*mesh.missing, *own.train.missing))
     }
     if len(missing) == len(own.meshes):
-        keys = dict.fromkeys(key for one in missing.values() for key in one.split(", "))
+        lacking = dict.fromkeys(key for one in missing.values() for key in one.split(", "))
         raise InputError(
             f"drivetrain {chosen.name!r} has no mesh with all that a rating by ISO 6336 needs: "
-            f"give {'; '.join(keys)}"
+            f"give {'; '.join(lacking)}"
         )
     _name_left_out(page, missing)
     return own, [
