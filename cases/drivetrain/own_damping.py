@@ -46,7 +46,7 @@ def own_damping(run: Run, page: Page) -> None:
         The file states no damping.
     """
     chosen = run.drivetrain("")
-    chosen.state(page)
+    chosen.state(page, topic="Damping of torsional modes")
     table = gear_table(chosen.drivetrain)
     states = [s for s in published.STATES if s == "free" or table.generator.stiffness > 0]
     with run.step("eigenvalues"):

@@ -34,7 +34,7 @@ def own_main_shaft(run: Run, page: Page) -> None:
         The file gives the main shaft without sections.
     """
     chosen = run.drivetrain("")
-    chosen.state(page)
+    chosen.state(page, topic="Torsional modes with a main shaft by finite elements")
     scene = chosen.drivetrain
     if not isinstance(scene, Scene):
         raise InputError(

@@ -67,8 +67,15 @@ def drivetrains() -> list[Rated]:
     ]
 
 
-def own_or_published(run: Run, page: Page) -> list[Rated]:
+def own_or_published(run: Run, page: Page, topic: str = "") -> list[Rated]:
     """The drivetrain that the user names, or A to D; a page of the former says that it is.
+
+    Parameters
+    ----------
+    run, page : Run, Page
+        Those of the case.
+    topic : str
+        What is asked of a user's drivetrain, see `ChosenDrivetrain.state`.
 
     Raises
     ------
@@ -78,7 +85,7 @@ def own_or_published(run: Run, page: Page) -> list[Rated]:
     if SETTING not in run.settings:
         return drivetrains()
     chosen = run.drivetrain("")
-    chosen.state(page)
+    chosen.state(page, topic=topic)
     table = gear_table(chosen.drivetrain)
     torque, speed = chosen.rated_torque(), chosen.rotor_speeds()[1]
     damped = any(part.damping > 0 for part in table.shafts)

@@ -43,7 +43,7 @@ LINES = 4
 def run(run: Run, page: Page) -> None:
     """Stop each drivetrain with a brake that gives the printed peak; what follows from it."""
     dt = QUICK_STEP if run.quick else STEP
-    trains = own_or_published(run, page)
+    trains = own_or_published(run, page, "Shutdown: torque over rated torque, reversal, what rings")
     stopped = []
     for one in trains:
         with run.step(f"drivetrain {one.letter}"):

@@ -14,6 +14,7 @@ from fe_drivetrain.gear import LoadFactors, Running
 from fe_drivetrain.report.suite import Page
 from fe_drivetrain.report.suite.chosen import ChosenDrivetrain
 from fe_drivetrain.studies import GearOptions
+from fe_drivetrain.studies.gear_findings import BY_QUALITY
 from fe_drivetrain.studies.gear_machine import GearTrain, gear_train
 from fe_drivetrain.studies.gear_meshes import GearMesh, gear_meshes
 from fe_drivetrain.studies.gear_stresses import MeshStresses
@@ -129,6 +130,8 @@ def own_ratings(chosen: ChosenDrivetrain, page: Page) -> tuple[OwnMeshes, list[O
             f"give {'; '.join(lacking)}"
         )
     _name_left_out(page, missing)
+    if any(s.quality for one in own.train.strengths.values() for s in one.gears.values()):
+        page.note(BY_QUALITY)
     return own, [
         OwnRating(mesh, _rated(own.train, mesh))
         for name, mesh in own.meshes.items()

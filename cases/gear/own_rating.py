@@ -16,7 +16,7 @@ HERO = "Safety of the flanks S_H of all gears at rated torque"
 def own_rating(run: Run, page: Page) -> None:
     """Rate the meshes of a user's drivetrain: contact, root, dynamics, over twenty years."""
     chosen = run.drivetrain("")
-    chosen.state(page)
+    chosen.state(page, topic="Gears rated by ISO 6336")
     own, ratings = own_ratings(chosen, page)
     with run.step("ratings"):
         found = {one.mesh.name: rated(one.rated) for one in ratings}
@@ -105,8 +105,8 @@ def answer(page: Page, own: OwnMeshes, flanks: list[Record]) -> None:
                 float(root["S_F"]),
                 at_least=float(root["S_F asked"]),
             ),
-            page.value("contact stress there [MPa]", float(flank["sigma_H [MPa]"])),
-            page.value("root stress there [MPa]", float(root["sigma_F [MPa]"])),
+            page.value(f"contact stress, {flank['flank']} [MPa]", float(flank["sigma_H [MPa]"])),
+            page.value(f"root stress, {root['flank']} [MPa]", float(root["sigma_F [MPa]"])),
             page.value("rated torque of the rotor [kN m]", own.train.torque / 1e3),
         ],
         HERO,

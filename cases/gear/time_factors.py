@@ -76,7 +76,7 @@ CLOSEST = 1e-12
 def own(run: Run, page: Page) -> None:
     """Loads of the teeth of a user's drivetrain in twenty years, at the winds of Table 7.1."""
     chosen = run.drivetrain("")
-    chosen.state(page)
+    chosen.state(page, topic="Loads of gear teeth over twenty years")
     least, speed = chosen.rotor_speeds()
     machine = machine_of(chosen.drivetrain)
     if not machine.stages:

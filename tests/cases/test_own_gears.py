@@ -90,7 +90,7 @@ def test_a_case_answers_for_gears_of_the_users(
     assert own in {verdict.of for verdict in results.verdicts} <= {own, OF_NONE}
     assert results.passed
     assert words in results.answer.verdict
-    answer = results.answer.model_dump_json()
+    answer = results.answer.model_dump_json() + results.title
     assert not [word for word in ("5 MW", "750 kW", "thesis", "KISSsoft") if word in answer]
     assert any("printed numbers" in note for note in results.notes)
 
