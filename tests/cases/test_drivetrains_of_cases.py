@@ -381,7 +381,16 @@ generator: {inertia: 30}
 operation: {rated_power: 7.5e5, rotor_speed: [1.0, 2.3]}
 """
 
-PRINTED_NAMES = ("750 kW", "5 MW", "2 MW", "thesis", "Al-Hamadani", "drivetrain A", "drivetrain D", "A to D")
+PRINTED_NAMES = (
+    "750 kW",
+    "5 MW",
+    "2 MW",
+    "thesis",
+    "Al-Hamadani",
+    "drivetrain A",
+    "drivetrain D",
+    "A to D",
+)
 """Words of the cases' own drivetrains, which have no place in the answer on another one."""
 
 
