@@ -7,6 +7,7 @@ import numpy as np
 from scipy.linalg import expm
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.drivetrain.own_damping import own_damping, residual
 from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.cases.references.implied_shafts import DAMPING_RATIO, SHEAR_MODULUS, implied
 from fe_drivetrain.common import Floats
@@ -29,6 +30,7 @@ from fe_drivetrain.dynamics.torsion import (
 from fe_drivetrain.report import trace
 from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.report.suite.chosen import SETTING
 
 #: Section 4.1: average damping ratio of gear meshes.
 MESH_RATIO = 0.1
@@ -64,9 +66,13 @@ class InSeries(NamedTuple):
 @case(
     "NREL 750 kW drivetrain with damping: tabled dampers and damping ratios",
     source="Al-Hamadani 2018, Eq 4.5, 4.7, 4.18-4.22 and 4.30, Table 4.2",
+    settings={"drivetrain": "FILE, or a name of the library (otherwise drivetrain D)"},
 )
 def run(run: Run, page: Page) -> None:
     """Eigenvalues with the dampers as tabled, and as the damping ratios of the text mean them."""
+    if SETTING in run.settings:
+        own_damping(run, page)
+        return
     with run.step("eigenvalues"):
         meshes = mesh_rows()
         models = {state: models_of(state, meshes) for state in published.STATES}
@@ -286,14 +292,6 @@ def check_eigenvalues(page: Page, models: Models) -> list[Record]:
                 if state == "fixed" or undamped[m] <= LOW
             ]
     return rows
-
-
-def residual(system: Torsional, value: complex) -> float:
-    """How far lambda^2 M + lambda C + K is from singular, as a relative error of lambda^2."""
-    root = np.sqrt(system.J)
-    scaled = np.outer(root, root)
-    matrix = value**2 * np.eye(len(root)) + (value * system.C + system.K) / scaled
-    return float(np.linalg.svd(matrix, compute_uv=False)[-1] / abs(value) ** 2)
 
 
 def check_series(page: Page, free: dict[str, Torsional]) -> InSeries:

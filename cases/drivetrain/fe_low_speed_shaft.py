@@ -1,49 +1,49 @@
 """Low-speed shaft from finite elements instead of J G / L: what the frequencies make of it."""
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.drivetrain import low_speed_shaft as lss
+from fe_drivetrain.cases.drivetrain.low_speed_shaft import Solid, Stiffness
+from fe_drivetrain.cases.drivetrain.own_main_shaft import own_main_shaft
+from fe_drivetrain.cases.drivetrain.shaft_frequencies import (
+    AFTER,
+    BEFORE,
+    CHANGE,
+    COUPLING,
+    Mode,
+    check_frequency,
+    first_order,
+    frequency,
+    makers,
+    with_shaft,
+)
 from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.cases.references.implied_shafts import SHEAR_MODULUS, implied
 from fe_drivetrain.cases.references.torsion_meridian import torsion_bounds
-from fe_drivetrain.comparison import GridConvergence, digit, grid_convergence
+from fe_drivetrain.comparison import digit
 from fe_drivetrain.dynamics.torsion import (
-    GearTable,
     GeneratorState,
-    Torsional,
-    frequency_bands,
-    gear_masses,
-    natural_modes,
-    stage_masses,
-    two_masses,
 )
 from fe_drivetrain.geometry import Shaft
 from fe_drivetrain.report import trace
 from fe_drivetrain.report.number_text import percent_text
 from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.report.suite.chosen import SETTING
 
-#: Elements round a turn of the meshes.
-TURNS, QUICK_TURNS = (8, 11, 14), (8, 9, 10)
 #: Fillets of the variants [m], beside a sharp step.
 FILLETS, QUICK_FILLETS = (0.01, 0.02), (0.02,)
-#: Orders of the elements in the meridian.
-ORDERS = (2, 3, 4)
 
 TABLE = published.table("nrel_750kw")
 TABLED = TABLE.shafts[0].stiffness
 HALF_DIGIT = digit("3.69e7") / 2
 IMPLIED = implied(TABLED, TABLE.shafts[0].damping)
 
-MAKERS: dict[str, Callable[[GearTable, GeneratorState], Torsional]] = {
-    "2 masses": two_masses,
-    "5 masses": stage_masses,
-    "11 masses": gear_masses,
-}
+MAKERS = makers(TABLE)
 PRINTED: tuple[Mapping[str, Sequence[str]], ...] = (
     published.TWO,
     published.FIVE,
@@ -56,45 +56,22 @@ OVER_STIFFNESS = (
     "Frequency {} with the generator {} over the low-speed shaft's stiffness; the band of the "
     "finite elements' is shaded"
 )
-LEAVING, COUPLING = "half width by rounding [Hz]", "half width by mesh and coupling [Hz]"
-BEFORE, AFTER, CHANGE = "J G / L [Hz]", "finite elements [Hz]", "change [%]"
-
-
-class Stiffness(NamedTuple):
-    """A stiffness and the half width of its band [N m/rad]."""
-
-    value: float
-    band: float
-
-
-class Solid(NamedTuple):
-    """The stepped shaft in three dimensions.
-
-    Attributes
-    ----------
-    unknowns, stiffness : list[int], list[float]
-        Of each mesh, ends rigid [N m/rad].
-    averaged : float
-        On the first mesh, the front face free to deform [N m/rad].
-    series : GridConvergence
-        The convergence of the stiffness.
-    """
-
-    unknowns: list[int]
-    stiffness: list[float]
-    averaged: float
-    series: GridConvergence
+LEAVING = "half width by rounding [Hz]"
 
 
 @case(
     "NREL 750 kW drivetrain with a low-speed shaft by finite elements",
     source="Al-Hamadani 2018, Eq 4.4, 4.5, Tables 4.2 and 6.1",
+    settings={"drivetrain": "FILE, or a name of the library (otherwise drivetrain D)"},
 )
 def run(run: Run, page: Page) -> None:
     """Stiffness by sections, meridian and solid, and two, five and eleven masses with each."""
+    if SETTING in run.settings:
+        own_main_shaft(run, page)
+        return
     shaft = lss.stepped(IMPLIED.length, TABLED)
     with run.step("meridian"):
-        meridian = in_meridian(shaft, 0.3 if run.quick else 0.2)
+        meridian = lss.in_meridian(shaft, 0.3 if run.quick else 0.2)
         sharp = check_meridian(page, run.quick)
         fillets = [0.0, *(QUICK_FILLETS if run.quick else FILLETS), lss.FILLET]
         by_fillet = [
@@ -105,7 +82,7 @@ def run(run: Run, page: Page) -> None:
             ),
             meridian.value,
         ]
-    solid = in_three_dimensions(run, shaft)
+    solid = lss.in_three_dimensions(run, shaft)
     page.equals(
         f"shaft with fillets in three dimensions, {solid.unknowns[-1]:,} unknowns [N m/rad]",
         solid.series.finest,
@@ -113,16 +90,18 @@ def run(run: Run, page: Page) -> None:
         within=(2 if run.quick else 1) * HALF_DIGIT / TABLED,
         why="half of the last printed digit of K_LSS (of the coarser meshes of a quick run, all of "
         "it): a better stiffness would not be seen",
-        source=f"meridian, order {ORDERS[-1]}, rigid ends",
+        source=f"meridian, order {lss.ORDERS[-1]}, rigid ends",
         band=solid.series.uncertainty,
     )
-    taken = taken_over(meridian, solid)
-    page.about(with_shaft(taken.value))
+    taken = lss.taken_over(meridian, solid)
+    page.about(with_shaft(TABLE, taken.value))
     with run.step("frequencies"):
         rows = [
-            check_frequency(page, name, state, mode, taken)
+            check_frequency(page, one, taken)
+            | {LEAVING: first_order(one, Stiffness(TABLED, HALF_DIGIT))}
             for name in MAKERS
             for state, mode in MODES
+            for one in [Mode(TABLE, name, state, mode)]
         ]
     needed = [needed_for(state, mode) for state, mode in (MODES[0], MODES[2])]
     answer(page, taken, rows, needed)
@@ -141,12 +120,6 @@ def run(run: Run, page: Page) -> None:
     page.data("meridian", meridian.value)
     page.data("solids", solid.stiffness)
     page.data("change", taken.value / TABLED - 1)
-
-
-def in_meridian(shaft: Shaft, size: float) -> Stiffness:
-    """By Fourier harmonics, rigid ends, orders of elements up to the fourth."""
-    series = [lss.meridian_stiffness(shaft, size, order) for order in ORDERS]
-    return Stiffness(series[-1], abs(series[-1] - series[-2]))
 
 
 def check_meridian(page: Page, quick: bool) -> float:
@@ -180,102 +153,17 @@ def check_meridian(page: Page, quick: bool) -> float:
     return found[-1]
 
 
-def in_three_dimensions(run: Run, shaft: Shaft) -> Solid:
-    """On three meshes, and with another coupling of the front face on the first of them."""
-    turns = QUICK_TURNS if run.quick else TURNS
-    stiffness, unknowns = [], []
-    for turn in turns:
-        with run.step("mesh and solve in three dimensions"):
-            mesh = lss.meshed(shaft, turn)
-            stiffness.append(lss.solid_stiffness(mesh))
-            unknowns.append(int(mesh.points.size))
-        if turn == turns[0]:
-            with run.step("front face free to deform"):
-                averaged = lss.solid_stiffness(mesh, rigid=False)
-    series = grid_convergence(1 / np.array(turns), stiffness, min_order=1.0)
-    return Solid(unknowns, stiffness, averaged, series)
-
-
-def taken_over(meridian: Stiffness, solid: Solid) -> Stiffness:
-    """From a free to a rigid front face, with the bands of meridian and solid.
-
-    The coupling's part is of one mesh, which is why the band of the series counts beside it.
-    """
-    softer = solid.averaged / solid.stiffness[0]
-    low = meridian.value * min(softer, 1.0) - meridian.band - solid.series.uncertainty
-    high = meridian.value * max(softer, 1.0) + meridian.band + solid.series.uncertainty
-    return Stiffness((low + high) / 2, (high - low) / 2)
-
-
-def with_shaft(K: float) -> GearTable:
-    """The table with a low-speed shaft of another stiffness [N m/rad]."""
-    return published.with_values(TABLE, {"shafts.0.stiffness": K})
-
-
-def frequency(name: str, state: GeneratorState, mode: int, K: float) -> float:
-    """Frequency of a model with another low-speed shaft [Hz]."""
-    return float(natural_modes(MAKERS[name](with_shaft(K), state)).frequencies[mode])
-
-
-def first_order(name: str, state: GeneratorState, mode: int, K: Stiffness) -> float:
-    """Half width [Hz] for a stiffness with a band, by the share of energy."""
-    system = MAKERS[name](with_shaft(K.value), state)
-    # the one spring of two masses is all shafts in series: K has so much of its compliance
-    two = name == "2 masses"
-    spring, part = ("shafts", system.k[0] / K.value) if two else (TABLE.shafts[0].name, 1.0)
-    return float(frequency_bands(system, {spring: float(part) * K.band / K.value})[mode])
-
-
-def check_frequency(
-    page: Page, name: str, state: GeneratorState, mode: int, K: Stiffness
-) -> Record:
-    """A frequency and its band with the finite-element shaft, of first order and solved again."""
-    model = (name, state, mode)
-    label = f"{name}, generator {state}, mode {mode + 1}"
-    before, after = frequency(*model, TABLED), frequency(*model, K.value)
-    low, high = (frequency(*model, K.value + side * K.band) for side in (-1, 1))
-    exact_band = (high - low) / 2
-    page.equals(
-        f"{label}: half width of the band, of first order [Hz]",
-        first_order(*model, K),
-        exact_band,
-        within=K.band / K.value,
-        why="the next term is as small as the band itself, relative",
-        source="solved again at both ends of the stiffness's band",
-    )
-    step, change = 1e-6, K.value / TABLED - 1
-    ahead, behind = (frequency(*model, K.value * (1 + side * step)) for side in (1, -1))
-    slope = (ahead / behind - 1) / (2 * step)
-    page.equals(
-        f"{label}: frequency with the finite-element shaft, of first order [Hz]",
-        before * (1 + slope * change),
-        after,
-        within=change**2,
-        why="of second order in the change of stiffness",
-        source="solved again with the other stiffness",
-        basis="self-consistency",
-        band=exact_band,
-    )
-    return {
-        "model": name,
-        "generator": state,
-        "mode": mode + 1,
-        BEFORE: before,
-        LEAVING: first_order(*model, Stiffness(TABLED, HALF_DIGIT)),
-        AFTER: after,
-        COUPLING: exact_band,
-        CHANGE: 100 * (after / before - 1),
-        "share [%]": 200 * slope,
-    }
-
-
 def needed_for(state: GeneratorState, mode: int) -> Record:
     """K_LSS over the tabled one that each model needs for the measured frequency."""
     measured = published.MEASURED[state]
 
     def needed(name: str) -> float:
         return float(
-            brentq(lambda k: frequency(name, state, mode, k) - measured, 0.3 * TABLED, 1.5 * TABLED)
+            brentq(
+                lambda k: frequency(Mode(TABLE, name, state, mode), k) - measured,
+                0.3 * TABLED,
+                1.5 * TABLED,
+            )
             / TABLED
         )
 
@@ -375,9 +263,10 @@ def show_frequencies(
     page.section("Frequencies")
     stiffnesses = np.linspace(0.8 * TABLED, 1.06 * TABLED, 40)
     for state, mode in (MODES[0], MODES[2]):
+        modes = {name: Mode(TABLE, name, state, mode) for name in MAKERS}
         traces: list[Any] = [
-            trace(name, stiffnesses, [frequency(name, state, mode, k) for k in stiffnesses])
-            for name in MAKERS
+            trace(name, stiffnesses, [frequency(of, k) for k in stiffnesses])
+            for name, of in modes.items()
         ]
         traces += [
             trace(
@@ -390,7 +279,7 @@ def show_frequencies(
             trace(
                 "finite elements",
                 [taken.value] * 3,
-                [frequency(name, state, mode, taken.value) for name in MAKERS],
+                [frequency(of, taken.value) for of in modes.values()],
                 points=True,
             ),
             trace(

@@ -40,7 +40,7 @@ def own_model(run: Run, page: Page, model: str) -> None:
         One of `MAKERS`: what the case is about.
     """
     chosen = run.drivetrain("")
-    chosen.state(page)
+    chosen.state(page, topic=f"Torsional modes as {model}, generator free and held")
     table = gear_table(chosen.drivetrain)
     rows: list[Record] = []
     first: dict[str, float] = {}

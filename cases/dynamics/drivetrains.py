@@ -21,7 +21,8 @@ class Rated(NamedTuple):
     ``table`` is of `published_drivetrains` or of a user's file, ``ratios`` are damping ratios where
     it has no dampers, ``peak`` is the printed peak of the torque's spectrum in a shutdown [Hz],
     ``held`` what two masses swing at with the generator's shaft held [Hz], ``brake`` the torque of
-    a brake at the generator over the generator's rated one.
+    a brake at the generator over the generator's rated one, ``rise`` the time in which it grows to
+    that [s].
     """
 
     letter: str
@@ -33,6 +34,7 @@ class Rated(NamedTuple):
     held: float
     tripped: float
     brake: float | None = None
+    rise: float = 0.0
 
     @property
     def slow(self) -> str:
@@ -65,8 +67,15 @@ def drivetrains() -> list[Rated]:
     ]
 
 
-def own_or_published(run: Run, page: Page) -> list[Rated]:
+def own_or_published(run: Run, page: Page, topic: str = "") -> list[Rated]:
     """The drivetrain that the user names, or A to D; a page of the former says that it is.
+
+    Parameters
+    ----------
+    run, page : Run, Page
+        Those of the case.
+    topic : str
+        What is asked of a user's drivetrain, see `ChosenDrivetrain.state`.
 
     Raises
     ------
@@ -76,7 +85,7 @@ def own_or_published(run: Run, page: Page) -> list[Rated]:
     if SETTING not in run.settings:
         return drivetrains()
     chosen = run.drivetrain("")
-    chosen.state(page)
+    chosen.state(page, topic=topic)
     table = gear_table(chosen.drivetrain)
     torque, speed = chosen.rated_torque(), chosen.rotor_speeds()[1]
     damped = any(part.damping > 0 for part in table.shafts)
@@ -93,8 +102,9 @@ def own_or_published(run: Run, page: Page) -> list[Rated]:
     nan = float("nan")
     per_minute = speed * 30.0 / np.pi
     of_brake = brake_over_rated(chosen.drivetrain, table, torque)
+    rise = 0.0 if chosen.drivetrain.brake is None else chosen.drivetrain.brake.rise
     own = Rated(
-        chosen.title, table, torque * speed, per_minute, ratios, nan, nan, tripped, of_brake
+        chosen.title, table, torque * speed, per_minute, ratios, nan, nan, tripped, of_brake, rise
     )
     return [own]
 

@@ -54,7 +54,7 @@ SHAFTS = {"LSS": 0, "ISS1": 1, "HSS": -1}
 def run(run: Run, page: Page) -> None:
     """Swings of the rotor's torque at 1P, 3P and 6P, in time and by frequency response."""
     rows: list[Record] = []
-    trains = own_or_published(run, page)
+    trains = own_or_published(run, page, "Normal operation: torque of each shaft over the rotor's")
     page.section("In time")
     for one in trains:
         with run.step(f"drivetrain {one.letter}"):

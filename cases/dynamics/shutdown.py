@@ -15,6 +15,7 @@ from fe_drivetrain.cases.dynamics.shutdown_runs import (
     check_dips,
     check_peaks,
     peak_of,
+    sequence,
     stop,
     stopped_by,
 )
@@ -30,6 +31,8 @@ NORMAL = 0.237
 LIMIT = 1.35  # of torque over rated, of the design loads
 SHUTDOWN = "Drivetrain {}: torque over rated torque in the shutdown"
 STEP, QUICK_STEP = 1.25e-4, 5e-4
+LINES = 4
+"""Periods of the first mode that a spectrum needs for a line of its own."""
 
 
 @case(
@@ -40,7 +43,7 @@ STEP, QUICK_STEP = 1.25e-4, 5e-4
 def run(run: Run, page: Page) -> None:
     """Stop each drivetrain with a brake that gives the printed peak; what follows from it."""
     dt = QUICK_STEP if run.quick else STEP
-    trains = own_or_published(run, page)
+    trains = own_or_published(run, page, "Shutdown: torque over rated torque, reversal, what rings")
     stopped = []
     for one in trains:
         with run.step(f"drivetrain {one.letter}"):
@@ -103,6 +106,7 @@ def own_answer(page: Page, one: Stopped, row: Record, loss: Record, swing: Recor
     page.assume("sequence", "generator off at 1 s, brake at 3 s", "", "of the case")
     page.assume("aerodynamic torque", "from rated to 0 in 2 s, evenly", "", "of the case")
     page.assume("generator", "slip of 1 % at rated torque", "", "of the case")
+    page.assume("rise of the brake", one.of.rise, "s", "of the file, 0 where none is stated")
     if one.of.brake is None:
         words = "the file states no brake; the printed peak of drivetrain B of Al-Hamadani 2018"
         page.assume("brake", f"so large that the main shaft reaches {PEAK} of rated", "", words)
@@ -256,7 +260,7 @@ def check_instants(page: Page, trains: list[Rated], quick: bool) -> list[Record]
             peaks = []
             for late, one in each:
                 braked = SEQUENCE.braked + late
-                when = StopSequence(SEQUENCE.off, SEQUENCE.pitched, 0.0, braked, braked + 1.0)
+                when = sequence(one.of, braked + 1.0, late)
                 found = stopped_by(one.of, one.brake, when, step)
                 motion = found.motion
                 peaks.append(peak_between(found.ratio(one.of.fast)[motion.times >= braked]))
@@ -286,7 +290,7 @@ def check_stops(page: Page, stopped: list[Stopped], dt: float) -> None:
     def run(step: float, _: int) -> InTime:
         values, lost = {}, 0.0
         for one in stopped:
-            when = StopSequence(SEQUENCE.off, SEQUENCE.pitched, 0.0, braked, braked + 2.0)
+            when = sequence(one.of, braked + one.of.rise + 2.0)
             found = stopped_by(one.of, one.brake, when, step)
             motion = found.motion
             for shaft, own in (("LSS", one.of.slow), ("HSS", one.of.fast)):
@@ -429,8 +433,11 @@ def check_frequencies(page: Page, one: Stopped) -> Record:
     t = one.done.motion.times
     torque = one.done.ratio(one.of.fast)
     first = one.done.motion.braking.events[0][0]
-    ringing, resolution = peak_of(t, torque, SEQUENCE.braked, first)
     mode = float(natural_modes(one.done.system).frequencies[1])
+    grown = SEQUENCE.braked + one.of.rise
+    # a brake that still grows is no steady one, unless the disc stands before it has
+    begin = grown if (first - grown) * mode > LINES else SEQUENCE.braked
+    ringing, resolution = peak_of(t, torque, begin, first)
     page.equals(
         f"drivetrain {one.of.letter}, brake on: frequency of the torque [Hz]",
         ringing,

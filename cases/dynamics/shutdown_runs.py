@@ -1,13 +1,14 @@
 """Shutdowns of published drivetrains with ever shorter steps: brakes, dips, backlash."""
 
 from collections.abc import Collection
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import newton
 
 from fe_drivetrain.cases.dynamics.drivetrains import Rated
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.comparison import ConvergenceInTime, InTime, converge_in_time, peak_between
 from fe_drivetrain.dynamics import Shutdown, StopSequence, shutdown
 from fe_drivetrain.report.suite import Page, Record, check_in_time
@@ -35,6 +36,19 @@ class Stopped(NamedTuple):
         return [t for t, what in self.done.motion.braking.events if what == "sticks"][-1]
 
 
+def sequence(one: Rated, end: float, late: float = 0.0) -> StopSequence:
+    """Events of a shutdown of a drivetrain.
+
+    Parameters
+    ----------
+    one : Rated
+        Drivetrain, with the rise of its brake.
+    end, late : float
+        End of the sequence, and how much later than in `SEQUENCE` the brake comes [s].
+    """
+    return replace(SEQUENCE, braked=SEQUENCE.braked + late, end=end, rise=one.rise)
+
+
 def stop(one: Rated, dt: float, late: float = 0.0, end: float = SEQUENCE.end) -> Stopped:
     """With its own brake, or one so large that the low-speed shaft reaches the printed peak.
 
@@ -44,12 +58,16 @@ def stop(one: Rated, dt: float, late: float = 0.0, end: float = SEQUENCE.end) ->
         Drivetrain.
     dt, late, end : float
         Step, how much later than `SEQUENCE` the brake comes, and the end [s].
+
+    Raises
+    ------
+    InputError
+        Its own brake does not stop it before the end.
     """
     braked = SEQUENCE.braked + late
 
     def done(brake: float, end: float) -> Shutdown:
-        when = StopSequence(SEQUENCE.off, SEQUENCE.pitched, 0.0, braked, end)
-        return stopped_by(one, brake, when, dt)
+        return stopped_by(one, brake, sequence(one, end, late), dt)
 
     def excess(brake: float) -> float:
         found = done(brake, braked + 1.0)
@@ -57,7 +75,14 @@ def stop(one: Rated, dt: float, late: float = 0.0, end: float = SEQUENCE.end) ->
         return peak_between(found.ratio(one.slow)[after]) - PEAK
 
     if one.brake is not None:
-        return Stopped(one, one.brake, done(one.brake, end))
+        found = Stopped(one, one.brake, done(one.brake, end))
+        if "sticks" not in [what for _, what in found.done.motion.braking.events]:
+            raise InputError(
+                f"brake of {one.letter!r} is {one.brake:.3g} times the generator's rated torque, "
+                f"grows in {one.rise:g} s, and does not stop the drivetrain {end - braked:g} s "
+                "after it comes: give a larger brake.torque or a smaller brake.rise"
+            )
+        return found
     # the peak goes with the torque of the brake, as long as the disc turns
     brake = float(newton(excess, 1.0, x1=3.0, tol=1e-6))
     return Stopped(one, brake, done(brake, end))
@@ -142,13 +167,13 @@ def check_dips(page: Page, trains: list[Rated], dt: float) -> list[Record]:
 def check_backlash(page: Page, stopped: list[Stopped], quick: bool) -> list[Record]:
     """The same shutdowns with teeth that part."""
     end = SEQUENCE.braked + (1 if quick else 3)
-    when = StopSequence(SEQUENCE.off, SEQUENCE.pitched, 0.0, SEQUENCE.braked, end)
     parted: Record = {}
 
     def run(step: float, _: int) -> InTime:
         values, lost, all_met = {}, 0.0, True
         for one in stopped:
             for backlash in (0.0, BACKLASH):
+                when = sequence(one.of, end + one.of.rise)
                 found = stopped_by(one.of, one.brake, when, step, backlash=backlash)
                 name = f"{one.of.letter}, backlash of {1e3 * backlash:g} mrad"
                 for shaft, own in (("LSS", one.of.slow), ("HSS", one.of.fast)):

@@ -5,10 +5,13 @@ from dataclasses import replace
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.gear.own_meshes import given_meshes
 from fe_drivetrain.common import Floats
+from fe_drivetrain.dynamics import machine_of
 from fe_drivetrain.gear import square_wave, square_wave_series
 from fe_drivetrain.report import trace
 from fe_drivetrain.report.suite import Page, Record, Run, Target
+from fe_drivetrain.report.suite.chosen import SETTING
 
 RATIOS = (1.2, 1.5, 1.7)
 ORDERS = 400
@@ -26,9 +29,13 @@ def measured(wave: Floats, ratio: float) -> dict[str, float]:
 @case(
     "Mesh stiffness as a Fourier series: the printed sign, and the right one",
     source="Park et al. 2021, Front. Energy Res. 8:604414, Eq 4 to 9",
+    settings={"drivetrain": "FILE, or a name of the library (otherwise three contact ratios)"},
 )
 def run(run: Run, page: Page) -> None:
     """Compare levels and shares of time of the series, with both signs, with one and two pairs."""
+    if SETTING in run.settings:
+        own(run, page)
+        return
     rows: list[Record] = []
     for ratio in RATIOS:
         with run.step(f"contact ratio {ratio:g}"):
@@ -77,6 +84,70 @@ def run(run: Run, page: Page) -> None:
         "rest. Both signs agree at C = 1.5 alone, but for half a period. With a plus there is one "
         "pair always, and two for the share C - 1 of a period; as printed, 2 C - 1 and 2 C - 2 "
         "pairs."
+    )
+
+
+PAIRS = "Pairs of teeth in contact over a period, by mesh"
+CLEAR = 0.02
+"""Share of a period that a level needs to be told from the jumps of the series."""
+
+
+def own(run: Run, page: Page) -> None:
+    """Waves of the meshes of a user's drivetrain, at their contact ratios, with the right sign."""
+    chosen = run.drivetrain("")
+    chosen.state(page, topic="Pairs of teeth in contact over a period")
+    meshes = given_meshes(chosen, machine_of(chosen.drivetrain), {}, page)
+    at = (np.arange(4000) + 0.5) / 4000
+    rows: list[Record] = []
+    for name, mesh in meshes.items():
+        ratio = mesh.pair.contact_ratio
+        low, share = float(np.floor(ratio)), ratio - float(np.floor(ratio))
+        rows.append(
+            {
+                "mesh": name,
+                "contact ratio": ratio,
+                **dict(zip(MEASURED, (low + 1.0, low, share, ratio), strict=True)),
+            }
+        )
+        found = measured(square_wave_series(1.0, ratio, ORDERS).at(at), ratio)
+        for key in MEASURED if CLEAR < share < 1.0 - CLEAR else MEASURED[3:]:
+            title = key.partition(" [")[0]
+            jumps = f"a series of {ORDERS} orders next to its jumps"
+            target = Target(
+                title,
+                float(rows[-1][key]),
+                5e-3,
+                jumps,
+                "whole pairs at the contact ratio",
+                relative=False,
+                measure="identity",
+            )
+            page.meets(found[key], target, of=f"{name}, Fourier series")
+    page.section("Waves")
+    shown = np.arange(0.0, 1.0001, 0.002)
+    waves = [
+        trace(str(row["mesh"]), shown, square_wave(1.0, float(row["contact ratio"]), shown))
+        for row in rows
+    ]
+    page.chart(PAIRS, waves, "phase [periods]", "stiffness [pairs]")
+    page.table("Levels and shares of time", rows)
+    page.text(
+        "The contact ratio is the whole one, with the overlap of a helix: a square wave takes all "
+        "pairs that touch as equally stiff, so that helical meshes jump in it where contact lines "
+        "really grow and shrink."
+    )
+    least = min(rows, key=lambda row: float(row["contact ratio"]))
+    page.answer(
+        "How many pairs of teeth are in contact in the meshes, and for how long?",
+        f"{least['mesh']} has fewest: {float(least[MEASURED[0]]):.0f} pairs for "
+        f"{100.0 * float(least[MEASURED[2]]):.0f}\u00a0% of the time, else "
+        f"{float(least[MEASURED[1]]):.0f}.",
+        [
+            page.value(f"contact ratio, {row['mesh']}", float(row["contact ratio"]))
+            for row in rows[:6]
+        ],
+        hero=PAIRS,
+        cautions=["Series overshoot by 9 % of the jump next to each jump."],
     )
 
 

@@ -3,11 +3,13 @@
 from dataclasses import replace
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.gear.own_rating import own_rating
 from fe_drivetrain.cases.gear.printed_ratings import check_mesh
 from fe_drivetrain.cases.references.rated_gears import RatedMesh, rated, rated_meshes
 from fe_drivetrain.report import bars, gear_pair
 from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Run
+from fe_drivetrain.report.suite.chosen import SETTING
 
 SOURCE = (
     "KISSsoft 03/2017, reports of 26 February 2020 on the gearbox of Nejad, Guo, Gao and Moan 2016 "
@@ -65,9 +67,13 @@ def safeties(page: Page, meshes: list[RatedMesh]) -> None:
     "Gearbox of the NREL 5 MW turbine rated by ISO 6336",
     source="KISSsoft 03/2017 reports in gfsReboucas/Drivetrain; Nejad, Guo, Gao and Moan 2016, "
     "doi 10.1002/we.1884",
+    settings={"drivetrain": "FILE, or a name of the library (otherwise the gears as printed)"},
 )
 def run(run: Run, page: Page) -> None:
     """Rate the five meshes of three stages: contact, root, dynamics, life."""
+    if SETTING in run.settings:
+        own_rating(run, page)
+        return
     meshes = [m for name, m in rated_meshes().items() if name.startswith("NREL")]
     with run.step("ratings"):
         counts = [check_mesh(page, mesh, SOURCE) for mesh in meshes]

@@ -1,6 +1,7 @@
 """Gears of the NREL 750 kW machine: geometry from published roots, and mesh stiffness of others."""
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.gear.own_stiffness import own_stiffness
 from fe_drivetrain.cases.gear.rows import mesh_row, stiffness_row
 from fe_drivetrain.cases.references import published_gears as published
 from fe_drivetrain.dynamics import library_machine
@@ -8,6 +9,7 @@ from fe_drivetrain.gear import iso_gear_stiffness, parabolic_mean, rack_factor
 from fe_drivetrain.report import bars, gear_pair
 from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run, Target
+from fe_drivetrain.report.suite.chosen import SETTING
 
 #: Diameters of root circles as published, whole millimetres; by teeth.
 ROOTS = {21: 186, 39: 372, -99: 1047, 23: 174, 82: 678, 22: 100, 88: 440}
@@ -79,9 +81,13 @@ def answer(
     "NREL 750 kW gearbox: shifts from root circles, and mesh stiffness beside that of others",
     source="NREL Gearbox Reliability Collaborative, NREL/TP-5000-47773; Al-Hamadani 2018, Eq 5.4, "
     "Tables 4.2 and 6.3",
+    settings={"drivetrain": "FILE, or a name of the library (otherwise the NREL 750 kW)"},
 )
 def run(run: Run, page: Page) -> None:
     """Check root circles and shifts; show ISO 6336-1 beside 14 N/(mm µm) and Table 6.3."""
+    if SETTING in run.settings:
+        own_stiffness(run, page)
+        return
     pairs = published.nrel_750kw()
     page.about(library_machine("nrel_750kw"))
     rows: list[Record] = []

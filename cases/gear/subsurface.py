@@ -5,10 +5,14 @@ from math import cos
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.gear.own_meshes import own_meshes
 from fe_drivetrain.cases.references.published_gears import nrel_750kw
+from fe_drivetrain.dynamics.bodies.gear_pairs import STEELS
 from fe_drivetrain.gear import (
     LineContact,
+    LoadFactors,
     Pair,
+    contact_stress,
     reduced_modulus,
     shear_stress,
     tooth_contact,
@@ -17,6 +21,7 @@ from fe_drivetrain.gear import (
 from fe_drivetrain.report import gear_pair, trace
 from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.report.suite.chosen import SETTING
 
 STEEL = reduced_modulus()
 TORQUE = 325e3  # N m of the low-speed shaft
@@ -73,18 +78,7 @@ def contact_rows(page: Page, found: dict[str, LineContact]) -> list[Record]:
     rows: list[Record] = []
     for name, (mesh, load, pressure, at) in meshes().items():
         contact = found[name]
-        rows.append(
-            {
-                "mesh": name,
-                "load [kN/m]": load / 1e3,
-                "radius [mm]": 1e3 * contact.radius,
-                "half width [mm]": 1e3 * contact.half_width,
-                "pressure [MPa]": contact.pressure / 1e6,
-                "largest shear stress [MPa]": contact.max_shear[0] / 1e6,
-                "depth of it [mm]": 1e3 * contact.max_shear[1],
-                "working angle [deg]": float(np.degrees(mesh.working_angle)),
-            }
-        )
+        rows.append(row_of(name, mesh, load, contact))
         page.equals(
             f"{name}: pressure at the pitch point [MPa]",
             contact.pressure / 1e6,
@@ -103,6 +97,20 @@ def contact_rows(page: Page, found: dict[str, LineContact]) -> list[Record]:
             source=SOURCE,
         )
     return rows
+
+
+def row_of(name: str, mesh: Pair, load: float, contact: LineContact) -> Record:
+    """Contact of a mesh at the pitch point under a force per face width [N/m]."""
+    return {
+        "mesh": name,
+        "load [kN/m]": load / 1e3,
+        "radius [mm]": 1e3 * contact.radius,
+        "half width [mm]": 1e3 * contact.half_width,
+        "pressure [MPa]": contact.pressure / 1e6,
+        "largest shear stress [MPa]": contact.max_shear[0] / 1e6,
+        "depth of it [mm]": 1e3 * contact.max_shear[1],
+        "working angle [deg]": float(np.degrees(mesh.working_angle)),
+    }
 
 
 def ratio_rows(found: dict[str, LineContact]) -> list[Record]:
@@ -125,9 +133,13 @@ def ratio_rows(found: dict[str, LineContact]) -> list[Record]:
 @case(
     "Stress below the flanks of gears: NREL 750 kW at 325 kN m",
     source="Al-Hamadani 2018, Eq 5.13 to 5.22; Johnson 1985, Contact mechanics, ch. 4",
+    settings={"drivetrain": "FILE, or a name of the library (otherwise the NREL 750 kW)"},
 )
 def run(run: Run, page: Page) -> None:
     """Constants of the field, pressures and depths of four meshes, ratios of the thesis."""
+    if SETTING in run.settings:
+        own(run, page)
+        return
     unit = LineContact(1e6, 0.02, STEEL)
     check_constants(page, unit)
     found = {
@@ -137,7 +149,7 @@ def run(run: Run, page: Page) -> None:
     rows = contact_rows(page, found)
     answer(page, rows)
     page.section("Four meshes")
-    show_path(page)
+    show_path(page, {name: (mesh, load) for name, (mesh, load, _, _) in meshes().items()})
     page.table("Contact at the pitch point", rows)
     page.table(
         "Ratios of pressures, beside those that the thesis prints of its 2 MW gearbox",
@@ -154,6 +166,62 @@ def run(run: Run, page: Page) -> None:
     )
     show_field(page, unit)
     page.image("Sun and planet", run.sketch(*gear_pair(nrel_750kw()["sun"])))
+
+
+def own(run: Run, page: Page) -> None:
+    """Pressures and depths of the meshes of a user's drivetrain at its rated torque."""
+    chosen = run.drivetrain("")
+    chosen.state(page, topic="Stress below the flanks of gears at rated torque")
+    found = own_meshes(chosen, page)
+    unit = LineContact(1e6, 0.02, STEEL)
+    with page.of(None):
+        check_constants(page, unit)
+    loaded: dict[str, tuple[Pair, float]] = {}
+    rows: list[Record] = []
+    for name, mesh in found.meshes.items():
+        pair, torque = mesh.pair, found.train.torque * mesh.torque_ratio
+        load = torque / pair.first.base_radius / pair.face_width
+        loaded[name] = pair, load
+        contact = tooth_contact(pair, pair.path.pitch, load, STEEL)
+        rows.append(row_of(name, pair, load, contact))
+        iso = contact_stress(pair, torque, LoadFactors(), STEELS)
+        page.equals(
+            f"{name}: pressure at the pitch point [MPa]",
+            contact.pressure / 1e6,
+            iso.nominal / (iso.Z_epsilon * iso.Z_beta) / 1e6,
+            within=1e-9,
+            why="two ways to Hertz's pressure: rounding",
+            source="ISO 6336-2: Z_H Z_E of one pair of teeth along the whole face",
+        )
+    own_answer(page, rows, found.train.torque)
+    page.section("Meshes")
+    show_path(page, loaded)
+    page.table("Contact at the pitch point", rows)
+    show_field(page, unit)
+
+
+def own_answer(page: Page, rows: list[Record], torque: float) -> None:
+    """State which flank of a user's gears is pressed most, and how deep its shear stress is."""
+    ranked = sorted(rows, key=lambda row: -float(row["pressure [MPa]"]))
+    worst = ranked[0]
+    page.answer(
+        "How hard do the flanks of the gears press on each other, and how deep is the stress?",
+        f"{worst['mesh']} presses most, with {value_text(float(worst['pressure [MPa]']), 'MPa')}; "
+        f"its largest shear stress is {float(worst['depth of it [mm]']):.2g}\u00a0mm deep.",
+        [
+            *(
+                page.value(f"contact pressure, {row['mesh']} [MPa]", float(row["pressure [MPa]"]))
+                for row in ranked[:4]
+            ),
+            page.value(
+                f"depth of the largest shear stress, {worst['mesh']} [mm]",
+                float(worst["depth of it [mm]"]),
+            ),
+            page.value("rated torque of the rotor [kN m]", torque / 1e3),
+        ],
+        hero=HERO,
+        cautions=["One pair of teeth carries the whole load over the whole face: no load factors."],
+    )
 
 
 HERO = "Contact pressure along the path of contact, one pair of teeth with the whole load"
@@ -204,11 +272,19 @@ def answer(page: Page, rows: list[Record]) -> None:
     )
 
 
-def show_path(page: Page) -> None:
-    """Show the contact pressure of each mesh from the start to the end of its path."""
+def show_path(page: Page, loaded: dict[str, tuple[Pair, float]]) -> None:
+    """Show the contact pressure of each mesh from the start to the end of its path.
+
+    Parameters
+    ----------
+    page : Page
+        The page.
+    loaded : dict
+        Pair and force per face width [N/m] by the name of the mesh.
+    """
     share = np.linspace(0.0, 1.0, 41)
     curves = []
-    for name, (mesh, load, _, _) in meshes().items():
+    for name, (mesh, load) in loaded.items():
         places = mesh.path.start + share * (mesh.path.end - mesh.path.start)
         pressures = [tooth_contact(mesh, at, load, STEEL).pressure / 1e6 for at in places]
         curves.append(trace(name, 100.0 * share, pressures))

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from math import degrees
 
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.gear.own_meshes import given_meshes
 from fe_drivetrain.cases.gear.plane_teeth import (
     DEPTH,
     MeshedPair,
@@ -18,7 +20,8 @@ from fe_drivetrain.cases.gear.plane_teeth import (
 )
 from fe_drivetrain.cases.references.plane_rings import Plane, plane_strain
 from fe_drivetrain.cases.references.published_gears import nrel_5mw
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.dynamics import machine_of
 from fe_drivetrain.gear import (
     Gear,
     IsoStiffness,
@@ -36,6 +39,7 @@ from fe_drivetrain.gear import (
 )
 from fe_drivetrain.report import gear_pair, trace
 from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.report.suite.chosen import SETTING
 
 STEEL = Steel()
 STRAIN = plane_strain(STEEL.youngs_modulus, STEEL.poisson_ratio)
@@ -47,6 +51,9 @@ DEPTHS = (DEPTH, 2.0 * DEPTH, 1.0)
 
 #: Hubs over root circles, and loads [N/m], between which gears are: softest and stiffest.
 SOFTEST, STIFFEST = (0.35, 1e5), (0.7, 1e6)
+
+HUB = 0.5
+"""Radius over the root radius at which gears of a user are held."""
 
 #: Pairs, and the radii where the gears are held [m].
 PAIRS: dict[str, tuple[Callable[[], Pair], tuple[float, float]]] = {
@@ -65,14 +72,25 @@ ELEMENTS = "plane finite elements of the true tooth shape"
     source="ISO 6336-1:2006; Sainsot, Velex, Duverger 2004; Weber, Banaschek 1953; Cai 1995 and "
     "Kuang, Yang 1992 from memory",
     alone="full",
+    settings={"drivetrain": "FILE, or a name of the library (otherwise two pairs of spur gears)"},
 )
 def run(run: Run, page: Page) -> None:
     """Compute each method's stiffness over a period, its error against elements, and its time."""
     steps = 8 if run.quick else 24
+    if SETTING in run.settings:
+        own(run, page, steps)
+        return
     found = [
         one_pair(run, page, name, make(), hubs, steps)
         for name, (make, hubs) in list(PAIRS.items())[: 1 if run.quick else None]
     ]
+    explain(page)
+    answer(page, dict(zip(PAIRS, found, strict=False)))
+    page.image("The first of the pairs", run.sketch(*gear_pair(next(iter(PAIRS.values()))[0]())))
+
+
+def explain(page: Page) -> None:
+    """Say what the elements are, and which formulas are from memory."""
     page.text(
         "Finite elements are quadratic triangles in plane strain, of a whole gear held at its hub "
         "with four teeth, two of which are loaded. A concentrated load has no finite displacement "
@@ -89,8 +107,59 @@ def run(run: Run, page: Page) -> None:
         "parabola has 14 N/(mm µm), as Al-Hamadani 2018 has it, and a stiffness ratio of 0.8, "
         "which that thesis does not state. ISO 6336-1 takes solid discs here (C_R = 1)."
     )
-    answer(page, dict(zip(PAIRS, found, strict=False)))
-    page.image("The first of the pairs", run.sketch(*gear_pair(next(iter(PAIRS.values()))[0]())))
+
+
+def own(run: Run, page: Page, steps: int) -> None:
+    """Stiffness of the external spur meshes of a user's drivetrain.
+
+    Raises
+    ------
+    InputError
+        The drivetrain has no such mesh.
+    """
+    chosen = run.drivetrain("")
+    chosen.state(page)
+    meshes = given_meshes(chosen, machine_of(chosen.drivetrain), {}, page)
+    pairs = {name: mesh.pair for name, mesh in meshes.items() if is_plane(mesh.pair)}
+    if not pairs:
+        helices = ", ".join(
+            f"{name} {abs(degrees(mesh.pair.first.helix)):.3g}°" for name, mesh in meshes.items()
+        )
+        raise InputError(
+            f"drivetrain {chosen.name!r} has no mesh that this case can take: plane elements need "
+            "two external gears without a helix whose contact ratio is below 2; its meshes have a "
+            f"helix of {helices}"
+        )
+    left = [name for name in meshes if name not in pairs]
+    if left:
+        page.note(
+            "Left out, since plane elements need external spur gears of a contact ratio below 2: "
+            f"{', '.join(left)}."
+        )
+    found = {
+        name: one_pair(run, page, name, pair, hubs_of(pair), steps)
+        for name, pair in list(pairs.items())[: 1 if run.quick else None]
+    }
+    explain(page)
+    page.assume("hubs that hold the gears", HUB, "of the root radius", "of the case")
+    page.assume("load", LOAD / 1e3, "N/mm of face", "of the case")
+    answer(page, found)
+
+
+def is_plane(pair: Pair) -> bool:
+    """Whether plane elements with at most two pairs in contact can stand for a pair."""
+    spur = not pair.first.helix and not pair.internal
+    return spur and 1.0 < pair.transverse_ratio < 2.0
+
+
+def is_kuang_yang(pair: Pair) -> bool:
+    """Whether both gears have the numbers of teeth to which their formula was fitted."""
+    return all(12.0 <= gear.virtual_teeth <= 100.0 for gear in (pair.first, pair.second))
+
+
+def hubs_of(pair: Pair) -> tuple[float, float]:
+    """Radii where the gears are held, in the middle of those between which gears are [m]."""
+    return HUB * pair.first.root_radius, HUB * pair.second.root_radius
 
 
 def hero(name: str) -> str:
@@ -159,7 +228,11 @@ def methods_of(
             parabolic_law(pair, STIFFNESS_RATIO)(places), steps
         ),
         "Cai, c' of ISO": lambda: summed(cai_law(pair, iso.single)(places), steps),
-        "Kuang and Yang": lambda: summed(kuang_yang_law(pair)(places), steps),
+        **(
+            {"Kuang and Yang": lambda: summed(kuang_yang_law(pair)(places), steps)}
+            if is_kuang_yang(pair)
+            else {}
+        ),
         "energy, contact of Yang and Sun": lambda: summed(energy_law(pair, hubs)(places), steps),
         "energy, line contact": lambda: summed(energy_law(pair, hubs, LOAD)(places), steps),
         "elements, pairs apart": lambda: elements(STRAIN, False),
@@ -244,7 +317,11 @@ def show_path(page: Page, name: str, fine: MeshedPair, hubs: tuple[float, float]
             trace("ISO 6336-1, c'", along[[0, -1]], np.full(2, iso.single) / 1e9),
             trace("parabola", along, parabolic_law(pair, STIFFNESS_RATIO)(places) / 1e9),
             trace("Cai", along, cai_law(pair, iso.single)(places) / 1e9),
-            trace("Kuang and Yang", along, kuang_yang_law(pair)(places) / 1e9),
+            *(
+                [trace("Kuang and Yang", along, kuang_yang_law(pair)(places) / 1e9)]
+                if is_kuang_yang(pair)
+                else []
+            ),
             trace("energy, line contact", along, energy_law(pair, hubs, LOAD)(places) / 1e9),
         ],
         "place from the pitch point [base pitches]",

@@ -80,6 +80,8 @@ class RatedMesh:
         Cutter of an internal gear.
     mean_stress : tuple of float
         Y_M of both gears.
+    rims : tuple of float or None
+        Thickness of the rims of both gears [m]; thick where none.
     tooth_height : float
         The larger one of both gears as made, of which K_Fbeta follows [m].
     load_rounding : float
@@ -109,6 +111,7 @@ class RatedMesh:
     computed_dynamics: tuple[bool, bool] = (False, False)
     cutter: Cutter | None = None
     mean_stress: tuple[float, float] = (1.0, 1.0)
+    rims: tuple[float | None, float | None] = (None, None)
     printed: dict[str, tuple[str, ...]] = field(default_factory=dict)
     unmet: dict[str, tuple[str, ...]] = field(default_factory=dict)
     reason: str = ""
@@ -232,7 +235,7 @@ def _of_flanks(mesh: RatedMesh, K: LoadFactors) -> dict[str, tuple[float, ...]]:
 def _of_roots(mesh: RatedMesh, K: LoadFactors) -> dict[str, tuple[float, ...]]:
     """Tooth form, root stress, and what the roots endure."""
     pair, running, own = mesh.pair, mesh.running, mesh.materials
-    roots = root_stress(pair, running.torque, K, mesh.cutter)
+    roots = root_stress(pair, running.torque, K, mesh.cutter, mesh.rims)
     gears, roughness = (pair.first, pair.second), running.root_roughness
     endured = [
         endured_root(gear, r.root, m, rough, Y_M)

@@ -9,7 +9,10 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry.part import Assumption, Part, dimension
 
 #: Allowable stress numbers sigma_Hlim and sigma_Flim [Pa] of ISO 6336-5 by steel and quality; of
-#: case-hardened MQ the lowest of its three root limits.
+#: case-hardened MQ the lowest of its three root limits, of a core of 25 HRC. UNVERIFIED: from
+#: memory, no public text prints the tables. Of case-hardened MQ alone a public source has numbers:
+#: reports of KISSsoft 03/2017 (gfsReboucas/Drivetrain) rate 18CrNiMo7-6, "ISO 6336-5 Figure 9/10
+#: (MQ), Core hardness >= 25HRC", with 1500 and 430 MPa, 1 % above the root limit here.
 QUALITIES = {
     "case-hardened": {"ML": (1300e6, 312e6), "MQ": (1500e6, 425e6), "ME": (1650e6, 525e6)},
     "nitrided": {"ML": (1125e6, 270e6), "MQ": (1250e6, 420e6), "ME": (1450e6, 468e6)},
@@ -80,6 +83,15 @@ class GearSteel(Part):
                 "brinell, in HB: give both"
             )
         return self
+
+    def assumptions(self) -> list[Assumption]:
+        """Say what is assumed, and that limits by quality are not verified."""
+        rows = super().assumptions()
+        if self.quality is None:
+            return rows
+        source = f"assumed: {self.steel} of ISO 6336-5, quality {self.quality}; unverified"
+        named = zip(("contact_limit", "root_limit"), self.limits, strict=True)
+        return [*rows, *(Assumption(name, value, "Pa", source) for name, value in named)]
 
     @property
     def limits(self) -> tuple[float, float]:

@@ -37,6 +37,7 @@ from .iso import rack_factor as rack_factor
 from .iso import theoretical_stiffness as theoretical_stiffness
 from .load_distribution import Loaded as Loaded
 from .load_distribution import Period as Period
+from .load_distribution import even_phases as even_phases
 from .load_distribution import loaded as loaded
 from .load_distribution import over_period as over_period
 from .load_distribution import peak_over_mean as peak_over_mean

@@ -12,6 +12,9 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.gear.slices import Contacts, SlicedMesh, contacts
 
+PHASES = 128, 256
+"""Least number of phases of a period, and the first one that is too large."""
+
 
 @dataclass(frozen=True)
 class Loaded:
@@ -80,6 +83,38 @@ def peak_over_mean(load: Floats) -> float:
         return 1.0
     ends = 1.5 * load[[0, -1]] - 0.5 * load[[1, -2]]
     return float(max(load.max(), ends.max()) / load.mean())
+
+
+def even_phases(ratio: float, least: int, most: int) -> int:
+    """Number of phases at which every slice is in contact equally often, as nearly as can be.
+
+    A pair of teeth is in contact over the transverse contact ratio of periods. Where that many
+    periods hold a whole number of phases, all slices count the same number, wherever they begin;
+    otherwise one more or one less, at random, which the peak over the mean picks out.
+
+    Parameters
+    ----------
+    ratio : float
+        Transverse contact ratio.
+    least, most : int
+        Least number of phases, and the first one that is too large.
+
+    Returns
+    -------
+    int
+        The number in this range.
+
+    Raises
+    ------
+    InputError
+        The range holds no number of phases above zero.
+    """
+    if not 0 < least < most:
+        raise InputError(
+            f"numbers of phases from {least} to below {most}: give a least above 0 and a larger "
+            "bound"
+        )
+    return min(range(least, most), key=lambda n: abs(n * ratio - round(n * ratio)) / n)
 
 
 def loaded(
@@ -170,13 +205,28 @@ class Period:
         return peak_over_mean(self.over_face.mean(axis=0))
 
     @property
+    def face_factor_band(self) -> float:
+        """Half width of the band of K_Hbeta by the number of phases.
+
+        The mean of n evenly spaced phases misses that over the period by no more than the
+        variation of a slice's load over the period, over 2 n (Koksma's inequality); the largest
+        of all slices counts, since the maximum picks it out.
+        """
+        round_again = np.vstack([self.over_face, self.over_face[:1]])
+        missed = np.abs(np.diff(round_again, axis=0)).sum(axis=0) / (2.0 * len(self.phases))
+        if len(missed) < 2:
+            return 0.0
+        ends = 1.5 * missed[[0, -1]] + 0.5 * missed[[1, -2]]  # as `peak_over_mean` goes on to them
+        return float(max(missed.max(), ends.max()) / self.over_face.mean())
+
+    @property
     def ripple(self) -> float:
         """Peak-to-peak transmission error [m]."""
         return float(np.ptp(self.approach))
 
 
 def over_period(
-    mesh: SlicedMesh, torque: float, motion: ArrayLike | None = None, phases: int = 32
+    mesh: SlicedMesh, torque: float, motion: ArrayLike | None = None, phases: int | None = None
 ) -> Period:
     """Share a torque at phases of one period.
 
@@ -188,14 +238,23 @@ def over_period(
         Torque on the first gear [N m].
     motion : array_like, (12,), optional
         Position of the first and of the second gear, see `loaded` [m, rad].
-    phases : int
-        Number of phases, evenly spaced.
+    phases : int, optional
+        Number of phases, evenly spaced; where left out, the `even_phases` of `PHASES`.
 
     Returns
     -------
     Period
         Loads and approaches at all phases.
+
+    Raises
+    ------
+    InputError
+        The number of phases is below 1.
     """
+    if phases is None:
+        phases = even_phases(mesh.pair.transverse_ratio, *PHASES)
+    if phases < 1:
+        raise InputError(f"{phases} phases of a period: give at least 1")
     at = (np.arange(phases) + 0.5) / phases
     found = [loaded(mesh, float(phase), torque, motion) for phase in at]
     return Period(

@@ -24,6 +24,10 @@ UNREAD = (
     "ratings of the NREL 5 MW gears, the table of K_gamma and the least safety factors are "
     "second-hand."
 )
+BY_QUALITY = (
+    "Limits of steels by quality (ML, MQ, ME) are from memory of ISO 6336-5 and not verified: give "
+    "contact_limit and root_limit in their place."
+)
 TORQUE_ALONE = (
     "Files have the torque without all other loads of the hub: only the rotor's weight acts beside "
     "it, in all of them."
@@ -312,6 +316,8 @@ def _cautions(
             "Negative torques load the other flanks, and are spread over planets and face as those "
             "of the driving sense."
         )
+    if any(s.quality for one in train.strengths.values() for s in one.gears.values()):
+        found.note(BY_QUALITY)
     found.note(UNREAD)
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.gear_stages import ParallelData, PlanetaryData
 from fe_drivetrain.drivetrain_file.gear_strength import GearSteel, GearStrength
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.drivetrain_file.stage_gears import stage_pairs
@@ -250,17 +251,31 @@ def _first(mesh: str, pair: Pair) -> tuple[str, float]:
     return part, pair.first.base_radius
 
 
+def counted_stage(stage: PlanetaryData | ParallelData) -> PlanetaryStage | ParallelStage:
+    """Teeth of a stage, as `loads_per_turn` counts their loads.
+
+    Parameters
+    ----------
+    stage : PlanetaryData or ParallelData
+        Stage with teeth.
+
+    Raises
+    ------
+    InputError
+        The stage has a speed ratio in their place.
+    """
+    if stage.teeth is None:
+        raise InputError("a stage has a ratio and no teeth, which are counted here: give teeth")
+    if isinstance(stage, PlanetaryData):
+        ring, planet, sun = stage.teeth
+        return PlanetaryStage(sun, planet, ring, stage.planets)
+    return ParallelStage(*stage.teeth)
+
+
 def _loads(machine: MachineTable, number: int) -> dict[str, float]:
     """Loads per turn of the rotor of the flanks of a stage, by their names."""
-    stage = machine.stages[number - 1]
-    alone: PlanetaryStage | ParallelStage
-    if isinstance(stage, PlanetaryData):
-        ring, planet, sun = stage.teeth or (1, 1, 1)
-        alone = PlanetaryStage(sun, planet, ring, stage.planets)
-    else:
-        alone = ParallelStage(*(stage.teeth or (1, 1)))
     turns = abs(machine.speeds[number - 1])
     return {
         name.replace("stage 1", f"stage {number}"): turns * loads
-        for name, loads in loads_per_turn([alone]).items()
+        for name, loads in loads_per_turn([counted_stage(machine.stages[number - 1])]).items()
     }

@@ -1,23 +1,8 @@
 """Numbers that have a noise of their own: how little is left of it, and what is said of it."""
 
-import numpy as np
 import pytest
 
-from fe_drivetrain.cases.gear import slices
 from fe_drivetrain.cases.life import uncertainty
-
-
-@pytest.mark.parametrize("ratio", [1.4627260609736992, 1.2, 1.71])
-def test_slices_are_in_contact_equally_often_wherever_they_begin(ratio: float) -> None:
-    n = slices.even_phases(ratio, 128, 256)
-    phases = (np.arange(8 * n) + 0.5) / n  # of eight periods
-    begins = np.linspace(2.0, 3.0, 560, endpoint=False)
-    counts = [np.count_nonzero((phases >= b) & (phases < b + ratio)) for b in begins]
-    # another number of phases gives one more to a good share of the slices
-    share_of_most = np.mean(np.array(counts) == np.bincount(counts).argmax())
-    assert share_of_most > 0.95
-    other = [np.count_nonzero(((p := phases * n / (n + 3)) >= b) & (p < b + ratio)) for b in begins]
-    assert np.mean(np.array(other) == np.bincount(other).argmax()) < share_of_most
 
 
 def rows(*shares: tuple[float, float]) -> list[dict[str, object]]:

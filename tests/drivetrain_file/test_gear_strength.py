@@ -32,6 +32,16 @@ def test_what_is_assumed_is_named_by_gear() -> None:
     assert {"contact_safety", "root_safety"} <= assumed
 
 
+def test_limits_by_quality_are_named_as_unverified() -> None:
+    rows = GearStrength(gears={"gear": SOFT, "pinion": HARD}).assumptions()
+    limits = {row.name: row for row in rows if row.name.endswith("_limit")}
+    assert {name: row.value for name, row in limits.items()} == {
+        "pinion: contact_limit": 1500e6,
+        "pinion: root_limit": 425e6,
+    }
+    assert all(row.is_assumed and "unverified" in row.source for row in limits.values())
+
+
 @pytest.mark.parametrize(
     ("data", "words"),
     [

@@ -13,6 +13,7 @@ from fe_drivetrain.cases.fidelity.published_torsion import (
 )
 from fe_drivetrain.cases.main_bearing.housing_dimensions import solved
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.reading import parse_mapping
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.drivetrain_file.component import COMPONENTS
 from fe_drivetrain.drivetrain_file.named_scenes import (
@@ -205,3 +206,20 @@ def test_rolling_bearings_of_a_scene_sit_on_its_shaft(name: str) -> None:
     for bearing in named_bearings(scene, (), {}).values():
         assert bearing.misfit is None
         assert bearing.entry.bore == pytest.approx(bearing.seat)
+
+
+def test_one_gearbox_stands_behind_a_shaft_of_springs_and_a_whole_one() -> None:
+    springs, whole = (parse_mapping(TEXTS[name], name) for name in ("nrel_750kw", "grc_750kw"))
+    (unit,) = whole.pop("bearing_units")
+    main, *_ = springs["gearbox"]["bearings"]
+    assert (main["stiffness"], main["catalogue"]) == (unit["stiffness"], unit["catalogue"])
+    assert main["holds"] == springs["shaft"]["name"] == whole["shaft"]["name"]
+    whole["gearbox"]["bearings"].insert(0, main)
+    of_housing = {"stiffness", "weight"}
+    whole["gearbox"] = {k: v for k, v in whole["gearbox"].items() if k not in of_housing}
+    whole["assumed"] = [s for s in whole["assumed"] if not s.startswith("main shaft, bearing")]
+    own = {"title", "shaft"}
+    only_whole = {"materials", "mesh"}
+    assert whole.keys() - only_whole == springs.keys()
+    for key in springs.keys() - own:
+        assert springs[key] == whole[key], key

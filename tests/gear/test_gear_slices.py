@@ -10,7 +10,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.gear.coupled_slices import Coupling, loaded_with_coupling
 from fe_drivetrain.gear.energy import yang_sun_contact
 from fe_drivetrain.gear.involute import Gear, Pair, meshing_without_backlash
-from fe_drivetrain.gear.load_distribution import loaded, over_period, supported
+from fe_drivetrain.gear.load_distribution import even_phases, loaded, over_period, supported
 from fe_drivetrain.gear.load_factors import face_factor
 from fe_drivetrain.gear.pair_stiffness import constant_law, parabolic_law
 from fe_drivetrain.gear.slices import (
@@ -100,6 +100,47 @@ def test_mean_over_a_period_of_aligned_helical_gears_is_even() -> None:
     assert period.over_face.sum(axis=1) == pytest.approx(
         np.full(70, TORQUE / HELICAL.first.base_radius), rel=1e-12
     )
+
+
+@pytest.mark.parametrize("ratio", [1.4627260609736992, 1.2, 1.71])
+def test_slices_are_in_contact_equally_often_wherever_they_begin(ratio: float) -> None:
+    n = even_phases(ratio, 128, 256)
+    phases = (np.arange(8 * n) + 0.5) / n  # of eight periods
+    begins = np.linspace(2.0, 3.0, 560, endpoint=False)
+    counts = [np.count_nonzero((phases >= b) & (phases < b + ratio)) for b in begins]
+    # another number of phases gives one more to a good share of the slices
+    share_of_most = np.mean(np.array(counts) == np.bincount(counts).argmax())
+    assert share_of_most > 0.95
+    other = [np.count_nonzero(((p := phases * n / (n + 3)) >= b) & (p < b + ratio)) for b in begins]
+    assert np.mean(np.array(other) == np.bincount(other).argmax()) < share_of_most
+
+
+@pytest.mark.parametrize("slices", [5, 9])
+@pytest.mark.parametrize("torque", [0.1 * TORQUE, -TORQUE], ids=["light", "reversed"])
+@pytest.mark.parametrize("kind", ["spur", "ring", "left"])
+def test_twice_the_phases_stay_within_the_band(kind: str, torque: float, slices: int) -> None:
+    mesh = sliced(KINDS[kind], slices=slices, modifications=Modifications(slope=5e-5))
+    period = over_period(mesh, torque)
+    more = over_period(mesh, torque, phases=2 * len(period.phases))
+    moved = abs(more.face_factor - period.face_factor)
+    assert moved < period.face_factor_band < 0.03 * period.face_factor
+    # a band of fewer phases is wider, and still holds
+    few = over_period(mesh, torque, phases=32)
+    assert period.face_factor_band < 0.5 * few.face_factor_band
+    assert abs(more.face_factor - few.face_factor) < few.face_factor_band
+
+
+def test_loads_that_do_not_change_over_the_period_have_no_band() -> None:
+    assert over_period(sliced(SPUR), TORQUE).face_factor_band < 1e-12
+    assert over_period(sliced(SPUR, slices=1), TORQUE).face_factor_band == 0.0
+
+
+@pytest.mark.parametrize(("least", "most"), [(0, 4), (8, 8)])
+def test_ranges_without_phases_are_refused(least: int, most: int) -> None:
+    with pytest.raises(InputError, match="give a least above 0"):
+        even_phases(1.5, least, most)
+    with pytest.raises(InputError, match="give at least 1"):
+        over_period(sliced(SPUR), TORQUE, phases=0)
 
 
 @pytest.mark.parametrize("kind", KINDS)

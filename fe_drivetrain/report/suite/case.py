@@ -89,7 +89,7 @@ class Case:
             raise RuntimeError(f"case {self.name} has no answer: call `page.answer` in its work")
         found = Results(
             case=self.name,
-            title=f"{page.subject}: {self.title}" if page.subject else self.title,
+            title=f"{page.subject}: {page.topic or self.title}" if page.subject else self.title,
             source=self.source,
             notes=[
                 *self._of_quick_runs(run.quick),

@@ -38,11 +38,19 @@ class ChosenDrivetrain:
         """Its title without what stands in brackets, for sentences."""
         return self.drivetrain.title.partition(" (")[0]
 
-    def state(self, page: Page) -> None:
-        """State on a page what drivetrain it is of, and that printed numbers do not apply to it."""
+    def state(self, page: Page, topic: str = "") -> None:
+        """State on a page what drivetrain it is of, and that printed numbers do not apply to it.
+
+        Parameters
+        ----------
+        page : Page
+            The page.
+        topic : str
+            What is asked of a user's drivetrain, where the title of the case names its own.
+        """
         page.about(self.drivetrain, self.name)
         if self.own:
-            page.subject = self.drivetrain.title
+            page.subject, page.topic = self.drivetrain.title, topic
             page.note(
                 "Checks against printed numbers are of the drivetrain that the case has by "
                 "itself, and left out here."

@@ -77,6 +77,8 @@ class Page(Findings):
     ----------
     subject : str
         What a page is about, if the user gave it; empty where it is the case's own.
+    topic : str
+        What the page asks of it; empty where the case's title says that.
     sections : list of Section
         Headings, and what stands under them.
     """
@@ -84,6 +86,7 @@ class Page(Findings):
     def __init__(self) -> None:
         super().__init__()
         self.subject = ""
+        self.topic = ""
         self.sections: list[Section] = []
 
     def take(self, found: Found) -> None:
