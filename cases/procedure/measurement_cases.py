@@ -53,9 +53,7 @@ def run(run: Run, page: Page) -> None:
     mode = damped_modes(known.system)
     step = min(1.0, known.slower) * STEP
     with run.step("cases"):
-        found = {
-            of.code: case_channels(of, known.system, known.torque, step) for of in cases.cases
-        }
+        found = {of.code: case_channels(of, known.system, known.torque, step) for of in cases.cases}
     with run.step("over the step"):
         check_steps(page, known, cases.cases, step)
     rows = []
@@ -125,7 +123,10 @@ def answer(page: Page, known: Known, rows: list[Record], damping: list[Record]) 
                     by="truth",
                 )
                 for row in damping
-                for name, key in (("exact twist", CLEAN), (f"noise of {1e3 * noise_of(known):.2g} mrad", NOISY))
+                for name, key in (
+                    ("exact twist", CLEAN),
+                    (f"noise of {1e3 * noise_of(known):.2g} mrad", NOISY),
+                )
             ),
         ],
         hero=TORQUE,
@@ -187,9 +188,7 @@ def extremes_of_torque(known: Known, cases: Sequence[MeasurementCase], step: flo
     return InTime(values, lost)
 
 
-def momentum(
-    page: Page, known: Known, of: MeasurementCase, channels: dict[str, Floats]
-) -> None:
+def momentum(page: Page, known: Known, of: MeasurementCase, channels: dict[str, Floats]) -> None:
     """The speed of all inertias together is that of the script."""
     both = known.front * channels["rotor speed"] + known.rear * channels["generator speed"]
     together = both / (known.front + known.rear)
