@@ -195,7 +195,8 @@ def answer(
             f"Measurements are virtual: {in_words(inertias)} inertias, a bridge and encoders with "
             "noise.",
             "Scaling to power turns the bridge's offset of "
-            f"{one.gauge.offset / 1e3:.3g} kN m into an error of gain, which the identified stiffness has, too.",
+            f"{one.gauge.offset / 1e3:.3g} kN m into an error of gain, which the identified "
+            "stiffness has, too.",
         ],
     )
 
