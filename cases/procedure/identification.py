@@ -16,7 +16,8 @@ from fe_drivetrain.cases.procedure.known_drivetrain import (
     simulated,
 )
 from fe_drivetrain.cases.procedure.lost_torque import judge_stop
-from fe_drivetrain.common import Floats
+from fe_drivetrain.cases.procedure.measured_identification import MEASURED, identified_record
+from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.procedure import (
     Motions,
     Solutions,
@@ -51,15 +52,26 @@ ENCODERS = 4096, 60  # pulses a turn of low- and high-speed shaft
     "Stiffness, damping and inertia of a drivetrain, identified: equations 2 to 13 of PROTEST",
     source="PROTEST 2010, ECN-E--10-100, section 4.6.2.6, Eq 1 to 13",
     settings={
-        "drivetrain": "FILE, or a name of the library (otherwise the case's own, of two inertias)"
+        "drivetrain": "FILE, or a name of the library (otherwise the case's own, of two inertias)",
+        "measured": "FILE (CSV of a record, in place of a simulated one, of your own drivetrain)",
+        "torque_column": "torque (column of the torque in the record)",
+        "front_column": "front (column of the angle at the front end)",
+        "rear_column": "rear (column of the angle at the rear end)",
+        "shaft": "NUMBER (of the shaft between both ends, otherwise all from rotor to generator)",
+        "stop": "NUMBER (s, when the torque was lost, of a record of a stop)",
     },
 )
 def run(run: Run, page: Page) -> None:
     """Put the printed methods, least squares and fits of spectra to a drivetrain that is known."""
     known, title = KNOWN, ""
+    if SETTING not in run.settings:
+        refuse_record_alone(run)
     if SETTING in run.settings:
         chosen = run.drivetrain("")
         chosen.state(page)
+        if MEASURED in run.settings:
+            identified_record(run, page, chosen)
+            return
         known, title = known_of(page, chosen), chosen.title
     seconds = 190.0 if run.quick else 570.0
     rows: list[Record] = []
@@ -105,6 +117,16 @@ def run(run: Run, page: Page) -> None:
         f"samples have {noisy[1]['least squares: damping / truth']:.2g} and "
         f"{noisy[1]['least squares: stiffness / truth']:.2g}.",
     )
+
+
+def refuse_record_alone(run: Run) -> None:
+    """Refuse settings of a record where no drivetrain of the user's own is named."""
+    for key in run.settings:
+        if key != SETTING:
+            raise InputError(
+                f"{key} = {run.settings[key]!r} is of a record of your own drivetrain: name it, as "
+                f"in {SETTING}=mine.yaml"
+            )
 
 
 def answer(page: Page, rows: list[Record], noisy: list[Record], title: str) -> None:
