@@ -173,8 +173,8 @@ def answer(page: Page, of: Turning, moving: Turn, still: Turn, ring: bool = Fals
         ]
         felt = "hardly feels" if lines[0].status == "good" else "feels"
         verdict = (
-            f"The load of {bearing} swings by {swing:.1f}\u00a0% in a turn; the ring {felt} the mesh "
-            f"frequency, but lines {RING - 3} and {RING + 3} times a turn."
+            f"{bearing[0].upper()}{bearing[1:]}'s load swings by {swing:.1f}\u00a0% in a turn; "
+            f"the ring {felt} the mesh frequency, but lines {RING - 3} and {RING + 3} times a turn."
         )
     page.answer(
         "How does the load of a planet bearing swing as the carrier turns?",
