@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.dynamics.carrier_turn import first_stage
+from fe_drivetrain.cases.dynamics.planets_on_pins import first_stage
 from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import ConvergenceInTime, InTime
 from fe_drivetrain.drivetrain_file import Material

@@ -5,7 +5,7 @@ from math import cos, sin
 
 import numpy as np
 
-from fe_drivetrain.cases.dynamics.carrier_turn import first_stage
+from fe_drivetrain.cases.dynamics.planets_on_pins import first_stage
 from fe_drivetrain.common import Floats
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.drivetrain_file.turning_parts import diagonal

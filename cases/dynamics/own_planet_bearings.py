@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.bearing import load_zones, pressures
-from fe_drivetrain.cases.dynamics.carrier_turn import TURNS, first_stage
+from fe_drivetrain.cases.dynamics.planets_on_pins import TURNS, first_stage
 from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.drivetrain_file.carriers import carriers_of
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData

@@ -49,7 +49,7 @@ RINGING = "ringing of the low-speed shaft [Hz]"
     source="Park et al. 2021, Front. Energy Res. 8:604414, section 4, Figure 9",
     settings={
         "drivetrain": "FILE, or a name of the library (otherwise park_2021)",
-        "stage": "1 (of your own drivetrain, whose line is looked at)",
+        "stage": "1 (from 1 on, of your own drivetrain, whose line is looked at)",
     },
 )
 def run(run: Run, page: Page) -> None:

@@ -35,6 +35,7 @@ from fe_drivetrain.gear import (
     transmission_error,
 )
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.suite import (
     ChosenDrivetrain,
     Page,
@@ -167,7 +168,7 @@ def own_teeth(run: Run, page: Page, chosen: ChosenDrivetrain) -> tuple[Teeth, fl
     """
     machine, torque = machine_of(chosen.drivetrain), chosen.rated_torque()
     speed, last = chosen.rotor_speeds()[1], len(machine.stages)
-    number = run.count("stage", last) if last else 0
+    number = run.count("stage", 1) if "stage" in run.settings else last
     if not 1 <= number <= last:
         raise InputError(f"stage = {number}, but {machine.title!r} has {last}: name one of them")
     pairs = [name for name in machine_pairs(machine) if name.startswith(f"stage {number} ")]
@@ -211,43 +212,16 @@ def answer(
         misses[name] = 100.0 * float(np.abs(linear / found - 1).max())
         largest[name] = float(found.max())
     word = "lowers" if relieved < bare else "raises"
-    static = (
-        f"from {1e6 * bare:.2g} to {1e6 * relieved:.2g}\u00a0µm"
-        if rated
-        else (f"from {1e6 * bare:.1f} to {1e6 * relieved:.1f}\u00a0µm")
-    )
+    static = f"from {1e6 * bare:.1f} to {1e6 * relieved:.1f}\u00a0µm"
     at_rated = [
         float(row["in time [µm]"]) for row in rows if row["mesh over natural frequency"] == rated
     ]
-    then = (
-        f"at rated speed, {rated:.2g} of the natural frequency, it vibrates by "
-        f"{at_rated[1]:.2g}\u00a0µm."
-        if at_rated
-        else f"at rated speed, {rated:.2g} of the natural frequency, the mesh follows it."
-        if rated
-        else f"a linear response then misses the vibration by up to {misses[tip]:.0f}\u00a0%."
-    )
+    then = at_last(rated, at_rated, misses[tip])
     page.answer(
         "What does tip relief do to the transmission error, at rest and in time?",
         f"{1e6 * teeth.relief:.3g}\u00a0µm of relief {word} the static error {static}; {then}",
         [
-            *(
-                [page.value("mesh frequency at rated speed over the natural one", rated)]
-                if rated
-                else []
-            ),
-            *(
-                [
-                    page.value(
-                        "dynamic error at rated speed with tip relief [µm]",
-                        at_rated[1],
-                        beside=at_rated[0],
-                        by="without",
-                    )
-                ]
-                if at_rated
-                else []
-            ),
+            *of_rated(page, rated, at_rated),
             page.value(
                 "static error with tip relief [µm]",
                 1e6 * relieved,
@@ -277,6 +251,27 @@ def answer(
             "linear about its load, leaves out."
         ],
     )
+
+
+def at_last(rated: float, vibrates: list[float], misses: float) -> str:
+    """What follows: the vibration [µm] at rated speed, or what a linear response misses [%]."""
+    if not rated:
+        return f"a linear response then misses the vibration by up to {misses:.0f}\u00a0%."
+    at = f"at rated speed, {rated:.2g} of the natural frequency,"
+    if not vibrates:
+        return f"{at} the mesh follows it."
+    return f"{at} it vibrates by {vibrates[1]:.2g}\u00a0µm."
+
+
+def of_rated(page: Page, rated: float, found: list[float]) -> list[KeyFigure]:
+    """Figures of a user's pair at rated speed: its frequency, and the error [µm]."""
+    if not rated:
+        return []
+    figures = [page.value("mesh frequency at rated speed over the natural one", rated)]
+    name = "dynamic error at rated speed with tip relief [µm]"
+    if found:
+        figures.append(page.value(name, found[1], beside=found[0], by="without"))
+    return figures
 
 
 def check_ripples(

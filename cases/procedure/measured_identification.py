@@ -165,12 +165,12 @@ def by_methods(one: Recorded, fit: Fit) -> list[Record]:
         inertia, damping = found.medians()
         share = 100.0 * float(found.plausible.mean())
         rows.append(row_of(method, inertia, damping, None, f"{share:.0f} % of answers above zero"))
-    exact = (float(v) for v in least_squares(one.twist).values)
-    rows.append(row_of("least squares", *exact, "noise of the twist biases it"))
+    J, D, K = (float(v) for v in least_squares(one.twist).values)
+    rows.append(row_of("least squares", J, D, K, "noise of the twist biases it"))
     bands = [formatted(float(band), 2) for band in fit.bands]
-    fitted = (float(v) for v in fit.values)
+    J, D, K = (float(v) for v in fit.values)
     words = f"bands {', '.join(bands)}; {one.band[0]:.3g} to {one.band[1]:.3g} Hz"
-    return [*rows, row_of("fit of spectra", *fitted, words)]
+    return [*rows, row_of("fit of spectra", J, D, K, words)]
 
 
 def row_of(
