@@ -1,6 +1,5 @@
 """Sidebands of a mesh line of a user's drivetrain after a step of torque."""
 
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -31,13 +30,9 @@ RINGING = "ringing of the main shaft [Hz]"
 
 def own(run: Run, page: Page, chosen: ChosenDrivetrain) -> None:
     """Distance of sidebands from the line of one stage, whose meshes alone vary."""
-    whole = stepped(page, chosen)
     number = run.count("stage", 1)
-    meshing = {
-        name: one for name, one in whole.meshing.items() if name.startswith(f"stage {number} ")
-    }
-    of = replace(whole, meshing=meshing)
-    line = of.line(number)
+    of = stepped(page, chosen).only(number)
+    line = line_of(of)
     rows: list[Record] = []
     curves = []
     for name, level in LEVELS.items():
@@ -51,6 +46,11 @@ def own(run: Run, page: Page, chosen: ChosenDrivetrain) -> None:
     page.chart(BESIDE.format(number), curves, "frequency [Hz]", "over the line", "y")
     page.skip("an eccentric gear", "its size is that of the paper")
     answer(page, chosen, number, line, rows, 1.0 / seconds_of(of))
+
+
+def line_of(of: Stepped) -> float:
+    """Mesh frequency of the one stage whose meshes vary [Hz]."""
+    return of.meshing[of.meshes[0]].frequency
 
 
 def seconds_of(of: Stepped) -> float:

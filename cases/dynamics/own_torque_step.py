@@ -63,21 +63,21 @@ class Stepped:
         """Name of the spring that the main shaft is in torsion."""
         return f"{self.machine.shafts[0].name} rx"
 
-    def line(self, number: int) -> float:
-        """Mesh frequency of a stage by its number, from 1 [Hz].
+    def only(self, number: int) -> "Stepped":
+        """The same with meshes of one stage alone that vary, by its number, from 1.
 
         Raises
         ------
         InputError
             There is no such stage.
         """
-        for name, one in self.meshing.items():
-            if name.startswith(f"stage {number} "):
-                return one.frequency
-        raise InputError(
-            f"stage = {number}, but {self.machine.title!r} has {len(self.machine.stages)}: name "
-            "one of them"
-        )
+        kept = {n: one for n, one in self.meshing.items() if n.startswith(f"stage {number} ")}
+        if not kept:
+            raise InputError(
+                f"stage = {number}, but {self.machine.title!r} has {len(self.machine.stages)}: "
+                "name one of them"
+            )
+        return replace(self, meshing=kept)
 
     def load(self, system: System) -> Floats:
         """Torque on the rotor, and on the generator what balances it."""

@@ -60,7 +60,7 @@ def own_three_points(run: Run, page: Page, torque: float) -> OnThreePoints:
             f"gearbox.stiffness of {scene.title!r} is {given} along x, y and z: torque arms "
             "need a number above 0 N/m for each"
         )
-    arms = run.positive("arms", size * ARMS)
+    arms = run.positive("arms") if "arms" in run.settings else size * ARMS
     mass = run.positive("generator_mass") if "generator_mass" in run.settings else None
     places = three_points_of(scene, arms, mass)
     machine = machine_of(scene)
