@@ -11,11 +11,12 @@ from fe_drivetrain.cases.dynamics import own_sidebands
 from fe_drivetrain.cases.dynamics.own_load_sharing import pressed_by, shared
 from fe_drivetrain.cases.dynamics.own_torque_step import first_mode, of_step, stepped
 from fe_drivetrain.cases.dynamics.park_words import MAXIMUM, MINIMUM
+from fe_drivetrain.cases.dynamics.transmission_error import own_teeth
 from fe_drivetrain.cases.procedure.known_drivetrain import KNOWN, Known, known_of
 from fe_drivetrain.cases.procedure.measurement_cases import fitted
 from fe_drivetrain.cases.procedure.own_three_points import own_three_points
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
+from fe_drivetrain.drivetrain_file.gear_stages import ParallelData, PlanetaryData
 from fe_drivetrain.dynamics import (
     Level,
     assemble,
@@ -187,7 +188,6 @@ def test_planets_of_a_whole_drivetrain_share_an_error_within_the_closed_forms() 
         ("dynamics/elastic_ring", "nrel_750kw"),
         ("dynamics/load_sharing", "synthetic_2mw"),
         ("dynamics/planet_bearings", "grc_750kw"),
-        ("dynamics/transmission_error", "nrel_750kw"),
     ],
 )
 def test_a_case_answers_for_another_whole_drivetrain(
@@ -219,14 +219,32 @@ def test_sidebands_stand_off_by_the_ringing(monkeypatch: pytest.MonkeyPatch) -> 
 
 def test_a_step_of_torque_on_meshes_that_hardly_vary_brings_twice_the_static_forces() -> None:
     whole = stepped(Page(), chosen_drivetrain("nrel_5mw", "park_2021"))
-    of = replace(
-        whole, meshing={n: replace(m, contact_ratio=2.0) for n, m in whole.meshing.items()}
-    )
+    even = {name: replace(one, contact_ratio=2.0) for name, one in whole.meshing.items()}
+    of = replace(whole, meshing=even)
     system = machine_system(of.machine, Level.TORSIONAL)
     assert of.load(system)[system.place("rotor rx")] == of.torque
     found = of_step(of, system, 1.0 / of.first, 1.0 / (200.0 * of.first), 1)
     assert found.values[MAXIMUM] == pytest.approx(2.0, rel=0.1)
     assert found.values[MINIMUM] == pytest.approx(0.0, abs=0.1)
+
+
+def test_a_pair_of_a_users_stage_has_its_torque_and_mass(tmp_path: Path) -> None:
+    chosen = chosen_drivetrain("nrel_750kw", "")
+    machine = library_machine("nrel_750kw")
+    teeth, rated = own_teeth(Run({"stage": 2}, True, tmp_path), Page(), chosen)
+    stage = machine.stages[1]
+    assert isinstance(stage, ParallelData)
+    assert teeth.torque == pytest.approx(chosen.rated_torque() / abs(machine.speeds[2]))
+    first, second = teeth.pair.first.base_radius, teeth.pair.second.base_radius
+    mass = 1.0 / (first**2 / stage.pinion.inertia + second**2 / stage.gear.inertia)
+    assert teeth.mass == pytest.approx(mass)
+    assert first < second
+    deflection = teeth.error(0.0)
+    assert teeth.relief == pytest.approx(deflection.force / deflection.stiffness.mean, abs=5.1e-7)
+    speed = chosen.rotor_speeds()[1] * abs(machine.speeds[1]) * machine.meshing[1][1][0]
+    assert rated == pytest.approx(speed / np.sqrt(deflection.stiffness.mean / mass))
+    with pytest.raises(InputError, match="stage = 4, but"):
+        own_teeth(Run({"stage": 4}, True, tmp_path), Page(), chosen)
 
 
 def test_three_points_are_those_of_the_file(tmp_path: Path) -> None:
