@@ -327,6 +327,12 @@ OF_NO_OTHER = {
         "of a shaft's bending as Park et al. print it, with terms that no other model has": (
             "dynamics/park_bending",
         ),
+        "of a claim of Park et al., that stiffness goes by angle, on their own drivetrain": (
+            "dynamics/park_by_angle",
+        ),
+        "of bearings that Park et al. do not print, and of their own meshes on them": (
+            "dynamics/park_bearings",
+        ),
         "of what a thesis prints of its drivetrain: values and sentences are held to its data": (
             "drivetrain/damping",
             "drivetrain/drivetrains_a_b_c",
