@@ -55,7 +55,7 @@ TORQUE = "Torque of the main shaft: measured and scaled, and by a model of two i
 
 
 @case(
-    "A campaign on the 750 kW reference drivetrain: virtual measurements beside a simpler model",
+    "A campaign on one drivetrain: virtual measurements beside a simpler model",
     source="PROTEST 2010, ECN-E--10-100, section 4.6; Al-Hamadani 2018, Table 4.2",
     settings={"drivetrain": "FILE, or a name of the library (otherwise nrel_750kw)"},
 )
