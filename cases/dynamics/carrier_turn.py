@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.cases.dynamics.planets_on_pins import TURNS, first_stage
+from fe_drivetrain.common import Floats
 from fe_drivetrain.drivetrain_file import CarrierComponent, library_component, read_drivetrain
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.drivetrain_file.turning_parts import diagonal
@@ -31,7 +32,6 @@ NAME = "nrel_750kw"
 TORQUE = 3.25e5  # N m, at 750 kW
 MOMENTS = {"torque and gravity": (TORQUE, 0.0), "with -300 kN m of tilt": (TORQUE, -3e5)}
 PRINTED = (1.41, 1.47)  # upwind over downwind, of the thesis
-TURNS = ("torque and gravity", "tilt at the hub, too")
 RATIOS = "Mean load of a planet's upwind bearing over that of its downwind one, beside the thesis"
 TURNING = "Radial load of the bearings of planet 1, {}"
 
@@ -113,23 +113,6 @@ def answer(page: Page, rows: list[Record], ratios: list[float], uneven: float) -
         "by gravity, by moments of the hub, and, with torque alone, since the gears of the next "
         "stage push the sun's shaft to one side.",
     )
-
-
-def first_stage(machine: Machine) -> tuple[PlanetaryData, list[str]]:
-    """The first stage, and the names of the bearings on each pin.
-
-    Raises
-    ------
-    InputError
-        It is no planetary stage, or states no bearings of its planets.
-    """
-    stage = machine.stages[0] if machine.stages else None
-    if not isinstance(stage, PlanetaryData) or not stage.pins:
-        raise InputError(
-            f"{machine.title!r}: stage 1 must be planetary with bearings of its planets: give "
-            "gearbox.stages.0.pins"
-        )
-    return stage, [pin.name for pin in stage.pins]
 
 
 def isotropic(stage: PlanetaryData, machine: Machine) -> bool:

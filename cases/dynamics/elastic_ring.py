@@ -3,6 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.dynamics.own_elastic_ring import own
 from fe_drivetrain.cases.references.published_planetary import (
     LIN_PARKER_STAGE,
     plane_stage,
@@ -21,6 +22,7 @@ from fe_drivetrain.dynamics import (
     with_rim,
 )
 from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.report.suite.chosen import SETTING
 
 STEEL = Material(youngs_modulus=210e9, poisson_ratio=0.3, density=7850.0)
 WIDTH = 0.03  # m
@@ -50,9 +52,15 @@ def frequencies(thickness: float, highest: int, stiffer: float = 1.0) -> Floats:
 @case(
     "A planetary stage with an elastic ring gear: frequencies by the thickness of the rim",
     source="Love 1927, art. 293, for the ring; Lin and Parker 1999 for the stage",
+    settings={
+        "drivetrain": "FILE, or a name of the library (otherwise the stage of Lin and Parker)"
+    },
 )
 def run(run: Run, page: Page) -> None:
     """Thin-ring checks, convergence with harmonics, and the change against a rigid ring."""
+    if SETTING in run.settings:
+        own(run, page, run.drivetrain(""))
+        return
     check_ring(page)
     rigid = system_modes(plane_system(LIN_PARKER_STAGE, PLANETS)).frequencies
     highest = 13 if run.quick else 25

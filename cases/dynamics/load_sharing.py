@@ -3,9 +3,11 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.dynamics.own_load_sharing import own
 from fe_drivetrain.cases.dynamics.planet_loads import SharingStage, shared_load
 from fe_drivetrain.dynamics import load_sharing
 from fe_drivetrain.report.suite import Page, Record, Run, Target
+from fe_drivetrain.report.suite.chosen import SETTING
 
 NOMINAL = 20e3  # N, mean force of a mesh
 SHARE = 0.25  # K e over it, as of 1e8 N/m and 50 um along the line of action
@@ -23,9 +25,16 @@ CLOSED = "a branch of stiffness K a planet: F_1 = T/(N r) + K e (1 - 3/N), or (1
 @case(
     "Load sharing of planets with a pin error: floating and fixed sun, three to seven planets",
     source="closed form of parallel branches; Guo and Keller 2020 for measured values",
+    settings={
+        "drivetrain": "FILE, or a name of the library (otherwise stages of three to seven planets)",
+        "error": "50 (um, by which a pin of your own drivetrain is ahead of its place)",
+    },
 )
 def run(run: Run, page: Page) -> None:
     """Statics of the assembled stage against the closed form; four planets by clearance."""
+    if SETTING in run.settings:
+        own(run, page)
+        return
     rows: list[Record] = []
     for planets in (3, 4, 5, 6, 7):
         for floating in (True, False):

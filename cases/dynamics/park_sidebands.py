@@ -1,11 +1,12 @@
 """Sidebands of a mesh line: a torque step that rings, and an eccentric gear."""
 
 from functools import partial
-from typing import Any, NamedTuple
 
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.dynamics.mesh_spectra import Spectrum, check_distances, spectrum_of
+from fe_drivetrain.cases.dynamics.own_sidebands import own
 from fe_drivetrain.cases.dynamics.park_models import (
     CONTACT_RATIO,
     DAMPING,
@@ -41,35 +42,22 @@ TURNING = abs(eccentric_bodies()["gear 3"].speed) / 10.0
 HARMONICS = 2
 BESIDE = "Spectra of the mesh force beside the mesh line after a torque step"
 RINGING = "ringing of the low-speed shaft [Hz]"
-PADDED = 16
-"""Length of the spectrum over that of the signal."""
-
-
-class Spectrum(NamedTuple):
-    """Frequencies [Hz], sizes, and what the time resolves [Hz]."""
-
-    frequencies: Floats
-    size: Floats
-    resolution: float
-
-    def peak(self, begin: float, end: float) -> float:
-        """Frequency of the largest size between two [Hz]."""
-        near = (self.frequencies > begin) & (self.frequencies < end)
-        return float(self.frequencies[near][self.size[near].argmax()])
-
-    def beside_line(self, name: str) -> Any:
-        """Curve of the sizes beside the mesh line, over that of the line."""
-        near = np.abs(self.frequencies - LINE) < 6.0
-        size = self.size / self.size[near].max()
-        return trace(name, self.frequencies[near], np.maximum(size[near], 1e-5))
 
 
 @case(
     "Park et al. 2021: sidebands of a mesh line, torsional and in three dimensions",
     source="Park et al. 2021, Front. Energy Res. 8:604414, section 4, Figure 9",
+    settings={
+        "drivetrain": "FILE, or a name of the library (otherwise park_2021)",
+        "stage": "1 (from 1 on, of your own drivetrain, whose line is looked at)",
+    },
 )
 def run(run: Run, page: Page) -> None:
     """Distance of sidebands from the mesh line after a torque step, and with an eccentric gear."""
+    chosen = run.drivetrain("park_2021")
+    if chosen.own:
+        own(run, page, chosen)
+        return
     dt, duration = (5e-4, 8.0) if run.quick else (1.25e-4, 16.0)
     machine = library_machine("park_2021")
     page.about(machine)
@@ -79,7 +67,7 @@ def run(run: Run, page: Page) -> None:
         system = machine_system(machine, level)
         row, spectrum = after_step(run, page, name, system, dt, duration)
         rows.append(row)
-        traces.append(spectrum.beside_line(name))
+        traces.append(spectrum.beside(LINE, 6.0, name))
     page.section("After a torque step (Figure 9)")
     page.table("Mesh of gears 2 and 3", rows)
     page.chart(BESIDE, traces, "frequency [Hz]", "over the line", "y")
@@ -136,10 +124,11 @@ def after_step(
         force, shaft = stepped(system, dt, duration)
     spectrum = spectrum_of(force, dt)
     ringing = spectrum_of(shaft, dt).peak(0.75, 4.0)
-    below, above = sidebands(spectrum, 0.75, 4.0)
+    below, above = spectrum.sidebands(LINE, 0.75, 4.0)
     check_distances(
         page,
         f"{name}, torque step",
+        LINE,
         (below, above),
         ringing,
         spectrum.resolution,
@@ -223,44 +212,6 @@ def ringing_of(system: System, duration: float, dt: float, harmonics: int) -> In
     return InTime(values, motion.relative_imbalance, motion.converged)
 
 
-def spectrum_of(values: Floats, dt: float) -> Spectrum:
-    """With Hann's window."""
-    swing = (values - values.mean()) * np.hanning(len(values))
-    length = PADDED * len(values)
-    size = np.abs(np.fft.rfft(swing, length))
-    frequency = np.asarray(np.fft.rfftfreq(length, dt), dtype=np.float64)
-    return Spectrum(frequency, size, 1.0 / (dt * len(values)))
-
-
-def sidebands(spectrum: Spectrum, begin: float, end: float) -> tuple[float, float]:
-    """Largest peaks below and above the mesh line, between two distances from it [Hz]."""
-    below = spectrum.peak(LINE - end, LINE - begin)
-    return below, spectrum.peak(LINE + begin, LINE + end)
-
-
-def check_distances(
-    page: Page,
-    run: str,
-    peaks: tuple[float, float],
-    expected: float,
-    resolution: float,
-    source: str,
-) -> None:
-    """Check how far the sidebands below and above are from the mesh line [Hz]."""
-    for side, at in zip(("below", "above"), peaks, strict=True):
-        page.equals(
-            f"{run}: sideband {side} the mesh line, distance from it [Hz]",
-            abs(at - LINE),
-            expected,
-            within=resolution,
-            relative=False,
-            why="one over the time of the signal",
-            source=source,
-            measure="frequency",
-            basis="self-consistency",
-        )
-
-
 def eccentric(page: Page, system: System, dt: float, duration: float) -> None:
     """Lines that an eccentric gear 3 adds to a steady state."""
     load = torque(system, 1.0 / park.ratio())
@@ -279,7 +230,8 @@ def eccentric(page: Page, system: System, dt: float, duration: float) -> None:
     check_distances(
         page,
         "eccentric gear 3",
-        sidebands(spectrum, 2.5, 5.0),
+        LINE,
+        spectrum.sidebands(LINE, 2.5, 5.0),
         TURNING,
         spectrum.resolution,
         source="speed of gear 3 at 6 rpm of the rotor, of the radii of Table 2",

@@ -5,6 +5,7 @@ from functools import partial
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.dynamics.own_torque_step import FEW, SETTLED, own
 from fe_drivetrain.cases.dynamics.park_models import (
     CONTACT_RATIO,
     DAMPING,
@@ -71,17 +72,19 @@ CHAIN = (
 )
 #: Of all meshes at the step, in periods: none is printed.
 PHASES = (0.0, 0.25, 0.5, 0.75)
-SETTLED = 0.05
-"""What step and harmonics may leave uncertain of an answer, each, over it."""
-FEW = "a hundredth of the energy is half a hundredth of the forces"
 
 
 @case(
     "Park et al. 2021 in time: torque step, mesh lines, eccentricity, nacelle",
     source="Park et al. 2021, Front. Energy Res. 8:604414, sections 4 and 5, Figures 6-12",
+    settings={"drivetrain": "FILE, or a name of the library (otherwise park_2021)"},
 )
 def run(run: Run, page: Page) -> None:
     """Each study of the source with its torque balanced, printed words beside figures."""
+    chosen = run.drivetrain("park_2021")
+    if chosen.own:
+        own(run, page, chosen)
+        return
     machine = library_machine("park_2021")
     page.about(machine)
     space = machine_system(machine, Level.RIGID)

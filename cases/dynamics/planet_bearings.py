@@ -6,6 +6,7 @@ import numpy as np
 
 from fe_drivetrain.bearing import Bearing, cylindrical, equilibrium, forces, load_zones, pressures
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.dynamics.own_planet_bearings import own
 from fe_drivetrain.common import Floats
 from fe_drivetrain.drivetrain_file import CarrierComponent, library_component
 from fe_drivetrain.dynamics import (
@@ -15,7 +16,7 @@ from fe_drivetrain.dynamics import (
     assemble,
     assembly,
     azimuths,
-    library_machine,
+    machine_of,
     machine_seat,
     planet_seats,
     static_on_rollers,
@@ -26,6 +27,7 @@ from fe_drivetrain.report import marked, trace
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.fidelity.component_frames import carrier_frame
 
+NAME = "nrel_750kw"
 TORQUE, RADIUS, SPREAD = 3.25e5, 0.308, 0.12  # N m; m of the planets' centres; m between bearings
 MOMENTS = {"torque and gravity": 0.0, "with -300 kN m of tilt": -3e5}
 SIDES = ("upwind", "downwind")
@@ -58,10 +60,15 @@ class Turned:
 @case(
     "Planet bearings on rollers: upwind over downwind, clearance, rigid and flexible carrier",
     source="Al-Hamadani 2018, sections 7.1 and 7.3; NREL Gearbox Reliability Collaborative",
+    settings={"drivetrain": "FILE, or a name of the library (otherwise nrel_750kw)"},
 )
 def run(run: Run, page: Page) -> None:
     """Equilibria over a turn; balance, symmetry; ratios, rollers, pressures beside the thesis."""
-    machine, angles = linearised(library_machine("nrel_750kw")), azimuths(6 if run.quick else 24)
+    chosen = run.drivetrain(NAME)
+    if chosen.own:
+        own(run, page, chosen)
+        return
+    machine, angles = linearised(machine_of(chosen.drivetrain)), azimuths(6 if run.quick else 24)
     page.about(machine)
     carrier = own_carrier()
     models = [

@@ -1,13 +1,17 @@
-"""A campaign on the 750 kW reference drivetrain: virtual measurements, and a model beside them."""
+"""A campaign on one drivetrain: virtual measurements, and a simpler model beside them."""
+
+from dataclasses import dataclass
 
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.procedure.known_drivetrain import known_of
 from fe_drivetrain.common import Floats
 from fe_drivetrain.common.typeset import MINUS
-from fe_drivetrain.drivetrain_file import read_drivetrain
 from fe_drivetrain.dynamics import Machine, machine_of, torsional
 from fe_drivetrain.dynamics.torsion import (
+    GENERATOR,
+    ROTOR,
     Element,
     Inertia,
     Torsional,
@@ -29,17 +33,20 @@ from fe_drivetrain.procedure import (
 )
 from fe_drivetrain.report import trace
 from fe_drivetrain.report.number_text import value_text
-from fe_drivetrain.report.suite import Page, Run
+from fe_drivetrain.report.suite import ChosenDrivetrain, Page, Run
 from fe_drivetrain.turbine_loads.histories import damage_equivalent_load, rainflow_cycles
 
-MACHINE, SHAFT = "nrel_750kw", "LSS"
-SPEED, RATED, DEVIATION = 22.1 * np.pi / 30.0, 3.25e5, 2e4  # rad/s, N m
+MACHINE = "nrel_750kw"
+SPEED, RATED = 22.1 * np.pi / 30.0, 3.25e5  # rad/s, N m, of the rotor of this machine
+DEVIATION = 2e4 / RATED
+"""Of the torque in its band, over the rated one."""
 RATED_WIND = 14.0  # m/s
 FINE, EVERY = 0.01, 5  # s of the simulation, samples of it for each that is recorded
 STEP, BAND, USED = EVERY * FINE, (0.05, 5.0), (0.2, 3.0)  # s, Hz
 DAMPING, EFFICIENCY, PULSES = 4e5, 0.95, 4096  # N m s/rad of the shaft, -, a turn
 SLOPE = 4.0
 GAUGE = Sensor(gain=0.93, offset=1e3, noise=2e2)
+"""Of the case's own machine; of others in proportion to their rated torque."""
 WINDS, WINDOWS, TURBULENCE = (8, 9, 10), 3, 0.1
 WINDOW, MARGIN = 600.0, 0.5  # s, of a window, and cut off at either end of the record
 RECORDED = slice(round(MARGIN / FINE), -round(MARGIN / FINE), EVERY)
@@ -48,32 +55,35 @@ TORQUE = "Torque of the main shaft: measured and scaled, and by a model of two i
 
 
 @case(
-    "A campaign on the 750 kW reference drivetrain: virtual measurements beside a simpler model",
+    "A campaign on one drivetrain: virtual measurements beside a simpler model",
     source="PROTEST 2010, ECN-E--10-100, section 4.6; Al-Hamadani 2018, Table 4.2",
+    settings={"drivetrain": "FILE, or a name of the library (otherwise nrel_750kw)"},
 )
 def run(run: Run, page: Page) -> None:
     """Record torque and angles with sensors, write them as a campaign would, compare a model."""
-    drivetrain = read_drivetrain(MACHINE)
-    machine = machine_of(drivetrain)
-    page.about(drivetrain, MACHINE)
-    truth, simple = eleven_inertias(machine), two_inertias(machine)
+    chosen = run.drivetrain(MACHINE)
+    chosen.state(page)
+    one = of_campaign(page, chosen)
+    truth, simple = all_inertias(one), two_inertias(one)
     wind = winds(1 if run.quick else WINDOWS)
-    mean = RATED * (wind / RATED_WIND) ** 3
-    torque = mean + band_torque(len(wind), FINE, BAND, DEVIATION, seed=5)
+    mean = one.rated * (wind / RATED_WIND) ** 3
+    torque = mean + band_torque(len(wind), FINE, BAND, DEVIATION * one.rated, seed=5)
     with run.step("virtual measurement"):
-        recorded, gain = measurement(truth, torque)
+        recorded, gain = measurement(one, truth, torque)
         recorded["wind speed [m/s]"] = wind[RECORDED]
         write_channels(run.folder / MEASURED, STEP, recorded)
     with run.step("model"):
         computed = shaft_torque(simple, torque, "drivetrain")[RECORDED]
-        write_channels(run.folder / "computed.csv", STEP, {"LSS torque [N m]": computed})
+        write_channels(run.folder / "computed.csv", STEP, {one.channel: computed})
     loads(page, computed)
-    check_mean(page, recorded, torque)
-    check_stiffness(page, recorded, truth, gain)
-    show_torque(page, recorded["LSS torque [N m]"], computed)
-    answer(page, recorded["LSS torque [N m]"], computed, gain)
+    gauge = recorded[one.channel]
+    check_mean(page, gauge, torque)
+    check_stiffness(page, one, recorded, truth, gain)
+    show_torque(page, gauge, computed)
+    answer(page, one, len(truth.inertias), gauge, computed, gain)
     page.say(f"{MEASURED}, wind included, and computed.csv are what a campaign would hand on.")
-    page.assume("damping of the main shaft", DAMPING, "N m s/rad", "the table has none")
+    if not chosen.own:
+        page.assume("damping of the main shaft", DAMPING, "N m s/rad", "the table has none")
     page.assume("efficiency", EFFICIENCY, "", "of a virtual measurement of power")
     page.assume("wind", f"{WINDOWS} windows each of {WINDS} m/s", "", "of a virtual campaign")
     page.assume(
@@ -82,9 +92,77 @@ def run(run: Run, page: Page) -> None:
         "",
         "of a virtual campaign, at a constant speed",
     )
+    if not one.machine.generator.stiffness:
+        page.assume("torque of the generator", "the rotor's over the ratio", "", "constant speed")
 
 
-def answer(page: Page, gauge: Floats, computed: Floats, gain: float) -> None:
+@dataclass(frozen=True)
+class Measured:
+    """A machine that is measured: its shaft with the bridge, and what the rotor does.
+
+    ``behind`` is the inertia behind that shaft, ``speed`` the rotor's [rad/s], ``rated`` its rated
+    torque [N m], ``damping`` that of the shaft [N m s/rad].
+    """
+
+    machine: Machine
+    behind: str
+    speed: float
+    rated: float
+    damping: float
+
+    @property
+    def shaft(self) -> str:
+        """Name of the shaft with the bridge."""
+        return self.machine.shafts[0].name
+
+    @property
+    def channel(self) -> str:
+        """Name of the bridge's channel."""
+        return f"{self.shaft} torque [N m]"
+
+    @property
+    def gauge(self) -> Sensor:
+        """The bridge."""
+        size = self.rated / RATED
+        return Sensor(gain=GAUGE.gain, offset=size * GAUGE.offset, noise=size * GAUGE.noise)
+
+
+def of_campaign(page: Page, chosen: ChosenDrivetrain) -> Measured:
+    """The machine of a campaign; of a user's with the operation of its file.
+
+    Raises
+    ------
+    InputError
+        The file does not state its rated power and speeds, or its first shaft is rigid.
+    """
+    machine = machine_of(chosen.drivetrain)
+    full = torsional(machine)
+    if not chosen.own:
+        return Measured(machine, behind(full, machine.shafts[0].name), SPEED, RATED, DAMPING)
+    known = known_of(page, chosen)  # refuses rigid shafts
+    name = machine.shafts[0].name
+    shaft = next(e for e in full.elements if e.name == name)
+    share = static_stiffness(full, ROTOR, GENERATOR) / shaft.stiffness
+    # two inertias have the file's damping ratio where the shaft has its share of the winding
+    damping = shaft.damping or known.damping * known.gear**2 / share**2
+    speed, rated = chosen.rotor_speeds()[1], chosen.rated_torque()
+    return Measured(machine, behind(full, name), speed, rated, damping)
+
+
+def behind(full: Torsional, shaft: str) -> str:
+    """The inertia behind a shaft of the rotor."""
+    return next(
+        part
+        for element in full.elements
+        if element.name == shaft
+        for part in element.winding
+        if part != ROTOR
+    )
+
+
+def answer(
+    page: Page, one: Measured, inertias: int, gauge: Floats, computed: Floats, gain: float
+) -> None:
     """State how far the simple model is from what was measured, and what scaling leaves."""
     (most, size), by = [one.quantity for one in page.figures], "as measured"
     error = 100.0 * (1.0 - gain)
@@ -114,16 +192,22 @@ def answer(page: Page, gauge: Floats, computed: Floats, gain: float) -> None:
         ],
         hero=TORQUE,
         cautions=[
-            "Measurements are virtual: eleven inertias, a bridge and encoders with noise.",
-            f"Scaling to power turns the bridge's offset of {GAUGE.offset / 1e3:g} kN m into an "
-            "error of gain, which the identified stiffness has, too.",
+            f"Measurements are virtual: {in_words(inertias)} inertias, a bridge and encoders with "
+            "noise.",
+            "Scaling to power turns the bridge's offset of "
+            f"{one.gauge.offset / 1e3:.3g} kN m into an error of gain, which the identified "
+            "stiffness has, too.",
         ],
     )
 
 
-def check_mean(page: Page, recorded: dict[str, Floats], torque: Floats) -> None:
+def in_words(count: int) -> str:
+    """A count; in letters where it is the case's own."""
+    return {11: "eleven"}.get(count, str(count))
+
+
+def check_mean(page: Page, gauge: Floats, torque: Floats) -> None:
     """Scaling by power gives the mean torque."""
-    gauge = recorded["LSS torque [N m]"]
     page.equals(
         "mean torque, scaled to electrical power [kN m]",
         float(gauge.mean()) / 1e3,
@@ -136,11 +220,13 @@ def check_mean(page: Page, recorded: dict[str, Floats], torque: Floats) -> None:
     )
 
 
-def check_stiffness(page: Page, recorded: dict[str, Floats], truth: Torsional, gain: float) -> None:
+def check_stiffness(
+    page: Page, one: Measured, recorded: dict[str, Floats], truth: Torsional, gain: float
+) -> None:
     """The main shaft's stiffness is found again, but for the gain that is left."""
     twist = recorded["rotor angle [rad]"] - recorded["gearbox angle [rad]"]
-    fit = spectral_fit(recorded["LSS torque [N m]"], twist, STEP, USED)
-    stiffness = next(e.stiffness for e in truth.elements if e.name == SHAFT)
+    fit = spectral_fit(recorded[one.channel], twist, STEP, USED)
+    stiffness = next(e.stiffness for e in truth.elements if e.name == one.shaft)
     page.equals(
         "stiffness of the main shaft, identified, over gain and truth",
         float(fit.values[2]) / gain / stiffness,
@@ -200,62 +286,74 @@ def loads(page: Page, torque: Floats) -> None:
     )
 
 
-def eleven_inertias(machine: Machine) -> Torsional:
+def all_inertias(one: Measured) -> Torsional:
     """The table's own inertias, with damping in the main shaft."""
-    return damped(torsional(machine), {SHAFT: DAMPING})
+    return damped(torsional(one.machine), {one.shaft: one.damping})
 
 
-def two_inertias(machine: Machine) -> Torsional:
+def two_inertias(one: Measured) -> Torsional:
     """Rotor and generator, referred to the rotor, the stiffness between them and the grid's."""
+    machine = one.machine
     full = torsional(machine)
     ratio = machine.speeds[-1] ** 2
-    stiffness = static_stiffness(full, "rotor", "generator")
-    shaft = next(e for e in full.elements if e.name == SHAFT)
+    stiffness = static_stiffness(full, ROTOR, GENERATOR)
+    shaft = next(e for e in full.elements if e.name == one.shaft)
     # the same loss where the shaft has its share of the winding
-    damping = DAMPING * (stiffness / shaft.stiffness) ** 2
+    damping = one.damping * (stiffness / shaft.stiffness) ** 2
+    grid = ratio * machine.generator.stiffness
     return Torsional(
+        (Inertia(ROTOR, machine.rotor.inertia), Inertia(GENERATOR, ratio * generator_of(full))),
         (
-            Inertia("rotor", machine.rotor.inertia),
-            Inertia("generator", ratio * machine.generator.inertia),
-        ),
-        (
-            Element("drivetrain", {"rotor": 1.0, "generator": -1.0}, stiffness, damping),
-            Element("grid", {"generator": 1.0}, ratio * machine.generator.stiffness),
+            Element("drivetrain", {ROTOR: 1.0, GENERATOR: -1.0}, stiffness, damping),
+            *((Element("grid", {GENERATOR: 1.0}, grid),) if grid else ()),
         ),
     )
 
 
+def generator_of(full: Torsional) -> float:
+    """Inertia of the generator [kg m^2]."""
+    return next(part.inertia for part in full.inertias if part.name == GENERATOR)
+
+
 def shaft_torque(system: Torsional, torque: Floats, element: str) -> Floats:
-    """(n,) torque in an element while the rotor is driven [N m]."""
-    motions = periodic_motions(system, on_rotor(system, torque), FINE)
+    """(n,) torque in an element of inertias referred to the rotor, which is driven [N m]."""
+    motions = periodic_motions(system, driving(system, torque, 1.0), FINE)
     place = [e.name for e in system.elements].index(element)
     return np.asarray(element_torques(system, motions)[place])
 
 
-def on_rotor(system: Torsional, torque: Floats) -> Floats:
-    """(inertias, n) torques, of which the rotor alone is driven [N m]."""
-    given = np.zeros((len(system.inertias), len(torque)))
-    given[[part.name for part in system.inertias].index("rotor")] = torque
+def driving(system: Torsional, torque: Floats, ratio: float) -> Floats:
+    """(inertias, n) torques [N m]: on the rotor, and against it where no grid's spring holds.
+
+    ``ratio`` is the generator's speed over the rotor's in the system's own angles.
+    """
+    names = [part.name for part in system.inertias]
+    given = np.zeros((len(names), len(torque)))
+    given[names.index(ROTOR)] = torque
+    if not any(list(element.winding) == [GENERATOR] for element in system.elements):
+        given[names.index(GENERATOR)] = -torque / ratio
     return given
 
 
-def measurement(system: Torsional, torque: Floats) -> tuple[dict[str, Floats], float]:
+def measurement(
+    one: Measured, system: Torsional, torque: Floats
+) -> tuple[dict[str, Floats], float]:
     """Torque by a bridge, scaled to power, and angles by timed pulses; the gain that is left."""
-    motions = periodic_motions(system, on_rotor(system, torque), FINE)
+    motions = periodic_motions(system, driving(system, torque, one.machine.speeds[-1]), FINE)
     names = [part.name for part in system.inertias]
-    place = [e.name for e in system.elements].index(SHAFT)
+    place = [e.name for e in system.elements].index(one.shaft)
     time = motions.time
-    bridge = measured(GAUGE, element_torques(system, motions)[place], seed=6)[RECORDED]
-    speed = (SPEED + motions.speed[names.index("rotor")])[RECORDED]
+    bridge = measured(one.gauge, element_torques(system, motions)[place], seed=6)[RECORDED]
+    speed = (one.speed + motions.speed[names.index(ROTOR)])[RECORDED]
     power = EFFICIENCY * torque[RECORDED] * speed
     factor = scaled_to_power(bridge, speed, power, EFFICIENCY)
     angles = {
         f"{name} angle [rad]": timed_angle(
-            time, SPEED * time + motions.angle[names.index(part)], PULSES, time[RECORDED]
+            time, one.speed * time + motions.angle[names.index(part)], PULSES, time[RECORDED]
         )
-        for name, part in (("rotor", "rotor"), ("gearbox", "stage 1 carrier"))
+        for name, part in (("rotor", ROTOR), ("gearbox", one.behind))
     }
-    columns = {"LSS torque [N m]": factor * bridge, **angles, "power [W]": power}
+    columns = {one.channel: factor * bridge, **angles, "power [W]": power}
     return columns, factor * GAUGE.gain
 
 

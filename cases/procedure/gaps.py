@@ -4,7 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.procedure.assumed import PLACES
-from fe_drivetrain.cases.references import published_drivetrains as published
+from fe_drivetrain.cases.procedure.gapped_drivetrain import RPM, Gapped, gapped
 from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import (
     ConvergenceInTime,
@@ -49,13 +49,10 @@ from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
 from fe_drivetrain.shafts.beam import Beam, BeamSection, condensed_beam
 from fe_drivetrain.turbine_loads.hub_loads import Condition, hub_loads
 
-TABLE = published.table("drivetrain_c")
-SPEEDS = (9.0, 18.0)  # rpm
-RPM = np.pi / 30.0
 CONTROLLER = 10.0  # Hz, of its communication
 SECOND = 1.2  # m, of a second main bearing
 TOLERANCE = 0.5e-3  # m
-BEARING, ARM, RATIO = 3e9, 1e8, 0.01  # N/m, N/m, of critical damping
+BEARING, ARM = 3e9, 1e8  # N/m
 DIPS = [(depth, seconds) for depth in (0.2, 0.5, 0.8, 1.0) for seconds in (0.1, 0.15, 0.25, 0.5)]
 SHAPES = {
     "one dip": Dip(0.2, 0.8, 0.15).table,
@@ -68,6 +65,8 @@ SHAPES = {
 Support = tuple[str, int, dict[int, float], float]
 LARGEST = "largest torque of all dips, over that before"
 TORQUE = "Torque of the low-speed shaft over that before, dips of 0.15 s"
+OFFSETS = "offsets of supports"
+LOADS = "loads at interfaces"
 MAXIMUM, MINIMUM = "largest torque over that before", "least torque over that before"
 
 
@@ -75,6 +74,9 @@ MAXIMUM, MINIMUM = "largest torque over that before", "least torque over that be
     "What design load cases leave out: resonance, misalignment, voltage dips",
     source="PROTEST 2010, ECN-E--10-100, Tables 4.1 to 4.5, section 4.2, appendix A; "
     "Al-Hamadani 2018, Tables 4.3 and 4.7 (drivetrain C)",
+    settings={
+        "drivetrain": "FILE, or a name of the library (otherwise drivetrain C of Al-Hamadani)"
+    },
 )
 def run(run: Run, page: Page) -> None:
     """The catalogue's gaps, each run; and loads at interfaces that are in equilibrium."""
@@ -87,25 +89,56 @@ def run(run: Run, page: Page) -> None:
             for load in catalogue.uncovered
         ],
     )
-    with run.step("resonance"), page.of(published.drivetrain("drivetrain_c")):
-        met = resonance(page)
-    with run.step("misalignment"), page.of(None):
-        support, force = misalignment(page)
-    with run.step("voltage dips"), page.of(published.drivetrain("drivetrain_c")):
-        least = dips(page)
-    with run.step("interfaces"), page.of(None):
-        interfaces(run, page)
+    of = gapped(run, page)
+    with run.step("resonance"), page.of(of.drivetrain):
+        met = resonance(page, of)
+    force = None
+    if of.title:
+        page.skip(OFFSETS, "procedure/machine_gaps has those of your own bearings")
+        page.skip(LOADS, "procedure/interfaces has those of your own on three points")
+    else:
+        with run.step("misalignment"), page.of(None):
+            force = misalignment(page)
+    with run.step("voltage dips"), page.of(of.drivetrain):
+        least = dips(page, of)
+    if not of.title:
+        with run.step("interfaces"), page.of(None):
+            interfaces(run, page)
+    answer(page, of, met, least, force)
+
+
+def answer(
+    page: Page, of: Gapped, met: int, least: float, offset: tuple[str, float] | None
+) -> None:
+    """State the torque of dips, resonances in operation, and the force [kN] of an offset."""
+    catalogue = protest_catalogue()
     largest = page.judged(LARGEST, "largest torque in a dip over that before", "two steps")
+    verdict = (
+        f"A voltage dip brings {formatted(largest.value, 3)} times the torque before; {met} "
+        "resonances lie in operation"
+    )
+    forces = []
+    share = f"{100 * of.ratio:g} % of critical"
+    cautions = [
+        f"Damping of {of.title} is {share}."
+        if of.title
+        else f"Damping of drivetrain C is assumed, {share}: its tables have none."
+    ]
+    if offset is not None:
+        support, force = offset
+        verdict += f"; 0.5\u00a0mm of offset loads a bearing by {value_text(force, 'kN')}"
+        forces = [page.value(f"force of 0.5 mm of offset, {support} [kN]", force)]
+        cautions.append(
+            "On three points offsets load nothing; the force is that of two main bearings."
+        )
     page.answer(
         "What do the standard's design load cases leave out of a drivetrain?",
-        f"A voltage dip brings {formatted(largest.value, 3)} times the torque before; "
-        f"{met} resonances lie in operation; 0.5\u00a0mm of offset loads a bearing by "
-        f"{value_text(force, 'kN')}.",
+        f"{verdict}.",
         [
             largest,
             page.value("least torque in a dip over that before", least),
             page.value("resonances in operation", met),
-            page.value(f"force of 0.5 mm of offset, {support} [kN]", force),
+            *forces,
             page.value(
                 "design loads without a load case",
                 len(catalogue.uncovered),
@@ -114,23 +147,19 @@ def run(run: Run, page: Page) -> None:
             ),
         ],
         hero=TORQUE,
-        cautions=[
-            f"Damping of drivetrain C is assumed, {100 * RATIO:g} % of critical: its tables have "
-            "none.",
-            "On three points offsets load nothing; the force is that of two main bearings.",
-        ],
+        cautions=cautions,
     )
 
 
-def resonance(page: Page) -> int:
-    """Register of excitations against the modes of a gearbox with three stages."""
-    system = gear_masses(TABLE, "free")
+def resonance(page: Page, of: Gapped) -> int:
+    """Register of excitations against the modes of a gearbox."""
+    system, speeds = gear_masses(of.table, "free"), of.speeds
     modes = natural_modes(system)
     register = (
-        *drivetrain_excitations(TABLE.stages),
+        *drivetrain_excitations(of.table.stages),
         Excitation("controller", 0.0, (GENERATOR,), fixed=CONTROLLER),
     )
-    found = resonances(register, modes, (SPEEDS[0] * RPM, SPEEDS[1] * RPM))
+    found = resonances(register, modes, (speeds[0] * RPM, speeds[1] * RPM))
     by_name = {e.name: e for e in register}
     page.vanishes(
         "frequencies of excitations at their crossings, largest relative error",
@@ -159,21 +188,26 @@ def resonance(page: Page) -> int:
     met = sum(m.verdict == "resonance" for m in found)
     crossed = sum(m.margin == 0.0 for m in found)
     page.section("Resonance")
-    page.table(f"Excitations that meet a mode from {SPEEDS[0]:g} to {SPEEDS[1]:g} rpm", rows)
-    chart_meetings(page, [m for m in found if m.verdict == "resonance"], by_name)
+    page.table(f"Excitations that meet a mode from {speeds[0]:.4g} to {speeds[1]:.4g} rpm", rows)
+    chart_meetings(page, speeds, [m for m in found if m.verdict == "resonance"], by_name)
     page.data("resonances", rows)
     page.assume("frequency of the controller's communication", CONTROLLER, "Hz", "none is given")
     page.text(
-        f"Excitations of drivetrain C cross a frequency {crossed} times in operation, {met} times "
-        "at a part that has 1 % or more of the mode's energy."
+        f"Excitations of {of.title or 'drivetrain C'} cross a frequency {crossed} times in "
+        f"operation, {met} times at a part that has 1 % or more of the mode's energy."
     )
     return met
 
 
-def chart_meetings(page: Page, met: list[Meeting], by_name: dict[str, Excitation]) -> None:
+def chart_meetings(
+    page: Page,
+    operation: tuple[float, float],
+    met: list[Meeting],
+    by_name: dict[str, Excitation],
+) -> None:
     """Modes that are met, and the lines of the excitations that meet them."""
     lines = dict.fromkeys(m.excitation for m in met)
-    speeds = np.array([0.0, SPEEDS[1]])
+    speeds = np.array([0.0, operation[1]])
     frequencies = sorted({m.frequency for m in met})
     page.chart(
         "Campbell diagram: modes that are met, and what meets them; shaded: operation",
@@ -189,7 +223,7 @@ def chart_meetings(page: Page, met: list[Meeting], by_name: dict[str, Excitation
         ],
         "rotor speed [rpm]",
         "frequency [Hz]",
-        safe=SPEEDS,
+        safe=operation,
     )
 
 
@@ -269,12 +303,12 @@ def check_determinacy(page: Page, name: str, found: Misalignment) -> None:
         )
 
 
-def dips(page: Page) -> float:
+def dips(page: Page, of: Gapped) -> float:
     """Torque of the shaft while the generator's dips, over depth and duration."""
-    free = two_masses(TABLE, "free")
+    free = two_masses(of.table, "free")
     front, rear = free.J
     inertia = float(front * rear / (front + rear))
-    system = damped(free, {"shafts": shaft_damping(RATIO, inertia, float(free.k[0]))})
+    system = damped(free, {"shafts": shaft_damping(of.ratio, inertia, float(free.k[0]))})
     frequency = float(natural_modes(system).frequencies[1])
     page.section("Voltage dips")
     found = converge_in_time(lambda h, _: simulate_dips(system, h)[0], 1.0 / (200.0 * frequency))
@@ -311,9 +345,14 @@ def dips(page: Page) -> float:
         f"How the length of a dip falls on the shaft's period of {1 / frequency:.2f} s matters as "
         "much as its depth."
     )
-    tables(page)
+    tables(page, of)
     page.assume(
-        "damping ratio of the drivetrain", RATIO, "", "the tables of drivetrain C have none"
+        "damping ratio of the drivetrain",
+        of.ratio,
+        "",
+        "the file's of shafts, or a hundredth"
+        if of.title
+        else "the tables of drivetrain C have none",
     )
     return min(float(row["least torque / before"]) for row in rows)
 
@@ -351,13 +390,13 @@ def check_dips(page: Page, of: str, found: ConvergenceInTime) -> None:
     )
 
 
-def tables(page: Page) -> None:
+def tables(page: Page, of: Gapped) -> None:
     """Dips of other shapes, by table, on all gears: largest and least torque of each element."""
-    system = damped_by_ratio(
-        gear_masses(TABLE, "free"), {e.name: RATIO for e in gear_masses(TABLE, "free").elements}
-    )
+    bare = gear_masses(of.table, "free")
+    system = damped_by_ratio(bare, {e.name: of.ratio for e in bare.elements})
+    ratio = gear_speeds(of.table)[GENERATOR]
     elements = [e.name for e in system.elements if e.name.rpartition(" ")[2] not in ("2", "3")]
-    found = converge_in_time(lambda h, _: simulate_shapes(system, elements, h), 2.5e-4)
+    found = converge_in_time(lambda h, _: simulate_shapes(system, ratio, elements, h), 2.5e-4)
     check_dips(page, "dip on all gears", found)
     rows: list[Record] = [
         {
@@ -373,7 +412,7 @@ def tables(page: Page) -> None:
     page.data("dips by table", rows)
 
 
-def simulate_shapes(system: Torsional, elements: list[str], step: float) -> InTime:
+def simulate_shapes(system: Torsional, ratio: float, elements: list[str], step: float) -> InTime:
     """Ends of the torque of elements over that before, for dips of each shape."""
     time = np.asarray(np.arange(0.0, 3.0, step), dtype=np.float64)
     names = [e.name for e in system.elements]
@@ -381,7 +420,7 @@ def simulate_shapes(system: Torsional, elements: list[str], step: float) -> InTi
     for name, table in SHAPES.items():
         torques = np.zeros((len(system.names), len(time)))
         torques[0] = 1.0
-        torques[system.place(GENERATOR)] = -table.shares(time) / gear_speeds(TABLE)[GENERATOR]
+        torques[system.place(GENERATOR)] = -table.shares(time) / ratio
         motions = driven_motions(system, torques, step)
         found = element_torques(system, motions)
         for element in elements:

@@ -1,35 +1,23 @@
 """Stiffness, damping and inertia from measured signals: printed equations beside the truth."""
 
-from functools import partial
-
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.procedure.independent_run import OF, elsewhere, shares_of_braking
 from fe_drivetrain.cases.procedure.known_drivetrain import (
     BRAKING,
     BROAD,
-    DAMPING,
-    DRIVING,
-    FRONT,
-    GAUGE,
-    GEAR,
-    MEAN,
+    KNOWN,
     NARROW,
-    OMEGA,
-    RATIO,
-    REAR,
-    REDUCED,
-    SPEED,
     STEP,
-    STIFFNESS,
-    SYSTEM,
-    TRUTH,
-    TURN,
     USED,
+    Known,
+    known_of,
     simulated,
 )
 from fe_drivetrain.cases.procedure.lost_torque import judge_stop
-from fe_drivetrain.common import Floats
+from fe_drivetrain.cases.procedure.measured_identification import MEASURED, identified_record
+from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.procedure import (
     Motions,
     Solutions,
@@ -52,9 +40,9 @@ from fe_drivetrain.procedure import (
 from fe_drivetrain.report import bars, mark_events
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.report.suite.chosen import SETTING
 
 BY_METHOD = "Damping that each method finds, over the truth"
-OF = ("inertia / truth", "damping / truth", "stiffness / truth")
 REPEATS = 20
 MARGIN = 40  # samples left out at either end of a record
 ENCODERS = 4096, 60  # pulses a turn of low- and high-speed shaft
@@ -63,20 +51,40 @@ ENCODERS = 4096, 60  # pulses a turn of low- and high-speed shaft
 @case(
     "Stiffness, damping and inertia of a drivetrain, identified: equations 2 to 13 of PROTEST",
     source="PROTEST 2010, ECN-E--10-100, section 4.6.2.6, Eq 1 to 13",
+    settings={
+        "drivetrain": "FILE, or a name of the library (otherwise the case's own, of two inertias)",
+        "measured": "FILE (CSV of a record, in place of a simulated one, of your own drivetrain)",
+        "torque_column": "torque (column of the torque in the record)",
+        "front_column": "front (column of the angle at the front end)",
+        "rear_column": "rear (column of the angle at the rear end)",
+        "shaft": "NUMBER (of the shaft between both ends, otherwise all from rotor to generator)",
+        "stop": "NUMBER (s, when the torque was lost, of a record of a stop)",
+    },
 )
 def run(run: Run, page: Page) -> None:
     """Put the printed methods, least squares and fits of spectra to a drivetrain that is known."""
+    known, title = KNOWN, ""
+    if SETTING not in run.settings:
+        refuse_record_alone(run)
+    if SETTING in run.settings:
+        chosen = run.drivetrain("")
+        chosen.state(page)
+        if MEASURED in run.settings:
+            identified_record(run, page, chosen)
+            return
+        known, title = known_of(page, chosen), chosen.title
     seconds = 190.0 if run.quick else 570.0
     rows: list[Record] = []
     for name, band, braking in (("broadband", BROAD, BRAKING), ("resonance", NARROW, 0.0)):
         with run.step(name):
-            twists = simulated(round(seconds / STEP), band, braking)
-            rows += printed(page, name, twists) + fitted(page, name, twists)
+            twists = simulated(round(seconds / STEP), band, braking, known=known)
+            rows += printed(page, known, name, twists) + fitted(page, known, name, twists)
     page.section("Printed, ours, truth")
     page.table("Medians of all answers, and of those above zero, over the truth", rows)
     page.data("methods", rows)
-    elsewhere(page, rows)
-    shares_of_braking(page)
+    if known is KNOWN:
+        elsewhere(page, rows)
+        shares_of_braking(page)
     page.text(
         "Eq 1 writes T = I x'' + D x' + K x for the twist x. The torque in a shaft is K x + D x', "
         "with no inertia; I x'' belongs to the reduced torque J* (T_aero / J_r + T_gen / J_g), "
@@ -89,17 +97,19 @@ def run(run: Run, page: Page) -> None:
     )
     page.section("Measured")
     with run.step("measured"):
-        noisy = campaign(page, seconds)
+        noisy = campaign(page, known, seconds)
     page.table("Sensors with noise: first fit, and how often 95 % bands hold the truth", noisy)
     with run.step("stop"):
-        judge_stop(page)
+        judge_stop(page, known)
     for name, value, unit in (
-        ("J_r, J_g", f"{FRONT:g}, {REAR:g}", "kg m^2"),
-        ("K", STIFFNESS, "N m/rad"),
-        ("damping ratio", RATIO, ""),
+        ("J_r, J_g", f"{KNOWN.front:g}, {KNOWN.rear:g}", "kg m^2"),
+        ("K", KNOWN.stiffness, "N m/rad"),
+        ("damping ratio", KNOWN.ratio, ""),
     ):
-        page.assume(name, value, unit, "of the size of a 750 kW drivetrain; the report prints none")
-    answer(page, rows, noisy)
+        if known is KNOWN:
+            why = "of the size of a 750 kW drivetrain; the report prints none"
+            page.assume(name, value, unit, why)
+    answer(page, rows, noisy, title)
     page.say(
         "With pulses timed, noise and gain of the bridge a fit to lines of the spectra has "
         f"damping {noisy[0][OF[1]]:.3f} and stiffness {noisy[0][OF[2]]:.3f} of the truth; with "
@@ -109,7 +119,17 @@ def run(run: Run, page: Page) -> None:
     )
 
 
-def answer(page: Page, rows: list[Record], noisy: list[Record]) -> None:
+def refuse_record_alone(run: Run) -> None:
+    """Refuse settings of a record where no drivetrain of the user's own is named."""
+    for key in run.settings:
+        if key != SETTING:
+            raise InputError(
+                f"{key} = {run.settings[key]!r} is of a record of your own drivetrain: name it, as "
+                f"in {SETTING}=mine.yaml"
+            )
+
+
+def answer(page: Page, rows: list[Record], noisy: list[Record], title: str) -> None:
     """State what the printed methods give, beside fits that hold."""
     page.section("Damping by each method")
     shown = [row for row in rows if row[OF[1]] is not None]
@@ -159,33 +179,37 @@ def answer(page: Page, rows: list[Record], noisy: list[Record]) -> None:
         ],
         hero=BY_METHOD,
         cautions=[
-            "The drivetrain is simulated and known; inertia and stiffness are assumed, of the size "
-            "of a 750 kW machine.",
+            f"The record is simulated, of two inertias that stand for {title}."
+            if title
+            else "The drivetrain is simulated and known; inertia and stiffness are assumed, of the "
+            "size of a 750 kW machine.",
             "Least squares on the reduced torque have all three without an error, of exact "
             "samples; of sensors with noise fits of spectra are to be used.",
         ],
-        claim="holds" if right else "holds in part",
+        claim="" if title else "holds" if right else "holds in part",
     )
 
 
-def printed(page: Page, run: str, twists: dict[str, Twist]) -> list[Record]:
+def printed(page: Page, known: Known, run: str, twists: dict[str, Twist]) -> list[Record]:
     """Eq 4, Eq 5 and methods A to C as printed."""
     shaft = twists["shaft"]
     stiffness = float(np.median(stiffness_by_ranges(shaft)))
     ratio = float(np.median(ratio_by_ranges(shaft)))
     rows = [
-        line(run, "Eq 4, ranges", "shaft", [None, None, stiffness / STIFFNESS], None, None),
+        line(run, "Eq 4, ranges", "shaft", [None, None, stiffness / known.stiffness], None, None),
         line(run, "Eq 5, ranges", "shaft", [None, None, None], None, f"I / D = {ratio:.4f} s"),
     ]
     for name, twist in twists.items():
         for method, found in (
             ("A, time", method_a(twist, stiffness, ratio)),
-            ("B, differential", method_b(twist, TURN)),
-            ("C, constant", method_c(twist, TURN, stiffness)),
+            ("B, differential", method_b(twist, known.turn)),
+            ("C, constant", method_c(twist, known.turn, stiffness)),
         ):
-            rows.append(median_line(run, method, name, found))
+            rows.append(median_line(known, run, method, name, found))
     if run == "resonance":
-        check_resonance(page, stiffness, ratio, rows)
+        check_resonance(page, known, stiffness, ratio, rows)
+    if known is not KNOWN:
+        return rows
     near = [row for row in rows[2:] if abs(row[OF[0]] - 1.0) < 0.2 and abs(row[OF[1]] - 1.0) < 0.2]
     page.holds(
         f"{run}: no printed method has inertia and damping within 20 % of the truth",
@@ -196,12 +220,14 @@ def printed(page: Page, run: str, twists: dict[str, Twist]) -> list[Record]:
     return rows
 
 
-def check_resonance(page: Page, stiffness: float, ratio: float, rows: list[Record]) -> None:
+def check_resonance(
+    page: Page, known: Known, stiffness: float, ratio: float, rows: list[Record]
+) -> None:
     """What printed equations have to give at one frequency."""
     page.equals(
         "resonance, Eq 4: stiffness [N m/rad]",
         stiffness,
-        float(np.hypot(STIFFNESS, DAMPING * OMEGA)),
+        float(np.hypot(known.stiffness, known.damping * known.omega)),
         within=1e-3,
         why="the frequency in a window is within 6 % of the natural one, and damping adds 0.2 %",
         source="a sine at w: sqrt(K^2 + (w D)^2)",
@@ -210,10 +236,10 @@ def check_resonance(page: Page, stiffness: float, ratio: float, rows: list[Recor
     page.equals(
         "resonance, Eq 5: inertia over damping [s]",
         ratio,
-        1.0 / OMEGA,
+        1.0 / known.omega,
         within=0.02,
         why="the band is 6 % wide to either side",
-        source=f"1 / w of one frequency, where the truth is {REDUCED / DAMPING:.3f} s",
+        source=f"1 / w of one frequency, where the truth is {known.reduced / known.damping:.3f} s",
         measure="identity",
     )
     for torque, damping, expected, source in (
@@ -221,7 +247,7 @@ def check_resonance(page: Page, stiffness: float, ratio: float, rows: list[Recor
         (
             "reduced",
             rows[5][OF[1]],
-            0.5 * (1.0 + REDUCED * OMEGA / DAMPING),
+            0.5 * (1.0 + 0.5 / known.ratio),
             "(D + J* w) / 2, by the same median",
         ),
     ):
@@ -236,13 +262,15 @@ def check_resonance(page: Page, stiffness: float, ratio: float, rows: list[Recor
         )
 
 
-def median_line(run: str, method: str, torque: str, found: Solutions) -> Record:
+def median_line(known: Known, run: str, method: str, torque: str, found: Solutions) -> Record:
     """Medians over the truth."""
     inertia, damping = found.medians()
     kept = found.medians(plausible=True)
     share = float(found.plausible.mean())
-    words = f"{kept[0] / REDUCED:.2g}, {kept[1] / DAMPING:.2g}" if share else "none"
-    return line(run, method, torque, [inertia / REDUCED, damping / DAMPING, None], share, words)
+    words = f"{kept[0] / known.reduced:.2g}, {kept[1] / known.damping:.2g}" if share else "none"
+    return line(
+        run, method, torque, [inertia / known.reduced, damping / known.damping, None], share, words
+    )
 
 
 def line(
@@ -264,135 +292,14 @@ def line(
     }
 
 
-def elsewhere(page: Page, rows: list[Record]) -> None:
-    """A run of the same drivetrain under other random torques, beside this one."""
-    ours = partial(spread_of, rows)
-    shares = [row["share above zero"] for row in rows if row["method"][0] in "BC"]
-    aerodynamic = [ours(key, "l", torque="aerodynamic", run="broadband") for key in OF]
-    page.table(
-        "Over the truth: an independent run of 570 s with other random torques, and this one",
-        [
-            ("Eq 4: stiffness", "1.0013, 1.0018", ours(OF[2], "E")),
-            (
-                f"Eq 5: I / D [s]; 1 / w is {1.0 / OMEGA:.4f}, the truth {REDUCED / DAMPING:.3f}",
-                "0.0641, 0.0621",
-                ", ".join(
-                    row["of these"].split()[-2] for row in rows if row["method"][:4] == "Eq 5"
-                ),
-            ),
-            ("A on the shaft's torque: inertia", "0.03", ours(OF[0], "A", torque="shaft")),
-            ("A on the shaft's torque: damping", "0.50", ours(OF[1], "A", torque="shaft")),
-            ("A on the reduced torque: inertia", "0.53", ours(OF[0], "A", torque="reduced")),
-            ("A on the reduced torque: damping", "8.7 to 8.9", ours(OF[1], "A", torque="reduced")),
-            ("B, C: inertia", "-1.1 to 4.4", ours(OF[0], "B", "C")),
-            ("B, C: damping", "-54 to 33", ours(OF[1], "B", "C")),
-            ("B, C: share above zero", "0 to 0.41", f"{min(shares):.2g} to {max(shares):.2g}"),
-            (
-                "least squares, aerodynamic torque, broadband: I, D, K",
-                "2.2, 5.2, 2.2",
-                ", ".join(aerodynamic),
-            ),
-            (
-                "least squares, aerodynamic torque, resonance: I, D, K",
-                "7.3 each",
-                ours(OF[0], "l", torque="aerodynamic", run="resonance"),
-            ),
-        ],
-        ["quantity", "independent run", "this run"],
-    )
-    check_aerodynamic(page, float(aerodynamic[0]))
-    page.text(
-        "Methods A to C are those of Eq 6 to 13, and medians of B and C are medians of noise, so "
-        "that two runs agree in their size only."
-    )
-
-
-def spread_of(rows: list[Record], key: str, *method: str, torque: str = "", run: str = "") -> str:
-    """One value, or the least and the largest, of methods by their first letter."""
-    values = [
-        float(row[key])
-        for row in rows
-        if row["method"][0] in method
-        and row[key] is not None
-        and torque in ("", row["torque"])
-        and run in ("", row["run"])
-    ]
-    digits = 5 if method == ("E",) else 3
-    low, high = (f"{v:.{digits}g}" for v in (min(values), max(values)))
-    return low if low == high else f"{low} to {high}"
-
-
-def check_aerodynamic(page: Page, inertia: float) -> None:
-    """Least squares on a torque that is not the reduced one."""
-    ratio = BRAKING * FRONT / (DRIVING * REAR)
-    page.equals(
-        "broadband, least squares on the aerodynamic torque: inertia over the truth",
-        inertia,
-        FRONT / REDUCED / (1.0 + ratio**2),
-        within=0.1,
-        relative=False,
-        why="two random torques of 20 Hz have by chance a correlation of 1 / sqrt(7600) in 190 s; "
-        f"three times that, times s_g J_r / (s_a J_g) = {ratio:.1f}",
-        source="regression on the reduced torque: J_r / J* / (1 + (s_g J_r / (s_a J_g))^2)",
-        measure="identity",
-    )
-
-
-def shares_of_braking(page: Page) -> None:
-    """Least squares on the aerodynamic torque, by how the generator's torque varies besides."""
-    needed = float(np.sqrt(FRONT / REDUCED / 2.2 - 1.0)) * REAR / FRONT
-    runs = [(share, 20.0, 20.0) for share in (0.0, 0.1, needed, BRAKING / DRIVING, 1.0)]
-    runs += [(needed, rotor, other) for rotor, other in ((3.0, 3.0), (3.0, 20.0), (20.0, 3.0))]
-    rows: list[Record] = []
-    for share, rotor, other in runs:
-        bands = (BROAD[0], rotor), (BROAD[0], other)
-        twists = simulated(round(570.0 / STEP), bands[0], share * DRIVING, bands[1])
-        found = least_squares(twists["aerodynamic"]).values / TRUTH
-        rows.append(
-            {
-                "s_g / s_a": share,
-                "rotor's torque up to [Hz]": rotor,
-                "generator's up to [Hz]": other,
-                "regression, equal bands": FRONT / REDUCED / (1.0 + (share * FRONT / REAR) ** 2),
-                **dict(zip(OF, map(float, found), strict=True)),
-                "Eq 5: I / D [s]": float(np.median(ratio_by_ranges(twists["shaft"]))),
-            }
-        )
-    page.table("Least squares on the aerodynamic torque in 570 s, by the generator's torque", rows)
-    page.data("braking", rows)
-    at = rows[2]
-    page.equals(
-        "generator's torque that makes inertia 2.2 times the truth: stiffness over the truth",
-        float(at[OF[2]]),
-        float(at["regression, equal bands"]),
-        within=0.1,
-        relative=False,
-        why="two random torques of 20 Hz have by chance a correlation of 1 / sqrt(22800) in 570 s; "
-        f"three times that, times s_g J_r / (s_a J_g) = {needed * FRONT / REAR:.1f} and 2.2, is "
-        "0.07",
-        source="regression on the reduced torque: J_r / J* / (1 + (s_g J_r / (s_a J_g))^2)",
-        measure="identity",
-    )
-    damping = [float(row[OF[1]]) for row in rows if row["s_g / s_a"] == needed]
-    page.text(
-        "The independent run has 2.2, 5.2 and 2.2 for inertia, damping and stiffness, and states "
-        "neither its generator's torque nor the bands of both. Inertia and stiffness follow from "
-        f"s_g / s_a alone: 2.2 of both is {needed:.3f}. Damping follows from the spectra near the "
-        f"resonance: {at[OF[1]]:.2f} with equal bands, {min(damping):.2g} to {max(damping):.2g} "
-        "with bands of 3 and 20 Hz. 5.2 is within that range, towards a generator's torque of a "
-        "wider band than the rotor's; which bands were used is not known, so that it is not "
-        "reproduced. The 0.0641 s of its Eq 5 ask for narrow bands, too."
-    )
-
-
-def fitted(page: Page, run: str, twists: dict[str, Twist]) -> list[Record]:
+def fitted(page: Page, known: Known, run: str, twists: dict[str, Twist]) -> list[Record]:
     """Least squares of all samples, for each torque."""
     rows = []
     expected = {"shaft": [0.0, 1.0, 1.0], "reduced": [1.0, 1.0, 1.0]}
     if run == "resonance":
-        expected["aerodynamic"] = [FRONT / REDUCED] * 3
+        expected["aerodynamic"] = [known.front / known.reduced] * 3
     for name, twist in twists.items():
-        found = least_squares(twist).values / TRUTH
+        found = least_squares(twist).values / known.truth
         rows.append(line(run, "least squares", name, [float(v) for v in found], None, None))
         for key, value, wanted in zip(OF, found, expected.get(name, ()), strict=False):
             page.equals(
@@ -413,25 +320,25 @@ def recorded(signal: Floats) -> Floats:
     return signal[::5][MARGIN:-MARGIN]
 
 
-def campaign(page: Page, seconds: float) -> list[Record]:
+def campaign(page: Page, known: Known, seconds: float) -> list[Record]:
     """Strain gauges scaled by power, pulses timed or counted; fits with bands."""
-    fine = 0.001
-    samples = round(seconds / fine)
-    driving = band_torque(samples, fine, BROAD, 400.0, 1)
-    load = band_torque(samples, fine, BROAD, 160.0, 2)
-    motions = periodic_motions(SYSTEM, np.stack([driving, -load]), fine)
-    turned = [motions.angle[0] + SPEED * motions.time, motions.angle[1] + SPEED * motions.time]
+    fine, size, gauge = 0.001 * known.slower, known.stronger, known.gauge
+    samples, band = round(seconds / 0.001), (BROAD[0] / known.slower, BROAD[1] / known.slower)
+    driving = band_torque(samples, fine, band, 400.0 * size, 1)
+    load = band_torque(samples, fine, band, 160.0 * size, 2)
+    motions = periodic_motions(known.system, np.stack([driving, -load]), fine)
+    turned = [angle + known.speed * motions.time for angle in motions.angle]
     exact = recorded(turned[0] - turned[1])
     # scaling by the mean turns an offset into an error of gain
-    left = 1.0 / (1.0 + GAUGE.offset / (GAUGE.gain * MEAN))
-    bridges = [gauged(motions, seed) for seed in range(2 * REPEATS)]
+    left = 1.0 / (1.0 + gauge.offset / (gauge.gain * known.torque))
+    bridges = [gauged(known, motions, seed) for seed in range(2 * REPEATS)]
     rows = [
         {
             "twist": name,
             "error of the twist, rms [mrad]": 1e3 * float((twist - exact).std()),
-            **identified(twist, bridges, left),
+            **identified(known, twist, bridges, left),
         }
-        for name, twist in encoded(motions.time, turned).items()
+        for name, twist in encoded(known, motions.time, turned).items()
     ]
     page.between(
         f"pulses timed: share of 95 % bands that hold the truth, {3 * REPEATS} of them",
@@ -444,46 +351,48 @@ def campaign(page: Page, seconds: float) -> list[Record]:
         basis="self-consistency",
     )
     page.text(
-        f"Bridge: gain {GAUGE.gain:g}, offset {GAUGE.offset:g} N m, noise {GAUGE.noise:g} N m, "
+        f"Bridge: gain {gauge.gain:g}, offset {gauge.offset:.4g} N m, noise {gauge.noise:.4g} N m, "
         f"scaled so that its mean is that of the electrical power and losses; a second bridge is "
         f"the instrument. Of the offset an error of gain of {left - 1:.2%} stays, which no band "
         "shows. Encoders of "
         f"{ENCODERS[0]} and {ENCODERS[1]} pulses a turn, by a clock of 32 MHz or by counting: a "
-        f"pulse is {360 * GEAR / ENCODERS[0]:.1f} and {360 / ENCODERS[1]:.1f} deg of the "
+        f"pulse is {360 * known.gear / ENCODERS[0]:.1f} and {360 / ENCODERS[1]:.1f} deg of the "
         "high-speed shaft. Repeats differ in the noise of the bridges alone."
     )
     return rows
 
 
-def gauged(motions: Motions, seed: int) -> Floats:
+def gauged(known: Known, motions: Motions, seed: int) -> Floats:
     """Torque as recorded by a strain gauge, scaled to electrical power."""
-    record = measured(GAUGE, element_torques(SYSTEM, motions)[0] + MEAN, seed)
-    power = np.full(len(record), 0.95 * MEAN * SPEED)
-    return recorded(record * scaled_to_power(record, motions.speed[1] + SPEED, power, 0.95))
+    torque = element_torques(known.system, motions)[0] + known.torque
+    record = measured(known.gauge, torque, seed)
+    power = np.full(len(record), 0.95 * known.torque * known.speed)
+    return recorded(record * scaled_to_power(record, motions.speed[1] + known.speed, power, 0.95))
 
 
-def encoded(time: Floats, turned: list[Floats]) -> dict[str, Floats]:
+def encoded(known: Known, time: Floats, turned: list[Floats]) -> dict[str, Floats]:
     """The twist by encoders at both ends, whose pulses are timed or counted."""
     timed, counted = [], []
-    for angle, pulses, at in zip(turned, ENCODERS, (1.0 / GEAR, 1.0), strict=True):
+    for angle, pulses, at in zip(turned, ENCODERS, (1.0 / known.gear, 1.0), strict=True):
         timed.append(timed_angle(time, angle * at, pulses, recorded(time)) / at)
         counted.append(recorded(counted_angle(angle * at, pulses)) / at)
     return {"pulses timed": timed[0] - timed[1], "pulses counted": counted[0] - counted[1]}
 
 
-def identified(twist: Floats, bridges: list[Floats], left: float) -> Record:
+def identified(known: Known, twist: Floats, bridges: list[Floats], left: float) -> Record:
     """Fits of spectra by pairs of bridges, and least squares of samples by the first."""
     pairs = list(zip(bridges[::2], bridges[1::2], strict=True))
-    fits = [spectral_fit(one, twist, STEP, USED, other) for one, other in pairs]
-    wanted = np.array([0.0, DAMPING, STIFFNESS]) * left
-    rate = np.gradient(twist, STEP)
-    naive = least_squares(Twist(STEP, bridges[0], twist, rate, np.gradient(rate, STEP))).values
+    step, used = STEP * known.slower, (USED[0] / known.slower, USED[1] / known.slower)
+    fits = [spectral_fit(one, twist, step, used, other) for one, other in pairs]
+    wanted = np.array([0.0, known.damping, known.stiffness]) * left
+    rate = np.gradient(twist, step)
+    naive = least_squares(Twist(step, bridges[0], twist, rate, np.gradient(rate, step))).values
     return {
-        OF[1]: float(fits[0].values[1] / DAMPING),
-        "its band": float(fits[0].bands[1] / DAMPING),
-        OF[2]: float(fits[0].values[2] / STIFFNESS),
-        "band of that": float(fits[0].bands[2] / STIFFNESS),
+        OF[1]: float(fits[0].values[1] / known.damping),
+        "its band": float(fits[0].bands[1] / known.damping),
+        OF[2]: float(fits[0].values[2] / known.stiffness),
+        "band of that": float(fits[0].bands[2] / known.stiffness),
         "bands that hold": float(np.mean([np.abs(f.values - wanted) < f.bands for f in fits])),
-        "least squares: damping / truth": float(naive[1] / DAMPING),
-        "least squares: stiffness / truth": float(naive[2] / STIFFNESS),
+        "least squares: damping / truth": float(naive[1] / known.damping),
+        "least squares: stiffness / truth": float(naive[2] / known.stiffness),
     }

@@ -5,6 +5,7 @@ import json
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.procedure.own_three_points import own_three_points
 from fe_drivetrain.common import FORCES, Floats
 from fe_drivetrain.comparison import ConvergenceInTime, InTime, converge_in_time, peak_between
 from fe_drivetrain.drivetrain_file import Scene, library_scene
@@ -26,6 +27,7 @@ from fe_drivetrain.procedure import (
 from fe_drivetrain.report import trace
 from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
+from fe_drivetrain.report.suite.chosen import SETTING
 from fe_drivetrain.shafts.fidelity import shaft_level
 from fe_drivetrain.turbine_loads.hub_loads import Condition, hub_loads
 
@@ -50,14 +52,25 @@ SECONDS_BETWEEN = 30.0  # of the history in which the motion is resolved between
 @case(
     "Loads, displacements and accelerations at all interfaces: statics, finite elements, dynamics",
     source="PROTEST 2010, ECN-E--10-100, Table 4.5; three-point suspension of 1.5 MW",
+    settings={
+        "drivetrain": "FILE, or a name of the library (otherwise three_point_suspension)",
+        "arms": "NUMBER (m, between the torque arms of your own, otherwise in proportion)",
+        "generator_mass": "NUMBER (kg, where the generator of your own only turns in its file)",
+    },
 )
 def run(run: Run, page: Page) -> None:
     """One history of hub loads through three models; each in equilibrium in every row."""
-    scene = library_scene(SCENE)
-    page.about(scene)
-    places, mounts = drivetrain(scene)
     made = hub_loads(Condition(16.0, "medium", 0.2, 1), duration=30.0 if run.quick else 600.0)
-    time, hub = made.time, made.loads
+    time, hub, speed = made.time, made.loads, SPEED
+    own = SETTING in run.settings
+    if own:
+        of = own_three_points(run, page, float(hub[:, 3].mean()))
+        scene, places, mounts, speed = of.scene, of.places, of.mounts, of.speed
+        hub = hub * of.hub_scale
+    else:
+        scene = library_scene(SCENE)
+        page.about(scene)
+        places, mounts = drivetrain(scene)
     with run.step("dynamics"):
         moving = moving_three_points(places, mounts, time, hub)
         without = moving_three_points(places, mounts, time, hub, weight=False)
@@ -67,18 +80,22 @@ def run(run: Run, page: Page) -> None:
     # of hub loads alone: the weights are those of the first row without any load
     rest = three_point_loads(places, time[:1], np.zeros((1, 6)))
     check_equilibrium(page, {"dynamics": moving, "finite elements": elements, "statics": static})
-    check_gearing(page, moving)
-    check_vertical_forces(page, hub, static, elements, rest)
+    check_gearing(page, moving, places.ratio)
+    bearing = scene.bearing_units[0]
+    if bearing.interface == "sliding" and not scene.gearbox.stiffness[4]:
+        check_vertical_forces(page, hub, static, elements, rest)
     worst = beside(page, hub, static, elements, without, rest)
     motions(page, moving, elements)
     with run.step("between samples"):
-        peaks = between_samples(page, places, mounts, time, hub)
-    answer(page, worst, peaks)
+        peaks = between_samples(page, places, mounts, time, hub, 128.0 if own else 32.0)
+    answer(page, worst, peaks, own)
     for table, name in ((moving, "interfaces"), (elements, "interfaces_elements")):
         write_load_csv(table, run.folder / f"{name}.csv")
         write_load_json(table, run.folder / f"{name}.json")
-    published_table(run, page, moving)
+    published_table(run, page, moving, places.ratio, speed)
     show_all(page, moving)
+    if own:
+        return
     for name, mass in MASSES.items():
         page.assume(f"mass of the {name}", mass, "kg", "of such machines, round")
     page.assume("ratio", RATIO, "", "of such machines, round")
@@ -86,7 +103,7 @@ def run(run: Run, page: Page) -> None:
     page.assume("stiffness, inertia", "see the case", "", "all but the arms, which are the scene's")
 
 
-def answer(page: Page, worst: Record, peaks: ConvergenceInTime) -> None:
+def answer(page: Page, worst: Record, peaks: ConvergenceInTime, own: bool) -> None:
     """State where inertia matters most, and peaks at the interfaces."""
     component, _, unit = str(worst["component"]).partition(" ")
     unit = unit.strip("[]")
@@ -115,7 +132,10 @@ def answer(page: Page, worst: Record, peaks: ConvergenceInTime) -> None:
         ][:6],
         hero=IN_TIME,
         cautions=[
-            "Masses, stiffnesses and inertias but those of the arms are assumed, of such machines.",
+            "What the file does not state is that of a machine of 1.5 MW, in proportion."
+            if own
+            else "Masses, stiffnesses and inertias but those of the arms are assumed, of such "
+            "machines.",
             "Peaks are those of the history's first "
             f"{SECONDS_BETWEEN:g} s, resolved between samples.",
         ],
@@ -134,13 +154,13 @@ def check_equilibrium(page: Page, tables: dict[str, LoadTable]) -> None:
         )
 
 
-def check_gearing(page: Page, moving: LoadTable) -> None:
+def check_gearing(page: Page, moving: LoadTable, ratio: float) -> None:
     """Torques of both sides of the gearbox have its ratio."""
     entrance = moving.interface("gearbox entrance").loads[:, 3]
     output = moving.interface("high-speed shaft").loads[:, 3]
     page.vanishes(
         "dynamics: torque of the entrance and ratio times that of the high-speed shaft, difference",
-        float(np.abs(entrance + RATIO * output).max() / np.abs(entrance).max()),
+        float(np.abs(entrance + ratio * output).max() / np.abs(entrance).max()),
         within=1e-12,
         why="rounding: both come of one spring",
         source="gearing, without losses",
@@ -189,7 +209,12 @@ def show_all(page: Page, moving: LoadTable) -> None:
 
 
 def between_samples(
-    page: Page, places: ThreePoints, mounts: Mounts, time: Floats, hub: Floats
+    page: Page,
+    places: ThreePoints,
+    mounts: Mounts,
+    time: Floats,
+    hub: Floats,
+    steps: float,
 ) -> ConvergenceInTime:
     """Energy of the dynamics, and peaks that fall between samples of the loads."""
     sample = float(time[1] - time[0])
@@ -201,7 +226,7 @@ def between_samples(
         lost = moving_energy_error(places, mounts, fine, loads)
         return InTime(peaks_of(moving_three_points(places, mounts, fine, loads)), lost)
 
-    found = converge_in_time(run, sample / 32.0)
+    found = converge_in_time(run, sample / steps)
     at_samples = run(sample, 0).values
     page.section("Between samples")
     check_in_time(
@@ -245,10 +270,10 @@ def peaks_of(moving: LoadTable) -> dict[str, float]:
     }
 
 
-def published_table(run: Run, page: Page, moving: LoadTable) -> None:
+def published_table(run: Run, page: Page, moving: LoadTable, ratio: float, speed: float) -> None:
     """Table 4.5 of the report, filled from the dynamics."""
     step = float(moving.time[1] - moving.time[0])
-    rows = filled_table(listed_quantities().of("4.5"), channels_of(moving), step)
+    rows = filled_table(listed_quantities().of("4.5"), channels_of(moving, ratio, speed), step)
     page.section("Table 4.5")
     shown: list[Record] = [
         {key: value for key, value in row.items() if key not in HIDDEN}
@@ -274,7 +299,7 @@ def published_table(run: Run, page: Page, moving: LoadTable) -> None:
     )
 
 
-def channels_of(moving: LoadTable) -> dict[str, Floats]:
+def channels_of(moving: LoadTable, ratio: float, speed: float) -> dict[str, Floats]:
     """Channels of Table 4.5 that a drivetrain in motion has."""
     step = float(moving.time[1] - moving.time[0])
 
@@ -288,13 +313,13 @@ def channels_of(moving: LoadTable) -> dict[str, Floats]:
     names = ("axial force", "shear force y", "shear force z", "torque", "bending y", "bending z")
     found = {f"main shaft {n}": entrance[:, c] for c, n in enumerate(names)}
     found["high-speed shaft torque"] = moving.interface("high-speed shaft").loads[:, 3]
-    for shaft, at, ratio in (
+    for shaft, at, by in (
         ("main shaft", "main bearing", 1.0),
-        ("high-speed shaft", "generator supports", RATIO),
+        ("high-speed shaft", "generator supports", ratio),
     ):
         u, _ = moved(at)
-        found[f"{shaft} angle"] = ratio * SPEED * moving.time + u[:, 3]
-        found[f"{shaft} speed"] = ratio * SPEED + np.gradient(u[:, 3], step)
+        found[f"{shaft} angle"] = by * speed * moving.time + u[:, 3]
+        found[f"{shaft} speed"] = by * speed + np.gradient(u[:, 3], step)
         found[f"{shaft} axial displacement"] = u[:, 0]
     for side in ("left", "right"):
         u, _ = moved(f"{side} arm")

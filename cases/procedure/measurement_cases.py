@@ -1,11 +1,12 @@
 """A campaign by hand: every measurement case as a script, run, measured, and what each tells."""
 
+import re
 from collections.abc import Sequence
 
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.procedure.known_drivetrain import FRONT, GAUGE, MEAN, REAR, SYSTEM
+from fe_drivetrain.cases.procedure.known_drivetrain import KNOWN, STEP, Known, known_of
 from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import InTime, converge_in_time, peak_between
 from fe_drivetrain.dynamics import energy_error, torsional_equations, varying
@@ -22,30 +23,43 @@ from fe_drivetrain.procedure import (
 from fe_drivetrain.report import chart, mark_events, trace
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
+from fe_drivetrain.report.suite.chosen import SETTING
 
-STEP = 0.005  # s
 FREE = {"STB": (11.05, 13.95), "STD": (12.2, 13.95)}  # s, from the loss of torque to the braking
 SHOWN = ("NTA", "STB", "STD")
 TORQUE = "Torque of the shaft, high-speed side, while torque is lost and brakes act"
-CLEAN, NOISY = "by the twist", "by the twist with noise of 0.1 mrad, three peaks"
+CLEAN, NOISY = "by the twist", "by the twist with noise, three peaks"
+NOISE = 1e-4 * KNOWN.stiffness / KNOWN.torque
+"""Of the measured twist, over that under rated torque: 0.1 mrad by the case's own drivetrain."""
+RATED_SPEED = 1510 * np.pi / 30.0
+"""Of the generator in the scripts [rad/s]."""
 
 
 @case(
     "A campaign by hand: eleven measurement cases, run and measured",
     source="PROTEST 2010, ECN-E--10-100, section 4.6.2.5, Table 4.9",
+    settings={
+        "drivetrain": "FILE, or a name of the library (otherwise the case's own, of two inertias)"
+    },
 )
 def run(run: Run, page: Page) -> None:
     """Run each script on a known drivetrain, measure it, and identify damping from the stops."""
-    cases = protest_measurement_cases()
-    mode = damped_modes(SYSTEM)
+    known, cases = KNOWN, protest_measurement_cases()
+    if SETTING in run.settings:
+        chosen = run.drivetrain("")
+        chosen.state(page)
+        known = known_of(page, chosen)
+        cases = cases.model_copy(update={"cases": tuple(fitted(c, known) for c in cases.cases)})
+    mode = damped_modes(known.system)
+    step = min(1.0, known.slower) * STEP
     with run.step("cases"):
-        found = {of.code: case_channels(of, SYSTEM, MEAN, STEP) for of in cases.cases}
+        found = {of.code: case_channels(of, known.system, known.torque, step) for of in cases.cases}
     with run.step("over the step"):
-        check_steps(page, cases.cases)
+        check_steps(page, known, cases.cases, step)
     rows = []
     for of in cases.cases:
-        rows.append(torques_of(of, found[of.code]))
-        momentum(page, of, found[of.code])
+        rows.append(torques_of(known, of, found[of.code]))
+        momentum(page, known, of, found[of.code])
     page.section("Cases")
     page.table("Each case by its script; torque of the shaft, and as a strain gauge has it", rows)
     torque = chart(
@@ -64,30 +78,43 @@ def run(run: Run, page: Page) -> None:
     events = {f"{code}: torque is lost": first for code, (first, _) in FREE.items()}
     page.add(mark_events(torque, events | {"braking": FREE["STB"][1]}))
     page.data("cases", rows)
-    damping = stops(page, found, float(mode.ratios[0]))
+    damping = stops(page, known, found, float(mode.ratios[0]))
     least, good = sampling_rates(float(mode.frequencies[0]))
     page.text(
         f"The drivetrain's mode at {float(mode.frequencies[0]):.2f} Hz asks for {least:.1f} to "
-        f"{good:.1f} samples a second, and is recorded with {1.0 / STEP:g}. A user's own scripts "
+        f"{good:.1f} samples a second, and is recorded with {1.0 / step:.4g}. A user's own scripts "
         "are read likewise (read_measurement_cases)."
     )
-    answer(page, rows, damping)
-    page.assume("rated torque, high-speed side", MEAN, "N m", "the report prints none")
+    answer(page, known, rows, damping)
+    if known is KNOWN:
+        page.assume("rated torque, high-speed side", KNOWN.torque, "N m", "the report prints none")
 
 
-def answer(page: Page, rows: list[Record], damping: list[Record]) -> None:
+def fitted(case: MeasurementCase, known: Known) -> MeasurementCase:
+    """A script at the speeds of another drivetrain, without the speeds in its words."""
+    share = known.speed / RATED_SPEED
+    return case.model_copy(
+        update={
+            "title": re.sub(r" (at|from) [\d to]+rpm", "", case.title),
+            "corners": tuple((time, share * rpm, torque) for time, rpm, torque in case.corners),
+        }
+    )
+
+
+def answer(page: Page, known: Known, rows: list[Record], damping: list[Record]) -> None:
     """State which case loads and reverses the shaft most, and the damping that stops give."""
+    rated = known.torque
     largest = max(rows, key=lambda row: float(row["largest [N m]"]))
     reversed_by = min(rows, key=lambda row: float(row["shaft torque, least [N m]"]))
     most, least = float(largest["largest [N m]"]), float(reversed_by["shaft torque, least [N m]"])
     turned = "reversed" if largest is reversed_by else f"{reversed_by['case']} reverses it"
     page.answer(
         "Which measurement case loads the shaft most, and what do stops tell of damping?",
-        f"{str(largest['what']).capitalize()} loads the shaft most: {most / MEAN:.2f} times rated "
-        f"torque, {turned} to {formatted(least / MEAN, 2)} times.",
+        f"{str(largest['what']).capitalize()} loads the shaft most: {most / rated:.2f} times rated "
+        f"torque, {turned} to {formatted(least / rated, 2)} times.",
         [
-            page.value("largest torque of the shaft [N m]", most, beside=MEAN, by="rated"),
-            page.value("least torque of the shaft [N m]", least, beside=MEAN, by="rated"),
+            page.value("largest torque of the shaft [N m]", most, beside=rated, by="rated"),
+            page.value("least torque of the shaft [N m]", least, beside=rated, by="rated"),
             *(
                 page.value(
                     f"damping ratio after {row['case']}, {name} [%]",
@@ -96,7 +123,10 @@ def answer(page: Page, rows: list[Record], damping: list[Record]) -> None:
                     by="truth",
                 )
                 for row in damping
-                for name, key in (("exact twist", CLEAN), ("noise of 0.1 mrad", NOISY))
+                for name, key in (
+                    ("exact twist", CLEAN),
+                    (f"noise of {1e3 * noise_of(known):.2g} mrad", NOISY),
+                )
             ),
         ],
         hero=TORQUE,
@@ -106,10 +136,15 @@ def answer(page: Page, rows: list[Record], damping: list[Record]) -> None:
     )
 
 
-def check_steps(page: Page, cases: Sequence[MeasurementCase]) -> None:
+def noise_of(known: Known) -> float:
+    """Noise of the measured twist [rad]."""
+    return NOISE * known.torque / known.stiffness
+
+
+def check_steps(page: Page, known: Known, cases: Sequence[MeasurementCase], step: float) -> None:
     """Energy and convergence of all scripts."""
     page.section("In time")
-    series = converge_in_time(lambda dt, _: extremes_of_torque(cases, dt), STEP)
+    series = converge_in_time(lambda dt, _: extremes_of_torque(known, cases, dt), step)
     check_in_time(
         page,
         "scripts",
@@ -117,13 +152,13 @@ def check_steps(page: Page, cases: Sequence[MeasurementCase]) -> None:
         dict.fromkeys(series.finest.values, 0.05),
         energy=1e-2,
         why="integrals over the corners of the scripts, which samples round off",
-        scale=dict.fromkeys(series.finest.values, MEAN),
+        scale=dict.fromkeys(series.finest.values, known.torque),
     )
 
 
-def torques_of(of: MeasurementCase, channels: dict[str, Floats]) -> Record:
+def torques_of(known: Known, of: MeasurementCase, channels: dict[str, Floats]) -> Record:
     """Ends of the shaft's torque in one case, and as a strain gauge has it."""
-    torque = measured(GAUGE, channels["shaft torque"], 1)
+    torque = measured(known.gauge, channels["shaft torque"], 1)
     return {
         "case": of.code,
         "what": of.title,
@@ -136,12 +171,12 @@ def torques_of(of: MeasurementCase, channels: dict[str, Floats]) -> Record:
     }
 
 
-def extremes_of_torque(cases: Sequence[MeasurementCase], step: float) -> InTime:
+def extremes_of_torque(known: Known, cases: Sequence[MeasurementCase], step: float) -> InTime:
     """Ends of the shaft's torque in each case, and the worst error of the energy."""
     values, lost = {}, 0.0
-    equations = torsional_equations(SYSTEM)
+    equations = torsional_equations(known.system)
     for of in cases:
-        found = case_channels(of, SYSTEM, MEAN, step)
+        found = case_channels(of, known.system, known.torque, step)
         torque, time = found["shaft torque"], found["time"]
         values[f"{of.code}: largest torque of the shaft [N m]"] = peak_between(torque)
         values[f"{of.code}: least torque of the shaft [N m]"] = -peak_between(-torque)
@@ -153,10 +188,10 @@ def extremes_of_torque(cases: Sequence[MeasurementCase], step: float) -> InTime:
     return InTime(values, lost)
 
 
-def momentum(page: Page, of: MeasurementCase, channels: dict[str, Floats]) -> None:
+def momentum(page: Page, known: Known, of: MeasurementCase, channels: dict[str, Floats]) -> None:
     """The speed of all inertias together is that of the script."""
-    both = FRONT * channels["rotor speed"] + REAR * channels["generator speed"]
-    together = both / (FRONT + REAR)
+    both = known.front * channels["rotor speed"] + known.rear * channels["generator speed"]
+    together = both / (known.front + known.rear)
     script = of.speed(channels["time"])
     page.vanishes(
         f"{of.code}: mean speed of both inertias and speed of the script, largest difference "
@@ -169,21 +204,24 @@ def momentum(page: Page, of: MeasurementCase, channels: dict[str, Floats]) -> No
     )
 
 
-def stops(page: Page, found: dict[str, dict[str, Floats]], ratio: float) -> list[Record]:
+def stops(
+    page: Page, known: Known, found: dict[str, dict[str, Floats]], ratio: float
+) -> list[Record]:
     """Damping from the decay of the twist after the torque is lost, true and measured."""
     rows: list[Record] = []
     for code, (first, last) in FREE.items():
         channels = found[code]
         part = (channels["time"] > first) & (channels["time"] < last)
-        exact = logarithmic_decrement(channels["twist"][part], STEP, 6)
-        noisy = measured(Sensor(noise=1e-4), channels["twist"][part], 3)
-        twist = logarithmic_decrement(noisy, STEP, 3)
+        step = float(channels["time"][1])
+        exact = logarithmic_decrement(channels["twist"][part], step, 6)
+        noisy = measured(Sensor(noise=noise_of(known)), channels["twist"][part], 3)
+        twist = logarithmic_decrement(noisy, step, 3)
         page.equals(
             f"{code}: damping ratio from the decay of the twist",
             exact.ratio,
             ratio,
             within=0.01,
-            why="peaks at parabolas through samples of 5 ms, which are a 79th of a period",
+            why="peaks at parabolas through samples, which are at most a 79th of a period",
             source="eigenvalues of the drivetrain",
             measure="frequency",
             basis="self-consistency",
