@@ -52,10 +52,17 @@ class CouplingOffset:
     anisotropy: float = 0.0
 
     def __post_init__(self) -> None:
+        self.check_coupling()
+        if not (self.y or self.z or self.run_out):
+            raise InputError("y, z and run_out of the event are all 0 m: give an offset")
+
+    def check_coupling(self) -> None:
+        """Refuse values that are out of their range."""
         if not 0.0 < self.coupling <= 1e12:
             raise InputError(
                 f"coupling of the event is {self.coupling:g} N/m but must be above 0 N/m and at "
-                "most 1e12 N/m: give the radial stiffness of the coupling"
+                "most 1e12 N/m: give the radial stiffness of the coupling, or an offset of the "
+                "gearbox"
             )
         for name, high in (("y", 0.05), ("z", 0.05), ("run_out", 0.01), ("anisotropy", 0.45)):
             value = getattr(self, name)
@@ -65,8 +72,6 @@ class CouplingOffset:
                     f"{name} of the event is {value:g} but must be from {low:g} to {high:g}: "
                     "change it"
                 )
-        if not (self.y or self.z or self.run_out):
-            raise InputError("y, z and run_out of the event are all 0 m: give an offset")
 
     @property
     def size(self) -> float:
