@@ -19,7 +19,7 @@ import numpy as np
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.drivetrain_file.gear_stages import ParallelData, PlanetaryData
+from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.dynamics import Level
 from fe_drivetrain.export.formats.statement import comment_lines
 from fe_drivetrain.export.programs.ross_rotor import FROM_PROJECT
@@ -267,25 +267,23 @@ def _gear(turning: Turning, number: int, driven: bool) -> dict[str, float]:
     A carrier stands as a gear with the teeth of ring and sun, as its ratio to the sun has it.
     """
     stage = turning.machine.stages[number - 1]
-    teeth = stage.teeth
-    ratio = stage.speed_ratio
-    size = 0.5 if teeth is None and turning.options["level"] == "torsional" else None
+    torsional = turning.options["level"] == "torsional"
+    ratio, count = stage.speed_ratio, None
     if isinstance(stage, PlanetaryData):
-        radius = (stage.sun_radius if size is None else size) * (1.0 if driven else ratio)
-        count = None if teeth is None else teeth.sun if driven else teeth.ring + teeth.sun
+        radius = 1.0 if torsional else stage.sun_radius
+        if stage.teeth is not None:
+            count = stage.teeth.sun if driven else stage.teeth.ring + stage.teeth.sun
     else:
-        count = None if teeth is None else teeth.pinion if driven else teeth.gear
-        radius = _radius(stage, driven) if size is None else size * (1.0 if driven else ratio)
+        radius = 1.0 if torsional else stage.centre_distance - stage.gear_radius
+        if stage.teeth is not None:
+            count = stage.teeth.pinion if driven else stage.teeth.gear
+    radius *= 1.0 if driven else ratio
     return {
         "n_teeth": count or round(1000.0 * radius),
         "pitch_diameter": 2.0 * radius,
         "pr_angle": radians(stage.pressure_angle),
         "helix_angle": radians(stage.helix),
     }
-
-
-def _radius(stage: ParallelData, driven: bool) -> float:
-    return stage.centre_distance - stage.gear_radius if driven else stage.gear_radius
 
 
 def _bearings(line: Line) -> Iterator[str]:
