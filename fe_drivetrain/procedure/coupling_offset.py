@@ -78,7 +78,7 @@ class CouplingOffset:
         """Offset of the generator's axis [m]."""
         return float(np.hypot(self.y, self.z))
 
-    def springs(self, of: Running) -> SpringLaws:
+    def springs(self, of: Running, y: float = 0.0, z: float = 0.0) -> SpringLaws:
         """The coupling's springs in four directions, by the angle of the generator.
 
         Stiffnesses of two square pairs, k / 2 (1 + 2 a cos 2 (angle - direction)), add up to a
@@ -88,10 +88,13 @@ class CouplingOffset:
         ----------
         of : Running
             Machine at a level with all motions.
+        y, z : float
+            Where the generator stands beside its offset, as a gearbox that moved has it [m].
         """
         along, across = np.cos(_DIRECTIONS), np.sin(_DIRECTIONS)
+        beside = along * (self.y + y) + across * (self.z + z)
         rows = np.column_stack([along, across]) @ self._rows(of)
-        made = spring_laws(rows, 0.5 * self.coupling, offset=along * self.y + across * self.z)
+        made = spring_laws(rows, 0.5 * self.coupling, offset=beside)
         # two periods a turn: one for the stiffness, half of one for the run-out
         phase, angle = -_DIRECTIONS / np.pi, of.row("generator") / np.pi
         made = made.in_phase(phase, 0.0, np.tile(angle, (len(rows), 1)))

@@ -319,7 +319,7 @@ class Offset(GearboxOffset, CouplingOffset, Event):
     def plan(self, of: Running, duration: float, slip: float) -> Planned:
         """One phase with the coupling's springs; nothing is marked."""
         machine, pull = of.turning.line(slip)
-        laws = [self.springs(of)] if self.coupling else []
+        laws = [self.springs(of, *self.of_generator(of))] if self.coupling else []
         made = with_laws(self.moved(of, of.equations), machine, *laws)
         acting = [_steady_rotor(of), pull, *of.turning.loads()]
         start = _wound_up(made, acting, of.turning.velocity)

@@ -1,9 +1,9 @@
 """A gearbox whose housing stands beside the main shaft: shifted along and turned about each axis.
 
-All that the housing holds moves with it: its bearings and rings. Springs to them are then free at
-another place, by the motion of the housing where each of them is, so that the offset is a load of
-springs that are there anyway, in six degrees of freedom, and main bearings, shafts and the
-generator take what it needs to bend them.
+All that the housing holds moves with it: its bearings and rings. Seen from the housing, the ground
+of all others moves the other way: main bearings and the generator. Their springs are then free at
+another place, which stays where it is as carriers turn, so that the offset is a load of springs
+that are there anyway, in six degrees of freedom.
 """
 
 from __future__ import annotations
@@ -15,7 +15,9 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.scaling import scaled_solve
 from fe_drivetrain.common.spatial import wrench_transport
+from fe_drivetrain.dynamics.bodies.bodies import assemble
 from fe_drivetrain.dynamics.bodies.equations import Equations
 from fe_drivetrain.dynamics.bodies.levels import assembly
 from fe_drivetrain.dynamics.bodies.machine import Machine
@@ -72,54 +74,56 @@ class GearboxOffset:
         Raises
         ------
         InputError
-            A bearing of the gearbox is on a shaft without mass, or there is no gearbox.
+            There is no gearbox.
         """
         if not self.gearbox.any():
             return equations
         if not of.machine.stages:
             raise InputError(f"{of.machine.title!r} has no gearbox: leave its offset out")
-        free = elongations(of.machine, of, self.gearbox)
-        lost = [
-            name
-            for name, value in zip(of.system.spring_names, free.tolist(), strict=True)
-            if value and name in of.system.unchangeable
-        ]
-        if lost:
-            raise InputError(
-                f"{lost[0].rpartition(' ')[0]!r} is on a shaft without mass, whose nodes follow "
-                "what holds them where it is: give the shaft its size, or take the level 'rigid'"
-            )
+        free = elongations(of, self.gearbox)
         offset = equations.springs.offset.copy()
         offset[: len(free)] += free
         return replace(equations, springs=replace(equations.springs, offset=offset))
 
+    def of_generator(self, of: Running) -> Floats:
+        """(2,) y and z of a generator that stands on its foundation, seen from the housing [m]."""
+        if "generator uy" in of.system.names or not self.gearbox.any():
+            return np.zeros(2)
+        built = assembly(of.machine, of.level)
+        (body,) = (one for one in built.bodies if one.name == "generator")
+        return -_motion_at(of.machine, body.position, self.gearbox)[1:3]
 
-def elongations(machine: Machine, of: Running, motion: Floats) -> Floats:
-    """(m,) elongation at which each spring of a system is free, once its housing has moved.
+
+def _motion_at(machine: Machine, at: tuple[float, float, float], motion: Floats) -> Floats:
+    """(6,) motion at a place of what moves about the end of the main shaft."""
+    moved = wrench_transport(np.subtract(at, machine.axes[1])).T @ motion
+    return np.asarray(moved)
+
+
+def elongations(of: Running, motion: Floats) -> Floats:
+    """(m,) elongation at which each spring of a system is free, once the housing has moved.
 
     Parameters
     ----------
-    machine : Machine
-        Table of the machine.
     of : Running
         The machine at a level.
     motion : ndarray, (6,)
         Shift and rotation of the housing about the end of the main shaft [m, rad].
     """
+    machine = of.machine
     built = assembly(machine, of.level)
     bodies = {body.name: body for body in built.bodies}
-    held = (machine.shafts[0].name, "rotor", "generator")
-    of_gearbox = {one.name for one in machine.bearings if one.holds not in held}
-    of_gearbox |= {f"stage {k} ring support" for k in range(1, len(machine.stages) + 1)}
-    about = np.asarray(machine.axes[1])
+    apart = (machine.shafts[0].name, "rotor", "generator")
+    others = {one.name for one in machine.bearings if one.holds in apart}
     found = np.zeros(len(built.springs))
     for i, spring in enumerate(built.springs):
-        to_ground = spring.name.rpartition(" ")[0] in of_gearbox
-        for name, row in spring.by.items():
-            body = bodies[name]
-            moved = wrench_transport(np.subtract(body.position, about)).T @ motion
-            if to_ground:
-                found[i] += float(row @ moved)
-            elif name.endswith(" ring") and not body.free:
-                found[i] -= float(row @ moved)
+        if spring.name.rpartition(" ")[0] in others:
+            for name, row in spring.by.items():
+                found[i] -= float(row @ _motion_at(machine, bodies[name].position, motion))
+    # nodes without mass, which follow what they are connected to, follow the offset, too
+    whole = assemble(built.bodies, built.springs, built.superelements)
+    gone = np.flatnonzero(whole.mass.diagonal() <= 0.0)
+    if gone.size:
+        H, K = whole.rows[:, gone], whole.K[np.ix_(gone, gone)]
+        found -= H @ scaled_solve(K, H.T @ (whole.stiffness * found))
     return found

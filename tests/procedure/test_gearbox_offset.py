@@ -1,5 +1,7 @@
 """A gearbox beside the main shaft: forces in bearings and meshes by the flexibility of the rest."""
 
+from functools import lru_cache
+
 import numpy as np
 import pytest
 
@@ -11,15 +13,18 @@ from fe_drivetrain.drivetrain_file import read_drivetrain
 from fe_drivetrain.dynamics import Level, Machine, library_machine, machine_of
 from fe_drivetrain.dynamics.time.running import Running, running
 from fe_drivetrain.procedure.drivetrain_events import event_of
+from fe_drivetrain.procedure.gearbox_offset import GearboxOffset
 from fe_drivetrain.procedure.misalignment import machine_misalignment
+from fe_drivetrain.procedure.travelling_planets import with_travelling_planets
 from fe_drivetrain.studies.drivetrain_transient import transient
+from fe_drivetrain.studies.transient_runs import Prepared, Rated
 
 SIZES = {"u": 1e-3, "r": 1e-3}
 
 
-@pytest.fixture(scope="module")
-def of() -> Running:
-    return running(library_machine("nrel_750kw"), Level.RIGID, 3.25e5, 2.31)
+@lru_cache
+def at(level: Level) -> Running:
+    return running(library_machine("nrel_750kw"), level, 3.25e5, 2.31)
 
 
 def change(of: Running, **offset: float) -> Floats:
@@ -33,20 +38,22 @@ def change(of: Running, **offset: float) -> Floats:
     return np.asarray(found[0][:count] - found[1][:count])
 
 
+@pytest.mark.parametrize("level", [Level.RIGID, Level.FLEXIBLE])
 @pytest.mark.parametrize("motion", ["ux", "uy", "uz", "ry", "rz"])
 def test_it_loads_bearings_as_the_main_bearing_moved_the_other_way_does(
-    of: Running, motion: str
+    motion: str, level: Level
 ) -> None:
-    """All but the gearbox moved back leaves the same forces: by another formula, of flexibilities.
+    """Forces by another formula, of flexibilities; the main shaft has no mass of its own.
 
     The generator turns alone, and does not feel it.
     """
+    of = at(level)
     size = SIZES[motion[0]]
     forces = change(of, **{f"gearbox_{motion}": size})
     (main,) = (one for one in of.machine.bearings if one.name == "main bearing")
     away = np.array([main.at, 0.0, 0.0]) - of.machine.axes[1]
     moved = -size * wrench_transport(away).T @ np.eye(6)[MOTIONS.index(motion)]
-    influence = machine_misalignment(of.machine, Level.RIGID)
+    influence = machine_misalignment(of.machine, level)
     offsets = np.array(
         [
             moved[MOTIONS.index(name.rpartition(" ")[2])] * name.startswith("main bearing ")
@@ -81,6 +88,29 @@ def test_along_the_axis_it_is_springs_in_series() -> None:
     push = 1e-3 / (1.0 / k[0] + 1.0 / k[1])
     forces = change(of, gearbox_ux=1e-3)
     assert forces[names.index("main bearing ux")] == pytest.approx(push, rel=1e-3)
+
+
+def test_a_generator_on_its_foundation_stays_where_the_gearbox_leaves_it() -> None:
+    of = at(Level.RIGID)
+    axes, length = of.machine.axes, of.machine.shafts[-1].length
+    behind = axes[-1][0] + length - axes[1][0]
+    moved = GearboxOffset(gearbox_uz=1e-3, gearbox_rz=2e-3)
+    np.testing.assert_allclose(moved.of_generator(of), [-2e-3 * behind, -1e-3], rtol=1e-9)
+    free = running(library_machine("park_2021"), Level.RIGID, 1e6, 1.8)
+    assert not moved.of_generator(free).any()
+
+
+def test_planets_that_travel_leave_the_bearings_of_their_carrier_what_the_offset_puts_on_them() -> (
+    None
+):
+    """Three planets hold a carrier alike in all directions, wherever they are."""
+    of = Prepared(library_machine("nrel_750kw"), Level.RIGID, Rated(3.25e5, 2.31))
+    planned = event_of("offset", {"gearbox_uz": 1e-3, "gearbox_ry": 5e-4}).plan(of.of, 1.4, 0.01)
+    run = of.event(with_travelling_planets(of.of, planned), 2e-3)
+    force = run.samples.of("force of PLC-A")
+    assert np.ptp(force) < 0.02 * force.mean()
+    pin = run.samples.of("force of stage 1 pin 1 upwind")
+    assert np.ptp(pin) > 0.1 * pin.mean()
 
 
 def test_the_study_shows_what_it_does_to_bearings_and_meshes() -> None:
