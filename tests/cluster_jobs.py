@@ -3,6 +3,7 @@
 import os
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.run import Run
 from fe_drivetrain.shafts.fidelity import beam_shaft
+from fe_drivetrain.studies import transient_digest
 from fe_drivetrain.studies.load_digest import LoadOptions
 from fe_drivetrain.studies.load_reactions import FileDigest, kept_digest
 
@@ -39,6 +41,20 @@ def digest_with_death(
     if dies:
         await_kill(folder / "mark")
     return kept_digest(report, file, options, resume=True)
+
+
+def driven_with_death(
+    folder: Path, report: Progress, file: Path, *asked: Any
+) -> transient_digest.FileDigest:
+    """A drivetrain under a history; whoever first takes the fourth, dies."""
+    with (folder / "log").open("a") as log:
+        log.write(f"{file.stem} {os.getpid()}\n")
+    if file.stem == "3":
+        await_kill(folder / "mark")
+    return _kept(report, file, *asked)
+
+
+_kept = transient_digest.kept_digest  # before a test puts another in its place
 
 
 def samples_with_death(folder: Path, number: int) -> Floats:
@@ -88,6 +104,10 @@ def wait(report: Progress, mark: Path) -> None:
 
 def mistake(report: Progress) -> None:
     raise InputError("shaft: length is -1 but must be greater than 0: give a length")
+
+
+def read(report: Progress, file: Path) -> str:
+    return file.read_text()
 
 
 def pid(run: Run, page: Page) -> None:

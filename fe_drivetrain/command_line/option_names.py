@@ -44,6 +44,7 @@ OPTIONS: Mapping[str, str] = {
     "lubricant": "--lubricant",
     "modes": "--modes",
     "only": "--only",
+    "planets": "--planets",
     "profile": "--profile",
     "quantity": "--quantity",
     "reliability_percent": "--reliability",

@@ -68,6 +68,7 @@ def transient_command(context: typer.Context, asked: TransientRequest) -> int:
             duration=asked.duration,
             step=asked.step,
             backlash=asked.backlash,
+            planets=asked.planets,
             options=options,
             resume=asked.resume,
             report=run.report,

@@ -110,6 +110,14 @@ class TransientRequest:
             "--backlash", metavar="M", help="Backlash of all meshes along their lines of action."
         ),
     ] = 0.0
+    planets: Annotated[
+        str,
+        typer.Option(
+            "--planets",
+            metavar="WORD",
+            help="stand at one azimuth, or travel with their carriers, in dip, offset and base.",
+        ),
+    ] = "stand"
     channel: Channels = None
     mapping: Mapping = None
     skip: Skip = 0.0

@@ -17,10 +17,11 @@ import time
 import uuid
 from collections.abc import Callable, Collection, Iterator
 from concurrent.futures import CancelledError, Future, as_completed
-from contextlib import closing, contextmanager, suppress
+from contextlib import chdir, closing, contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from functools import cache as once
 from functools import partial
+from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -172,7 +173,7 @@ class Cluster:
         self._client.subscribe_topic(self._topic, self._show)
         folder = user_cache().folder
         kept = "off" if folder is None else str(folder.absolute())
-        self._job = partial(_do, this_maker(), self._topic, kept)
+        self._job = partial(_do, this_maker(), self._topic, kept, str(Path.cwd()))
         return self
 
     def start(self, function: Callable[..., _T], *arguments: Any) -> Future[_T]:
@@ -246,6 +247,7 @@ def _do(
     needed: Maker,
     topic: str,
     cache: str,
+    folder: str,
     function: Callable[..., _T],
     arguments: tuple[Any, ...],
 ) -> _T:
@@ -282,8 +284,14 @@ def _do(
             last = now
 
     try:
-        with held_to_one_thread():
+        # files are named as the user names them, from where the command was started
+        with held_to_one_thread(), chdir(folder) if Path(folder).is_dir() else nullcontext():
             return function(report, *arguments)
+    except FileNotFoundError as error:
+        raise InputError(
+            f"worker {worker.address} does not find {error.filename}: start the command in a "
+            "folder that all workers share, and have the files there"
+        ) from error
     except BaseException as error:
         try:
             pickle.loads(pickle.dumps(error))

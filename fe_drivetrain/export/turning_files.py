@@ -55,6 +55,14 @@ TURNING_FORMATS: dict[str, TurningFormat] = {
         ".subvar", "SIMPACK substitution variables", "turning_matrices", "write_simpack"
     ),
     "exudyn": TurningFormat(".py", "Exudyn: a script that builds the model", "turning_exudyn"),
+    "ross": TurningFormat(
+        ".py",
+        "ROSS: a script that builds the rotor",
+        "turning_ross",
+        left_out="dampers; planets and rings are nodes of their own in front of the sun's shaft, "
+        "and the stiffness of a stage is a matrix, since ROSS has no planetary stage, and takes "
+        "another axial force of helical teeth",
+    ),
     "rexs": TurningFormat(
         ".rexs",
         "REXS 1.6, gearbox programs: shafts, gears, stages, bearings",

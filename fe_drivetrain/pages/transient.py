@@ -76,9 +76,10 @@ def _extremes(page: Page, result: TransientResult) -> None:
         page.section("Instants of the brake")
         page.table("Peak of the last shaft by the instant of the brake", result.tables["instants"])
     if "alternating" in result.tables:
-        page.section("Bearings beside the axis")
+        page.section("Forces beside the axis")
         page.table(
-            "Forces of bearings: aligned, mean, and what alternates with the generator's turns",
+            "Forces of bearings and meshes: aligned, mean, and what alternates with the "
+            "generator's turns",
             result.tables["alternating"],
         )
 

@@ -52,10 +52,17 @@ class CouplingOffset:
     anisotropy: float = 0.0
 
     def __post_init__(self) -> None:
+        self.check_coupling()
+        if not (self.y or self.z or self.run_out):
+            raise InputError("y, z and run_out of the event are all 0 m: give an offset")
+
+    def check_coupling(self) -> None:
+        """Refuse values that are out of their range."""
         if not 0.0 < self.coupling <= 1e12:
             raise InputError(
                 f"coupling of the event is {self.coupling:g} N/m but must be above 0 N/m and at "
-                "most 1e12 N/m: give the radial stiffness of the coupling"
+                "most 1e12 N/m: give the radial stiffness of the coupling, or an offset of the "
+                "gearbox"
             )
         for name, high in (("y", 0.05), ("z", 0.05), ("run_out", 0.01), ("anisotropy", 0.45)):
             value = getattr(self, name)
@@ -65,15 +72,13 @@ class CouplingOffset:
                     f"{name} of the event is {value:g} but must be from {low:g} to {high:g}: "
                     "change it"
                 )
-        if not (self.y or self.z or self.run_out):
-            raise InputError("y, z and run_out of the event are all 0 m: give an offset")
 
     @property
     def size(self) -> float:
         """Offset of the generator's axis [m]."""
         return float(np.hypot(self.y, self.z))
 
-    def springs(self, of: Running) -> SpringLaws:
+    def springs(self, of: Running, y: float = 0.0, z: float = 0.0) -> SpringLaws:
         """The coupling's springs in four directions, by the angle of the generator.
 
         Stiffnesses of two square pairs, k / 2 (1 + 2 a cos 2 (angle - direction)), add up to a
@@ -83,10 +88,13 @@ class CouplingOffset:
         ----------
         of : Running
             Machine at a level with all motions.
+        y, z : float
+            Where the generator stands beside its offset, as a gearbox that moved has it [m].
         """
         along, across = np.cos(_DIRECTIONS), np.sin(_DIRECTIONS)
+        beside = along * (self.y + y) + across * (self.z + z)
         rows = np.column_stack([along, across]) @ self._rows(of)
-        made = spring_laws(rows, 0.5 * self.coupling, offset=along * self.y + across * self.z)
+        made = spring_laws(rows, 0.5 * self.coupling, offset=beside)
         # two periods a turn: one for the stiffness, half of one for the run-out
         phase, angle = -_DIRECTIONS / np.pi, of.row("generator") / np.pi
         made = made.in_phase(phase, 0.0, np.tile(angle, (len(rows), 1)))

@@ -27,6 +27,7 @@ from fe_drivetrain.dynamics.time.running import Running
 from fe_drivetrain.dynamics.time.steady_turning import with_laws
 from fe_drivetrain.dynamics.time.stopping import StopSequence, stop_phases
 from fe_drivetrain.procedure.coupling_offset import CouplingOffset
+from fe_drivetrain.procedure.gearbox_offset import GearboxOffset
 from fe_drivetrain.procedure.voltage_dips import Dip
 
 SIX_MOTIONS = (Level.RIGID, Level.FLEXIBLE)
@@ -52,6 +53,9 @@ class Planned:
         State wound up at the beginning.
     marks : Mapping[str, float]
         What happens when [s].
+    reference : Floats or None
+        Velocities (n,) of the steady turning that phases and state are beside; None where they
+        have it in them.
     """
 
     __repr__ = short_repr
@@ -59,16 +63,19 @@ class Planned:
     phases: tuple[Phase, ...]
     start: State
     marks: Mapping[str, float]
+    reference: Floats | None = None
 
 
 @dataclass(frozen=True)
 class Event:
     """An event: its values are the fields of a dataclass, all numbers or words.
 
-    Most are of any level, with teeth of mean stiffness, a known duration, and short steps.
+    Most are of any level, with teeth of mean stiffness, a known duration, and short steps. Those
+    that keep the speed, or nearly so, can have planets that travel.
     """
 
     levels: ClassVar[tuple[Level, ...]] = tuple(Level)
+    keeps_speed: ClassVar[bool] = False
     teeth: ClassVar[bool] = False
     seconds: ClassVar[float]
 
@@ -210,6 +217,7 @@ class VoltageDip(Event):
         Time to the bottom, and from it back to the full torque [s].
     """
 
+    keeps_speed: ClassVar[bool] = True
     seconds: ClassVar[float] = 6.0
 
     start: float = 1.0
@@ -294,16 +302,25 @@ class RunUp(Event):
 
 
 @dataclass(frozen=True)
-class Offset(CouplingOffset, Event):
-    """The generator stands beside the axis of the gearbox; both turn steadily."""
+class Offset(GearboxOffset, CouplingOffset, Event):
+    """Generator or gearbox stand beside the axis of what they are joined to, and turn steadily."""
 
     levels: ClassVar[tuple[Level, ...]] = SIX_MOTIONS
+    keeps_speed: ClassVar[bool] = True
     seconds: ClassVar[float] = 2.0
+
+    def __post_init__(self) -> None:
+        self.check_gearbox()
+        if not self.gearbox.any():
+            super().__post_init__()
+        elif self.coupling:
+            self.check_coupling()
 
     def plan(self, of: Running, duration: float, slip: float) -> Planned:
         """One phase with the coupling's springs; nothing is marked."""
         machine, pull = of.turning.line(slip)
-        made = with_laws(of.equations, machine, self.springs(of))
+        laws = [self.springs(of, *self.of_generator(of))] if self.coupling else []
+        made = with_laws(self.moved(of, of.equations), machine, *laws)
         acting = [_steady_rotor(of), pull, *of.turning.loads()]
         start = _wound_up(made, acting, of.turning.velocity)
         return Planned((Phase(duration, made, acting),), start, {})
@@ -324,6 +341,7 @@ class BaseMoves(Event):
     """
 
     levels: ClassVar[tuple[Level, ...]] = SIX_MOTIONS
+    keeps_speed: ClassVar[bool] = True
     seconds: ClassVar[float] = 0.0
 
     file: str = ""

@@ -20,6 +20,13 @@ from fe_drivetrain.dynamics.time.integration import integrate
 from fe_drivetrain.dynamics.time.machine_channels import Kind
 from fe_drivetrain.procedure.drivetrain_events import EVENTS, SLIP, Event, event_of
 from fe_drivetrain.procedure.drivetrain_operation import operation
+from fe_drivetrain.procedure.travelling_planets import (
+    STAND,
+    TRAVEL,
+    has_planets,
+    travels,
+    with_travelling_planets,
+)
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.transient_digest import (
     FileDigest,
@@ -83,6 +90,7 @@ def transient(
     duration: float | None = None,
     step: float | None = None,
     backlash: float = 0.0,
+    planets: str = STAND,
     options: OperationOptions | None = None,
     resume: bool = False,
     report: Progress = silent,
@@ -115,6 +123,8 @@ def transient(
         Step of integration; what the event needs where left out [s].
     backlash : float
         Backlash of all meshes along their lines of action [m].
+    planets : str
+        "stand" at one azimuth, or "travel" with their carriers, in events at about rated speed.
     options : OperationOptions, optional
         How histories are read and counted.
     resume : bool
@@ -145,6 +155,7 @@ def transient(
         tolerance,
         duration,
         step,
+        travels(event, planets),
     )
     steps = Steps(report)
     if event == OPERATION:
@@ -170,6 +181,7 @@ class _Asked:
     tolerance: float
     duration: float | None
     step: float | None
+    travels: bool
 
     def levels(self, possible: Sequence[Level]) -> list[Level]:
         """Levels to run, of those at which the event can happen."""
@@ -202,6 +214,7 @@ class _Asked:
             "tolerance": self.tolerance,
             "duration": self.duration,
             "step": self.step,
+            "planets": TRAVEL if self.travels else STAND,
         }
 
 
@@ -262,6 +275,8 @@ def _happened(asked: _Asked, steps: Steps) -> TransientResult:
     def at(level: Level) -> Callable[[float | None], LevelRun]:
         of = made[level] = Prepared(asked.machine, level, asked.rated, event.teeth)
         planned = event.plan(of.of, duration, asked.rated.slip)
+        if asked.travels and has_planets(of.of):
+            planned = with_travelling_planets(of.of, planned)
         return lambda step: of.event(planned, event.step(of.of) if step is None else step)
 
     found = _findings(asked)

@@ -12,7 +12,9 @@ from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.dynamics.bodies.damping_ratios import ASSUMED_RATIOS
 from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.time.machine_channels import Kind
+from fe_drivetrain.procedure.coupling_offset import CouplingOffset
 from fe_drivetrain.procedure.drivetrain_events import EVENTS, SLIP
+from fe_drivetrain.procedure.gearbox_offset import GearboxOffset
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import certain_value, percent_text, value_text
 from fe_drivetrain.report.suite.findings import Findings
@@ -33,7 +35,7 @@ QUESTIONS = {
     "grid_loss": "What does the loss of the grid do to the drivetrain?",
     "dip": "What does a dip of the grid's voltage do to the drivetrain?",
     "run_up": "How far do resonances load the drivetrain as it runs up?",
-    "offset": "What does the offset of the generator do to the bearings?",
+    "offset": "What does the offset do to bearings and meshes?",
     "base": "What does the motion of its base do to the drivetrain?",
     "operation": "What do these histories do to the drivetrain?",
 }
@@ -81,7 +83,8 @@ def judge_run(found: Findings, event: str, run: LevelRun, imbalance: float, rate
         )
     first = min(run.marks.values(), default=0.0)
     before = run.samples.times < first
-    if before.sum() > 1 and event != "run_up":
+    # the torque itself follows planets that pass, by what weights do to their meshes
+    if before.sum() > 1 and event != "run_up" and not run.planets_travel:
         _judge_rest(found, run, before)
 
 
@@ -119,8 +122,11 @@ def state_assumptions(
         Its file, for slip and damping.
     """
     kind = EVENTS.get(event)
+    aligned = {one.name for one in fields(GearboxOffset)}
+    if event == "offset" and not values.get("coupling"):
+        aligned |= {one.name for one in fields(CouplingOffset)}
     for one in () if kind is None else fields(kind):  # type: ignore[arg-type]
-        if one.name not in values:
+        if one.name not in values and one.name not in aligned:
             unit = "s" if one.name in _TIMES else _UNITS.get(one.name, "")
             value: float | str = getattr(kind, one.name)
             found.assume(f"{one.name} of the event", value, unit, "assumed: not stated")
@@ -299,9 +305,9 @@ def _cautions(event: str, run: LevelRun, files: Mapping[str, FileDigest]) -> lis
     if any(not one.own_generator for one in files.values()):
         said.append("A file has no torque of its generator: a line of slip stands for it.")
     if run.level is not Level.TORSIONAL:
+        planets = "travel with their carrier" if run.planets_travel else "stand at one azimuth"
         said.append(
-            "Planets stand at one azimuth, housings rigidly on the ground: forces of bearings are "
-            "of that."
+            f"Planets {planets}, housings rigidly on the ground: forces of bearings are of that."
         )
     said.append("Damping is by ratios; swings decay as these say.")
     return said[:3]
@@ -366,16 +372,16 @@ def _offset(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFi
     rows = alternating_rows(of.run)
     most = max(rows, key=lambda row: float(row["once a turn [kN]"] + row["twice a turn [kN]"]))
     moved = max(rows, key=lambda row: abs(float(row["change of the mean [kN]"])))
-    name = str(moved["bearing"])
+    name = str(moved["force"])
     change = value_text(float(moved["change of the mean [kN]"]), "kN")
     swing = float(most["once a turn [kN]"]) + float(most["twice a turn [kN]"])
     verdict = (
-        f"The offset changes the {name} by {change}; the {most['bearing']} alternates by up to "
+        f"The offset changes the {name} by {change}; the {most['force']} alternates by up to "
         f"{value_text(swing, 'kN')} each turn."
     )
     figures = [of.found.value(f"{name}, change of its mean [kN]", moved["change of the mean [kN]"])]
     figures += [
-        of.found.value(f"{most['bearing']}, {key}", most[key])
+        of.found.value(f"{most['force']}, {key}", most[key])
         for key in ("once a turn [kN]", "twice a turn [kN]", "largest [kN]")
     ]
     return verdict, figures

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from fe_drivetrain.dynamics.bodies.levels import Level
-from fe_drivetrain.dynamics.time.machine_channels import Kind
+from fe_drivetrain.dynamics.time.machine_channels import Kind, of_planet
 from fe_drivetrain.report.charts import chart, trace
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.studies.result import Result
@@ -106,12 +106,13 @@ class TransientResult(Result):
         size = {
             name: max(one.most - one.rated, one.rated - one.least)
             for name, one in self.extremes.items()
-            if one.kind == "bearing"
+            if one.kind == "bearing" and not (self.chosen.planets_travel and of_planet(name))
         }
         names = sorted(size, key=lambda name: -size[name])[:most]
         last, begin = float(self.samples.times[-1]), float(self.samples.times[0])
         few = f", the {most} largest of {len(size)}" if len(size) > most else ""
-        caption = f"Change of the forces of bearings{few}"
+        planets = "; planets travel" if self.chosen.planets_travel else ""
+        caption = f"Change of the forces of bearings{few}{planets}"
         if self.event == "offset":
             turn = 2.0 * np.pi / self.extremes["speed of generator"].rated
             begin, caption = (
@@ -148,7 +149,9 @@ class TransientResult(Result):
             unit = self.extremes[name].rated if relative else 1e3
             traces.append(trace(name, times, values / unit))
         few = f", the {most} largest of {len(size)}" if len(size) > most else ""
-        caption = f"{of[0].upper()}{of[1:]}{' over their rated values' if relative else ''}{few}"
+        planets = "; planets travel" if self.chosen.planets_travel else ""
+        over = " over their rated values" if relative else ""
+        caption = f"{of[0].upper()}{of[1:]}{over}{few}{planets}"
         y = "over rated" if relative else "force [kN]"
         return chart(caption, traces, "time [s]", y, events=self._together())
 

@@ -22,6 +22,7 @@ from fe_drivetrain.dynamics.time.machine_channels import Channels, Kind, machine
 from fe_drivetrain.dynamics.time.running import Running, running
 from fe_drivetrain.procedure.drivetrain_events import SLIP, Planned
 from fe_drivetrain.procedure.drivetrain_operation import EnergyAccount, Operation
+from fe_drivetrain.procedure.travelling_planets import with_turning
 from fe_drivetrain.turbine_loads.histories.levels import torque_reversals
 
 REVERSAL = 0.01
@@ -205,6 +206,8 @@ class LevelRun:
         Whether Newton's method converged in every step.
     angle : Floats
         Angle (k,) of the generator [rad].
+    planets_travel : bool
+        Whether planets are where their carrier is; else they stand at one azimuth.
     """
 
     __repr__ = short_repr
@@ -219,6 +222,7 @@ class LevelRun:
     imbalance: float
     converged: bool
     angle: Floats = field(repr=False)
+    planets_travel: bool = False
 
 
 class Prepared:
@@ -264,11 +268,14 @@ class Prepared:
         """
         begin = perf_counter()
         motion = transient(planned.phases, step, planned.start)
+        travels = planned.reference is not None
+        if planned.reference is not None:
+            motion = with_turning(self.of, motion, planned.reference)
         marks = dict(planned.marks)
         stands = [t for t, what in motion.braking.events if what == "sticks"]
         if stands:
             marks["disc stands"] = stands[0]
-        return self._run(
+        run = self._run(
             begin,
             step,
             (motion.times, self.channels.of(motion)),
@@ -277,6 +284,7 @@ class Prepared:
             motion.converged,
             np.asarray(motion.q @ self.of.turning.to_generator),
         )
+        return replace(run, planets_travel=travels)
 
     def window(self, moving: Operation, step: float, window: float) -> LevelRun:
         """The beginning of a history.

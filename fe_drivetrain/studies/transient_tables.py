@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from fe_drivetrain.dynamics.time.machine_channels import of_planet
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.transient_digest import FileDigest, equivalent_range
 from fe_drivetrain.studies.transient_instants import ByInstant
@@ -180,7 +181,10 @@ def instant_rows(found: ByInstant) -> list[Record]:
 
 
 def alternating_rows(run: LevelRun) -> list[Record]:
-    """Forces of bearings of a generator that stands beside the axis: steady, once and twice a turn.
+    """Forces of bearings and meshes under an offset: steady, once and twice a turn.
+
+    Of planets that travel there are none: weights swing them once a turn of their carrier, whose
+    mean over so short a time is not that of a turn.
 
     Parameters
     ----------
@@ -194,14 +198,14 @@ def alternating_rows(run: LevelRun) -> list[Record]:
     )
     rows: list[Record] = []
     for name, one in run.extremes.items():
-        if one.kind != "bearing":
+        if one.kind not in ("bearing", "mesh") or (run.planets_travel and of_planet(name)):
             continue
         values = run.samples.of(name)[late]
         found = np.linalg.lstsq(waves, values, rcond=None)[0]
         once, twice = np.hypot(*found[1:3]), np.hypot(*found[3:5])
         rows.append(
             {
-                "bearing": name,
+                "force": name,
                 "aligned [kN]": one.rated / 1e3,
                 "mean [kN]": float(found[0]) / 1e3,
                 "change of the mean [kN]": (float(found[0]) - one.rated) / 1e3,

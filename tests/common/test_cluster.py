@@ -16,11 +16,14 @@ from pathlib import Path
 import cluster_jobs
 import numpy as np
 import pytest
+import yaml
 from cluster_jobs import WAIT
 from coarse_scenes import coarse_scene
+from small_drivetrain import two_mass_file
 from test_commands_life import write_history
 from test_docs_blocks import blocks
 from test_docs_pages import DOCS
+from test_drivetrain_transient import write_torque
 from tiny_case import Result
 
 from fe_drivetrain.common import jobs as jobs_module
@@ -38,6 +41,7 @@ from fe_drivetrain.shafts.fidelity.designs import compare_designs
 from fe_drivetrain.shafts.fidelity.quantity import Quantity
 from fe_drivetrain.shafts.uncertainty.input_study import study
 from fe_drivetrain.shafts.uncertainty.sampling import sample
+from fe_drivetrain.studies import transient_digest
 from fe_drivetrain.studies.load_digest import LoadOptions
 from fe_drivetrain.studies.load_reactions import FileDigest
 from fe_drivetrain.turbine_loads.histories.farm import Counting, counted_histories, piece
@@ -195,7 +199,8 @@ def test_designs_have_the_same_differences_to_the_last_digit(
 def test_the_commands_write_the_same_tables(
     cluster: Cluster, invoke: Callable[..., Result], histories: list[Path], tmp_path: Path
 ) -> None:
-    files = [str(file) for file in histories[:2]]
+    # named from here: workers started elsewhere
+    files = [str(file.relative_to(tmp_path)) for file in histories[:2]]
     loads = ("loads", *files)
     life = ("life", "main_bearing_bonded", "--bearing", "main_bearing=bearing_s_o20")
     life += ("--loads", files[0], "--loads", files[1])
@@ -219,6 +224,8 @@ def test_mistakes_come_back_in_their_own_words(cluster: Cluster) -> None:
             job = workers.start(cluster_jobs.mistake)
         with pytest.raises(InputError, match="length is -1"):
             job.result()
+        with pytest.raises(InputError, match="does not find nowhere: start"), pool(1) as workers:
+            workers.start(cluster_jobs.read, Path("nowhere"))
 
 
 def test_a_scheduler_that_is_not_there_is_a_mistake(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -338,6 +345,41 @@ def test_samples_are_the_same_when_a_worker_is_killed(
         assert np.ptp(samples.values) > 0.0
         assert samples.values.tobytes() == found[name].values.tobytes()
         assert samples.inputs.tobytes() == found[name].inputs.tobytes()
+
+
+@pytest.mark.usefixtures("killed")
+def test_a_drivetrain_in_time_is_the_same_when_a_worker_is_killed_and_goes_on_where_it_was(
+    cluster: Cluster, invoke: Callable[..., Result], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cluster.add_worker()
+    (tmp_path / "mine.yaml").write_text(yaml.safe_dump(two_mass_file()))
+    for number in range(6):
+        write_torque(tmp_path / f"{number}.csv", 1e5 + 1e4 * number, 4.0)
+    words = ("transient", "mine.yaml", "operation", "--loads", "?.csv", "--step", "0.05")
+    jobs = partial(cluster_jobs.driven_with_death, tmp_path)
+    monkeypatch.setattr(transient_digest, "kept_digest", jobs)
+    kept = tmp_path / "cache" / "load-digests"
+    tables, inodes = {}, {}
+    for where in ("there", "again", "here"):
+        more = () if where == "here" else ("--scheduler", cluster.address)
+        if where == "again":  # the command was ended when it had some of them
+            for path in sorted(kept.glob("*.arrays"))[:2]:
+                path.unlink()
+            inodes = {path: path.stat().st_ino for path in kept.glob("*.arrays")}
+            more += ("--resume",)
+        status, printed, error = invoke(*words, *more, "--out", where)
+        assert status == 0, printed + error
+        tables[where] = read_results(tmp_path / where / "results.json").figures
+        if where == "again":
+            assert len(inodes) == 3
+            assert all(path.stat().st_ino == inode for path, inode in inodes.items())
+            assert len(list(kept.glob("*.arrays"))) == 5
+    log = [line.split() for line in (tmp_path / "log").read_text().splitlines()]
+    assert [stem for stem, _ in log].count("3") == 4
+    assert {stem for stem, _ in log} == {"1", "2", "3", "4", "5"}  # the first is the command's own
+    assert {int(pid) for _, pid in log[:6]} <= cluster.pids
+    for name in ("extremes", "files", "equivalent_loads", "duration_spectra"):
+        assert tables["here"][name] == tables["there"][name] == tables["again"][name], name
 
 
 def test_cases_are_the_same_when_a_worker_is_killed(

@@ -99,7 +99,6 @@ FOR_USERS = {
     # answers of a bearing to millions of loads, from one grid of solves
     "bearing.tables": "bearing.md",
     "export.formats.windio": "how-to/shafts-of-a-gearbox.md",
-    "export.programs.ross_rotor": "how-to/housing-to-ross-and-exudyn.md",
     "gear.coupled_slices": "gear_rating.md",
     "turbine_loads.hub_loads.events": "turbine.md",
     "turbine_loads.hub_loads.wind_boxes": "loads.md",

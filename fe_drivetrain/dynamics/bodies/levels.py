@@ -130,10 +130,27 @@ def assembly(
             f"{machine.title!r} at level {level.value!r} needs what its file does not state: "
             f"{', '.join(machine.not_given)}: add it, or take level 'torsional'"
         )
-    free = TURNS if level is Level.TORSIONAL else ALL
     gives = flexible or Flexible()
     if level is Level.TORSIONAL:
         gives = Flexible()
+    built, ends = bodies_and_stages(machine, level, azimuth, held_generator, gives)
+    _add_shafts(machine, ends, level, elements, gives, built)
+    _add_bearings(machine, gives, built)
+    return built
+
+
+def bodies_and_stages(
+    machine: MachineTable,
+    level: Level,
+    azimuth: float | Mapping[int, float],
+    held_generator: bool,
+    gives: Flexible,
+) -> tuple[Assembly, list[tuple[str, str]]]:
+    """Bodies and the springs of stages, before there are shafts and bearings.
+
+    Arguments as in `machine_system`; the names are those of the bodies that each shaft joins.
+    """
+    free = TURNS if level is Level.TORSIONAL else ALL
     built = Assembly([], [], {}, [])
     if gives.housing is not None:
         of_housing, element = housing_bodies(gives.housing)
@@ -150,9 +167,7 @@ def assembly(
         driving = rear
     _add_generator(machine, free, held_generator, built)
     ends.append((driving, "generator"))
-    _add_shafts(machine, ends, level, elements, gives, built)
-    _add_bearings(machine, gives, built)
-    return built
+    return built, ends
 
 
 def _add_stage(

@@ -115,12 +115,7 @@ def beam_shaft(
     shaft = machine.shafts[k]
     x, y, z = machine.axes[k]
     on = [b for b in machine.bearings if b.holds == shaft.name]
-    stations = [0.0, shaft.length]
-    if bends and shaft.kind == "shaft":
-        steps = () if shaft.sections is None else np.cumsum([s.length for s in shaft.sections])
-        own = {*np.linspace(0.0, shaft.length, elements + 1), *(b.at for b in on), *steps}
-        inside = [s for s in own if 0 <= s <= shaft.length]
-        stations = sorted({round(s, 9) for s in inside} | {0.0, shaft.length})
+    stations = shaft_stations(machine, k, elements) if bends else [0.0, shaft.length]
     names = [ends[0], *(f"{shaft.name} node {i}" for i in range(1, len(stations) - 1)), ends[1]]
     speed = machine.speeds[k]
     if shaft.kind == "rigid":
@@ -143,16 +138,29 @@ def beam_shaft(
     for i, (start, stop) in enumerate(pairwise(stations)):
         pair = names[i], names[i + 1]
         label = shaft.name if len(stations) == 2 else f"{shaft.name} element {i + 1}"
-        springs += _element(label, shaft, pair, (start, stop), (x, y, z), bodies, index)
+        places = [Place(name, bodies[index[name]].position) for name in pair]
+        springs += shaft_springs(label, shaft, places, (start, stop), (x, y, z))
         if shaft.has_mass:
             for name in pair:
                 place = index[name]
-                bodies[place] = _heavier(bodies[place], shaft, (start, stop))
+                bodies[place] = heavier(bodies[place], shaft, (start, stop))
     for bearing in on:
         where = x + bearing.at
         nearest = min(range(len(stations)), key=lambda i: abs(stations[i] - bearing.at))
         seats[bearing.name] = (names[nearest], (where, y, z))
     return bodies, springs
+
+
+def shaft_stations(machine: MachineTable, k: int, elements: int) -> list[float]:
+    """x of a shaft's nodes from where it begins: elements, bearings, steps [m]."""
+    shaft = machine.shafts[k]
+    if shaft.kind != "shaft":
+        return [0.0, shaft.length]
+    steps = () if shaft.sections is None else np.cumsum([s.length for s in shaft.sections])
+    bearings = [b.at for b in machine.bearings if b.holds == shaft.name]
+    own = {*np.linspace(0.0, shaft.length, elements + 1), *bearings, *steps}
+    inside = [s for s in own if 0 <= s <= shaft.length]
+    return sorted({round(float(s), 9) for s in inside} | {0.0, shaft.length})
 
 
 def solid_shaft(
@@ -178,7 +186,7 @@ def solid_shaft(
         for pair, span in zip(pairwise(points), pairwise(along.tolist()), strict=True):
             for point in pair:
                 place = index[point.body]
-                bodies[place] = _heavier(bodies[place], shaft, span)
+                bodies[place] = heavier(bodies[place], shaft, span)
     for bearing in machine.bearings:
         if bearing.holds == shaft.name:
             nearest = int(np.abs(along - bearing.at).argmin())
@@ -192,17 +200,14 @@ def solid_shaft(
     return bodies, element
 
 
-def _element(
+def shaft_springs(
     label: str,
     shaft: ShaftData,
-    pair: tuple[str, str],
+    places: Sequence[Place],
     span: tuple[float, float],
     begin: tuple[float, float, float],
-    bodies: list[Body],
-    index: dict[str, int],
 ) -> list[Spring]:
     """Springs of a shaft between two of its stations, at their elastic centre."""
-    places = [Place(name, bodies[index[name]].position) for name in pair]
     x, y, z = begin
     centre, k = in_series(shaft_slices(shaft, *span), shaft.material)
     length = span[1] - span[0]
@@ -217,7 +222,7 @@ def _element(
     return bushing(label, places[0], places[1], (x + centre, y, z), k, damping)
 
 
-def _heavier(body: Body, shaft: ShaftData, span: tuple[float, float]) -> Body:
+def heavier(body: Body, shaft: ShaftData, span: tuple[float, float]) -> Body:
     """A body with half of an element of the shaft on it."""
     slices, half = shaft_slices(shaft, *span), shaft.material.density / 2
     return replace(

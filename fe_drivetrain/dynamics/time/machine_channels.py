@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
@@ -164,6 +165,11 @@ def _with_rated(made: Channels, of: Running) -> Channels:
         rates=sign[:, None] * made.rates,
         rated=np.asarray(sign * rated),
     )
+
+
+def of_planet(name: str) -> bool:
+    """Whether a channel is a force of a planet's bearing or mesh."""
+    return re.fullmatch(r".*force of stage \d+ (pin|sun-planet|ring-planet) .*", name) is not None
 
 
 def _bearings(of: Running) -> list[str]:

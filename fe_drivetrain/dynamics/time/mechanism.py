@@ -183,11 +183,8 @@ def mechanism_of(equations: Equations, acting: Acting, driven: bool = True) -> M
             f"{len(carriers)} sets of travelling carriers act together, which is not possible: "
             "give all carriers of a machine in one `travelling`"
         )
-    if carriers and equations.springs.rows.shape != carriers[0].carriers.rows.shape:
-        raise InputError(
-            f"equations have rows of shape {equations.springs.rows.shape} but must have "
-            f"{carriers[0].carriers.rows.shape}: make them from the system of the carriers"
-        )
+    if carriers:
+        _of_carriers(equations.springs.rows, carriers[0].carriers.rows)
     springs = [one for one in acts if isinstance(one, SpringLaws)]
     if springs:
         equations = replace(equations, springs=joined_laws(equations.springs, *springs))
@@ -205,6 +202,15 @@ def mechanism_of(equations: Equations, acting: Acting, driven: bool = True) -> M
         bases,
         driven,
     )
+
+
+def _of_carriers(rows: Floats, own: Floats) -> None:
+    """Refuse springs that do not begin with those of the system whose carriers travel."""
+    if rows.shape[1] != own.shape[1] or len(rows) < len(own):
+        raise InputError(
+            f"equations have rows of shape {rows.shape} but must begin with {own.shape} of "
+            "travelling ones: make them from the system of the carriers"
+        )
 
 
 def _none(n: int) -> Loads:
