@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
-from fe_drivetrain.dynamics import machine_of
+from fe_drivetrain.dynamics import machine_of, plain_rungs
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.shafts.uncertainty.input_study import ModelError, Study
 from fe_drivetrain.shafts.uncertainty.sampling import (
@@ -18,7 +18,7 @@ from fe_drivetrain.shafts.uncertainty.sampling import (
     sobol_shares,
     spreads_of,
 )
-from fe_drivetrain.studies.mode_levels import named_level, plain_rungs
+from fe_drivetrain.studies.mode_levels import named_level
 from fe_drivetrain.studies.turning_advice import TurningLadder, finest_modes, turning_ladder
 from fe_drivetrain.studies.turning_quantities import TurningModel, turning_quantity
 
@@ -73,7 +73,7 @@ def turning_study(
     check_spreads(drivetrain)
     quantities = [turning_quantity(drivetrain, name) for name in asked.names]
     machine, steps = machine_of(drivetrain), Steps(report)
-    rungs = plain_rungs(machine)
+    rungs = plain_rungs(drivetrain, machine)
     wanted = None if asked.level is None else named_level(str(asked.level), machine)
     ladders = [turning_ladder(drivetrain, one, rungs, asked.tolerance, steps) for one in quantities]
     if wanted is None:
@@ -84,7 +84,8 @@ def turning_study(
     reference, rung = finest_modes(drivetrain, rungs), rungs[number]
 
     def evaluate(changed: Drivetrain) -> dict[str, float]:
-        model = TurningModel(changed, rung, reference)
+        # a sample has a mount of its own
+        model = TurningModel(changed, plain_rungs(changed)[number], reference)
         return {one.name: one.value(model) for one in quantities}
 
     report("sensitivities")

@@ -19,8 +19,9 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
+from fe_drivetrain.dynamics.bodies.bodies import assemble
 from fe_drivetrain.dynamics.bodies.flexible import Flexible
-from fe_drivetrain.dynamics.bodies.levels import Level, azimuths, machine_system
+from fe_drivetrain.dynamics.bodies.levels import Level, assembly, azimuths
 from fe_drivetrain.dynamics.bodies.static import solved
 from fe_drivetrain.dynamics.bodies.system import System, springs_named
 
@@ -179,7 +180,9 @@ def _responses(
     flexible: Flexible | None,
 ) -> _Responses:
     """Responses of the meshes with the rotor at an azimuth [rad]."""
-    system = machine_system(machine, level, azimuth, held_generator=True, flexible=flexible)
+    built = assembly(machine, level, azimuth, held_generator=True, flexible=flexible)
+    # with bodies without mass: gaps load a housing that has none, too
+    system = assemble(built.bodies, built.springs, built.superelements)
     chosen, places = _chosen(system, meshes)
     rows, k = system.rows[chosen], system.stiffness[chosen]
     loads = np.column_stack([_gravity(system, weight), _hub(system)])
