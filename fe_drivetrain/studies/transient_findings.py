@@ -147,6 +147,9 @@ def state_assumptions(
         what += "" if rung.flexible.housing is None else ", and of the gearbox's mount"
         found.assume(what, ASSUMED_RATIOS.shafts, "-", source)
         found.assume("damping ratio of meshes", ASSUMED_RATIOS.meshes, "-", source)
+    if rung.flexible.shafts or rung.flexible.carriers:
+        what = "as stiffness, by the time that damps the main shaft's torsion"
+        found.assume("damping of condensed shafts and carriers", what, "", "assumed")
     generator = drivetrain.generator
     known = generator is not None and generator.slip is not None
     if not known and event not in ("dip", "run_up"):

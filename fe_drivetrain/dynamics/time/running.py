@@ -13,6 +13,7 @@ from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.turning_parts import DampingRatios
 from fe_drivetrain.dynamics.bodies.damping_ratios import (
     ASSUMED_RATIOS,
+    condensed_seconds,
     element_of,
     mesh_names,
     with_damping_ratios,
@@ -168,6 +169,9 @@ def running(
         equations = _with_teeth(machine, system, rotor_speed)
     if backlash:
         equations = _with_backlash(machine, system, equations, backlash)
+    if system.extra.any():
+        condensed = condensed_seconds(machine, damping) * system.extra
+        equations = replace(equations, damping=equations.damping + condensed)
     to_rotor = system.load_on("rotor", _ABOUT_AXIS)
     motion = free_motions(varying_equations(system, {}))[:, 0]
     velocity = rotor_speed * motion / float(to_rotor @ motion)
