@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
-from coarse_scenes import coarse_scene
+from coarse_scenes import LENGTHS, MOUNT, coarse_drivetrain, coarse_scene
 
 from fe_drivetrain.cases.references.machine_rungs import carrier_of
 from fe_drivetrain.common.errors import InputError
@@ -50,30 +50,12 @@ from fe_drivetrain.studies.drivetrain_modes import modes
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
 
 TORQUE, BEARING = 1.0e6, "main_bearing"
-MOUNT = (4.0e6, 8.0e7, 8.0e7, 8.0e7, 0.0, 4.0e6)
-LENGTHS = (0.5, 0.9, 0.8)
 NAMES = ("torsional", "rigid bodies", "flexible shafts", SOFT_SEATS, STIFF_SEATS)
-
-
-def made_up() -> Scene:
-    """The coarse main bearing with a stepped shaft, and behind it gears of the library."""
-    gears = read_drivetrain("synthetic_2mw")
-    box = gears.gearbox.model_dump(exclude_unset=True)
-    box["bearings"] = [b for b in box["bearings"] if b["holds"] != "LSS"]
-    whole = gears.model_dump(exclude_unset=True)
-    of_gears = {key: whole[key] for key in ("rotor", "generator")}
-    of_gears |= {f"gearbox.{key}": value for key, value in box.items()}
-    steps = [
-        {"length": length, "outer_diameter": d}
-        for length, d in zip(LENGTHS, (0.46, 0.4, 0.36), strict=True)
-    ]
-    own = {"gearbox.stiffness": MOUNT, "shaft.sections": steps}
-    return coarse_scene("bonded", **of_gears, **own)
 
 
 @pytest.fixture(scope="module")
 def scene() -> Scene:
-    return made_up()
+    return coarse_drivetrain()
 
 
 @pytest.fixture(scope="module")

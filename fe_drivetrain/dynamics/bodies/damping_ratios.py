@@ -70,7 +70,7 @@ def with_damping_ratios(
 
 
 def condensed_seconds(machine: MachineTable, ratios: DampingRatios = ASSUMED_RATIOS) -> float:
-    """Damping over stiffness of condensed shafts and carriers: that of the main shaft's torsion [s].
+    """Damping over stiffness of condensed parts [s]: that of the torsion of the main shaft.
 
     A condensed main shaft then is damped in torsion as its beam is; 0 of a rigid one.
 
