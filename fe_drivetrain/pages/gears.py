@@ -88,7 +88,7 @@ def _sharing(page: Page, result: GearsResult) -> None:
     page.text(
         "Statics with gravity and the loads of the hub, the carriers turning with the rotor at "
         "their ratios; teeth that would pull are apart. Bands: every other "
-        "azimuth, and half of the slices."
+        "azimuth, half of the slices, and both bounds of condensed housings."
     )
 
 
@@ -224,15 +224,14 @@ def _levels(page: Page, result: GearsResult) -> None:
     first = list(rows[0])[:3]
     page.add(_against_time(result))
     page.table("Levels", rows, first)
-    sharing: list[Record] = [
-        {
-            "mesh": name,
-            **{f"K_gamma, {one.name}": one.factors[name][0] for one in result.levels},
-            **{f"K_Hbeta, {one.name}": one.factors[name][1] for one in result.levels},
-        }
-        for name in result.meshes
-    ]
-    page.table("Load factors of each level", sharing)
+    for number, factor in enumerate(("K_gamma", "K_Hbeta")):
+        found: list[Record] = [
+            {"mesh": name, **{one.name: one.factors[name][number] for one in result.levels}}
+            for name, mesh in result.meshes.items()
+            if number or mesh.spread.share.shape[1] > 1
+        ]
+        if found:
+            page.table(f"{factor} of each level", found)
     page.text(
         f"Enough within {100 * result.asked.tolerance:g} %: {result.enough}. The torsional level "
         "takes K_gamma and K_Hbeta as the file states them, else K_gamma by the number of planets "

@@ -119,7 +119,7 @@ def _against_time(result: TransientResult, kind: Kind) -> Chart:
         bands,
     )
     found = chart(
-        f"Error of {QUANTITIES[kind]} against the time of each level; the finest by its step",
+        f"Error of {QUANTITIES[kind]} against the time of each level; the finest by its own band",
         traces,
         x="time [s]",
         y="error [%]",

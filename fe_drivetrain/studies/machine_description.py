@@ -10,6 +10,7 @@ from fe_drivetrain.common.typeset import with_prefix
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.gear_stages import ParallelData, PlanetaryData
 from fe_drivetrain.drivetrain_file.left_out import LeftOut
+from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.drivetrain_file.stage_completion import NotGivenError
 from fe_drivetrain.drivetrain_file.turning_parts import ShaftData, SixOrMatrix, diagonal
 from fe_drivetrain.dynamics.bodies.advice import Rung
@@ -38,14 +39,14 @@ def assume_housings(found: Findings, assumes: Iterable[str]) -> None:
         found.assume(name, value, "", f"assumed{since}{why}")
 
 
-def housings_in_words(rung: Rung, machine: Machine) -> str:
+def housings_in_words(rung: Rung, machine: MachineTable) -> str:
     """What the housings of a drivetrain do at a level, as a sentence.
 
     Parameters
     ----------
     rung : Rung
         The level, and what gives.
-    machine : Machine
+    machine : MachineTable
         The drivetrain's machine.
     """
     if rung.level is Level.TORSIONAL:
