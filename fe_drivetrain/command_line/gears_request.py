@@ -94,6 +94,14 @@ class GearsRequest:
         ),
     ] = None
     condensed: Condensed = False
+    rollers: Annotated[
+        bool,
+        typer.Option(
+            "--rollers",
+            help="The last level has bearings with a catalogue entry on their rollers, with their "
+            "clearance: up to minutes for each torque.",
+        ),
+    ] = False
     tolerance: Annotated[
         str,
         typer.Option(
@@ -163,6 +171,7 @@ class GearsRequest:
         return GearOptions(
             level=self.level,
             condensed=self.condensed,
+            rollers=self.rollers,
             tolerance=parse_tolerance(self.tolerance),
             azimuths=self.azimuths,
             slices=self.slices,

@@ -26,6 +26,7 @@ from .bodies.condensed_rungs import STIFF_SEATS as STIFF_SEATS
 from .bodies.condensed_rungs import Rungs as Rungs
 from .bodies.condensed_rungs import plain_rungs as plain_rungs
 from .bodies.condensed_rungs import rungs_of as rungs_of
+from .bodies.condensed_rungs import with_rollers as with_rollers
 from .bodies.elastic_ring import Rim as Rim
 from .bodies.elastic_ring import with_rim as with_rim
 from .bodies.equations import Equations as Equations

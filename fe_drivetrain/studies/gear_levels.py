@@ -13,6 +13,7 @@ from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.dynamics.bodies.advice import Rung
 from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.bodies.mesh_loads import MeshResponses, mesh_springs
+from fe_drivetrain.dynamics.bodies.rolling_meshes import RollingMeshes
 from fe_drivetrain.studies.gear_stresses import SHARING, MeshStresses, spread_at_ends
 
 LEAST = 0.01
@@ -98,9 +99,11 @@ class LoadSpread:
     ) -> None:
         self._stresses, self._least = stresses, LEAST * abs(reference)
         self._planets = {name: len(springs) for name, springs in mesh_springs(machine).items()}
-        self._responses = None
+        self._responses: MeshResponses | RollingMeshes | None = None
         level, gives = rung.level, rung.flexible
-        if level is not Level.TORSIONAL:
+        if rung.rollers:
+            self._responses = RollingMeshes(machine, rung, count, slices, weight)
+        elif level is not Level.TORSIONAL:
             self._responses = MeshResponses(machine, level, count, slices, weight, gives)
 
     def under(self, torque: float, hub: Floats) -> dict[str, Spread]:

@@ -14,7 +14,7 @@ from fe_drivetrain.drivetrain_file.gear_strength import GearStrength
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.dynamics.bodies.advice import Rung
-from fe_drivetrain.dynamics.bodies.condensed_rungs import Rungs, plain_rungs
+from fe_drivetrain.dynamics.bodies.condensed_rungs import Rungs, plain_rungs, with_rollers
 from fe_drivetrain.dynamics.bodies.machine import machine_of
 from fe_drivetrain.studies.gear_options import GearOptions
 from fe_drivetrain.studies.gear_stresses import Conditions
@@ -121,11 +121,9 @@ def gear_train(
     where = drivetrain.entrance if isinstance(drivetrain, Scene) else None
     missing = ["operation.rotor_speed"] if speed is None else []
     missing += ["operation.lubricant"] if oil is None else []
-    rungs, left_out = (
-        (plain_rungs(drivetrain, machine), NOTHING)
-        if condensed is None
-        else (condensed.rungs, condensed.left_out)
-    )
+    ladder = Rungs(plain_rungs(drivetrain, machine), NOTHING) if condensed is None else condensed
+    ladder = with_rollers(ladder, machine) if options.rollers else ladder
+    rungs, left_out = ladder.rungs, ladder.left_out
     # the name of a condensed level is known once that is made
     waits = condensed is None and options.condensed and options.level not in WORDS
     rung = named_rung(None if waits else options.level, rungs, machine)

@@ -26,6 +26,9 @@ class GearOptions(HistoryOptions):
     condensed : bool
         Whether levels go on with what has to be condensed, see `fe_drivetrain.dynamics.rungs_of`:
         housings of main bearings at both bounds, carriers, the main shaft in its meridian.
+    rollers : bool
+        Whether the last level has bearings with a catalogue entry on their rollers, with their
+        clearance: an equilibrium for each azimuth and torque.
     tolerance : float
         Relative difference in contact stress within which a cheaper level is enough.
     azimuths : int
@@ -47,6 +50,7 @@ class GearOptions(HistoryOptions):
 
     level: str | None = None
     condensed: bool = False
+    rollers: bool = False
     tolerance: float = 0.05
     azimuths: int = 24
     slices: int = 9

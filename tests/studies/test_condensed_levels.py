@@ -10,7 +10,7 @@ from fe_drivetrain.common import InputError
 from fe_drivetrain.drivetrain_file import Scene, read_drivetrain
 from fe_drivetrain.drivetrain_file.reading import change_scene
 from fe_drivetrain.dynamics import Flexible, Level, Rung, Rungs, plain_rungs
-from fe_drivetrain.dynamics.bodies.condensed_rungs import SOFT_SEATS, STIFF_SEATS
+from fe_drivetrain.dynamics.bodies.condensed_rungs import ON_ROLLERS, SOFT_SEATS, STIFF_SEATS
 from fe_drivetrain.studies import GearsResult, TransientResult, gears, transient, turning_quantities
 from fe_drivetrain.studies.gear_machine import gear_train
 from fe_drivetrain.studies.gear_options import GearOptions
@@ -69,6 +69,16 @@ def test_a_condensed_level_rates_by_its_name(scene: Scene) -> None:
         assert gear_train(scene, asked, None, rungs).rung.name == name
     with pytest.raises(InputError, match=f"use one of torsional, rigid, flexible, {SOFT_SEATS}"):
         gear_train(scene, GearOptions(condensed=True, level="solid"), None, rungs)
+
+
+def test_the_rollers_are_the_last_level_where_asked() -> None:
+    pins = {f"gearbox.stages.0.pins.{k}.catalogue": "planet_nj2232" for k in (0, 1)}
+    rolling = read_drivetrain("synthetic_2mw", pins)
+    train = gear_train(rolling, GearOptions(rollers=True), 1e6)
+    assert train.rung.name == train.rungs[-1].name == ON_ROLLERS
+    named = GearOptions(rollers=True, level=ON_ROLLERS)
+    assert gear_train(rolling, named, 1e6).rung.rollers
+    assert not gear_train(rolling, GearOptions(rollers=True, level="rigid"), 1e6).rung.rollers
 
 
 def test_levels_without_the_mount_say_so(scene: Scene) -> None:

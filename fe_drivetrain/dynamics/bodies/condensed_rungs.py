@@ -21,6 +21,7 @@ from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.joint_springs import free_to_turn
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.dynamics.bodies.advice import RUNGS, UNCONDENSED, Rung
+from fe_drivetrain.dynamics.bodies.catalogue_seats import catalogued
 from fe_drivetrain.dynamics.bodies.flexible import Flexible
 from fe_drivetrain.dynamics.bodies.gearbox_mount import stated_mount
 from fe_drivetrain.dynamics.bodies.levels import Level
@@ -33,6 +34,9 @@ from fe_drivetrain.shafts.fidelity.shafts import meridian_shaft, solid_shaft
 
 SOFT_SEATS, STIFF_SEATS = "housings, seats averaged", "housings, seats rigid"
 """Names of the rungs with housings of main bearings, at their lower and their upper bound."""
+
+ON_ROLLERS = "bearings on their rollers"
+"""Name of the rung with the rollers of catalogued bearings, and their clearance."""
 
 _HOUSINGS, _MOUNT, _CARRIERS, _SECTIONS, _ROLLERS = UNCONDENSED
 _DEFORMS = "a gearbox housing that deforms"
@@ -199,6 +203,39 @@ def rungs_of(
     else:
         built.left_out["main shaft in its meridian"] = "the main shaft has no sections"
     return Rungs(tuple(built.rungs), built.left_out)
+
+
+def with_rollers(rungs: Rungs, machine: Machine) -> Rungs:
+    """The ladder with one rung more: bearings with a catalogue entry on their rollers, in statics.
+
+    Parameters
+    ----------
+    rungs : Rungs
+        Ladder of a drivetrain.
+    machine : Machine
+        Its machine.
+
+    Raises
+    ------
+    InputError
+        No bearing has an entry, or the last rung has no forces of bearings.
+    """
+    last = rungs.rungs[-1]
+    if last.level is Level.TORSIONAL or not catalogued(machine):
+        raise InputError(
+            f"no bearing of {machine.title!r} has a catalogue entry and a load, whose rollers "
+            "could carry it: give bearings catalogue, or leave rollers out"
+        )
+    names = ", ".join(catalogued(machine))
+    finer = replace(
+        last,
+        name=ON_ROLLERS,
+        neglects=tuple(what for what in last.neglects if what != _ROLLERS),
+        assumes=(*last.assumes, f"rings of {names}: rigid, without housings of their own"),
+        seconds=0.0,
+        rollers=True,
+    )
+    return Rungs((*rungs.rungs, finer), rungs.left_out)
 
 
 @dataclass

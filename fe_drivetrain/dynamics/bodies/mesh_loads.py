@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,6 +25,8 @@ from fe_drivetrain.dynamics.bodies.flexible import Flexible
 from fe_drivetrain.dynamics.bodies.levels import Level, assembly, azimuths
 from fe_drivetrain.dynamics.bodies.static import solved
 from fe_drivetrain.dynamics.bodies.system import System, springs_named
+
+AnyMachine = TypeVar("AnyMachine", bound=MachineTable)
 
 _CONTACT = 1e-12
 """Forces below this share of the largest one count as none."""
@@ -81,11 +84,7 @@ class MeshResponses:
         weight: bool = True,
         flexible: Flexible | None = None,
     ) -> None:
-        sliced = machine.model_copy(
-            update={
-                "stages": tuple(s.model_copy(update={"slices": slices}) for s in machine.stages)
-            }
-        )
+        sliced = with_slices(machine, slices)
         self.azimuths = azimuths(count)
         self.meshes = mesh_springs(machine)
         self._at = [
@@ -116,6 +115,12 @@ class MeshResponses:
             for name, places in one.places.items():
                 found[name].append(forces[places])
         return MeshLoads(self.azimuths, {name: np.array(rows) for name, rows in found.items()})
+
+
+def with_slices(machine: AnyMachine, slices: int) -> AnyMachine:
+    """The machine with a number of slices of each mesh."""
+    stages = tuple(stage.model_copy(update={"slices": slices}) for stage in machine.stages)
+    return machine.model_copy(update={"stages": stages})
 
 
 def mesh_springs(machine: MachineTable) -> dict[str, tuple[str, ...]]:
