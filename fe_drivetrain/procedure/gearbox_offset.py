@@ -89,7 +89,7 @@ class GearboxOffset:
         """(2,) y and z of a generator that stands on its foundation, seen from the housing [m]."""
         if "generator uy" in of.system.names or not self.gearbox.any():
             return np.zeros(2)
-        built = assembly(of.machine, of.level)
+        built = assembly(of.machine, of.level, flexible=of.flexible)
         (body,) = (one for one in built.bodies if one.name == "generator")
         return -_motion_at(of.machine, body.position, self.gearbox)[1:3]
 
@@ -111,7 +111,7 @@ def elongations(of: Running, motion: Floats) -> Floats:
         Shift and rotation of the housing about the end of the main shaft [m, rad].
     """
     machine = of.machine
-    built = assembly(machine, of.level)
+    built = assembly(machine, of.level, flexible=of.flexible)
     bodies = {body.name: body for body in built.bodies}
     apart = (machine.shafts[0].name, "rotor", "generator")
     others = {one.name for one in machine.bearings if one.holds in apart}

@@ -79,7 +79,7 @@ def with_travelling_planets(of: Running, planned: Planned) -> Planned:
     """
     reference = of.turning.velocity
     speed = float(of.turning.to_rotor @ reference)
-    carriers = travelling(of.machine, of.level)
+    carriers = travelling(of.machine, of.level, flexible=of.flexible)
     phases = []
     for phase in planned.phases:
         made = _beside_turning(phase.equations, reference)

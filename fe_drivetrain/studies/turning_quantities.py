@@ -21,7 +21,6 @@ from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.dynamics import (
-    RUNGS,
     Asked,
     Level,
     Machine,
@@ -29,6 +28,7 @@ from fe_drivetrain.dynamics import (
     Rung,
     like_mode,
     machine_of,
+    plain_rungs,
     torsional,
     torsional_frequency,
 )
@@ -36,7 +36,7 @@ from fe_drivetrain.dynamics.bodies.mesh_loads import mesh_springs
 from fe_drivetrain.dynamics.time.machine_channels import UNITS, machine_channels
 from fe_drivetrain.dynamics.torsion.system import natural_modes
 from fe_drivetrain.procedure.drivetrain_events import EVENTS
-from fe_drivetrain.studies.drivetrain_transient import rated_of, transient
+from fe_drivetrain.studies.drivetrain_transient import event_at, rated_of
 from fe_drivetrain.studies.gear_answers import GearAnswer, MeshAnswer
 from fe_drivetrain.studies.gear_loads import GearLoading, loads_of
 from fe_drivetrain.studies.gear_options import GearOptions
@@ -45,7 +45,6 @@ from fe_drivetrain.studies.gear_stresses import MeshStresses
 from fe_drivetrain.studies.mode_levels import BANDED, element_bands
 from fe_drivetrain.studies.rated_gears import GearRating
 from fe_drivetrain.studies.tooth_damage import gear_damage
-from fe_drivetrain.studies.transient_result import LEVELS
 from fe_drivetrain.studies.transient_runs import Extreme
 
 FIRST = "modes.torsional.1"
@@ -133,9 +132,7 @@ class TurningModel:
         if self.rung.level not in EVENTS[event].levels:
             return None
         if event not in self._events:
-            word = next(word for word, level in LEVELS.items() if level is self.rung.level)
-            found = transient(self.drivetrain, event, level=word, quantity="torque")
-            self._events[event] = found.extremes
+            self._events[event] = event_at(self.drivetrain, event, self.rung).extremes
         return self._events[event].get(channel)
 
 
@@ -151,15 +148,12 @@ class TurningQuantity:
         Its value of a `TurningModel`; None where the model's level has none.
     own : callable
         Numerical uncertainty of the value [unit]; NaN where it is not known.
-    condensed : bool
-        Whether levels with condensed parts have it, too.
     """
 
     name: str
     unit: str
     of: Callable[[TurningModel], float | None]
     own: Callable[[TurningModel], float]
-    condensed: bool = True
 
     @property
     def numbered(self) -> bool:
@@ -277,8 +271,9 @@ def _of_gears(drivetrain: Drivetrain, machine: Machine) -> list[TurningQuantity]
 
 def _of_events(drivetrain: Drivetrain, machine: Machine) -> list[TurningQuantity]:
     """Peaks of all channels in all events that can happen to a drivetrain."""
-    level = Level.TORSIONAL if machine.not_given else Level.FLEXIBLE
-    running = rated_of(drivetrain).running(machine, level)
+    finest = plain_rungs(drivetrain, machine)[-1]
+    level = finest.level
+    running = rated_of(drivetrain).running(machine, finest)
     channels = machine_channels(running)
     return [
         _peak(event, name, UNITS[kind])
@@ -299,7 +294,7 @@ def _peak(event: str, channel: str, unit: str) -> TurningQuantity:
         one = model.peak(event, channel)
         return None if one is None else one.largest
 
-    return TurningQuantity(f"transient.{event}.{channel}.peak", unit, of, own, condensed=False)
+    return TurningQuantity(f"transient.{event}.{channel}.peak", unit, of, own)
 
 
 def turning_quantity(drivetrain: Drivetrain, name: str) -> TurningQuantity:
@@ -361,13 +356,14 @@ def _of_modes(name: str, of: Callable[[TurningModel], float | None]) -> TurningQ
         """What the number of elements of the shafts leaves open, without anything condensed."""
         if model.rung.level is not Level.FLEXIBLE:
             return 0.0
-        plain = TurningModel(model.drivetrain, RUNGS[-1], model.reference)
+        finest = plain_rungs(model.drivetrain, model.machine)[-1]
+        plain = TurningModel(model.drivetrain, finest, model.reference)
         value = of(plain)
         if value is None:
             return float("nan")
         frequencies = plain.asked.modes.frequencies
         nearest = int(abs(frequencies[frequencies > 0.0] - value).argmin())
-        bands = element_bands(model.machine, False, BANDED)
+        bands = element_bands(model.machine, False, BANDED, finest.flexible)
         return float(bands[nearest]) if nearest < len(bands) else float("nan")
 
     return TurningQuantity(name, "Hz", of, own)

@@ -11,6 +11,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.drivetrain_file import read_drivetrain
 from fe_drivetrain.dynamics import Level, Machine, library_machine, machine_of
+from fe_drivetrain.dynamics.bodies.advice import RUNGS
 from fe_drivetrain.dynamics.time.running import Running, running
 from fe_drivetrain.procedure.drivetrain_events import event_of
 from fe_drivetrain.procedure.gearbox_offset import GearboxOffset
@@ -104,7 +105,7 @@ def test_planets_that_travel_leave_the_bearings_of_their_carrier_what_the_offset
     None
 ):
     """Three planets hold a carrier alike in all directions, wherever they are."""
-    of = Prepared(library_machine("nrel_750kw"), Level.RIGID, Rated(3.25e5, 2.31))
+    of = Prepared(library_machine("nrel_750kw"), RUNGS[1], Rated(3.25e5, 2.31))
     planned = event_of("offset", {"gearbox_uz": 1e-3, "gearbox_ry": 5e-4}).plan(of.of, 1.4, 0.01)
     run = of.event(with_travelling_planets(of.of, planned), 2e-3)
     force = run.samples.of("force of PLC-A")

@@ -7,6 +7,7 @@ from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file import read_drivetrain
 from fe_drivetrain.dynamics import Level, azimuths, machine_of, machine_system, over_a_turn
+from fe_drivetrain.dynamics.bodies.advice import RUNGS
 from fe_drivetrain.procedure.drivetrain_events import event_of
 from fe_drivetrain.procedure.travelling_planets import travels, with_travelling_planets
 from fe_drivetrain.studies.drivetrain_transient import rated_of, transient
@@ -20,7 +21,7 @@ def test_a_planets_bearing_feels_weights_as_statics_at_each_azimuth_do() -> None
     """Steady turning under weights and rated torque, against the frozen solution turned along."""
     drivetrain = read_drivetrain(NAME)
     machine, rated = machine_of(drivetrain), rated_of(drivetrain)
-    of = Prepared(machine, Level.RIGID, rated)
+    of = Prepared(machine, RUNGS[1], rated)
     turn = 2.0 * np.pi / rated.rotor_speed
     calm = event_of("dip", {"depth": 0.0}).plan(of.of, turn, rated.slip)
     run = of.event(with_travelling_planets(of.of, calm), turn / (60 * COUNT))
