@@ -58,7 +58,7 @@ def housings_in_words(rung: Rung, machine: MachineTable) -> str:
     stands = "on its mount" if gives.housing is not None else "on the ground"
     return (
         f"The gearbox's housing is rigid in itself and stands {stands}; housings of main bearings "
-        f"{mains}."
+        f"{mains}.{' Catalogued bearings are on their rollers.' if rung.rollers else ''}"
     )
 
 

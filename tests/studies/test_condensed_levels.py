@@ -14,6 +14,7 @@ from fe_drivetrain.dynamics.bodies.condensed_rungs import ON_ROLLERS, SOFT_SEATS
 from fe_drivetrain.studies import GearsResult, TransientResult, gears, transient, turning_quantities
 from fe_drivetrain.studies.gear_machine import gear_train
 from fe_drivetrain.studies.gear_options import GearOptions
+from fe_drivetrain.studies.machine_description import housings_in_words
 from fe_drivetrain.studies.transient_ladder import finest_band
 from fe_drivetrain.studies.transient_runs import LevelRun
 from fe_drivetrain.studies.turning_advice import finest_modes
@@ -76,6 +77,8 @@ def test_the_rollers_are_the_last_level_where_asked() -> None:
     rolling = read_drivetrain("synthetic_2mw", pins)
     train = gear_train(rolling, GearOptions(rollers=True), 1e6)
     assert train.rung.name == train.rungs[-1].name == ON_ROLLERS
+    assert "are on their rollers" in housings_in_words(train.rung, train.machine)
+    assert "rollers" not in housings_in_words(train.rungs[-2], train.machine)
     named = GearOptions(rollers=True, level=ON_ROLLERS)
     assert gear_train(rolling, named, 1e6).rung.rollers
     assert not gear_train(rolling, GearOptions(rollers=True, level="rigid"), 1e6).rung.rollers
