@@ -202,12 +202,12 @@ def answer(
     """State the largest and least forces at both levels."""
     flat, space = (found[name] for name in LEVELS)
     low, high = min(by_phase["three dimensions"]), max(by_phase["three dimensions"])
-    pulls = space.value(MINIMUM) < 0.0
+    least, band = space.value(MINIMUM), space.band(MINIMUM)
+    teeth = "part" if least + band < 0.0 else "may part" if least < band else "stay in contact"
     page.answer(
         "Which forces do meshes that vary take when the rated torque comes at once?",
         f"In three dimensions meshes carry up to {space.value(MAXIMUM):.2f} times their static "
-        f"force, torsional {flat.value(MAXIMUM):.2f}; teeth "
-        f"{'part' if pulls else 'stay in contact'}.",
+        f"force, torsional {flat.value(MAXIMUM):.2f}; teeth {teeth}.",
         [
             *(
                 page.value(f"{what}, {name}", one.value(what), one.band(what))
