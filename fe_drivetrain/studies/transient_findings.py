@@ -38,6 +38,9 @@ from fe_drivetrain.studies.transient_tables import (
 
 #: Energy that may appear from nowhere: of linear systems, and of teeth that vary or part.
 ENERGY, ENERGY_OF_LAWS = 1e-6, 1e-2
+STANDS = 1e-6
+"""Share of a change below which what alternates is round-off."""
+
 SETTLED = 0.05
 """What the step may leave uncertain of an extreme, over it, before it is said to be open."""
 
@@ -423,11 +426,15 @@ def _offset(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFi
     name = str(moved["force"])
     change = value_text(float(moved["change of the mean [kN]"]), "kN")
     swing = float(most["once a turn [kN]"]) + float(most["twice a turn [kN]"])
+    figures = [of.found.value(f"{name}, change of its mean [kN]", moved["change of the mean [kN]"])]
+    if swing < STANDS * abs(float(moved["change of the mean [kN]"])):
+        figures.append(of.found.value(f"{name}, largest [kN]", moved["largest [kN]"]))
+        verdict = f"The offset changes the {name} by {change}, and nothing alternates."
+        return verdict, [*figures, *_others(of)]
     verdict = (
         f"The offset changes the {name} by {change}; the {most['force']} alternates by up to "
         f"{value_text(swing, 'kN')} each turn."
     )
-    figures = [of.found.value(f"{name}, change of its mean [kN]", moved["change of the mean [kN]"])]
     figures += [
         of.found.value(f"{most['force']}, {key}", most[key])
         for key in ("once a turn [kN]", "twice a turn [kN]", "largest [kN]")

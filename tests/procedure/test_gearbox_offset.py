@@ -125,6 +125,7 @@ def test_the_study_shows_what_it_does_to_bearings_and_meshes() -> None:
     )
     assert found.passed
     rows = {row["force"]: row for row in found.tables["alternating"]}
+    assert "and nothing alternates" in found.answer.verdict
     assert abs(rows["force of PLC-A"]["change of the mean [kN]"]) > 1.0
     assert any(name.startswith("force of stage 1 sun-planet") for name in rows)
     assert not any("coupling" in one.name for one in found.assumptions)
