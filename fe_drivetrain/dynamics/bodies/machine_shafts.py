@@ -19,6 +19,8 @@ from fe_drivetrain.shafts.beam.frame import CrossSection, round_section
 
 #: Uniform slices of a tapered section.
 SLICES = 8
+#: Length between two stations over that of the shaft, below which they are one: sums round.
+APART = 1e-6
 
 
 @dataclass(frozen=True)
@@ -117,10 +119,7 @@ def beam_shaft(
     on = [b for b in machine.bearings if b.holds == shaft.name]
     stations = [0.0, shaft.length]
     if bends and shaft.kind == "shaft":
-        steps = () if shaft.sections is None else np.cumsum([s.length for s in shaft.sections])
-        own = {*np.linspace(0.0, shaft.length, elements + 1), *(b.at for b in on), *steps}
-        inside = [s for s in own if 0 <= s <= shaft.length]
-        stations = sorted({round(s, 9) for s in inside} | {0.0, shaft.length})
+        stations = _stations(shaft, [b.at for b in on], elements)
     names = [ends[0], *(f"{shaft.name} node {i}" for i in range(1, len(stations) - 1)), ends[1]]
     speed = machine.speeds[k]
     if shaft.kind == "rigid":
@@ -153,6 +152,17 @@ def beam_shaft(
         nearest = min(range(len(stations)), key=lambda i: abs(stations[i] - bearing.at))
         seats[bearing.name] = (names[nearest], (where, y, z))
     return bodies, springs
+
+
+def _stations(shaft: ShaftData, seats: Sequence[float], elements: int) -> list[float]:
+    """Both ends, and what lies between: even elements, steps, and bearings."""
+    steps = () if shaft.sections is None else np.cumsum([s.length for s in shaft.sections])
+    least = APART * shaft.length
+    found = [0.0]
+    for at in sorted([*np.linspace(0.0, shaft.length, elements + 1).tolist(), *seats, *steps]):
+        if found[-1] + least < at < shaft.length - least:
+            found.append(round(float(at), 9))
+    return [*found, shaft.length]
 
 
 def solid_shaft(
