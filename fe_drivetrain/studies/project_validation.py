@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 from typing import ClassVar
 
@@ -157,7 +158,8 @@ def validate(project: Project, folder: Path, *, report: Progress = silent) -> Va
 
 
 def reasons(state: StepState) -> list[str]:
-    """Why a step is open, in sentences; what was not run yet in one of them, at the end.
+    """Why a step is open, in sentences: evidence with the same reason in one, what was not run yet
+    in one of them, at the end.
 
     Parameters
     ----------
@@ -165,8 +167,13 @@ def reasons(state: StepState) -> list[str]:
         One of the six.
     """
     absent = [one for one in state.evidence if one.results is None]
-    said = {f"{one.claim.name}: {one.why}" for one in absent}
+    same: dict[str, list[FoundEvidence]] = {}
+    for one in state.evidence:
+        if one.results is not None and not one.counts:
+            same.setdefault(one.why, []).append(one)
+    said = {f"{one.claim.name}: {one.why}" for one in (*absent, *chain(*same.values()))}
     found = [text for text in state.lacks if text not in said]
+    found += [f"{', '.join(one.claim.name for one in of)}: {why}" for why, of in same.items()]
     if absent:
         names = ", ".join(dict.fromkeys(one.link.case for one in absent))
         found.append(f"its evidence is not there: run {names}")

@@ -30,6 +30,8 @@ from fe_drivetrain.studies.transient_tables import alternating_rows, in_shown_un
 ENERGY, ENERGY_OF_LAWS = 1e-6, 1e-2
 SETTLED = 0.05
 """What the step may leave uncertain of an extreme, over it, before it is said to be open."""
+STILL = 1e-6
+"""Alternating force over the largest, below which it is round-off of a steady one."""
 MINOR = 0.1
 """Share of the largest extreme of a kind below which what is open of one is a caution alone."""
 
@@ -396,6 +398,10 @@ def _offset(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFi
     name = str(moved["bearing"])
     change = value_text(float(moved["change of the mean [kN]"]), "kN")
     swing = float(most["once a turn [kN]"]) + float(most["twice a turn [kN]"])
+    if swing < STILL * float(most["largest [kN]"]):
+        still = of.found.value(f"{most['bearing']}, largest [kN]", most["largest [kN]"])
+        by = of.found.value(f"{name}, change of its mean [kN]", moved["change of the mean [kN]"])
+        return f"The offset changes the {name} by {change}, and no force alternates.", [by, still]
     verdict = (
         f"The offset changes the {name} by {change}; the {most['bearing']} alternates by up to "
         f"{value_text(swing, 'kN')} each turn."
