@@ -17,7 +17,6 @@ from fe_drivetrain.procedure.drivetrain_events import EVENTS, SLIP
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import certain_value, percent_text, value_text
 from fe_drivetrain.report.suite.findings import Findings
-from fe_drivetrain.report.suite.records import counted
 from fe_drivetrain.studies.machine_description import ON_THE_GROUND
 from fe_drivetrain.studies.transient_digest import FileDigest
 from fe_drivetrain.studies.transient_instants import ByInstant
@@ -179,16 +178,20 @@ def state_figures(
     if major := loose[True]:
         share, name = max(major)
         found.unsettled.append(
-            f"Not converged: {counted(len(major), 'channel')}, uncertain by up to "
+            f"Not converged: {_channels(major)}, uncertain by up to "
             f"{percent_text(share)} by {step} ({name}): {shorter}."
         )
     if minor := loose[False]:
         share, name = max(minor)
+        below = f"{_channels(minor)} below {percent_text(MINOR)} of the largest of the kind"
         found.note(
-            f"{counted(len(minor), 'channel')} below {percent_text(MINOR)} of the largest of the "
-            f"kind: uncertain by up to {percent_text(share)} by {step} ({name}); where it counts, "
-            f"{shorter}."
+            f"{below}: uncertain by up to {percent_text(share)} by {step} ({name}); where it "
+            f"counts, {shorter}."
         )
+
+
+def _channels(which: Sequence[object]) -> str:
+    return f"{len(which)} channel{'s' * (len(which) > 1)}"
 
 
 class _Answered(NamedTuple):
