@@ -15,6 +15,7 @@ from tiny_case import Result
 from fe_drivetrain.common import InputError
 from fe_drivetrain.common.cache import CACHE_VARIABLE
 from fe_drivetrain.drivetrain_file import read_drivetrain
+from fe_drivetrain.procedure import drivetrain_operation
 from fe_drivetrain.procedure.failure_modes import (
     BEARING_RATING,
     DIPS,
@@ -355,3 +356,16 @@ def test_results_say_of_which_loads_their_values_are(stopped: TransientResult) -
     assert of[ERROR_AGAINST_LAST] == [0.0]
     one = stopped.extremes["torque of shaft"]
     assert_allclose(of[OWN_ERROR], max(one.most_band, one.least_band) / one.largest)
+
+
+def test_samples_of_a_history_are_even_where_some_are_left_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Over the ends of the pieces in which it is integrated, so that they can be compared."""
+    monkeypatch.setattr(transient_digest, "KEPT", 300)
+    monkeypatch.setattr(drivetrain_operation, "AT_ONCE", 500)
+    write_torque(tmp_path / "a.csv", 1e5)
+    options = OperationOptions(step=0.02)
+    found = transient(two_masses(), "operation", loads=tmp_path / "a.csv", options=options)
+    assert_allclose(np.diff(found.samples.times), 0.12, atol=1e-6)
+    assert 300 < len(found.samples.times) < 400
