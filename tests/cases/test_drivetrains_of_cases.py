@@ -325,6 +325,7 @@ OF_NO_OTHER = {
         ),
         "of the equations that Park et al. print, put right on their own drivetrain": (
             "dynamics/park_bending",
+            "dynamics/park_by_angle",
             "dynamics/park_sidebands",
             "dynamics/park_time",
         ),
