@@ -76,8 +76,10 @@ def _inputs(drivetrain: Drivetrain, machine: Machine) -> Iterator[dict[str, str 
     """Inputs of Table 4.7 as the file has them; values without a number stay open."""
 
     def row(name: str, value: float | None, unit: str) -> dict[str, str | float]:
-        known = {} if value is None else {"value": float(f"{value:.6g}"), "unit": unit}
-        return {"name": name, **known, "source": "the drivetrain's file: state its document"}
+        known: dict[str, str | float] = {"name": name}
+        if value is not None:
+            known |= {"value": float(f"{value:.6g}"), "unit": unit}
+        return {**known, "source": "the drivetrain's file: state its document"}
 
     yield row("mass of drivetrain parts: rotor", machine.rotor.mass, "kg")
     yield row("inertia of drivetrain parts: rotor", machine.rotor.inertia, "kg m^2")
