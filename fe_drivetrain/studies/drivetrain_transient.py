@@ -12,7 +12,7 @@ from fe_drivetrain.common.errors import InputError, require_known
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
-from fe_drivetrain.dynamics.bodies.damping_ratios import ASSUMED_RATIOS
+from fe_drivetrain.dynamics.bodies.damping_ratios import ASSUMED_RATIOS, first_mode_damping
 from fe_drivetrain.dynamics.bodies.equations import equations_of_motion, spring_laws, steady
 from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of, rated_torque
@@ -20,6 +20,7 @@ from fe_drivetrain.dynamics.time.integration import integrate
 from fe_drivetrain.dynamics.time.machine_channels import Kind
 from fe_drivetrain.procedure.drivetrain_events import EVENTS, SLIP, Event, event_of
 from fe_drivetrain.procedure.drivetrain_operation import operation
+from fe_drivetrain.report.number_text import percent_text
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.gearbox_bearings import main_names
 from fe_drivetrain.studies.stated_levels import Errors, state_level_errors
@@ -71,6 +72,9 @@ OPERATION = "operation"
 
 EVENT_NAMES = (OPERATION, *EVENTS)
 """Names of all events."""
+
+SLOW = 2e-3
+"""Damping ratio of the first mode below which swings need eighty periods to fall to a third."""
 
 WINDOW = 60.0
 """Part of the first history in which levels and steps are compared [s]."""
@@ -407,6 +411,12 @@ def _result(
     state_assumptions(found, asked.event, asked.values, asked.drivetrain)
     loads = design_loads(asked.event, extremes, main_names(asked.machine))
     state_figures(found, extremes, run, loads)
+    damping = first_mode_damping(asked.machine, asked.rated.damping)
+    if damping < SLOW:
+        found.note(
+            f"Swings hardly decay: the first mode's damping ratio is {percent_text(damping)} by "
+            "the ratios of each shaft and mesh between its own two bodies."
+        )
     state_answer(found, asked.event, extremes, run, runs, number, files, asked.quantity, instants)
     word = next(word for word, one in LEVELS.items() if one is run.level)
     return TransientResult(

@@ -15,6 +15,9 @@ from tiny_case import Result
 from fe_drivetrain.common import InputError
 from fe_drivetrain.common.cache import CACHE_VARIABLE
 from fe_drivetrain.drivetrain_file import read_drivetrain
+from fe_drivetrain.drivetrain_file.turning_parts import DampingRatios
+from fe_drivetrain.dynamics import machine_of
+from fe_drivetrain.dynamics.bodies.damping_ratios import ASSUMED_RATIOS, first_mode_damping
 from fe_drivetrain.procedure import drivetrain_operation
 from fe_drivetrain.procedure.failure_modes import (
     BEARING_RATING,
@@ -369,3 +372,16 @@ def test_samples_of_a_history_are_even_where_some_are_left_out(
     found = transient(two_masses(), "operation", loads=tmp_path / "a.csv", options=options)
     assert_allclose(np.diff(found.samples.times), 0.12, atol=1e-6)
     assert 300 < len(found.samples.times) < 400
+
+
+def test_what_the_first_mode_keeps_of_the_ratios_is_said() -> None:
+    """Of two masses all of it; of bodies that are light against both ends next to nothing."""
+    ratios = DampingRatios(shafts=0.03, meshes=0.1)
+    assert_allclose(first_mode_damping(machine_of(two_masses()), ratios), 0.03, rtol=1e-12)
+    park = read_drivetrain("park_2021", PARK)
+    assert first_mode_damping(machine_of(park)) < 0.2 * ASSUMED_RATIOS.shafts
+    words = "Swings hardly decay"
+    damped = transient(two_masses(damping={"shafts": 0.03}), "grid_loss", duration=1.2)
+    assert not any(note.startswith(words) for note in damped.notes)
+    light = transient(park, "grid_loss", {"off": 0.1}, level="torsional", duration=0.3)
+    assert any(note.startswith(words) for note in light.notes)
