@@ -433,8 +433,7 @@ def test_commands_repeat_what_was_typed_or_follow_from_the_name(
 
 
 def test_a_level_rests_on_the_errors_that_results_state(small: Content, tmp_path: Path) -> None:
-    """With the finest one's own error, from the level on from which all are within; the strictest
-    of several results decides."""
+    """From the level on from which all are within; the strictest of several results decides."""
     small["model"]["needs"] = [{"quantity": "torques of shafts", "tolerance": 0.05}]
     small["model"]["evidence"] = [{"case": "transient/a"}, {"case": "transient/b"}]
     levels = ["torsional", "rigid bodies", "flexible shafts"]
