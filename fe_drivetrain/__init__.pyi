@@ -19,6 +19,7 @@ from .export import shaft_superelement as shaft_superelement
 from .export import unit_superelement as unit_superelement
 from .export import write_superelement as write_superelement
 from .gear import iso_gear_stiffness as iso_gear_stiffness
+from .pages import write_page as write_page
 from .procedure import Project as Project
 from .procedure import read_project as read_project
 from .procedure import starting_project as starting_project

@@ -34,7 +34,8 @@ def write_case(reports: Path, name: str, passed: bool = True, **more: Any) -> No
     """Results of a case on the project's machine, as a run of this program leaves them."""
     quick = more.pop("quick", False)
     code = more.pop("code", None)
-    made = environment({}, quick=quick)
+    command = more.pop("command", "")
+    made = environment({}, quick=quick).model_copy(update={"command": command})
     given = {
         "verdicts": [check_of(passed)],
         "answers": [

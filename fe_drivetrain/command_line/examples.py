@@ -60,7 +60,11 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
         "--all --quick --junit verdicts.xml",
     ),
     "list": ("gear", "spherical roller", "--settings"),
-    "validate": ("project.yaml --new", "project.yaml --open"),
+    "validate": (
+        "project.yaml --new",
+        "project.yaml --new --drivetrain mine.yaml",
+        "project.yaml --open",
+    ),
     "history": ("nafems_le10", "--out results"),
     "compare-runs": ("before after",),
     "export": (

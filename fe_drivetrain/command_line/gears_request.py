@@ -39,7 +39,7 @@ class GearsRequest:
             "--torque",
             metavar="NM",
             help="Reference torque of the rotor in N m. Default: that of the file's "
-            "operation.rated_power and rotor_speed.",
+            "generator.rated_torque, or of its rated_power and rotor_speed.",
         ),
     ] = None
     load: Annotated[

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -31,6 +32,15 @@ def validate_command(
             "--new", help="Write a project to start from, with its schema for editors, and exit."
         ),
     ] = False,
+    drivetrain: Annotated[
+        str | None,
+        typer.Option(
+            "--drivetrain",
+            metavar="FILE",
+            help="With --new: the project's drivetrain, a file or a name of the library; its "
+            "evidence is then that of commands on it.",
+        ),
+    ] = None,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="With --new: replace existing files.")
     ] = False,
@@ -58,28 +68,48 @@ def validate_command(
                 f"{project} must end in {' or '.join(SUFFIXES)}: name it as in project.yaml"
             )
         if new:
-            from fe_drivetrain.procedure.project import (
-                PROJECT_SCHEMA_FILE,
-                project_schema,
-                starting_project,
-            )
-
-            texts = {
-                project: starting_project(),
-                project.with_name(PROJECT_SCHEMA_FILE): project_schema(),
-            }
-            write_all(texts, overwrite)
-            if wants_json():
-                write_json({"file": str(project)})
-            else:
-                write(sys.stdout, _begun(project))
+            _write_new(project, drivetrain, overwrite)
             return PASSED
+        if drivetrain is not None:
+            raise InputError(
+                f"--drivetrain {drivetrain} is for --new: an existing project names its drivetrain "
+                "under model"
+            )
         return _validated(project, out)
 
     raise typer.Exit(guarded(work, "existing files are unchanged"))
 
 
-def _begun(path: Path) -> str:
+def _write_new(path: Path, drivetrain: str | None, overwrite: bool) -> None:
+    """Write a project to start from, of a drivetrain or of the example, and say what is next."""
+    from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
+    from fe_drivetrain.procedure.project import (
+        PROJECT_SCHEMA_FILE,
+        project_schema,
+        starting_project,
+    )
+
+    if drivetrain is None:
+        text, whose = starting_project(), "the 750 kW reference drivetrain: put in your own"
+    else:
+        found = read_drivetrain(drivetrain)
+        text = starting_project(found, _seen_from(path.parent, drivetrain))
+        whose = f"{found.title!r}: decide, and state your limits"
+    write_all({path: text, path.with_name(PROJECT_SCHEMA_FILE): project_schema()}, overwrite)
+    if wants_json():
+        write_json({"file": str(path)})
+    else:
+        write(sys.stdout, _begun(path, whose))
+
+
+def _seen_from(folder: Path, name: str) -> str:
+    """A drivetrain's file relative to the project's folder; a name of the library as it is."""
+    if not Path(name).is_file():
+        return name
+    return Path(os.path.relpath(Path(name).resolve(), folder.resolve())).as_posix()
+
+
+def _begun(path: Path, whose: str) -> str:
     """What a new project is, and what to type next."""
     from fe_drivetrain.command_line.validate_commands import ready_commands
     from fe_drivetrain.procedure.project import read_project
@@ -87,10 +117,10 @@ def _begun(path: Path) -> str:
 
     result = validate(read_project(path), path.parent)
     lines = [
-        f"{path} has the six steps of the 750 kW reference drivetrain: put in your own.",
+        f"{path} has the six steps of {whose}.",
         "Its evidence is made, and looked at, by:",
         *(f"  {command}" for command in ready_commands(result, path)),
-        "It stays open where nothing is published: its page says what, step by step.",
+        "It stays open where a value, a limit or a measurement is missing: its page says what.",
     ]
     return "".join(f"{line}\n" for line in lines)
 

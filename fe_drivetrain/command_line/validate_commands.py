@@ -9,13 +9,27 @@ from pathlib import Path
 from fe_drivetrain.procedure.project import Capture, Comparison, Project
 from fe_drivetrain.report.suite.case import Case, all_cases
 from fe_drivetrain.report.suite.chosen import SETTING
+from fe_drivetrain.studies.drivetrain_transient import EVENT_NAMES, OPERATION
 from fe_drivetrain.studies.project_validation import ValidateResult
 
 _MADE_AGAIN = frozenset({"missing", "edited", "stale", "quick", "of another drivetrain"})
 """States of evidence that a run may change."""
 
-_ON_DRIVETRAINS = ("advise", "check", "modes", "study", "uncertainty")
-"""Commands whose only argument is a drivetrain."""
+_ON_DRIVETRAINS = (
+    "advise",
+    "check",
+    "gears",
+    "life",
+    "loads",
+    "modes",
+    "study",
+    "transient",
+    "uncertainty",
+)
+"""Commands on a drivetrain, whose results have its hash."""
+
+_FILES = "outputs/*.outb"
+"""Histories in commands to be copied, as in the examples of all commands: a user has others."""
 
 
 def ready_commands(result: ValidateResult, path: Path) -> list[str]:
@@ -52,7 +66,7 @@ def ready_commands(result: ValidateResult, path: Path) -> list[str]:
         command
         for name in wanted
         if name not in known
-        if (command := _of_drivetrain(name, path, project))
+        if (command := _as_it_ran(result, name, drivetrain) or _of_drivetrain(name, path, project))
     ]
     return [*commands, shlex.join(["fe-drivetrain", "validate", str(path)])] if commands else []
 
@@ -100,14 +114,58 @@ def _run(cases: list[Case], project: Project, reports: Path, drivetrain: str) ->
     return shlex.join([*words, *(case.name for case in cases)])
 
 
+def _as_it_ran(result: ValidateResult, name: str, drivetrain: str) -> str:
+    """The command that made results, where it was on the project's drivetrain; empty else.
+
+    It has what no name of results says: files of loads, catalogues, values of an event.
+    """
+    every = (one for state in result.states for one in state.evidence if one.link.case == name)
+    made = next((one.results.environment for one in every if one.results is not None), None)
+    words = shlex.split(made.command) if made else []
+    if words[:2] != ["fe-drivetrain", name.partition("/")[0]] or drivetrain not in words:
+        return ""
+    words = [word for word in words if word != "--quick"]
+    if OPERATION in words and "--csv" not in words:  # samples are what step 6 compares
+        words.append("--csv")
+    return shlex.join(words)
+
+
 def _of_drivetrain(name: str, path: Path, project: Project) -> str:
     """The command whose results a name is of; empty where it is of none on drivetrains."""
-    command, _, _ = name.partition("/")
+    command, _, own = name.partition("/")
     drivetrain = _drivetrain(project, path.parent)
     if not drivetrain or command not in _ON_DRIVETRAINS:
         return ""
-    words = ["fe-drivetrain", command, drivetrain]
-    if command == "advise" and project.model:
-        for need in project.model.needs[:1]:
-            words += ["--quantity", need.quantity, "--tolerance", f"{100 * need.tolerance:g}%"]
+    asked: list[str] | None = [drivetrain]
+    if command == "loads":
+        asked = [_FILES, "--scene", drivetrain]
+    elif command == "life":
+        asked = [drivetrain, "--loads", _FILES]
+    elif command == "transient":
+        asked = _in_time(own, drivetrain)
+    elif command == "advise":
+        asked = [drivetrain, *_quantity(project)]
+    if asked is None:
+        return ""
+    words = ["fe-drivetrain", command, *asked]
     return shlex.join([*words, "--out", str(path.parent / project.reports / name)])
+
+
+def _in_time(name: str, drivetrain: str) -> list[str] | None:
+    """What is asked of a drivetrain in time, by the name of results, as in mine-stop.
+
+    None where that ends with no event.
+    """
+    event = next((e for one in EVENT_NAMES if name.endswith(e := one.replace("_", "-"))), None)
+    if event is None:
+        return None
+    # samples are what step 6 compares
+    return [drivetrain, event, *(["--loads", _FILES, "--csv"] if event == OPERATION else [])]
+
+
+def _quantity(project: Project) -> list[str]:
+    """The quantity and tolerance of advice: the first need whose name is one of the adviser."""
+    for need in project.model.needs if project.model else ():
+        if " [" not in need.quantity and "." in need.quantity:
+            return ["--quantity", need.quantity, "--tolerance", f"{100 * need.tolerance:g}%"]
+    return []

@@ -54,10 +54,10 @@ class PlainLoader(yaml.SafeLoader):
 
     def compose_node(self, parent: Any, index: Any) -> Any:
         if self.check_event(yaml.AliasEvent):
-            raise yaml.YAMLError("anchors and aliases are not allowed")
+            raise yaml.YAMLError("anchors and aliases are not allowed: write the values out")
         event = self.peek_event()  # type: ignore[no-untyped-call]
         if getattr(event, "anchor", None) is not None:
-            raise yaml.YAMLError("anchors and aliases are not allowed")
+            raise yaml.YAMLError("anchors and aliases are not allowed: write the values out")
         if getattr(event, "tag", None) is not None:
             raise yaml.YAMLError(f"tags such as {shown(event.tag)} are not allowed")
         try:

@@ -74,7 +74,7 @@ _OPTIONAL = {
     "rotor": (
         "rotor: {mass: 9.0e4, inertia: 4.0e7}   # at the front face; for modes and transients\n"
     ),
-    "generator": "generator: {inertia: 500, rated_torque: 4.0e4}   # [kg m^2, N m]\n",
+    "generator": "generator: {inertia: 4.5e6, rated_torque: 4.1e6}   # [kg m^2, N m]\n",
     "operation": (
         "operation: {rated_power: 5.0e6, rotor_speed: [0.7, 1.27]}   # [W]; least, rated [rad/s]\n"
     ),

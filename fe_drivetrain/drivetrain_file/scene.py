@@ -94,9 +94,21 @@ class Spread(Keys):
     deviation of a normal one, or the coefficient of variation of a lognormal one about its median.
     """
 
-    uniform: float | None = Field(default=None, gt=0, lt=1)
-    normal: float | None = Field(default=None, gt=0, lt=1)
-    lognormal: float | None = Field(default=None, gt=0, lt=10)
+    uniform: float | None = Field(default=None, gt=0, lt=1, description="share of the value")
+    normal: float | None = Field(default=None, gt=0, lt=1, description="share of the value")
+    lognormal: float | None = Field(default=None, gt=0, lt=10, description="share of the median")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _shares(cls, data: Any) -> Any:
+        for key, high in (("uniform", 1), ("normal", 1)):
+            value = data.get(key) if isinstance(data, dict) else None
+            if isinstance(value, int | float) and value >= high:
+                raise ValueError(
+                    f"{key} is {value:g} but is a share of the value, below {high}: write "
+                    f"{{{key}: 0.05}} for 5 %"
+                )
+        return data
 
     @model_validator(mode="after")
     def _one(self) -> "Spread":

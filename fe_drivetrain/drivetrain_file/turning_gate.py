@@ -15,6 +15,8 @@ from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.drivetrain_file.stage_completion import NotGivenError, completed
 from fe_drivetrain.drivetrain_file.turning_parts import BearingData, ShaftData, ShaftRow
 
+#: Rated power over torque times speed of the generator: losses of either side, as shares.
+LEAST_POWER, MOST_POWER = 0.75, 1.15
 #: Length of a shaft that is not given [m]: of bodies that only turn it does not matter.
 NOMINAL_LENGTH = 1.0
 
@@ -87,7 +89,8 @@ def check_turning(
     Raises
     ------
     InputError
-        See above, or a brake is on no shaft, or there are shafts without stages.
+        See above, or a brake is on no shaft, or there are shafts without stages, or the rated
+        torque of the generator contradicts rated power and speed.
     """
     gears = drivetrain.gearbox
     if len(gears.shafts) != len(gears.stages):
@@ -109,6 +112,22 @@ def check_turning(
     except NotGivenError:
         return
     check_table(table)
+    _check_torque(drivetrain, abs(table.speeds[-1]))
+
+
+def _check_torque(drivetrain: Drivetrain, ratio: float) -> None:
+    """Refuse a generator's rated torque that power and speed of the operation contradict."""
+    generator, operation = drivetrain.generator, drivetrain.operation
+    torque = None if generator is None else generator.rated_torque
+    of_power = None if operation is None else operation.rated_torque
+    if torque is None or of_power is None:
+        return
+    if not LEAST_POWER <= of_power / (torque * ratio) <= MOST_POWER:
+        raise InputError(
+            f"generator.rated_torque is {torque:g} N m, {torque * ratio:.4g} N m at the rotor by "
+            f"the ratio {ratio:.4g} of all stages, but operation has {of_power:.4g} N m, its "
+            "rated_power over the rated rotor_speed: correct one of them"
+        )
 
 
 def _lacks(drivetrain: Drivetrain, key: str, example: str) -> str:

@@ -68,8 +68,10 @@ from .bodies.levels import steady_load as steady_load
 from .bodies.levels import torsional as torsional
 from .bodies.machine import MACHINES as MACHINES
 from .bodies.machine import Machine as Machine
+from .bodies.machine import RatedTorque as RatedTorque
 from .bodies.machine import library_machine as library_machine
 from .bodies.machine import machine_of as machine_of
+from .bodies.machine import rated_torque as rated_torque
 from .bodies.mesh_errors import MeshError as MeshError
 from .bodies.mesh_errors import error_of_slices as error_of_slices
 from .bodies.mesh_errors import harmonic_error as harmonic_error

@@ -15,6 +15,7 @@ from fe_drivetrain.studies.dossier_overview import (
     AROUND_PEAK,
     DESIGN_LIFE,
     EXTREMES,
+    LIVES,
     MODEL,
     REACTIONS,
     SKETCH,
@@ -53,7 +54,7 @@ def show_dossier(run: Run, page: Page, result: DossierResult) -> None:
         result.tables[EXTREMES],
     )
     page.add(peak_chart(result.tables[AROUND_PEAK]))
-    if (lives := life_chart(result.bearings)) is not None:
+    if (lives := life_chart(result.tables[LIVES])) is not None:
         page.section("Life")
         page.add(lives)
     _answers(page, result.parts)

@@ -23,7 +23,7 @@ from fe_drivetrain.procedure.project import (
 from fe_drivetrain.procedure.sensors import sampling_rates
 from fe_drivetrain.procedure.tolerances import WIDEST, is_guess, why_vacuous
 from fe_drivetrain.report.results import DrivetrainRecord, Results, Verdict
-from fe_drivetrain.shafts.fidelity.quantity import ERROR_AGAINST_LAST, OWN_ERROR
+from fe_drivetrain.shafts.fidelity.quantity import ERROR_AGAINST_LAST, LEVEL_ERRORS, OWN_ERROR
 
 Evidence = Mapping[Claim, Found]
 
@@ -216,12 +216,13 @@ def _model(project: Project, evidence: Evidence) -> list[str]:
             continue  # that is said of the evidence
         if not found:
             lacks.append(
-                f"no evidence says which level {wanted} needs: link dynamics/drivetrain_levels for "
-                "its frequencies and shares, fe-drivetrain modes for frequencies, fe-drivetrain "
-                "advise for reactions"
+                f"no evidence says which level {wanted} needs: link results of fe-drivetrain "
+                "modes for frequencies, gears for K_gamma and K_Hbeta, transient for torques and "
+                "forces in time, or advise for any one quantity, whose name it must have"
             )
             continue
-        levels, least = found[-1]
+        # of several results the one that asks for most
+        levels, least = max(found, key=lambda one: len(one[0]) if one[1] is None else one[1])
         chosen = _place(step.level, levels)
         if chosen is None:
             names = ", ".join(name for _, name in levels)
@@ -264,6 +265,9 @@ def needed_of(
         where the results say nothing of the quantity.
     """
     figures = results.figures
+    if (stated := figures.get(LEVEL_ERRORS, {}).get(need.quantity)) is not None:
+        names = [(str(k), str(name)) for k, name in enumerate(stated["levels"])]
+        return names, _of_errors(stated[ERROR_AGAINST_LAST], stated[OWN_ERROR], need.tolerance)
     ladder = figures.get(f"ladder_{record.name}")
     rows = ladder or figures.get("levels")
     machine = bool(ladder or (rows and need.quantity in rows[0]))
@@ -284,6 +288,17 @@ def _of_ladder(values: Sequence[float | None], tolerance: float) -> int | None:
     for k in range(len(values) - 1, -1, -1):
         value = values[k]
         if finest is None or value is None or abs(value - finest) > tolerance * abs(finest):
+            break
+        least = k
+    return least
+
+
+def _of_errors(errors: Sequence[float | None], own: float, tolerance: float) -> int | None:
+    """The least level from which on all are within the tolerance, with the last one's own error."""
+    least = None
+    for k in range(len(errors) - 1, -1, -1):
+        error = errors[k]
+        if error is None or not error + own <= tolerance:
             break
         least = k
     return least

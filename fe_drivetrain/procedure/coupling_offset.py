@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.bodies.equations import SpringLaws, spring_laws, wave_table
@@ -61,8 +62,8 @@ class CouplingOffset:
         if not 0.0 < self.coupling <= 1e12:
             raise InputError(
                 f"coupling of the event is {self.coupling:g} N/m but must be above 0 N/m and at "
-                "most 1e12 N/m: give the radial stiffness of the coupling, or an offset of the "
-                "gearbox"
+                "most 1e12 N/m: give the radial stiffness of the coupling, as in "
+                f"{argument('values', {'coupling': 1000000})}, or an offset of the gearbox"
             )
         for name, high in (("y", 0.05), ("z", 0.05), ("run_out", 0.01), ("anisotropy", 0.45)):
             value = getattr(self, name)

@@ -24,6 +24,13 @@ REVERSALS = "torque reversals"
 MISALIGNMENT = "misalignment in the drivetrain"
 DIPS = "low voltage ride through"
 RESONANCE = "resonance"
+OVERLOAD = "operation at overload"
+ELECTRICAL_FAULT = "external or internal electrical fault"
+HIGH_SPEED_REVERSALS = "torque oscillation with reversals of the high-speed shaft"
+GEAR_RATING = "gear rating: pitting and bending, scuffing, micropitting, static strength"
+BEARING_RATING = (
+    "bearing rating: subsurface and surface fatigue, adhesive wear, frictional corrosion, overload"
+)
 TORQUE_AND_BENDING = "torque and bending of main shaft, high-speed shaft, couplings, bearings"
 """Design loads of the catalogue that results of the program are values of."""
 

@@ -16,6 +16,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import parse_mapping, read_text, validated
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.strict_yaml import no_truth_value
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.procedure.channels import ChannelFile
 
 PROJECT_SCHEMA_FILE = "project.schema.json"
@@ -349,8 +350,26 @@ def parse_project(text: str, source: str = "project") -> Project:
     return validated(Project, parse_mapping(text, source), source)
 
 
-def starting_project() -> str:
-    """The project to start from: the 750 kW reference drivetrain, with what it leaves open."""
+def starting_project(drivetrain: Drivetrain | None = None, file: str = "") -> str:
+    """The project to start from, with what it leaves open, as YAML text.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain, optional
+        Your own, whose evidence is then that of commands; the 750 kW reference drivetrain, on cases
+        of the suite, where left out.
+    file : str
+        Its file as the project names it, relative to the project's, or its name in the library.
+
+    Raises
+    ------
+    InputError
+        The drivetrain lacks what any model of all that turns needs; the message names its key.
+    """
+    if drivetrain is not None:
+        from fe_drivetrain.procedure.own_project import own_project
+
+        return own_project(drivetrain, file)
     return (
         package_files("fe_drivetrain.procedure").joinpath("project_750kw.yaml").read_text("utf-8")
     )

@@ -30,6 +30,8 @@ DESIGN_LIFE = 20.0
 
 EXTREMES, AROUND_PEAK = "extremes", "around_the_peak"
 """Tables that the part of reactions has beside those of a study."""
+LIVES = "lives"
+"""Table of the life of each rated bearing, those of the gearbox among them."""
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -101,6 +103,7 @@ def dossier(scene: Scene, parts: Mapping[str, Results]) -> DossierResult:
     extremes = reactions.figures[EXTREMES]
     rows = _bearing_rows(scene, extremes, parts.get(LIFE))
     found.data("bearings", rows)
+    found.data(LIVES, _lives(parts.get(LIFE)))
     found.data(EXTREMES, extremes)
     found.data(AROUND_PEAK, reactions.figures[AROUND_PEAK])
     for name, part in parts.items():
@@ -145,13 +148,30 @@ def _bearing_rows(
     return rows
 
 
+def _lives(life: Results | None) -> list[Record]:
+    """Life and limits of each rated bearing, those of the gearbox among them."""
+    if life is None:
+        return []
+    limits = {row["bearing"]: row for row in life.figures.get("limits", ())}
+    return [
+        {
+            "bearing": row["bearing"],
+            "L10mr [years]": row["L10mr [years]"],
+            "min S0 [-]": limits[row["bearing"]]["min S0"],
+            "max pressure [MPa]": limits[row["bearing"]]["max pressure [MPa]"],
+        }
+        for row in life.figures.get("lives", ())
+        if row.get("L10mr [years]") is not None and row["bearing"] in limits
+    ]
+
+
 def _answer(found: Findings, rows: Sequence[Record], parts: Mapping[str, Results]) -> None:
     """The answer: loads, lives, and what is not enough."""
     most: Any = max(rows, key=lambda row: float(row["largest radial force [kN]"] or 0.0))  # type: ignore[arg-type]
     peak = _peak_figure(found, parts[REACTIONS], str(most["bearing"]), most)
     figures = [peak]
     said = f"Bearing {most['bearing']} carries at most {certain_value(peak)}"
-    lived = [row for row in rows if row.get("L10mr [years]") is not None]
+    lived = _lives(parts.get(LIFE))
     if lived:
         shortest: Any = min(lived, key=lambda row: float(row["L10mr [years]"]))  # type: ignore[arg-type]
         weakest: Any = min(lived, key=lambda row: float(row["min S0 [-]"]))  # type: ignore[arg-type]
@@ -176,6 +196,10 @@ def _answer(found: Findings, rows: Sequence[Record], parts: Mapping[str, Results
             said += f"; {shortest['bearing']} lives {certain_value(life)}"
         else:
             said += f"; the bearings live {certain_value(life)} or more"
+    gears = parts[GEARS].answer if GEARS in parts else None
+    if gears is not None:
+        figures += [figure for figure in gears.figures if figure.quantity][:1]
+        said += "; gears are too weak" if gears.status == "bad" else ""
     figures += _others(parts)
     found.answer(
         "What do these loads do to this drivetrain?",
@@ -268,7 +292,7 @@ def life_chart(rows: Sequence[Mapping[str, Any]]) -> Chart | None:
     Parameters
     ----------
     rows : sequence of dict
-        Those of `DossierResult.bearings`.
+        The table `LIVES` of a dossier.
 
     Returns
     -------

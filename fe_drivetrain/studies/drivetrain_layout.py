@@ -77,8 +77,8 @@ def drivetrain_layout(caption: str, machine: MachineTable) -> Chart:
     end = begins[-1] + machine.shafts[-1].length
     drawing = _Drawing(end)
     heights = _heights(machine)
-    for shaft, x, y in zip(machine.shafts, begins, heights, strict=True):
-        _shaft(drawing, shaft, x, y)
+    for number, (shaft, x, y) in enumerate(zip(machine.shafts, begins, heights, strict=True)):
+        _shaft(drawing, shaft, x, y, 26 + _STAGGER * (number % 2))
     for number, stage in enumerate(machine.stages, start=1):
         at = begins[number]
         if isinstance(stage, PlanetaryData):
@@ -118,18 +118,18 @@ def _heights(machine: MachineTable) -> list[float]:
     return list(accumulate(steps, initial=0.0))
 
 
-def _shaft(drawing: _Drawing, shaft: ShaftData, x: float, y: float) -> None:
+def _shaft(drawing: _Drawing, shaft: ShaftData, x: float, y: float, shift: int) -> None:
     if shaft.sections is None:
         r = shaft.outer / 2 if shaft.outer is not None else _THIN * drawing.scale
         drawing.box((x, x + shaft.length), (y - r, y + r), _STEEL)
-        drawing.label(x + shaft.length / 2, y - r, shaft.name, 26)
+        drawing.label(x + shaft.length / 2, y - r, shaft.name, shift)
         return
     at = x
     for piece in shaft.sections:
         r = (piece.outer_diameter + piece.end_diameter) / 4
         drawing.box((at, at + piece.length), (y - r, y + r), _STEEL)
         at += piece.length
-    drawing.label(x + shaft.length / 2, y - r, shaft.name, 26)
+    drawing.label(x + shaft.length / 2, y - r, shaft.name, shift)
 
 
 def _planetary(drawing: _Drawing, stage: PlanetaryData, number: int, x: float, y: float) -> None:

@@ -14,10 +14,10 @@ from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.dynamics.bodies.advice import RUNGS, Rung
 from fe_drivetrain.dynamics.bodies.condensed_rungs import Rungs, plain_rungs, rungs_of
-from fe_drivetrain.dynamics.bodies.damping_ratios import ASSUMED_RATIOS
+from fe_drivetrain.dynamics.bodies.damping_ratios import ASSUMED_RATIOS, first_mode_damping
 from fe_drivetrain.dynamics.bodies.equations import equations_of_motion, spring_laws, steady
 from fe_drivetrain.dynamics.bodies.levels import Level
-from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of
+from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of, rated_torque
 from fe_drivetrain.dynamics.time.integration import integrate
 from fe_drivetrain.dynamics.time.machine_channels import Kind
 from fe_drivetrain.procedure.drivetrain_events import EVENTS, SLIP, Event, event_of
@@ -29,9 +29,12 @@ from fe_drivetrain.procedure.travelling_planets import (
     travels,
     with_travelling_planets,
 )
+from fe_drivetrain.report.number_text import percent_text
 from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.studies.gearbox_bearings import main_names
 from fe_drivetrain.studies.machine_description import housings_in_words
 from fe_drivetrain.studies.mode_levels import WORDS, named_rung
+from fe_drivetrain.studies.stated_levels import Errors, state_level_errors
 from fe_drivetrain.studies.transient_digest import (
     FileDigest,
     OperationOptions,
@@ -49,8 +52,10 @@ from fe_drivetrain.studies.transient_instants import ByInstant, by_instant
 from fe_drivetrain.studies.transient_ladder import (
     QUANTITIES,
     cheapest_level,
+    finest_band,
     level_error,
 )
+from fe_drivetrain.studies.transient_loads import design_loads
 from fe_drivetrain.studies.transient_result import TransientResult
 from fe_drivetrain.studies.transient_runs import (
     Extreme,
@@ -58,6 +63,7 @@ from fe_drivetrain.studies.transient_runs import (
     Prepared,
     Rated,
     Samples,
+    telling_torque,
     with_bands,
 )
 from fe_drivetrain.studies.transient_tables import (
@@ -78,6 +84,9 @@ OPERATION = "operation"
 
 EVENT_NAMES = (OPERATION, *EVENTS)
 """Names of all events."""
+
+SLOW = 2e-3
+"""Damping ratio of the first mode below which swings need eighty periods to fall to a third."""
 
 WINDOW = 60.0
 """Part of the first history in which levels and steps are compared [s]."""
@@ -258,17 +267,15 @@ def rated_of(drivetrain: Drivetrain, backlash: float = 0.0) -> Rated:
             f"{drivetrain.title!r} does not state the speed of its rotor: add operation: "
             "{rotor_speed: [least, rated]} in rad/s"
         )
-    torque = of.rated_torque
-    if torque is None and generator is not None and generator.rated_torque is not None:
-        torque = generator.rated_torque * abs(machine_of(drivetrain).speeds[-1])
-    if torque is None:
+    rated = rated_torque(drivetrain, machine_of(drivetrain))
+    if rated is None:
         raise InputError(
             f"{drivetrain.title!r} does not state its rated power: add operation: "
             "{rated_power: ...} in W"
         )
     slip = None if generator is None else generator.slip
     return Rated(
-        torque,
+        rated.torque,
         of.rotor_speed[1],
         SLIP if slip is None else slip,
         drivetrain.damping or ASSUMED_RATIOS,
@@ -300,11 +307,10 @@ def _happened(asked: _Asked, steps: Steps) -> TransientResult:
     found = _findings(asked)
     runs, number = _compared(asked, asked.levels(event.levels), at, asked.step, steps)
     run = runs[number]
-    torques = [name for name, one in run.extremes.items() if one.kind == "torque"]
-    instants = None
-    if torques and asked.event == "stop":
+    torque, instants = telling_torque(run.extremes), None
+    if torque and asked.event == "stop":
         with steps.step("instants of the brake"):
-            instants = by_instant(made[run.rung.name], event, torques[-1], run.step)
+            instants = by_instant(made[run.rung.name], event, torque, run.step)
     return _result(asked, found, steps, runs, number, run.extremes, run.samples, {}, {}, instants)
 
 
@@ -469,6 +475,11 @@ def _result(
     imbalance = max([run.imbalance, *(one.imbalance for one in files.values())])
     found.data("extremes", extreme_rows(extremes))
     found.data("levels", level_rows(runs, errors, number))
+    of_kinds = {
+        QUANTITIES[kind]: Errors([of[k].error for of in errors], finest_band(runs[-1], kind))
+        for k, kind in enumerate(kinds)
+    }
+    state_level_errors(found, [one.rung.name for one in runs], of_kinds)
     if asked.event == "offset":
         found.data("alternating", alternating_rows(run))
     if instants is not None:
@@ -476,7 +487,14 @@ def _result(
     judge_run(found, asked.event, run, imbalance, asked.rated)
     state_assumptions(found, asked.event, asked.values, asked.drivetrain, run.rung)
     state_bounds(found, runs, asked.rungs.left_out)
-    state_figures(found, extremes, run)
+    loads = design_loads(asked.event, extremes, main_names(asked.machine))
+    state_figures(found, extremes, run, loads)
+    damping = first_mode_damping(asked.machine, asked.rated.damping)
+    if damping < SLOW:
+        found.note(
+            f"Swings hardly decay: the first mode's damping ratio is {percent_text(damping)} by "
+            "the ratios of each shaft and mesh between its own two bodies."
+        )
     state_answer(found, asked.event, extremes, run, runs, number, files, asked.quantity, instants)
     found.note(housings_in_words(run.rung, asked.machine))
     return TransientResult(

@@ -7,11 +7,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from fe_drivetrain.procedure.failure_modes import GEAR_RATING
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import certain_value, formatted, value_text
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.gear_answers import GearAnswer, MeshAnswer, Safety, safeties
 from fe_drivetrain.turbine_loads.histories.sites import HOURS_A_YEAR
+
+LEAST_SAFETY = "least safety factor over that required"
+"""Of all flanks and roots that are rated, as projects of validation name it."""
 
 _SHOWN = 6  # key figures
 _DIGITS = 4
@@ -68,6 +72,8 @@ def _strength(
 ) -> None:
     """Whether all gears that are rated are strong enough."""
     worst = min(ratings, key=lambda one: one.reserve)
+    band = worst.safety.band / worst.safety.required
+    found.found(LEAST_SAFETY, worst.reserve, band, (GEAR_RATING,))
     figures = []
     for of in ("S_H", "S_F"):
         least = [one for one in ratings if one.of == of]

@@ -9,6 +9,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.dynamics.bodies.condensed_rungs import SOFT_SEATS, STIFF_SEATS
+from fe_drivetrain.procedure.failure_modes import GEAR_RATING
 from fe_drivetrain.report.charts import bars, chart, error_bars
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
@@ -133,15 +134,16 @@ def state_findings(
 
 def _gear_figures(found: Findings, gear: GearAnswer, varies: bool) -> None:
     S_H, S_F = safeties(gear, varies)
+    rating = (GEAR_RATING,)
     if S_H is not None:
-        found.found(f"S_H of {gear.name}", S_H.value, S_H.band)
+        found.found(f"S_H of {gear.name}", S_H.value, S_H.band, rating)
     if S_F is not None:
-        found.found(f"S_F of {gear.name}", S_F.value, S_F.band)
+        found.found(f"S_F of {gear.name}", S_F.value, S_F.band, rating)
     if gear.life is not None and gear.bands is not None:
-        found.found(f"damage of {gear.name}", gear.life.damage.largest, gear.bands.damage)
-    found.found(f"sigma_H of {gear.name} [MPa]", gear.contact_stress / 1e6)
+        found.found(f"damage of {gear.name}", gear.life.damage.largest, gear.bands.damage, rating)
+    found.found(f"sigma_H of {gear.name} [MPa]", gear.contact_stress / 1e6, loads=rating)
     if gear.root_stress is not None:
-        found.found(f"sigma_F of {gear.name} [MPa]", gear.root_stress / 1e6)
+        found.found(f"sigma_F of {gear.name} [MPa]", gear.root_stress / 1e6, loads=rating)
 
 
 def gear_row(gear: GearAnswer, varies: bool) -> Record:

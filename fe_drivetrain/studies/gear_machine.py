@@ -15,7 +15,7 @@ from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.dynamics.bodies.advice import Rung
 from fe_drivetrain.dynamics.bodies.condensed_rungs import Rungs, plain_rungs, with_rollers
-from fe_drivetrain.dynamics.bodies.machine import machine_of
+from fe_drivetrain.dynamics.bodies.machine import machine_of, rated_torque
 from fe_drivetrain.studies.gear_options import GearOptions
 from fe_drivetrain.studies.gear_stresses import Conditions
 from fe_drivetrain.studies.mode_levels import WORDS, named_rung
@@ -101,13 +101,14 @@ def gear_train(
         oil = 1e-6 * options.lubricant
     stated = "as asked"
     if torque is None:
-        torque = None if operation is None else operation.rated_torque
-        stated = "operation: rated_power over rotor_speed, without losses"
-    if torque is None:
-        raise InputError(
-            f"{drivetrain.title!r} states no torque: give operation.rated_power and "
-            f"operation.rotor_speed in the file, or {argument('torque')} in N m"
-        )
+        rated = rated_torque(drivetrain, machine)
+        if rated is None:
+            raise InputError(
+                f"{drivetrain.title!r} states no torque: give generator.rated_torque, or "
+                "operation.rated_power and operation.rotor_speed in the file, or "
+                f"{argument('torque')} in N m"
+            )
+        torque, stated = rated
     if not 0.0 < torque < 1e10:
         raise InputError(
             f"torque of the rotor is {torque:g} N m but must be above 0 and below 1e10 N m: "

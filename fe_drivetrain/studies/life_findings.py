@@ -13,7 +13,7 @@ from fe_drivetrain.bearing_life.life.reference_life import RINGS
 from fe_drivetrain.bearing_life.life.roller_damage import LifeRules
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
-from fe_drivetrain.procedure.failure_modes import TORQUE_AND_BENDING
+from fe_drivetrain.procedure.failure_modes import BEARING_RATING, TORQUE_AND_BENDING
 from fe_drivetrain.report.number_text import value_with_band
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
@@ -53,12 +53,12 @@ def answers(
     site : Site or None
         Whose winds are weighted.
     """
+    _shortest(found, lives)
     for life in lives:
         years, band = life.years, scatter(life)
-        shown = in_years(years["L10mr"])
+        shown, loads = in_years(years["L10mr"]), _loads(life)
         if np.isfinite(years["L10mr"]):
-            which = f"L10mr of bearing {life.name} [years]"
-            found.found(which, years["L10mr"], band, (TORQUE_AND_BENDING,))
+            found.found(f"L10mr of bearing {life.name} [years]", years["L10mr"], band, loads)
         if band is not None:
             shown = f"{value_with_band(found.figures[-1])} (two standard errors of files of the "
             shown += "same wind)"
@@ -66,6 +66,27 @@ def answers(
             f"Bearing {life.name}: L10mr {shown}, L10r {in_years(years['L10r'])}, L10 "
             f"{in_years(years['L10'])}, {_under(life, site)}{_takes_longest(life, rules)}."
         )
+
+
+def _loads(life: BearingLife) -> tuple[str, ...]:
+    """The design load that lives of a bearing are values of: one of a gearbox has its oil."""
+    return (TORQUE_AND_BENDING if life.bearing.oil is None else BEARING_RATING,)
+
+
+def _shortest(found: Findings, lives: Sequence[BearingLife]) -> None:
+    """The shortest life and the least static safety of main bearings, and of a gearbox's."""
+    for whose, of_gearbox in (("main bearings", False), ("gearbox bearings", True)):
+        of = [life for life in lives if (life.bearing.oil is not None) is of_gearbox]
+        if of:
+            first = min(of, key=lambda life: life.years["L10mr"])
+            years, loads = first.years["L10mr"], _loads(first)
+            if np.isfinite(years):
+                found.found(f"shortest L10mr of {whose} [years]", years, scatter(first), loads)
+            found.found(
+                f"least static safety S0 of {whose}",
+                min(life.limits.static_safety for life in of),
+                loads=loads,
+            )
 
 
 def _under(life: BearingLife, site: Site | None) -> str:

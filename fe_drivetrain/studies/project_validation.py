@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 from typing import ClassVar
 
@@ -40,6 +42,8 @@ from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.turbine_loads.histories.windows import CaptureMatrix
+
+_NAMED = re.compile(r"('[^']+')( .*)", re.DOTALL)
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -100,7 +104,7 @@ class ValidateResult(Result):
             counting = sum(found.counts for found in state.evidence)
             groups["counts"][label] = float(counting)
             groups["does not count"][label] = float(len(state.evidence) - counting)
-        return bars("Evidence of the six steps", groups, "results of cases", stacked=True)
+        return bars("Evidence of the six steps", groups, "results", stacked=True)
 
 
 def validate(project: Project, folder: Path, *, report: Progress = silent) -> ValidateResult:
@@ -157,7 +161,7 @@ def validate(project: Project, folder: Path, *, report: Progress = silent) -> Va
 
 
 def reasons(state: StepState) -> list[str]:
-    """Why a step is open, in sentences; what was not run yet in one of them, at the end.
+    """Why a step is open, in sentences; what lacks the same in one, what was not run at the end.
 
     Parameters
     ----------
@@ -165,12 +169,30 @@ def reasons(state: StepState) -> list[str]:
         One of the six.
     """
     absent = [one for one in state.evidence if one.results is None]
-    said = {f"{one.claim.name}: {one.why}" for one in absent}
-    found = [text for text in state.lacks if text not in said]
+    same: dict[str, list[FoundEvidence]] = {}
+    for one in state.evidence:
+        if one.results is not None and not one.counts:
+            same.setdefault(one.why, []).append(one)
+    said = {f"{one.claim.name}: {one.why}" for one in (*absent, *chain(*same.values()))}
+    found = _together(text for text in state.lacks if text not in said)
+    found += [f"{', '.join(one.claim.name for one in of)}: {why}" for why, of in same.items()]
     if absent:
         names = ", ".join(dict.fromkeys(one.link.case for one in absent))
         found.append(f"its evidence is not there: run {names}")
     return found
+
+
+def _together(sentences: Iterable[str]) -> list[str]:
+    """Sentences that begin with a name in quotes, those that go on alike in one."""
+    names: dict[str, list[str]] = {}
+    for text in sentences:
+        named = _NAMED.match(text)
+        name, rest = named.groups() if named else ("", text)
+        names.setdefault(rest, []).append(name)
+    return [
+        f"{', '.join(of)}: each{rest}" if len(of) > 1 else f"{of[0]}{rest}"
+        for rest, of in names.items()
+    ]
 
 
 def as_record(found: FoundEvidence) -> Record:

@@ -170,7 +170,10 @@ def _turning_figures(found: Findings, turning: Turning) -> tuple[KeyFigure, KeyF
     """Ratio and first torsional frequency as figures."""
     return (
         found.value("ratio of all stages", turning.ratio),
-        found.value("first torsional frequency, generator free [Hz]", turning.first_torsional),
+        found.value(
+            "first torsional frequency, of torsion alone, generator free [Hz]",
+            turning.first_torsional,
+        ),
     )
 
 

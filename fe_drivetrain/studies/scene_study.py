@@ -68,6 +68,7 @@ from fe_drivetrain.studies.study_loads import (
 from fe_drivetrain.studies.tilt_secants import TiltSecant, secant_rows, tilt_secants
 from fe_drivetrain.turbine_loads.histories.damage import SLOPES, check_slope
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
+from fe_drivetrain.turbine_loads.hub_loads.recorded import Files
 
 _SAMPLES, _QUICK_SAMPLES = 128, 40
 _SEED = 0  # of the samples; that of made wind is the surrogate's
@@ -195,7 +196,7 @@ class StudyResult(Result):
 
 def study(
     scene: Scene,
-    loads: StudyLoads | Sequence[LoadHistory] | None = None,
+    loads: StudyLoads | Sequence[LoadHistory] | Files | None = None,
     slopes: Sequence[float] = SLOPES,
     weight: bool = True,
     quick: bool = False,
@@ -209,10 +210,10 @@ def study(
     ----------
     scene : Scene
         Any scene that the library solves.
-    loads : StudyLoads, sequence of LoadHistory or None
+    loads : StudyLoads, sequence of LoadHistory, files or None
         Hub loads, of any length and step, see
-        `fe_drivetrain.turbine_loads.hub_loads.read_hub_load_files`; those of a surrogate where
-        None.
+        `fe_drivetrain.turbine_loads.hub_loads.read_hub_load_files`; or the files, folders and
+        patterns themselves; those of a surrogate where None.
     slopes : sequence of float
         Slopes of S-N curves, for damage-equivalent loads.
     weight : bool
@@ -304,7 +305,7 @@ def _solved(
     found: Findings,
     steps: Steps,
     scene: Scene,
-    loads: StudyLoads | Sequence[LoadHistory] | None,
+    loads: StudyLoads | Sequence[LoadHistory] | Files | None,
     weight: bool,
     quick: bool,
     seat: bool,

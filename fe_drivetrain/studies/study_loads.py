@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -21,7 +22,7 @@ from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.turbine_loads.hub_loads.files import read_hub_load_files, read_hub_loads
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory, require_even
 from fe_drivetrain.turbine_loads.hub_loads.point_loads import PointLoads
-from fe_drivetrain.turbine_loads.hub_loads.recorded import read_mapped
+from fe_drivetrain.turbine_loads.hub_loads.recorded import Files, read_mapped
 from fe_drivetrain.turbine_loads.hub_loads.surrogate import (
     Condition,
     HubLoadSet,
@@ -30,6 +31,9 @@ from fe_drivetrain.turbine_loads.hub_loads.surrogate import (
     surrogate_grid,
 )
 from fe_drivetrain.turbine_loads.hub_loads.turbines import different_turbines, vertical_forces
+
+_NAMES = (str, os.PathLike)
+"""Types of what names a file."""
 
 
 @dataclass(frozen=True)
@@ -136,13 +140,13 @@ def own_loads(
     return _of_the_user(histories, scene, argument("loads", patterns), ("file", "files"), skip)
 
 
-def given_loads(histories: Sequence[LoadHistory], scene: Scene) -> StudyLoads:
+def given_loads(histories: Sequence[LoadHistory] | Files, scene: Scene) -> StudyLoads:
     """The user's histories, about the shaft's front face.
 
     Parameters
     ----------
-    histories : sequence of LoadHistory
-        One or more, of any length and step.
+    histories : sequence of LoadHistory, or files
+        One or more, of any length and step; or files, folders and patterns of these.
     scene : Scene
         States which point of the shaft they are about.
 
@@ -153,7 +157,10 @@ def given_loads(histories: Sequence[LoadHistory], scene: Scene) -> StudyLoads:
     """
     if not histories:
         raise InputError("there is no load history to study: give one or more, or None")
-    return _of_the_user(histories, scene, argument("loads"), ("history", "histories"))
+    several: list[Any] = [histories] if isinstance(histories, _NAMES) else [*histories]
+    if all(isinstance(one, _NAMES) for one in several):
+        return own_loads([os.fspath(one) for one in several], 0.0, scene)
+    return _of_the_user(several, scene, argument("loads"), ("history", "histories"))
 
 
 def _of_the_user(

@@ -222,15 +222,18 @@ def driven(
     end = moving.end if until is None else min(until, moving.end)
     every = max(1, round((end - float(history.time[0])) / asked.step) // KEPT)
     shown: list[tuple[Floats, Floats]] = []
+    seen = 0
     for part in moving.pieces(asked.step, until):
         account.add(part)
-        begin = 1 if shown else 0
+        begin = 1 if seen else 0
         times, values = part.times[begin:], channels.of(part)[begin:]
         for one, column in zip(sums, values.T, strict=True):
             one.add(times, column)
         if first is not None:
             against.add(times, values[:, first], values[:, rotor])
-        shown.append((times[::every], values[::every]))
+        kept = slice(-seen % every, None, every)  # evenly over the ends of pieces
+        shown.append((times[kept], values[kept]))
+        seen += len(times)
     digest = FileDigest(
         end - float(history.time[0]),
         {name: one.digest(asked.step) for name, one in zip(channels.names, sums, strict=True)},

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.dynamics.bodies.advice import Rung
 from fe_drivetrain.dynamics.bodies.damping_ratios import ASSUMED_RATIOS
@@ -29,7 +30,8 @@ from fe_drivetrain.studies.transient_ladder import (
     bounds_of,
     level_error,
 )
-from fe_drivetrain.studies.transient_runs import Extreme, LevelRun, Rated
+from fe_drivetrain.studies.transient_loads import ExtremeLoads
+from fe_drivetrain.studies.transient_runs import Extreme, LevelRun, Rated, telling_torque
 from fe_drivetrain.studies.transient_tables import (
     alternating_rows,
     bound_rows,
@@ -38,11 +40,13 @@ from fe_drivetrain.studies.transient_tables import (
 
 #: Energy that may appear from nowhere: of linear systems, and of teeth that vary or part.
 ENERGY, ENERGY_OF_LAWS = 1e-6, 1e-2
-STANDS = 1e-6
-"""Share of a change below which what alternates is round-off."""
 
 SETTLED = 0.05
 """What the step may leave uncertain of an extreme, over it, before it is said to be open."""
+STILL = 1e-6
+"""Alternating force over the largest, below which it is round-off of a steady one."""
+MINOR = 0.1
+"""Share of the largest extreme of a kind below which what is open of one is a caution alone."""
 
 QUESTIONS = {
     "stop": "What does an emergency stop do to the drivetrain?",
@@ -194,7 +198,12 @@ def state_bounds(found: Findings, runs: Sequence[LevelRun], left_out: Mapping[st
         found.data("levels left out", rows)
 
 
-def state_figures(found: Findings, extremes: Mapping[str, Extreme], run: LevelRun) -> None:
+def state_figures(
+    found: Findings,
+    extremes: Mapping[str, Extreme],
+    run: LevelRun,
+    loads: Mapping[str, ExtremeLoads],
+) -> None:
     """Extremes as figures, and those that their step leaves open.
 
     Parameters
@@ -205,27 +214,41 @@ def state_figures(found: Findings, extremes: Mapping[str, Extreme], run: LevelRu
         Extremes by channel.
     run : LevelRun
         The run whose step it is.
+    loads : Mapping[str, ExtremeLoads]
+        Design loads that they are values of, by channel.
     """
-    loose: list[tuple[float, str]] = []
+    loose: dict[bool, list[tuple[float, str]]] = {True: [], False: []}
     for name, one in extremes.items():
         most, unit = in_shown_unit(one.most, one.unit)
         least, _ = in_shown_unit(one.least, one.unit)
         size = one.most / most if most else 1.0
         bands = [None if b is None else b / size for b in (one.most_band, one.least_band)]
-        found.found(f"largest {name} [{unit}]", most, bands[0])
-        found.found(f"least {name} [{unit}]", least, bands[1])
+        found.found(f"largest {name} [{unit}]", most, bands[0], loads[name].most)
+        found.found(f"least {name} [{unit}]", least, bands[1], loads[name].least)
         band = max(one.most_band or 0.0, one.least_band or 0.0)
         of_kind = max(each.largest for each in extremes.values() if each.kind == one.kind)
         counts = one.kind != "speed" and one.largest >= COUNTED * of_kind
         if counts and band > SETTLED * one.largest:
-            loose.append((band / one.largest, name))
-    if loose:
-        share, name = max(loose)
+            loose[one.largest >= MINOR * of_kind].append((band / one.largest, name))
+    step = f"the step of {1e3 * run.step:.3g} ms"
+    shorter = f"give a shorter {argument('step')}"
+    if major := loose[True]:
+        share, name = max(major)
         found.unsettled.append(
-            f"Not converged: {len(loose)} channel{'s' * (len(loose) > 1)}, uncertain by up to "
-            f"{percent_text(share)} by the step of {1e3 * run.step:g} ms ({name}): take a shorter "
-            "step."
+            f"Not converged: {_channels(major)}, uncertain by up to "
+            f"{percent_text(share)} by {step} ({name}): {shorter}."
         )
+    if minor := loose[False]:
+        share, name = max(minor)
+        below = f"{_channels(minor)} below {percent_text(MINOR)} of the largest of the kind"
+        found.note(
+            f"{below}: uncertain by up to {percent_text(share)} by {step} ({name}); where it "
+            f"counts, {shorter}."
+        )
+
+
+def _channels(which: Sequence[object]) -> str:
+    return f"{len(which)} channel{'s' * (len(which) > 1)}"
 
 
 class _Answered(NamedTuple):
@@ -263,18 +286,25 @@ class _Answered(NamedTuple):
         )
 
     @property
-    def last(self) -> str:
-        """Torque of the last shaft."""
-        return list(self.of_kind("torque"))[-1]
+    def torque(self) -> str:
+        """Torque that tells what happens."""
+        return telling_torque(self.extremes)
+
+    @property
+    def shaft(self) -> str:
+        """The shaft of that torque, in words."""
+        name = self.torque.removeprefix("torque of ")
+        return name if name.isupper() or "shaft" in name.lower() else f"{name} shaft"
 
     def over(self, name: str, least: bool = False) -> KeyFigure:
         """Largest or least value of a channel over its rated one."""
         one = self.extremes[name]
         band = one.least_band if least else one.most_band
+        share = None if band is None else band / abs(one.rated)
         return self.found.value(
             f"{'least' if least else 'largest'} {name}, over rated",
             one.least_over_rated if least else one.over_rated,
-            None if band is None else band / abs(one.rated),
+            None if share is None or share < ENERGY else share,
         )
 
 
@@ -365,12 +395,12 @@ def _cautions(event: str, run: LevelRun, files: Mapping[str, FileDigest]) -> lis
 
 
 def _stop(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigure]]:
-    last = of.last
-    one, stands = of.extremes[last], of.run.marks.get("disc stands")
+    name = of.torque
+    one, stands = of.extremes[name], of.run.marks.get("disc stands")
     turned = one.least_over_rated < -0.005
-    most, least = of.over(last), of.over(last, least=True)
+    most, least = of.over(name), of.over(name, least=True)
     verdict = (
-        f"The stop loads the {last.removeprefix('torque of ')} to {certain_value(most)} of rated "
+        f"The stop loads the {of.shaft} to {certain_value(most)} of rated "
         f"torque{f' and back to {certain_value(least)}' if turned else ''}; "
         + (
             f"its disc first stands after {value_text(stands, 's')}."
@@ -385,21 +415,21 @@ def _stop(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigu
 
 
 def _grid_loss(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigure]]:
-    one, speed = of.extremes[of.last], of.extremes["speed of generator"]
-    turned, least = one.least_over_rated < -0.005, of.over(of.last, least=True)
+    one, speed = of.extremes[of.torque], of.extremes["speed of generator"]
+    turned, least = one.least_over_rated < -0.005, of.over(of.torque, least=True)
     verdict = (
         f"Losing the grid {'reverses' if turned else 'lowers'} the torque of the "
-        f"{of.last.removeprefix('torque of ')} to {certain_value(least)} of rated; the "
+        f"{of.shaft} to {certain_value(least)} of rated; the "
         f"generator reaches {speed.over_rated:.2f} of its speed."
     )
-    figures = [least, of.over("speed of generator"), of.over(of.last)]
+    figures = [least, of.over("speed of generator"), of.over(of.torque)]
     return verdict, [*figures, *_others(of)]
 
 
 def _dip(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigure]]:
-    most, least = of.over(of.last), of.over(of.last, least=True)
+    most, least = of.over(of.torque), of.over(of.torque, least=True)
     verdict = (
-        f"The dip swings the torque of the {of.last.removeprefix('torque of ')} between "
+        f"The dip swings the torque of the {of.shaft} between "
         f"{certain_value(least)} and {certain_value(most)} of rated."
     )
     figures = [most, least, *_others(of)]
@@ -416,7 +446,7 @@ def _run_up(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFi
         f"{speed / rotor.rated:.2f} of rated speed."
     )
     figures = [of.over(mesh), of.found.value("rotor speed there, over rated", speed / rotor.rated)]
-    return verdict, [*figures, of.over(of.last), *_others(of)[1:]]
+    return verdict, [*figures, of.over(of.torque), *_others(of)[1:]]
 
 
 def _offset(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigure]]:
@@ -427,7 +457,8 @@ def _offset(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFi
     change = value_text(float(moved["change of the mean [kN]"]), "kN")
     swing = float(most["once a turn [kN]"]) + float(most["twice a turn [kN]"])
     figures = [of.found.value(f"{name}, change of its mean [kN]", moved["change of the mean [kN]"])]
-    if swing < STANDS * abs(float(moved["change of the mean [kN]"])):
+    changed = abs(float(moved["change of the mean [kN]"]))
+    if swing < STILL * max(changed, float(most["largest [kN]"])):
         figures.append(of.found.value(f"{name}, largest [kN]", moved["largest [kN]"]))
         verdict = f"The offset changes the {name} by {change}, and nothing alternates."
         return verdict, [*figures, *_others(of)]
@@ -447,15 +478,15 @@ def _base(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigu
     one = of.extremes[worst]
     least, most, rated = (value_text(v / 1e3, "kN") for v in (one.least, one.most, one.rated))
     verdict = f"As the base moves, the {worst} is between {least} and {most}, beside {rated}."
-    return verdict, [of.force(worst), of.over(of.last), *_others(of)[:1]]
+    return verdict, [of.force(worst), of.over(of.torque), *_others(of)[:1]]
 
 
 def _operation(of: _Answered, files: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigure]]:
-    most, least = of.over(of.last), of.over(of.last, least=True)
+    most, least = of.over(of.torque), of.over(of.torque, least=True)
     count = len(files)
     verdict = (
         f"In {count} histor{'y' if count == 1 else 'ies'} the torque of the "
-        f"{of.last.removeprefix('torque of ')} is between {certain_value(least)} and "
+        f"{of.shaft} is between {certain_value(least)} and "
         f"{certain_value(most)} of rated."
     )
     apart = max(digest.against_file for digest in files.values())

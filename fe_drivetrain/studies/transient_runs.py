@@ -129,6 +129,34 @@ class Extreme:
         return self.least / self.rated if abs(self.rated) > 1e-6 * self.largest else np.nan
 
 
+ALIKE = 0.95
+"""Largest torque over rated, as a share of that of any shaft, from which on shafts are alike."""
+
+
+def telling_torque(extremes: Mapping[str, Extreme]) -> str:
+    """Torque that tells what happens: of the shafts that are loaded most over rated, the last.
+
+    The last shaft alone does not: a brake before it loads all the gears and not that shaft.
+
+    Parameters
+    ----------
+    extremes : Mapping[str, Extreme]
+        Extremes by channel.
+
+    Returns
+    -------
+    str
+        Name of the channel; empty where there is none.
+    """
+    sizes = {
+        name: one.largest / abs(one.rated)
+        for name, one in extremes.items()
+        if one.kind == "torque" and np.isfinite(one.over_rated)
+    }
+    most = max(sizes.values(), default=0.0)
+    return next((name for name in reversed(sizes) if sizes[name] >= ALIKE * most), "")
+
+
 @dataclass(frozen=True)
 class Samples:
     """What a drivetrain did over time.

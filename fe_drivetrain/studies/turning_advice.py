@@ -22,6 +22,7 @@ from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.machine_description import assume_housings
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.shown_units import in_large_unit, quantity_in_words
+from fe_drivetrain.studies.stated_levels import Errors, state_level_errors
 from fe_drivetrain.studies.turning_quantities import (
     TurningModel,
     TurningQuantity,
@@ -289,6 +290,9 @@ def _state(found: Findings, ladder: TurningLadder) -> None:
         verdict = f"The level {known.rung.name} is enough within {share}: {away}\u00a0% from the "
         verdict += f"finest, {finest}."
     found.data("levels", level_rows(ladder))
+    errors = Errors([one.error for one in ladder.levels], ladder.own)
+    names = [one.rung.name for one in ladder.levels]
+    state_level_errors(found, names, {ladder.quantity.name: errors})
     found.at_most(
         f"{ladder.quantity.name}: error of the level {known.rung.name}",
         ladder.bound(number),

@@ -3,6 +3,7 @@
 import shutil
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,8 +15,18 @@ from fe_drivetrain.command_line.report import ReportRequest, content_of, turning
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.drivetrain_file import change_scene, library_scene, read_drivetrain
 from fe_drivetrain.drivetrain_file.without_weight import weightless
-from fe_drivetrain.report.results import read_results
+from fe_drivetrain.report.environment import environment
+from fe_drivetrain.report.results import Results, read_results
 from fe_drivetrain.report.suite.case import QUICK
+from fe_drivetrain.studies.dossier_overview import (
+    AROUND_PEAK,
+    EXTREMES,
+    LIFE,
+    LIVES,
+    REACTIONS,
+    dossier,
+    life_chart,
+)
 
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
 
@@ -143,3 +154,31 @@ def test_a_page_is_printed_as_a_pdf(tmp_path: Path) -> None:
     page.write_text("<!DOCTYPE html><title>t</title><p>One page.", encoding="utf-8")
     printing.write_pdf(printing.browser(), page, target)
     assert target.read_bytes().startswith(b"%PDF")
+
+
+def test_the_shortest_life_is_of_any_bearing_that_of_a_gearbox_too() -> None:
+    scene = library_scene("two_bearings")
+    names = scene.bearing_names
+
+    def found(**more: Any) -> Results:
+        given = {"title": "t", "source": "s", "details": [], "verdicts": [], "sections": []}
+        return Results(case="a/b", environment=environment({}), **(given | more))
+
+    largest = [
+        {"load": "radial force", "place": name, "largest [kN]": 100.0 + k}
+        for k, name in enumerate(names)
+    ]
+    around = {"time [s]": [0.0], "radial force [kN]": {names[0]: [1.0]}, "bearing": names[0]}
+    around |= {"peak [kN]": 1.0, "at [s]": 0.0, "file": "a"}
+    years = dict(zip([*names, "stage 1 pin A"], (70.0, 80.0, 23.0), strict=True))
+    lives = [{"bearing": name, "L10mr [years]": years[name]} for name in years]
+    limits = [{"bearing": name, "min S0": 5.0, "max pressure [MPa]": 900.0} for name in years]
+    parts = {
+        REACTIONS: found(figures={EXTREMES: largest, AROUND_PEAK: around}),
+        LIFE: found(figures={"lives": lives, "limits": limits}),
+    }
+    result = dossier(scene, parts)
+    assert result.answer.verdict.endswith("the bearings live 23\u00a0years or more.")
+    chart = life_chart(result.tables[LIVES])
+    assert chart is not None
+    assert "stage 1 pin A" in str(chart.figure)

@@ -3,7 +3,7 @@
 import json
 import re
 from copy import deepcopy
-from math import cos, pi, radians, tan
+from math import cos, fsum, pi, radians, tan
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +25,15 @@ from fe_drivetrain.drivetrain_file import (
     scene_text,
 )
 from fe_drivetrain.drivetrain_file.gear_stages import ParallelStage, PlanetaryStage
-from fe_drivetrain.dynamics import Level, library_machine, machine_of, machine_system, torsional
+from fe_drivetrain.dynamics import (
+    Level,
+    library_machine,
+    machine_of,
+    machine_system,
+    rated_torque,
+    system_modes,
+    torsional,
+)
 from fe_drivetrain.dynamics.torsion import natural_modes
 from fe_drivetrain.gear import Gear, iso_gear_stiffness, meshing_without_backlash
 
@@ -248,3 +256,38 @@ def test_a_whole_drivetrain_is_written_and_read_as_the_same() -> None:
     scene = library_scene("grc_750kw")
     assert isinstance(scene, Scene)
     assert parse_drivetrain(scene_text(scene)) == scene
+
+
+def test_a_rated_torque_that_the_power_contradicts_is_refused() -> None:
+    """At the rotor; losses of a quarter are none, a factor is."""
+    power = 5.0e6 / 1.2671 / (75 / 19 * 111 / 18 * 95 / 24)  # N m at the generator
+    for share in (0.9, 1.3):
+        read_drivetrain("nrel_5mw", {"generator.rated_torque": share * power})
+    for share in (0.1, 0.85, 1.4):
+        with pytest.raises(InputError, match=r"at the rotor by the ratio 96\.3[0-9]* of all"):
+            read_drivetrain("nrel_5mw", {"generator.rated_torque": share * power})
+
+
+def test_the_generators_torque_comes_before_the_power_which_has_no_losses() -> None:
+    whole = read_drivetrain("nrel_5mw")
+    found = rated_torque(whole, machine_of(whole))
+    assert found is not None
+    assert found.torque == pytest.approx(43093.55 * 75 / 19 * 111 / 18 * 95 / 24, rel=1e-12)
+    changed = read_drivetrain("nrel_5mw", {"generator.rated_torque": None})
+    found = rated_torque(changed, machine_of(changed))
+    assert found is not None
+    assert found.torque == pytest.approx(5.0e6 / 1.2671, rel=1e-12)
+
+
+def test_sums_that_round_make_no_element_without_a_length() -> None:
+    """The main shaft of a stranger: 0.16 + 0.29 + ... + 0.4 m is no 2.53 m in binary numbers."""
+    lengths = (0.16, 0.29, 0.3, 1.1, 0.28, 0.4)
+    assert fsum(lengths) != 2.53
+
+    def frequencies(*lengths: float) -> Any:
+        sections = [{"length": one, "outer_diameter": 0.7} for one in lengths]
+        places = {"shaft.front": -0.6, "bearing_units.1.bearing.x": 1.05 + 1e-9}
+        found = read_drivetrain("nrel_5mw", {**places, "shaft.sections": sections})
+        return system_modes(machine_system(machine_of(found), Level.FLEXIBLE)).frequencies
+
+    assert frequencies(*lengths)[:8] == pytest.approx(frequencies(2.53)[:8], rel=2e-3, abs=1e-3)

@@ -109,6 +109,8 @@ FOR_USERS = {
     "procedure.moving": "procedure.md",
     # ranks and locks the degrees of freedom of any machine, under a user's load case
     "procedure.reduction": "procedure.md",
+    # writes the page of a result from a script
+    "pages.written": "python.md",
 }
 
 #: Modules that are started or imported by a name in a string, and by what.

@@ -40,12 +40,16 @@ from fe_drivetrain.procedure.failure_modes import (
     TORQUE_AND_BENDING,
     protest_catalogue,
 )
-from fe_drivetrain.procedure.project import EvidenceLink, Project
+from fe_drivetrain.procedure.project import EvidenceLink, Project, read_project
 from fe_drivetrain.procedure.tolerances import EXAMPLE, WIDEST, is_guess, is_vacuous, why_no_limit
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.report.seal import drivetrain_hash, drivetrain_record, results_digest
+from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.page import Page
+from fe_drivetrain.studies.gear_answer import LEAST_SAFETY
+from fe_drivetrain.studies.mode_findings import MARGIN as MARGIN_OF_MODES
 from fe_drivetrain.studies.project_validation import validate as validate_project
+from fe_drivetrain.studies.stated_levels import Errors, state_level_errors
 
 Invoke = Callable[..., Result]
 GAPS = (MISALIGNMENT, DIPS, RESONANCE)
@@ -91,13 +95,15 @@ def test_a_project_on_other_machines_and_empty_tolerances_is_not_certified(
     assert status == 1, error
     assert out.startswith("Not complete: steps 1, 2, 3, 4, 5, 6 of 6 are open")
     for name in GAPS:
-        assert f"dynamics/lin_parker, for {name!r}: its results do not say of which" in out
+        assert f"dynamics/lin_parker, for {name!r}" in out
+    assert out.count("its results do not say of which") == 4  # once for each step that links it
     for words in (
         OWN.title,
         "the band of 'anything' of 50 % says nothing",
         "'anything' has the source 'guess', which is a guess",
         "'anything' has no value with a unit",
-        "'mass of drivetrain parts' of Table 4.7 is not stated",
+        "'mass of blades', 'mass of drivetrain parts', 'mass of tower'",
+        "'damping of meshes': each of Table 4.7 is not stated",
         "the accuracy of 'torque' of 100 % says nothing",
         "the tolerance of 'torque: mean' of 100 % says nothing",
     ):
@@ -404,6 +410,83 @@ def test_ready_commands_name_cases_machine_and_paths_as_a_shell_takes_them(
         f"fe-drivetrain run --out '{folder}/reports/procedure/campaign' procedure/campaign",
         f"fe-drivetrain validate '{file}'",
     ]
+
+
+def test_commands_repeat_what_was_typed_or_follow_from_the_name(
+    small: Content, tmp_path: Path
+) -> None:
+    """Results of another drivetrain keep their files of loads; what is not there has an example."""
+    typed = f"fe-drivetrain life {MACHINE} --loads a.outb --catalogue b.yaml"
+    more = {"command": f"{typed} --quick", "quick": True}
+    write_case(tmp_path / "reports", "life/mine", drivetrains=[OTHER], **more)
+    names = ("life/mine", "transient/mine-grid-loss", "transient/mine-operation", "gears/mine")
+    small["model"]["evidence"] = [{"case": name} for name in (*names, "transient/mine")]
+    standing = validate_project(Project.model_validate(small), tmp_path)
+    out = f"--out {tmp_path}/reports"
+    assert ready_commands(standing, tmp_path / "p.yaml")[:-1] == [
+        typed,
+        f"fe-drivetrain transient {MACHINE} grid-loss {out}/transient/mine-grid-loss",
+        f"fe-drivetrain transient {MACHINE} operation --loads 'outputs/*.outb' --csv "
+        f"{out}/transient/mine-operation",
+        f"fe-drivetrain gears {MACHINE} {out}/gears/mine",
+    ]
+
+
+def test_a_level_rests_on_the_errors_that_results_state(small: Content, tmp_path: Path) -> None:
+    """From the level on from which all are within; the strictest of several results decides."""
+    small["model"]["needs"] = [{"quantity": "torques of shafts", "tolerance": 0.05}]
+    small["model"]["evidence"] = [{"case": "transient/a"}, {"case": "transient/b"}]
+    levels = ["torsional", "rigid bodies", "flexible shafts"]
+
+    def write(name: str, errors: list[float | None], own: float) -> None:
+        found = Findings()
+        state_level_errors(found, levels, {"torques of shafts": Errors(errors, own)})
+        write_case(tmp_path / "reports", name, figures=found.tables)
+
+    def lacks() -> str:
+        states = validate_project(Project.model_validate(small), tmp_path).states
+        return " ".join(states[1].lacks)
+
+    write("transient/a", [np.inf, 0.03, 0.0], 0.01)
+    write("transient/b", [0.02, 0.03, 0.0], 0.01)
+    assert lacks() == ""
+    small["model"]["level"] = "torsional"
+    assert "needs 'rigid bodies'" in lacks()
+    write("transient/b", [0.02, 0.045, 0.0], 0.01)
+    assert "needs 'flexible shafts'" in lacks()
+    write("transient/b", [0.02, 0.03, 0.0], 0.06)
+    assert "no level is known to give torques of shafts within 5 %" in lacks()
+
+
+def test_a_project_of_a_drivetrain_of_ones_own_is_on_results_of_commands(
+    invoke: Invoke, tmp_path: Path
+) -> None:
+    status, out, error = invoke("validate", "p.yaml", "--new", "--drivetrain", "nrel_5mw")
+    assert status == 0, error
+    assert "has the six steps of 'NREL 5 MW reference drivetrain" in out
+    commands = [line.split()[1] for line in out.splitlines() if line.startswith("  ")]
+    assert commands == ["transient"] * 2 + [
+        "modes",
+        *["transient"] * 2,
+        "gears",
+        "life",
+        "validate",
+    ]
+    project = read_project(tmp_path / "p.yaml")
+    standing = validate_project(project, tmp_path)
+    assert all(state.begun for state in standing.states)
+    assert {one.state for state in standing.states for one in state.evidence} == {"missing"}
+    # every quantity that it names, results have: of channels by their names, others by constants
+    names = {one.link.quantity for state in standing.states for one in state.evidence} - {""}
+    channels = {n for n in names if n.startswith(("largest ", "least torque"))}
+    shafts, bearings = {"LSS"}, {"HS-A"}
+    assert {n.partition(" of ")[2] for n in channels} == shafts | bearings
+    assert names - channels == {
+        MARGIN_OF_MODES,
+        LEAST_SAFETY,
+        *(f"shortest L10mr of {whose}" for whose in ("gearbox bearings", "main bearings")),
+    }
+    assert invoke("validate", "p.yaml", "--drivetrain", "nrel_5mw")[0] == 2
 
 
 def test_a_new_project_is_begun_in_sentences_with_commands(invoke: Invoke, tmp_path: Path) -> None:

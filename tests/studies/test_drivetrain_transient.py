@@ -15,12 +15,32 @@ from tiny_case import Result
 from fe_drivetrain.common import InputError
 from fe_drivetrain.common.cache import CACHE_VARIABLE
 from fe_drivetrain.drivetrain_file import read_drivetrain
+from fe_drivetrain.drivetrain_file.turning_parts import DampingRatios
+from fe_drivetrain.dynamics import machine_of
+from fe_drivetrain.dynamics.bodies.damping_ratios import ASSUMED_RATIOS, first_mode_damping
+from fe_drivetrain.procedure import drivetrain_operation
+from fe_drivetrain.procedure.failure_modes import (
+    BEARING_RATING,
+    DIPS,
+    ELECTRICAL_FAULT,
+    HIGH_SPEED_REVERSALS,
+    MISALIGNMENT,
+    OVERLOAD,
+    RESONANCE,
+    REVERSALS,
+    ROTOR_TORQUE,
+    TORQUE_AND_BENDING,
+    protest_catalogue,
+)
 from fe_drivetrain.report.results import read_results
+from fe_drivetrain.shafts.fidelity.quantity import ERROR_AGAINST_LAST, LEVEL_ERRORS, OWN_ERROR
 from fe_drivetrain.studies import TransientResult, transient, transient_digest
 from fe_drivetrain.studies.transient_digest import OperationOptions, equivalent_range
 from fe_drivetrain.studies.transient_ladder import cheapest_level, level_error
-from fe_drivetrain.studies.transient_runs import Samples
+from fe_drivetrain.studies.transient_loads import design_loads
+from fe_drivetrain.studies.transient_runs import Extreme, Samples, telling_torque
 
+CATALOGUE = protest_catalogue()
 PARK = {"operation.rated_power": 1.5e6, "operation.rotor_speed": [1.0, 1.8]}
 
 
@@ -282,3 +302,86 @@ def test_a_chart_of_many_samples_keeps_a_peak_of_one() -> None:
     assert (np.diff(at) > 0).all()
     late, _ = samples.course("torque of HSS", 2000, begin=0.5)
     assert late[0] >= 0.5
+
+
+def test_what_tells_is_the_shaft_that_is_loaded_most_and_the_last_of_those_alike() -> None:
+    """A brake before the last shaft loads the gears and not that shaft."""
+
+    def torque(most: float, least: float, rated: float = 10.0) -> Extreme:
+        return Extreme("torque", "N m", rated, most, 0.0, least, 0.0, 0)
+
+    braked = {"torque of main": torque(22.0, 0.0), "torque of last": torque(10.0, -9.0)}
+    assert telling_torque(braked) == "torque of main"
+    assert telling_torque(braked | {"torque of last": torque(5.0, -21.5)}) == "torque of last"
+    assert telling_torque({"torque of main": torque(1.0, 0.0, 0.0)}) == ""
+
+
+@pytest.mark.parametrize(
+    ("event", "channel", "most", "least"),
+    [
+        ("operation", "torque of main", {ROTOR_TORQUE, TORQUE_AND_BENDING}, {REVERSALS}),
+        ("stop", "torque of main", {TORQUE_AND_BENDING}, {REVERSALS}),
+        ("stop", "torque of last", {TORQUE_AND_BENDING}, {REVERSALS, HIGH_SPEED_REVERSALS}),
+        ("stop", "force of stage 1 mesh", {OVERLOAD}, {REVERSALS}),
+        ("stop", "force of front", {TORQUE_AND_BENDING}, {TORQUE_AND_BENDING}),
+        ("stop", "axial force of HS-A", {BEARING_RATING}, {BEARING_RATING}),
+        ("dip", "force of stage 1 mesh", {OVERLOAD, DIPS, ELECTRICAL_FAULT}, None),
+        ("grid_loss", "torque of main", {TORQUE_AND_BENDING, ELECTRICAL_FAULT}, None),
+        ("offset", "force of HS-A", {BEARING_RATING, MISALIGNMENT}, None),
+        ("run_up", "force of stage 1 mesh", {OVERLOAD, RESONANCE}, None),
+        ("dip", "speed of rotor", set(), set()),
+    ],
+)
+def test_extremes_are_values_of_design_loads_of_the_catalogue(
+    event: str, channel: str, most: set[str], least: set[str] | None
+) -> None:
+    kinds = {
+        **{"torque of main": "torque", "torque of last": "torque", "speed of rotor": "speed"},
+        **{"force of stage 1 mesh": "mesh", "force of front": "bearing"},
+        **{"force of HS-A": "bearing", "axial force of HS-A": "bearing"},
+    }
+    extremes = {
+        name: Extreme(kind, "N", 1.0, 1.0, 0.0, 1.0, 0.0, 0)  # type: ignore[arg-type]
+        for name, kind in kinds.items()
+    }
+    found = design_loads(event, extremes, {"front"})[channel]
+    assert set(found.most) == most
+    assert least is None or set(found.least) == least
+    known = {load.name for system in ("gearbox", "drivetrain") for load in CATALOGUE.of(system)}
+    assert set(found.most) | set(found.least) <= known
+
+
+def test_results_say_of_which_loads_their_values_are(stopped: TransientResult) -> None:
+    assert stopped["largest torque of shaft"].loads == (TORQUE_AND_BENDING,)
+    assert HIGH_SPEED_REVERSALS in stopped["least torque of shaft"].loads
+    of = stopped.tables[LEVEL_ERRORS]["torques of shafts"]
+    assert of["levels"] == ["torsional"]
+    assert of[ERROR_AGAINST_LAST] == [0.0]
+    one = stopped.extremes["torque of shaft"]
+    assert_allclose(of[OWN_ERROR], max(one.most_band, one.least_band) / one.largest)
+
+
+def test_samples_of_a_history_are_even_where_some_are_left_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Over the ends of the pieces in which it is integrated, so that they can be compared."""
+    monkeypatch.setattr(transient_digest, "KEPT", 300)
+    monkeypatch.setattr(drivetrain_operation, "AT_ONCE", 500)
+    write_torque(tmp_path / "a.csv", 1e5)
+    options = OperationOptions(step=0.02)
+    found = transient(two_masses(), "operation", loads=tmp_path / "a.csv", options=options)
+    assert_allclose(np.diff(found.samples.times), 0.12, atol=1e-6)
+    assert 300 < len(found.samples.times) < 400
+
+
+def test_what_the_first_mode_keeps_of_the_ratios_is_said() -> None:
+    """Of two masses all of it; of bodies that are light against both ends next to nothing."""
+    ratios = DampingRatios(shafts=0.03, meshes=0.1)
+    assert_allclose(first_mode_damping(machine_of(two_masses()), ratios), 0.03, rtol=1e-12)
+    park = read_drivetrain("park_2021", PARK)
+    assert first_mode_damping(machine_of(park)) < 0.2 * ASSUMED_RATIOS.shafts
+    words = "Swings hardly decay"
+    damped = transient(two_masses(damping={"shafts": 0.03}), "grid_loss", duration=1.2)
+    assert not any(note.startswith(words) for note in damped.notes)
+    light = transient(park, "grid_loss", {"off": 0.1}, level="torsional", duration=0.3)
+    assert any(note.startswith(words) for note in light.notes)

@@ -6,6 +6,7 @@ import re
 from dataclasses import replace
 
 import numpy as np
+from scipy.linalg import eigh
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
@@ -17,6 +18,9 @@ from fe_drivetrain.dynamics.torsion.damping import shaft_damping
 
 ASSUMED_RATIOS = DampingRatios(shafts=0.006, meshes=0.1)
 """Those of a 2 MW and a 3 MW turbine (Al-Hamadani 2018, section 4.1)."""
+
+RIGID = 1e-9
+"""Square of a frequency over that of the highest one, below which it is of a rigid motion."""
 
 
 def mesh_names(machine: MachineTable) -> list[str]:
@@ -113,3 +117,23 @@ def _dampers(rows: Floats, mass: Floats, stiffness: Floats, ratio: float) -> Flo
     for i in np.flatnonzero(moved > 0.0):
         found[i] = shaft_damping(ratio, 1.0 / float(moved[i]), float(stiffness[i]))
     return found
+
+
+def first_mode_damping(machine: MachineTable, ratios: DampingRatios = ASSUMED_RATIOS) -> float:
+    """Damping ratio of the first torsional mode, the generator free, by these ratios.
+
+    Each ratio is that of a shaft or mesh between its own two bodies. Where these are light against
+    rotor and generator, the mode is damped far less than they say.
+
+    Parameters
+    ----------
+    machine : MachineTable
+        Table of the machine.
+    ratios : DampingRatios
+        Damping ratios.
+    """
+    system = with_damping_ratios(machine, machine_system(machine, Level.TORSIONAL), ratios)
+    squares, shapes = eigh(system.K, system.mass)
+    first = int(np.argmax(squares > RIGID * squares[-1]))
+    damped = float(shapes[:, first] @ system.C @ shapes[:, first])
+    return damped / (2.0 * float(np.sqrt(squares[first])))

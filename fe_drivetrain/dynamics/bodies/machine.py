@@ -1,7 +1,7 @@
 """Machines: drivetrains in three dimensions that pass the gate, of a file or built in Python."""
 
 from collections.abc import Mapping
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 from pydantic import model_validator
 
@@ -86,6 +86,40 @@ def machine_of(drivetrain: Drivetrain, supports: Mapping[str, Floats] | None = N
     """
     table, _ = _table(drivetrain, supports)
     return Machine.model_validate(dict(table))
+
+
+class RatedTorque(NamedTuple):
+    """Torque of the rotor in steady turning at rated speed [N m], and what it follows from."""
+
+    torque: float
+    source: str
+
+
+def rated_torque(drivetrain: Drivetrain, machine: MachineTable) -> RatedTorque | None:
+    """Rated torque at the rotor: that of the generator, where the file states it, or of its power.
+
+    Rated power is often that which is fed in: what the generator loses is then in its torque alone.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        The drivetrain.
+    machine : MachineTable
+        Its rows, for the ratio of all stages.
+
+    Returns
+    -------
+    RatedTorque or None
+        None where the file states neither.
+    """
+    generator, operation = drivetrain.generator, drivetrain.operation
+    if generator is not None and generator.rated_torque is not None:
+        at_rotor = generator.rated_torque * abs(machine.speeds[-1])
+        return RatedTorque(at_rotor, "generator: rated_torque times the ratio of all stages")
+    torque = None if operation is None else operation.rated_torque
+    if torque is None:
+        return None
+    return RatedTorque(torque, "operation: rated_power over rotor_speed, without losses")
 
 
 def _table(

@@ -19,6 +19,8 @@ from fe_drivetrain.shafts.beam.frame import CrossSection, round_section
 
 #: Uniform slices of a tapered section.
 SLICES = 8
+#: Length between two stations over that of the shaft, below which they are one: sums round.
+APART = 1e-6
 
 
 @dataclass(frozen=True)
@@ -157,10 +159,13 @@ def shaft_stations(machine: MachineTable, k: int, elements: int) -> list[float]:
     if shaft.kind != "shaft":
         return [0.0, shaft.length]
     steps = () if shaft.sections is None else np.cumsum([s.length for s in shaft.sections])
-    bearings = [b.at for b in machine.bearings if b.holds == shaft.name]
-    own = {*np.linspace(0.0, shaft.length, elements + 1), *bearings, *steps}
-    inside = [s for s in own if 0 <= s <= shaft.length]
-    return sorted({round(float(s), 9) for s in inside} | {0.0, shaft.length})
+    seats = [b.at for b in machine.bearings if b.holds == shaft.name]
+    least = APART * shaft.length
+    found = [0.0]
+    for at in sorted([*np.linspace(0.0, shaft.length, elements + 1).tolist(), *seats, *steps]):
+        if found[-1] + least < at < shaft.length - least:
+            found.append(round(float(at), 9))
+    return [*found, shaft.length]
 
 
 def solid_shaft(

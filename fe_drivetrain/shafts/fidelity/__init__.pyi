@@ -49,6 +49,7 @@ from .over_loads import reaction_history as reaction_history
 from .over_loads import relative_errors as relative_errors
 from .quantities import unit_numbers as unit_numbers
 from .quantity import ERROR_AGAINST_LAST as ERROR_AGAINST_LAST
+from .quantity import LEVEL_ERRORS as LEVEL_ERRORS
 from .quantity import Quantity as Quantity
 from .shaft_bands import banded_meridian as banded_meridian
 from .shaft_bands import banded_solid as banded_solid

@@ -19,6 +19,7 @@ from fe_drivetrain.shafts.response.model import scene_loads
 #: Errors of a level in the results of an advice: its own, and that against the last level.
 OWN_ERROR = "own error [-]"
 ERROR_AGAINST_LAST = "error against the last level [-]"
+LEVEL_ERRORS = "errors of levels"
 
 
 class Reported(Protocol):
