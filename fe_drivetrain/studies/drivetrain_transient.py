@@ -476,7 +476,7 @@ def _result(
     found.data("extremes", extreme_rows(extremes))
     found.data("levels", level_rows(runs, errors, number))
     of_kinds = {
-        QUANTITIES[kind]: Errors([of[k].error for of in errors], finest_band(runs[-1], kind))
+        QUANTITIES[kind]: Errors([of[k].error for of in errors], finest_band(runs, kind))
         for k, kind in enumerate(kinds)
     }
     state_level_errors(found, [one.rung.name for one in runs], of_kinds)
