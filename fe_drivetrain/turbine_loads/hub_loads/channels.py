@@ -30,6 +30,11 @@ class Channel:
     values: Floats
     note: str = ""
 
+    @property
+    def invalid(self) -> bool:
+        """Whether OpenFAST did not compute it: it writes INVALID for its unit, and zeros."""
+        return self.unit.upper() == "INVALID"
+
 
 def parse_number(text: str) -> float:
     """The number that a cell holds; ValueError where it holds none.
@@ -45,6 +50,17 @@ TIME_UNITS = {"s": 1.0, "sec": 1.0, "ms": 1e-3}
 ANGLE_UNITS = {"deg": np.pi / 180.0, "rad": 1.0}
 FORCE_UNITS = {"N": 1.0, "kN": 1e3, "MN": 1e6}
 MOMENT_UNITS = {"Nm": 1.0, "kNm": 1e3, "MNm": 1e6}
+
+_SPELLINGS = {
+    **dict.fromkeys(("sec", "second", "seconds", "Sekunden", "Sek"), "s"),
+    **dict.fromkeys(("m/sec", "mps", "ms^1", "ms1"), "m/s"),
+    **dict.fromkeys(("rad/sec", "rads^1", "rads1"), "rad/s"),
+    "deg/sec": "deg/s",
+    **dict.fromkeys(("RPM", "1/min", "U/min", "rev/min", "r/min", "min^1", "min1", "Upm"), "rpm"),
+    **dict.fromkeys(("degrees", "degree", "Grad", "\u00b0"), "deg"),
+    **dict.fromkeys(("radians", "radian"), "rad"),
+}
+"""Other ways to write a unit, as `_plain` has them."""
 
 
 def in_si(source: str, channel: Channel, units: Mapping[str, float]) -> Floats:
@@ -69,6 +85,7 @@ def in_si(source: str, channel: Channel, units: Mapping[str, float]) -> Floats:
         The unit is another.
     """
     unit = _plain(channel.unit)
+    unit = unit if unit in units else _SPELLINGS.get(unit, unit)
     if unit not in units:
         raise InputError(
             f"hub loads '{source}': channel {channel.name} has the unit '{channel.unit}', not one "

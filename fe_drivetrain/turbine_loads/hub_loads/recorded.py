@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -164,9 +164,10 @@ def read_recorded(
         _named(file, channels, name, why="the mapping states its unit")
     units = {name.lower(): unit for name, unit in mapping.units.items()}
     channels = {n: replace(c, unit=units.get(n, c.unit)) for n, c in channels.items()}
+    valid = {name: channel for name, channel in channels.items() if not channel.invalid}
     named = {name: _named(file, channels, *mapping.column(name)) for name in mapping.channels}
     further = [_named(file, channels, name) for name in also]
-    azimuth = _azimuth(file, channels, named) if is_table and mapping.rotating else None
+    azimuth = _azimuth(file, valid, named) if is_table and mapping.rotating else None
     if is_table and not loads_mapped:
         history = read_csv(file, measured, mapping.gearbox_ratio)
         if azimuth is not None:
@@ -178,8 +179,9 @@ def read_recorded(
     history = _at_hub(history, mapping, own_names=not (is_table or loads_mapped))
     unread = [t for t in history.unread if without_unit(t).lower() not in wanted]
     history = replace(history, unread=tuple(unread))
-    history, named = _with_ratio(history, channels, named, mapping.gearbox_ratio)
-    beside = _beside_loads(file, history, channels, named)
+    history, named = _with_ratio(history, valid, named, mapping.gearbox_ratio)
+    beside = _beside_loads(file, history, valid, named)
+    history = _with_invalid(history, (c for n, c in channels.items() if n in wanted))
     others = {f"{c.name} [{c.unit.strip('()')}]": c.values for c in further}
     require_sound(f"hub loads '{file}'", history.time, others, even=not measured)
     kept = history.time >= history.time[0] + skip
@@ -234,6 +236,15 @@ def _beside_loads(
             found = {channel.name: beside[name]}
             require_sound(f"hub loads '{file}'", history.time, found, even=not history.measured)
     return beside
+
+
+def _with_invalid(history: LoadHistory, beside: Iterable[Channel]) -> LoadHistory:
+    """A history that states which channels beside the loads OpenFAST did not compute."""
+    names = [channel.name for channel in beside if channel.invalid]
+    if not names:
+        return history
+    read = f"{_read_of(history)}; not read, since INVALID in the file: {', '.join(names)}"
+    return replace(history, attributes={**history.attributes, "channels": read})
 
 
 def _with_ratio(
@@ -431,6 +442,11 @@ def _named(
         raise InputError(
             f"hub loads '{file}': there is no channel '{column}'{though}; it has {names}"
             + (" and others" if len(channels) > 12 else "")
+        )
+    if found.invalid:
+        raise InputError(
+            f"hub loads '{file}': channel {found.name} is INVALID, which OpenFAST writes of a "
+            "channel that the model does not have: name another, or correct OutList"
         )
     if sign > 0.0:
         return found
