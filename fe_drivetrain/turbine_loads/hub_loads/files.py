@@ -23,13 +23,18 @@ from fe_drivetrain.turbine_loads.hub_loads.histories import (
     require_variation,
 )
 from fe_drivetrain.turbine_loads.hub_loads.openfast import LOAD_CHANNELS, read_openfast
+from fe_drivetrain.turbine_loads.hub_loads.table_kinds import (
+    OPENFAST,
+    is_found,
+    is_table,
+    require_kind,
+)
 
-SUFFIXES = (".out", ".outb", ".csv")
-_OPENFAST = (".out", ".outb")
+_USUAL = (*OPENFAST, ".csv")  # what is looked for in a folder first
 
 
 def read_hub_loads(path: str | os.PathLike[str], skip: float = 0.0) -> LoadHistory:
-    """Read a history, its format determined by the suffix: .out or .outb (OpenFAST), or .csv.
+    """Read a history, of .out or .outb (OpenFAST), or a table of a kind of `history_table`.
 
     Parameters
     ----------
@@ -45,13 +50,8 @@ def read_hub_loads(path: str | os.PathLike[str], skip: float = 0.0) -> LoadHisto
         is left of it.
     """
     file = Path(path)
-    suffix = file.suffix.lower()
-    if suffix not in SUFFIXES:
-        raise InputError(
-            f"hub loads '{file}': the suffix '{file.suffix}' is not one of .out, .outb (OpenFAST) "
-            "and .csv; convert the file or rename it"
-        )
-    history = read_csv(file) if suffix == ".csv" else read_openfast(file)
+    require_kind(file)
+    history = read_csv(file) if is_table(file) else read_openfast(file)
     if skip:
         first, last = float(history.time[0]), float(history.time[-1])
         if (history.time >= first + skip).sum() < MIN_SAMPLES:
@@ -118,7 +118,8 @@ def hub_load_files(pattern: str) -> list[Path]:
     Parameters
     ----------
     pattern : str
-        A file; a folder, for the .out, .outb and .csv files in it; or a pattern with ``*``, ``?``
+        A file; a folder, for the .out, .outb and .csv files in it, or for histories of other
+        kinds where it has none of these; or a pattern with ``*``, ``?``
         or ``[...]`` in any part, and ``**`` for folders of any depth.
 
     Raises
@@ -136,21 +137,30 @@ def hub_load_files(pattern: str) -> list[Path]:
     files = [
         file
         for place in found
-        for file in (sorted(place.iterdir()) if place.is_dir() else [place])
-        if file.suffix.lower() in SUFFIXES and file.is_file()
+        for file in (_in_folder(place) if place.is_dir() else [place])
+        if is_found(file)
     ]
     files = list(dict.fromkeys(files))
     if not files:
-        raise InputError(f"loads = {pattern!r}: no {', '.join(SUFFIXES)} file is there")
+        raise InputError(
+            f"loads = {pattern!r}: no {', '.join(_USUAL)} file is there, nor a history of another "
+            "kind"
+        )
     _check_runs(files)
     return files
+
+
+def _in_folder(folder: Path) -> list[Path]:
+    """Histories in a folder: those of the usual kinds, or else of others."""
+    files = [file for file in sorted(folder.iterdir()) if is_found(file)]
+    return [file for file in files if file.suffix.lower() in _USUAL] or files
 
 
 def _check_runs(files: Sequence[Path]) -> None:
     """Refuse both output files of one run: its loads would count twice."""
     runs: dict[Path, Path] = {}
     for file in files:
-        if file.suffix.lower() in _OPENFAST:
+        if file.suffix.lower() in OPENFAST:
             other = runs.setdefault(file.with_suffix("").resolve(), file)
             if other is not file:
                 raise InputError(

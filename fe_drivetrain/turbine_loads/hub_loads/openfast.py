@@ -157,7 +157,7 @@ def loads_from_channels(
 
     seconds = in_si(source, time, TIME_UNITS)
     columns = {name: one.values for name, one in chosen.used.items() if one is not time}
-    require_sound(f"hub loads '{source}'", seconds, columns, even=not measured)
+    require_sound(f"hub loads '{source}'", seconds, columns, time.rows, even=not measured)
 
     psi = np.zeros_like(seconds)
     if azimuth is not None:
