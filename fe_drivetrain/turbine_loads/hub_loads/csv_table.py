@@ -288,11 +288,13 @@ def _require_columns(table: HistoryTable, columns: Collection[str], measured: bo
                 f"{', '.join(FORCES)}, like 'Mx [kN m]', or map yours, as in "
                 f"`ChannelMap(channels={{'Mx': 'Torque'}})`{advice}"
             )
+    elif missing and advice:
+        raise InputError(f"hub loads '{file}': no column {', '.join(missing)}{advice}; {NEED_ALL}")
     elif missing:
         what = f"; {NEED_ALL}" if set(missing) & set(FORCES) else ""
         raise InputError(
             f"hub loads '{file}': no column {', '.join(missing)}; the header must name all of "
-            f"{', '.join(_CSV_COLUMNS)}, like '{_CSV_EXAMPLE}'{what}{advice}"
+            f"{', '.join(_CSV_COLUMNS)}, like '{_CSV_EXAMPLE}'{what}"
         )
 
 

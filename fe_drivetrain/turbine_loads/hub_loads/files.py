@@ -27,6 +27,7 @@ from fe_drivetrain.turbine_loads.hub_loads.table_kinds import (
     OPENFAST,
     is_found,
     is_table,
+    of_one_run,
     require_kind,
 )
 
@@ -152,7 +153,7 @@ def hub_load_files(pattern: str) -> list[Path]:
 
 def _in_folder(folder: Path) -> list[Path]:
     """Histories in a folder: those of the usual kinds, or else of others."""
-    files = [file for file in sorted(folder.iterdir()) if is_found(file)]
+    files = [one for one in sorted(folder.iterdir()) if is_found(one) and ".%" not in one.suffix]
     return [file for file in files if file.suffix.lower() in _USUAL] or files
 
 
@@ -160,14 +161,18 @@ def _check_runs(files: Sequence[Path]) -> None:
     """Refuse both output files of one run: its loads would count twice."""
     runs: dict[Path, Path] = {}
     for file in files:
-        if file.suffix.lower() in OPENFAST:
+        if of_one_run(file):
             other = runs.setdefault(file.with_suffix("").resolve(), file)
             if other is not file:
                 raise InputError(
-                    f"loads: {other} and {file.name} are two files of one OpenFAST "
+                    f"loads: {other} and {file.name} are two files of one {_program(file)} "
                     "run, which would count twice: choose one kind, as in "
                     f"loads='{file.parent / ('*' + file.suffix)}'"
                 )
+
+
+def _program(file: Path) -> str:
+    return "OpenFAST" if file.suffix.lower() in OPENFAST else "Bladed"
 
 
 def require_points(histories: Sequence[LoadHistory], points: Sequence[str]) -> None:

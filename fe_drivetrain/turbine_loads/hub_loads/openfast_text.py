@@ -67,7 +67,7 @@ def text_columns(
         lines = enumerate(islice(stream, header.lines, None), start=header.lines + 1)
         for number, line, cells in _samples(file, lines, header):
             try:
-                if b"_" in line:  # Python takes 1_0 for ten
+                if b"_" in line:
                     raise ValueError
                 values.extend([float(cells[k]) for k in chosen])
             except ValueError:
@@ -178,17 +178,36 @@ def _ragged(file: Path, line: int, cells: Sequence[bytes], count: int) -> InputE
 
 
 def _number(file: Path, line: int, header: _Header, place: int, cell: bytes) -> float:
-    """A number as Fortran prints it, where three digits of an exponent leave no room for its E."""
+    """A number of a sample; refused with its line and channel."""
     try:
-        if b"_" in cell:
-            raise ValueError
-        return float(cell)
+        return fortran_number(cell)
     except ValueError:
-        match = _FORTRAN.fullmatch(cell)
-    if match is not None:
-        return float(match[1] + b"e" + match[2])
-    text = decoded(cell)
+        text = decoded(cell)
     what = f"line {line}, channel {header.names[place]}: {shown(text)}"
     if _STARS.fullmatch(text):
         raise InputError(f"hub loads '{file}': {what} is a number that had no room; {_WIDER}")
     raise InputError(f"hub loads '{file}': {what} is not a number; run OpenFAST again")
+
+
+def fortran_number(cell: bytes) -> float:
+    """A number as Fortran prints it, where three digits of an exponent leave no room for its E.
+
+    Parameters
+    ----------
+    cell : bytes
+        As 1.5E-02, 1.5D-02 or 1.5-102.
+
+    Raises
+    ------
+    ValueError
+        It is none.
+    """
+    try:
+        if b"_" in cell:  # Python takes 1_0 for ten
+            raise ValueError(cell)
+        return float(cell)
+    except ValueError:
+        match = _FORTRAN.fullmatch(cell)
+        if match is None:
+            raise
+    return float(match[1] + b"e" + match[2])

@@ -51,11 +51,11 @@ WIND_UNITS = {"m/s": 1.0}
 KNOWN = {
     "rotor speed": (
         *("rotor speed", "RotSpeed", "LSSTipVxa", "LSSTipVxs", "LSSTipV"),
-        *("Rotordrehzahl", "Rotor-Drehzahl"),
+        *("Rotordrehzahl", "Rotor-Drehzahl", "Omega"),
     ),
     "wind speed": (
         *("wind speed", "RtVAvgxh", "WindHubVelX", "Wind1VelX", "HorWindV", "WindVxi"),
-        "Windgeschwindigkeit",
+        *("Windgeschwindigkeit", "Hub wind speed magnitude"),
     ),
 }
 """Channels beside the loads, and by which names files have them, the best first."""

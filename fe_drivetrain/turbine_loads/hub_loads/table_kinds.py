@@ -2,28 +2,38 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
+from hashlib import sha256
 from pathlib import Path
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.provenance import file_digest
+from fe_drivetrain.turbine_loads.hub_loads.bladed_table import SUFFIX as BLADED
+from fe_drivetrain.turbine_loads.hub_loads.bladed_table import BladedTable
 from fe_drivetrain.turbine_loads.hub_loads.data_tables import (
     SheetTable,
+    hdf5_table,
     matlab_table,
     parquet_table,
 )
 from fe_drivetrain.turbine_loads.hub_loads.history_table import HistoryTable
+from fe_drivetrain.turbine_loads.hub_loads.run_files import flex_table, hawc2_table
 from fe_drivetrain.turbine_loads.hub_loads.text_table import TextTable
 
 OPENFAST = (".out", ".outb")
 """Output files of OpenFAST, which are no tables."""
 
-_NAMED_ALONE = (".txt",)  # in folders, mostly something else
+_NAMED_ALONE = (".txt", ".dat")  # in folders, mostly something else
 
 _KINDS: Mapping[str, Callable[[Path, str], HistoryTable]] = {
     **dict.fromkeys((".csv", ".tsv", ".txt"), TextTable),
     ".xlsx": SheetTable,
     ".mat": matlab_table,
     ".parquet": parquet_table,
+    **dict.fromkeys((".sel", ".dat"), hawc2_table),
+    ".hdf5": hdf5_table,
+    **dict.fromkeys((".int", ".res"), flex_table),
 }
 
 
@@ -35,7 +45,7 @@ def is_table(file: Path) -> bool:
     file : Path
         The file.
     """
-    return file.suffix.lower() in _KINDS
+    return file.suffix.lower() in _KINDS or BLADED.fullmatch(file.suffix) is not None
 
 
 def is_found(file: Path) -> bool:
@@ -46,8 +56,55 @@ def is_found(file: Path) -> bool:
     file : Path
         The file.
     """
-    known = file.suffix.lower() in OPENFAST or is_table(file)
-    return known and file.suffix.lower() not in _NAMED_ALONE and file.is_file()
+    suffix = file.suffix.lower()
+    known = suffix in OPENFAST or is_table(file)
+    samples = re.fullmatch(r"\.\$\d+", suffix)  # of Bladed, beside their header
+    return known and suffix not in _NAMED_ALONE and not samples and file.is_file()
+
+
+def of_one_run(file: Path) -> bool:
+    """Whether a program writes a run to several files of which each is read as the whole run.
+
+    Parameters
+    ----------
+    file : Path
+        The file.
+    """
+    return file.suffix.lower() in OPENFAST or BLADED.fullmatch(file.suffix) is not None
+
+
+def beside(file: Path) -> list[Path]:
+    """All files that the history of a file is read from, itself first.
+
+    Parameters
+    ----------
+    file : Path
+        The file.
+    """
+    suffix = file.suffix.lower()
+    if suffix in (".sel", ".dat", ".int", ".res"):
+        more = (".sel", ".dat") if suffix in (".sel", ".dat") else (".sensor",)
+        stems = (file.stem.lower(), f"sensor_{file.stem}".lower(), "sensor")
+        others = [o for o in sorted(file.parent.iterdir()) if o.stem.lower() in stems]
+        others = [o for o in others if o.suffix.lower() in (*more, "")]
+    elif BLADED.fullmatch(suffix):
+        others = [o for o in sorted(file.parent.iterdir()) if o.stem == file.stem]
+        others = [o for o in others if BLADED.fullmatch(o.suffix)]
+    else:
+        others = []
+    return [file, *(other for other in others if other != file and other.is_file())]
+
+
+def history_digest(file: Path) -> str:
+    """SHA-256 of the content of all files that a history is read from.
+
+    Parameters
+    ----------
+    file : Path
+        The file.
+    """
+    found = [file_digest(str(one)) for one in beside(file)]
+    return found[0] if len(found) == 1 else sha256("".join(found).encode()).hexdigest()
 
 
 def require_kind(file: Path) -> None:
@@ -66,7 +123,8 @@ def require_kind(file: Path) -> None:
     if file.suffix.lower() not in OPENFAST and not is_table(file):
         raise InputError(
             f"hub loads '{file}': the suffix '{file.suffix}' is not one of {', '.join(OPENFAST)} "
-            f"(OpenFAST) and {', '.join(_KINDS)}; convert the file or rename it"
+            f"(OpenFAST), {', '.join(_KINDS)}, and .%NN, .$PJ (Bladed); convert the file or rename "
+            "it"
         )
 
 
@@ -76,7 +134,8 @@ def history_table(file: Path, kind: str = "hub loads") -> HistoryTable:
     Parameters
     ----------
     file : Path
-        A table of text (.csv, .tsv, .txt), of Excel (.xlsx), MATLAB (.mat) or Parquet (.parquet).
+        A table of text (.csv, .tsv, .txt), of Excel (.xlsx), MATLAB (.mat) or Parquet (.parquet);
+        results of HAWC2 or BHAWC (.sel, .dat, .hdf5), FLEX (.int, .res) or Bladed (.%NN, .$PJ).
     kind : str
         What it is, for messages.
 
@@ -85,4 +144,6 @@ def history_table(file: Path, kind: str = "hub loads") -> HistoryTable:
     InputError
         It cannot be read.
     """
+    if BLADED.fullmatch(file.suffix):
+        return BladedTable(file, kind)
     return _KINDS.get(file.suffix.lower(), TextTable)(file, kind)

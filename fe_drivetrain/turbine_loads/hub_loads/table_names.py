@@ -16,8 +16,9 @@ TABLE_NAMES: dict[str, tuple[str, ...]] = {
         *("timestamp", "time stamp", "datetime", "date-time", "zeit", "zeitstempel", "zeitpunkt"),
         *("datum", "uhrzeit", "datum/uhrzeit", "datum uhrzeit", "datum und uhrzeit"),
     ),
-    **dict.fromkeys(FORCES, ()),
+    **{name: (f"stationary hub {name.lower()}",) for name in FORCES},
     "Mx": (
+        "stationary hub mx",
         *("torque", "rotor torque", "rottorq", "lsshfttq"),
         *("drehmoment", "rotormoment", "rotordrehmoment"),
     ),
