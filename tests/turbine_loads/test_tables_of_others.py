@@ -14,6 +14,7 @@ from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.turbine_loads.hub_loads import data_tables
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.turbine_loads.hub_loads.files import hub_load_files, read_hub_loads
+from fe_drivetrain.turbine_loads.hub_loads.matlab_file import matlab_variables
 from fe_drivetrain.turbine_loads.hub_loads.number_forms import NumberForm
 from fe_drivetrain.turbine_loads.hub_loads.recorded import read_recorded
 
@@ -243,6 +244,31 @@ def test_vectors_of_matlab(tmp_path: Path, form: str) -> None:
     }[form]
     savemat(tmp_path / "a.mat", content)
     right(tmp_path / "a.mat")
+
+
+@pytest.mark.parametrize("packed", [False, True])
+def test_variables_of_matlab_are_those_that_scipy_reads(tmp_path: Path, packed: bool) -> None:
+    from scipy.io import loadmat, savemat
+
+    kinds = [
+        np.arange(6, dtype=kind).reshape(2, 3) for kind in ("i1", "u2", "i4", "f4", "f8", "i8")
+    ]
+    content = {f"a{k}": values for k, values in enumerate(kinds)} | {
+        "text": "L\xfcfter",
+        "struct": {"x": np.arange(3.0), "inner": {"y": np.array([1.5, 2.5]), "note": "z"}},
+        "cells": np.array(["one", "two"], dtype=object),
+        "complex": np.array([1.0 + 2.0j, 3.0]),
+    }
+    savemat(tmp_path / "a.mat", content, do_compression=packed)
+    found = matlab_variables((tmp_path / "a.mat").read_bytes())
+    peer = loadmat(tmp_path / "a.mat", simplify_cells=True)
+    assert found["complex"] is None
+    assert (found["text"], found["cells"]) == (peer["text"], list(peer["cells"]))
+    assert found["struct"]["inner"]["note"] == peer["struct"]["inner"]["note"] == "z"
+    for name in content.keys() - {"complex", "text", "cells", "struct"}:
+        np.testing.assert_array_equal(found[name], peer[name])
+    np.testing.assert_array_equal(found["struct"]["x"], peer["struct"]["x"])
+    np.testing.assert_array_equal(found["struct"]["inner"]["y"], peer["struct"]["inner"]["y"])
 
 
 def test_files_of_matlab_without_vectors_say_what_to_save(tmp_path: Path) -> None:

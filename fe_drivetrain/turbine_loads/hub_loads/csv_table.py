@@ -173,6 +173,8 @@ def _read_table(
     named = [own.get(without_unit(title).lower()) for title in titles]
     given = [f"{without_unit(t)} [{u}]" if u else t for t, u in zip(titles, named, strict=True)]
     places = _csv_places(file, given)
+    if not table.frame_known:
+        places = {name: place for name, place in places.items() if name == "time"}
     if "Mx" in places or not high_speed:
         places.pop(HIGH_SPEED_TORQUE, None)
     _require_columns(table, places, measured)

@@ -17,10 +17,12 @@ from numpy.typing import NDArray
 from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.turbine_loads.hub_loads.channels import is_load_unit, is_unit
 from fe_drivetrain.turbine_loads.hub_loads.history_table import ArrayTable, CellTable
+from fe_drivetrain.turbine_loads.hub_loads.matlab_file import matlab_variables
 from fe_drivetrain.turbine_loads.hub_loads.run_files import hawc2_name
 from fe_drivetrain.turbine_loads.hub_loads.run_table import distinct, map_loads
 
 _MAX_UNPACKED = 4_000_000_000  # bytes of a sheet; a packed one may be a thousand times as large
+_HDF5, _HDF5_AT = b"\x89HDF\r\n\x1a\n", 512  # how files of MATLAB 7.3 begin, and where
 _CLOCK = (("time_step", 1.0), ("time_start", 0.0))
 _SAVE_PLAIN = (
     "save plain vectors of one length, as in save('a.mat', 'time_s', 'Mx_kNm'), or a matrix `data` "
@@ -154,6 +156,7 @@ def hdf5_table(file: Path, kind: str) -> ArrayTable:
     }
     found = {"Time [s]": time, **{t: v for t, v in columns.items() if t.lower() != "time [s]"}}
     opened = ArrayTable(file, kind, found, {"program": "HAWC2"})
+    opened.frame_known = False
     opened.advice = map_loads([one for one in opened.titles if is_load_unit(one)])
     return opened
 
@@ -220,16 +223,13 @@ def matlab_table(file: Path, kind: str) -> ArrayTable:
 
 
 def _variables(file: Path) -> dict[str, Any]:
-    """Variables of a file by name, structs as dicts."""
-    from scipy.io import loadmat
-
-    try:
-        found = loadmat(file, simplify_cells=True)
-    except NotImplementedError:  # version 7.3 is HDF5
-        h5py = _module("h5py", "files of MATLAB 7.3", "hdf5", "save with '-v7'")
-        with h5py.File(file, "r") as store:
-            return {name: _of_hdf5(h5py, store, store[name]) for name in store if name[0] != "#"}
-    return {name: value for name, value in found.items() if not name.startswith("__")}
+    """Variables of a file by name, structs as dicts and cells as lists."""
+    content = file.read_bytes()
+    if content[_HDF5_AT : _HDF5_AT + len(_HDF5)] != _HDF5:
+        return matlab_variables(content)
+    h5py = _module("h5py", "files of MATLAB 7.3", "hdf5", "save with '-v7'")
+    with h5py.File(file, "r") as store:
+        return {name: _of_hdf5(h5py, store, store[name]) for name in store if name[0] != "#"}
 
 
 def _of_hdf5(h5py: ModuleType, store: Any, one: Any) -> Any:

@@ -62,9 +62,13 @@ class HistoryTable(ABC):
         What the file states of itself.
     advice : str
         What to do where a file of this kind lacks a column, as the end of a sentence.
+    frame_known : bool
+        Whether columns called Fx to Mz are hub loads in the shaft's frame; those of programs whose
+        axes depend on the model are so where a mapping says it.
     """
 
     advice = ""
+    frame_known = True
 
     def __init__(self, file: Path, kind: str) -> None:
         self.file, self.kind = file, kind

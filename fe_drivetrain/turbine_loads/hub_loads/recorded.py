@@ -304,7 +304,8 @@ def _of_channels(
         taken = {mapping.column(name)[0].lower() for name in mapping.channels}
         own = [(key, channel) for key, channel in channels.items() if key not in taken]
         known = named_columns(str(file), [key for key, _ in own], mapping.channels)
-        shared = {name: own[k][1] for k, name in known.items()}
+        ours = history_table(file).frame_known
+        shared = {name: own[k][1] for k, name in known.items() if ours or name == "time"}
         azimuth = {"azimuth": channels["azimuth"]} if "azimuth" in channels else {}
         named = {**azimuth, **shared, **named}
     channels = dict(channels)

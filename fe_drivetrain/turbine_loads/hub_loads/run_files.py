@@ -147,13 +147,14 @@ def flex_table(file: Path, kind: str) -> RunTable:
         sensors = [line.split() for line in list_lines(listed[0], kind)[2:] if line.strip()]
         units = [cells[5].strip("()[]-") for cells in sensors]
         run = _flex_run(file, [cells[6] for cells in sensors], units)
+        as_they_are = all(float(cells[1]) == 1.0 and float(cells[2]) == 0.0 for cells in sensors)
     except (ValueError, IndexError, StopIteration) as error:
         raise InputError(
             f"{kind} '{file}': it cannot be read as a result of FLEX with the sensors of "
             f"{listed[0].name} ({error}): write both again"
         ) from error
     facts = {"program": "FLEX"}
-    if any(float(cells[1]) != 1.0 or float(cells[2]) != 0.0 for cells in sensors):
+    if not as_they_are:
         facts["sensors"] = f"gains and offsets of {listed[0].name} are not applied"
     return RunTable(file, kind, run, facts)
 

@@ -113,6 +113,7 @@ class RunTable(HistoryTable):
         units = [*(["s"] * self._first), *run.units]
         self.titles = [f"{n} [{u}]" if u else n for n, u in zip(names, units, strict=True)]
         self.facts = facts
+        self.frame_known = False
         self.advice = map_loads([title for title in self.titles if is_load_unit(title)])
 
     def columns(self, wanted: Sequence[int], times: Collection[int]) -> Columns:
