@@ -255,27 +255,11 @@ def test_a_run_is_found_once(tmp_path: Path) -> None:
     assert beside(flexed) == [flexed, flexed.with_name("sensor")]
 
 
-def test_channels_of_hdf5_of_hawc2(tmp_path: Path) -> None:
-    h5py = pytest.importorskip("h5py", reason="h5py reads HAWC2's HDF5")
-    loads = shaft_loads()
-    with h5py.File(tmp_path / "a.hdf5", "w") as store:
-        store.attrs["type"] = "General time series data format"
-        store["attribute_names"] = [f"{name} coo: shaft".encode() for name in loads]
-        store["attribute_units"] = [b"kN" if name[0] == "F" else b"kNm" for name in loads]
-        about = [f"{name} Mbdy:shaft nodenr:   5 coo: shaft".encode() for name in loads]
-        store["attribute_descriptions"] = about
-        table = np.column_stack(list(loads.values()))
-        for block, half in enumerate((slice(None, 12), slice(12, None))):
-            group = store.create_group(f"block{block:04}")
-            group.attrs["time_step"], group.attrs["time_start"] = 0.5, TIME[half][0]
-            gains = np.ptp(table, axis=0) / 60000.0
-            group["gains"], group["offsets"] = gains, table.min(axis=0)
-            group["data"] = np.round((table[half] - table.min(axis=0)) / gains).astype("u2")
-    found = read_recorded(tmp_path / "a.hdf5", ChannelMap(channels=HAWC2))
-    np.testing.assert_allclose(found.history.time, TIME)
-    assert (np.abs(found.history.loads - LOADS) <= np.ptp(LOADS, axis=0) / 60000.0).all()
-    with pytest.raises(InputError, match="which channels are hub loads, in which frame"):
-        read_hub_loads(tmp_path / "a.hdf5")
+def test_kinds_that_are_not_read_say_what_to_write(tmp_path: Path) -> None:
+    (tmp_path / "a.hdf5").write_bytes(b"any")
+    for read in (read_hub_loads, read_recorded):
+        with pytest.raises(InputError, match=r"'\.hdf5' is not read: let HAWC2 write hawc_binary"):
+            read(tmp_path / "a.hdf5")
 
 
 # --- a peer --------------------------------------------------------------------------------------

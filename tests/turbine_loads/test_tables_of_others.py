@@ -282,14 +282,10 @@ def test_files_of_matlab_without_vectors_say_what_to_save(tmp_path: Path) -> Non
         read_hub_loads(tmp_path / "a.mat")
 
 
-def test_files_of_matlab_7_3(tmp_path: Path) -> None:
-    h5py = pytest.importorskip("h5py", reason="h5py reads files of MATLAB 7.3")
-    with h5py.File(tmp_path / "a.mat", "w", userblock_size=512) as store:
-        for name, values in vectors().items():
-            store[name] = values[None, :]
-    with (tmp_path / "a.mat").open("r+b") as file:
-        file.write(b"MATLAB 7.3 MAT-file".ljust(124) + b"\x00\x02IM")
-    right(tmp_path / "a.mat")
+def test_files_of_matlab_7_3_are_to_be_saved_as_7(tmp_path: Path) -> None:
+    (tmp_path / "a.mat").write_bytes(b"MATLAB 7.3 MAT-file".ljust(512) + b"\x89HDF\r\n\x1a\n")
+    with pytest.raises(InputError, match=r"it is of version 7\.3: save it with '-v7'"):
+        read_hub_loads(tmp_path / "a.mat")
 
 
 @pytest.mark.parametrize("stamps", [False, True])

@@ -49,9 +49,11 @@ def matlab_variables(content: bytes) -> dict[str, Any]:
     ValueError
         It is none of these versions, or is damaged.
     """
+    if content[512:516] == b"\x89HDF":
+        raise ValueError("it is of version 7.3: save it with '-v7'")
     order = {b"IM": "<", b"MI": ">"}.get(content[126:128])
     if order is None:
-        raise ValueError("it is no file of MATLAB 5 to 7.2")
+        raise ValueError("it is none of MATLAB 5 to 7.2")
     found = {}
     for element in _elements(memoryview(content)[_HEAD:], order):
         if element.kind == _PACKED:

@@ -83,24 +83,11 @@ def _hawc2_run(lines: list[str], samples: Path) -> Run:
 def _of_hawc2(line: str) -> tuple[str, str]:
     """Name and unit of a channel; a load's name has its body, node and axes."""
     name, unit, about = line[12:43].strip(), line[43:54].strip(), line[54:].strip()
-    return hawc2_name(name, about), "" if unit == "-" else unit
+    return _hawc2_name(name, about), "" if unit == "-" else unit
 
 
-def hawc2_name(name: str, about: str) -> str:
-    """The name of a channel of HAWC2; that of a load has its body, node and axes.
-
-    Parameters
-    ----------
-    name : str
-        As HAWC2 has it, like "Mx coo: shaft".
-    about : str
-        What HAWC2 says of it, like "MomentMx Mbdy:shaft nodenr:   4 coo: shaft  main bearing".
-
-    Returns
-    -------
-    str
-        As "Mx shaft node 4 in shaft".
-    """
+def _hawc2_name(name: str, about: str) -> str:
+    """The name of a channel, as "Mx shaft node 4 in shaft" of "Mx coo: shaft" of a load."""
     load = re.match(r"([FM][xyz])\s+coo:\s*(\S+)", name)
     place = re.search(r"Mbdy:\s*(\S+)\s+nodenr:\s*(\d+)", about)
     if load is None or place is None:

@@ -23,14 +23,8 @@ from fe_drivetrain.turbine_loads.hub_loads.history_table import Columns, History
 from fe_drivetrain.turbine_loads.hub_loads.openfast_text import decoded, fortran_number
 
 
-def map_loads(loads: Sequence[str]) -> str:
-    """What to do where a program has no one frame of hub loads, as the end of a sentence.
-
-    Parameters
-    ----------
-    loads : sequence of str
-        Names of its forces and moments.
-    """
+def _map_loads(loads: Sequence[str]) -> str:
+    """What to do where a program has no one frame of hub loads, as the end of a sentence."""
     listed = ", ".join(loads[:12]) + (" and others" if len(loads) > 12 else "")
     first = re.sub("['`]", "", without_unit(next(iter(loads), "Thrust")))
     return (
@@ -109,12 +103,12 @@ class RunTable(HistoryTable):
         existing_file(run.file, kind)
         self._run = run
         self._first = 0 if run.clock is None else 1
-        names = [*(["Time"] * self._first), *distinct(run.names)]
+        names = [*(["Time"] * self._first), *_distinct(run.names)]
         units = [*(["s"] * self._first), *run.units]
         self.titles = [f"{n} [{u}]" if u else n for n, u in zip(names, units, strict=True)]
         self.facts = facts
         self.frame_known = False
-        self.advice = map_loads([title for title in self.titles if is_load_unit(title)])
+        self.advice = _map_loads([title for title in self.titles if is_load_unit(title)])
 
     def columns(self, wanted: Sequence[int], times: Collection[int]) -> Columns:
         """Channels that are wanted.
@@ -162,14 +156,8 @@ def _counted(time: Floats, seconds: float) -> Floats:
     return np.asarray(time.mean() + step * (np.arange(len(time)) - 0.5 * (len(time) - 1)))
 
 
-def distinct(names: Sequence[str]) -> list[str]:
-    """Names without brackets, which are for units; one that is there again has its number.
-
-    Parameters
-    ----------
-    names : sequence of str
-        As a program has them.
-    """
+def _distinct(names: Sequence[str]) -> list[str]:
+    """Names without brackets, which are for units; one that is there again has its number."""
     plain = [" ".join(re.sub(r"[\[\]()]", " ", name).split()) for name in names]
     seen: set[str] = set()
     found = []

@@ -13,7 +13,6 @@ from fe_drivetrain.turbine_loads.hub_loads.bladed_table import SUFFIX as BLADED
 from fe_drivetrain.turbine_loads.hub_loads.bladed_table import BladedTable
 from fe_drivetrain.turbine_loads.hub_loads.data_tables import (
     SheetTable,
-    hdf5_table,
     matlab_table,
     parquet_table,
 )
@@ -24,6 +23,11 @@ from fe_drivetrain.turbine_loads.hub_loads.text_table import TextTable
 OPENFAST = (".out", ".outb")
 """Output files of OpenFAST, which are no tables."""
 
+_OTHERWISE = {
+    **dict.fromkeys((".hdf5", ".h5"), "let HAWC2 write hawc_binary, or save columns as CSV"),
+    **dict.fromkeys((".xls", ".ods"), "save the sheet as .xlsx, or as CSV"),
+    ".tdms": "export its channels as CSV or .mat",
+}
 _NAMED_ALONE = (".txt", ".dat")  # in folders, mostly something else
 
 _KINDS: Mapping[str, Callable[[Path, str], HistoryTable]] = {
@@ -32,7 +36,6 @@ _KINDS: Mapping[str, Callable[[Path, str], HistoryTable]] = {
     ".mat": matlab_table,
     ".parquet": parquet_table,
     **dict.fromkeys((".sel", ".dat"), hawc2_table),
-    ".hdf5": hdf5_table,
     **dict.fromkeys((".int", ".res"), flex_table),
 }
 
@@ -120,7 +123,10 @@ def require_kind(file: Path) -> None:
     InputError
         Its suffix is another.
     """
-    if file.suffix.lower() not in OPENFAST and not is_table(file):
+    suffix = file.suffix.lower()
+    if suffix in _OTHERWISE:
+        raise InputError(f"hub loads '{file}': '{suffix}' is not read: {_OTHERWISE[suffix]}")
+    if suffix not in OPENFAST and not is_table(file):
         raise InputError(
             f"hub loads '{file}': the suffix '{file.suffix}' is not one of {', '.join(OPENFAST)} "
             f"(OpenFAST), {', '.join(_KINDS)}, and .%NN, .$PJ (Bladed); convert the file or rename "
@@ -135,7 +141,7 @@ def history_table(file: Path, kind: str = "hub loads") -> HistoryTable:
     ----------
     file : Path
         A table of text (.csv, .tsv, .txt), of Excel (.xlsx), MATLAB (.mat) or Parquet (.parquet);
-        results of HAWC2 or BHAWC (.sel, .dat, .hdf5), FLEX (.int, .res) or Bladed (.%NN, .$PJ).
+        results of HAWC2 or BHAWC (.sel, .dat), FLEX (.int, .res) or Bladed (.%NN, .$PJ).
     kind : str
         What it is, for messages.
 
