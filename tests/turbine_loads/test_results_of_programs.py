@@ -271,9 +271,9 @@ def opened(file: Path) -> tuple[HistoryTable, np.ndarray]:
     return table, np.column_stack([columns[k] for k in range(len(table.titles))])
 
 
+@pytest.mark.needs("weio")
 @pytest.mark.parametrize("kind", [k for k in RUNS if "its" not in k and "proj" not in k])
 def test_all_channels_are_those_that_weio_reads(tmp_path: Path, kind: str) -> None:
-    pytest.importorskip("weio", reason="weio is the peer")
     from weio.bladed_out_file import BladedFile
     from weio.flex_out_file import FLEXOutFile
     from weio.hawc2_dat_file import HAWC2DatFile

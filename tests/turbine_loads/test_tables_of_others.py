@@ -188,10 +188,12 @@ def test_a_folder_of_other_tables_is_read_where_none_is_usual(tmp_path: Path) ->
 # --- Excel, MATLAB, Parquet ----------------------------------------------------------------------
 
 
+@pytest.mark.needs("openpyxl")
 @pytest.mark.parametrize("units_below", [False, True])
 @pytest.mark.parametrize("stamps", [False, True])
 def test_sheets_of_excel(tmp_path: Path, units_below: bool, stamps: bool) -> None:
-    openpyxl = pytest.importorskip("openpyxl", reason="openpyxl reads Excel's files")
+    import openpyxl
+
     book = openpyxl.Workbook()
     sheet = book.create_sheet("loads")
     for row in [["Time", *NAMES], UNITS] if units_below else [HEAD]:
@@ -288,9 +290,10 @@ def test_files_of_matlab_7_3_are_to_be_saved_as_7(tmp_path: Path) -> None:
         read_hub_loads(tmp_path / "a.mat")
 
 
+@pytest.mark.needs("pyarrow")
 @pytest.mark.parametrize("stamps", [False, True])
 def test_tables_of_parquet(tmp_path: Path, stamps: bool) -> None:
-    pyarrow = pytest.importorskip("pyarrow", reason="pyarrow reads Parquet")
+    import pyarrow
     from pyarrow import parquet
 
     start = np.datetime64(START, "ns")

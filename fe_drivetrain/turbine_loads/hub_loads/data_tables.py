@@ -7,6 +7,7 @@ import zipfile
 import zlib
 from collections.abc import Iterator, Mapping
 from datetime import date, datetime, time
+from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -42,18 +43,14 @@ class SheetTable(CellTable):
 
     def __init__(self, file: Path, kind: str) -> None:
         self.file, self.kind = file, kind
-        openpyxl = _module("openpyxl", "Excel files", "excel", "save the sheet as CSV")
+        _module("openpyxl", "Excel files", "excel", "save the sheet as CSV")
+        stamp = file.stat()
         try:
-            with zipfile.ZipFile(file) as packed:
-                if sum(one.file_size for one in packed.infolist()) > _MAX_UNPACKED:
-                    raise ValueError("too large: save it as CSV")
-            book = openpyxl.load_workbook(file, read_only=True, data_only=True)
-            sheets = (list(sheet.values) for sheet in book.worksheets)
-            self._sheet = next((rows for rows in sheets if any(map(any, rows))), [])
+            self._sheet = _sheet(file, stamp.st_mtime_ns, stamp.st_size)
         except Exception as error:  # another project's package: it may be any
             raise self.cannot(
-                f"it cannot be read as an Excel file ({error or type(error).__name__}): save it "
-                "again as .xlsx, or as CSV"
+                f"it cannot be read as an Excel file ({_first_line(error)}): save it again as "
+                ".xlsx, or as CSV"
             ) from error
         super().__init__(file, kind)
 
@@ -71,6 +68,17 @@ class SheetTable(CellTable):
                     self.facts[key.strip()] = value.strip()
                 continue
             yield number, row
+
+
+@lru_cache(maxsize=1)  # a history opens its table several times
+def _sheet(file: Path, changed: int, size: int) -> list[tuple[object, ...]]:
+    """Rows of the first sheet that has cells."""
+    with zipfile.ZipFile(file) as packed:
+        if sum(one.file_size for one in packed.infolist()) > _MAX_UNPACKED:
+            raise ValueError("too large: save it as CSV")
+    book = import_module("openpyxl").load_workbook(file, read_only=True, data_only=True)
+    sheets = (list(sheet.values) for sheet in book.worksheets)
+    return next((rows for rows in sheets if any(map(any, rows))), [])
 
 
 def _text(value: object) -> str:
