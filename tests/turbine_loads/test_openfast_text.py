@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from hub_load_tables import COLUMNS, LOADS, TIME, openfast_text
 
+from fe_drivetrain.command_line.option_names import with_options
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.studies.load_cautions import _why_left_out
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.turbine_loads.hub_loads.files import read_hub_loads
 from fe_drivetrain.turbine_loads.hub_loads.openfast import turn_to_fixed
@@ -123,3 +126,17 @@ def test_a_header_that_is_repeated_within_a_run_is_skipped(tmp_path: Path) -> No
     file.write_text("\n".join([*lines[:15], other, *lines[7:8], *lines[15:]]))
     with pytest.raises(InputError, match="line 16 has other names of channels than line 7"):
         read_recorded(file)
+
+
+def test_moments_at_the_gage_are_a_caution_of_what_there_is(tmp_path: Path) -> None:
+    columns = {name.replace("Tip", "Gag"): column for name, column in COLUMNS.items()}
+    file = openfast_text(tmp_path / "a.out", columns=columns)
+    history = read_recorded(file, measured=True).history
+    assert history.absent == ("My", "Mz")
+    read = str(history.attributes["channels"])
+    (why,) = _why_left_out(SimpleNamespace(files=SimpleNamespace(channels={read: 1})))  # type: ignore[arg-type]
+    assert "LSSGagMys and LSSGagMzs are moments at the strain gage" in why
+    assert "give moments_at in --mapping" in with_options(why)
+    shaft = ChannelMap(moments_at=2.0)
+    carried = read_recorded(file, shaft).history.component("My")
+    np.testing.assert_allclose(carried, LOADS[:, 4] - 2.0 * LOADS[:, 2], atol=1e-2)
