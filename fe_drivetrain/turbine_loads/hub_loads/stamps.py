@@ -19,15 +19,15 @@ _UNCLEAR = re.compile(rf"\d{{1,2}}/\d{{1,2}}/\d{{2,4}},?[ T]+{_CLOCK}.*")
 class TimeColumn:
     """Reads the cells of a time column one after the other; the first one decides on their form.
 
-    Attributes
-    ----------
-    first : datetime or None
-        The first of date-times, from which seconds count; None of numbers.
-
     Parameters
     ----------
     number : callable
         Reads a cell that is a number.
+
+    Attributes
+    ----------
+    first : datetime or None
+        The first of date-times, from which seconds count; None of numbers.
     """
 
     def __init__(self, number: Callable[[str], float] = parse_number) -> None:
