@@ -246,7 +246,8 @@ def test_a_run_is_found_once(tmp_path: Path) -> None:
     assert beside(run) == [run, run.with_suffix(".dat")]
     (tmp_path / "b").mkdir()
     group = bladed(tmp_path / "b")
-    assert hub_load_files(str(tmp_path / "b")) == [group.with_suffix(".$PJ")]
+    project = [group.with_suffix(".$PJ")]
+    assert hub_load_files(str(tmp_path / "b")) == hub_load_files(f"{tmp_path}/b/*") == project
     assert hub_load_files(str(tmp_path / "b" / "*.%23")) == [group]
     with pytest.raises(InputError, match="two files of one Bladed run, which would count twice"):
         hub_load_files(str(tmp_path / "b" / "*.%*"))

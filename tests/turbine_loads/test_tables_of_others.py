@@ -87,8 +87,18 @@ FORMS: dict[str, Callable[[Path], Path]] = {
     "UTF-16 of spreadsheets": lambda p: text(p / "a.csv", [HEAD, *commas()], "\t", "utf-16"),
     "date-times under time [s]": lambda p: stamped(p, "%Y-%m-%d %H:%M:%S.%f"),
     "German date-times": lambda p: stamped(p, "%d.%m.%Y %H:%M:%S,%f", "Zeitstempel", commas(), ";"),
+    "date-times of a logger with four rows of header": lambda p: logged(p),
     "date-times with slashes": lambda p: stamped(p, "%Y/%m/%d %H:%M:%S.%f", "timestamp"),
 }
+
+
+def logged(path: Path) -> Path:
+    file = stamped(path, '"%Y-%m-%d %H:%M:%S.%f"')
+    _, *lines = file.read_text().splitlines()
+    head = ['"TOA5","mast","CR1000","1"', ",".join(f'"{n}"' for n in ("TIMESTAMP", *NAMES))]
+    head += [",".join(f'"{unit}"' for unit in ("TS", *UNITS[1:])), '"","Avg","Avg"']
+    file.write_text("\n".join([*head, *lines, ""]))
+    return file
 
 
 def stamped(
@@ -182,7 +192,8 @@ def test_a_folder_of_other_tables_is_read_where_none_is_usual(tmp_path: Path) ->
     (tmp_path / "readme.txt").write_text("none")
     assert hub_load_files(str(tmp_path)) == hub_load_files(str(tmp_path / "*")) == tables
     usual = text(tmp_path / "c.csv", [HEAD, *table_cells()])
-    assert hub_load_files(str(tmp_path)) == [usual]
+    assert hub_load_files(str(tmp_path)) == hub_load_files(str(tmp_path / "*")) == [usual]
+    assert hub_load_files(str(tmp_path / "*.tsv")) == tables
 
 
 # --- Excel, MATLAB, Parquet ----------------------------------------------------------------------

@@ -141,7 +141,7 @@ def hub_load_files(pattern: str) -> list[Path]:
         for file in (_in_folder(place) if place.is_dir() else [place])
         if is_found(file)
     ]
-    files = list(dict.fromkeys(files))
+    files = _usual(list(dict.fromkeys(files)))
     if not files:
         raise InputError(
             f"loads = {pattern!r}: no {', '.join(_USUAL)} file is there, nor a history of another "
@@ -152,9 +152,20 @@ def hub_load_files(pattern: str) -> list[Path]:
 
 
 def _in_folder(folder: Path) -> list[Path]:
-    """Histories in a folder: those of the usual kinds, or else of others."""
-    files = [one for one in sorted(folder.iterdir()) if is_found(one) and ".%" not in one.suffix]
-    return [file for file in files if file.suffix.lower() in _USUAL] or files
+    """Histories in a folder; of Bladed the project, and not each of its groups."""
+    return [file for file in sorted(folder.iterdir()) if ".%" not in file.suffix]
+
+
+def _usual(files: Sequence[Path]) -> list[Path]:
+    """Files of the usual kinds; those of others in folders that have none of these.
+
+    The project of a run of Bladed stands for its groups.
+    """
+    with_usual = {file.parent for file in files if file.suffix.lower() in _USUAL}
+    projects = {file.with_suffix("") for file in files if file.suffix.lower() == ".$pj"}
+    groups = [f for f in files if ".%" in f.suffix and f.with_suffix("") in projects]
+    others = [file for file in files if file.parent not in with_usual and file not in groups]
+    return [file for file in files if file.suffix.lower() in _USUAL or file in others]
 
 
 def _check_runs(files: Sequence[Path]) -> None:

@@ -26,6 +26,7 @@ from fe_drivetrain.turbine_loads.hub_loads.number_forms import AmbiguousError, N
 from fe_drivetrain.turbine_loads.hub_loads.stamps import EXAMPLE, TimeColumn, is_stamp, unclear_date
 
 _EXAMPLE = "time [s],Fx [N],Fy [N],Fz [N],Mx [N m],My [N m],Mz [N m]"
+_LOGGER = "TOA5"  # the line of a logger of Campbell Scientific before its titles
 _UNIT_BEHIND = re.compile(r"(.+?)\s+(?:in|/)\s+(\S+(?: m)?)")
 
 
@@ -176,16 +177,18 @@ class CellTable(HistoryTable):
 
     def __init__(self, file: Path, kind: str) -> None:
         super().__init__(file, kind)
-        first = list(islice(self.cells(), 2))
+        first = list(islice(self.cells(), 4))
+        if len(first) > 1 and first[0][1][0] == _LOGGER:
+            del first[0]
         if not first:
             raise self.cannot(f"empty; begin with the header '{_EXAMPLE}'")
         self.header, titles = first[0][0], [cell_as_given(title) for title in first[0][1]]
         if len(first) > 1 and _are_units(titles, first[1][1]):
             self.header, units = first[1][0], first[1][1]
             pairs = zip(titles, [*units, *[""] * len(titles)], strict=False)
-            titles = [
-                f"{title} [{u}]" if (u := unit.strip(" []()")) else title for title, unit in pairs
-            ]
+            titles = [_titled(title, unit.strip(" []()")) for title, unit in pairs]
+            if len(first) > 2 and not any(_is_value(cell.strip()) for cell in first[2][1]):
+                self.header = first[2][0]  # how samples were made, as in Avg
         self.titles = [bracketed(title) for title in titles]
 
     @abstractmethod
