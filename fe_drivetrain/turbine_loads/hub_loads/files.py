@@ -163,9 +163,9 @@ def _usual(files: Sequence[Path]) -> list[Path]:
     """
     with_usual = {file.parent for file in files if file.suffix.lower() in _USUAL}
     projects = {file.with_suffix("") for file in files if file.suffix.lower() == ".$pj"}
-    groups = [f for f in files if ".%" in f.suffix and f.with_suffix("") in projects]
-    others = [file for file in files if file.parent not in with_usual and file not in groups]
-    return [file for file in files if file.suffix.lower() in _USUAL or file in others]
+    groups = {f for f in files if ".%" in f.suffix and f.with_suffix("") in projects}
+    others = {f for f in files if f.suffix.lower() not in _USUAL and f.parent in with_usual}
+    return [file for file in files if file not in groups | others]
 
 
 def _check_runs(files: Sequence[Path]) -> None:
@@ -174,7 +174,7 @@ def _check_runs(files: Sequence[Path]) -> None:
     for file in files:
         if of_one_run(file):
             other = runs.setdefault(file.with_suffix("").resolve(), file)
-            if other is not file:
+            if other.resolve() != file.resolve():
                 raise InputError(
                     f"loads: {other} and {file.name} are two files of one {_program(file)} "
                     "run, which would count twice: choose one kind, as in "
