@@ -22,6 +22,7 @@ from fe_drivetrain.turbine_loads.hub_loads.history_table import ArrayTable, Cell
 from fe_drivetrain.turbine_loads.hub_loads.matlab_file import matlab_variables
 
 _MAX_UNPACKED = 4_000_000_000  # bytes of a sheet; a packed one may be a thousand times as large
+_SAID = 200  # letters of another project's message
 _SAVE_PLAIN = (
     "save plain vectors of one length, as in save('a.mat', 'time_s', 'Mx_kNm'), or a matrix `data` "
     "with cell arrays `names` and `units`"
@@ -201,4 +202,6 @@ def _module(name: str, what: str, extra: str, otherwise: str) -> ModuleType:
 
 
 def _first_line(error: Exception) -> str:
-    return next(iter(str(error).splitlines()), "") or type(error).__name__
+    """What another project's package says, on one line."""
+    text = next(iter(str(error).splitlines()), "") or type(error).__name__
+    return "".join(c if c.isprintable() else "?" for c in text)[:_SAID]
