@@ -57,7 +57,8 @@ class GearsRequest:
             "--loads",
             metavar="FILES",
             help="Hub loads, whose torque and other loads make the spectrum: a file (.out, .outb "
-            "of OpenFAST, or .csv), a folder, or a pattern in quotes. May be repeated.",
+            "of OpenFAST, .csv, or of other programs), a folder, or a pattern in quotes. May be "
+            "repeated.",
         ),
     ] = None
     spectrum: Annotated[

@@ -35,7 +35,8 @@ class LoadsRequest:
         typer.Argument(
             metavar="FILES",
             help="Hub loads, all six or some, as a torque alone: files (.out, .outb of OpenFAST, "
-            "or .csv), folders, or patterns in quotes, as in 'outputs/**/*.outb'. Lengths and "
+            ".csv, or of other programs), folders, or patterns in quotes, as in "
+            "'outputs/**/*.outb'. Lengths and "
             "steps may differ.",
         ),
     ]

@@ -42,7 +42,8 @@ LoadFiles = Annotated[
     typer.Option(
         "--loads",
         metavar="FILES",
-        help="Hub loads: a file (.out, .outb of OpenFAST, or .csv), a folder, or a pattern in "
+        help="Hub loads: a file (.out, .outb, .csv, or of other programs), a folder, or a "
+        "pattern in "
         "quotes, as in 'outputs/*.outb'. May be repeated.",
     ),
 ]

@@ -209,12 +209,13 @@ def content_of(asked: ReportRequest, scene: Scene) -> dict[str, Any]:
     from fe_drivetrain.report.seal import content_hash
     from fe_drivetrain.shafts.response.cached import whole_content
     from fe_drivetrain.turbine_loads.hub_loads.recorded import recorded_files
+    from fe_drivetrain.turbine_loads.hub_loads.table_kinds import history_digest
 
-    files = [*recorded_files(asked.loads)]
+    files = {str(path): history_digest(path) for path in recorded_files(asked.loads)}
     beside = [path for path in (asked.mapping, *(asked.catalogue or ())) if path is not None]
     return {
         "drivetrain": content_hash(whole_content(scene)),
-        "files": {str(path): file_digest(str(path)) for path in [*files, *beside]},
+        "files": files | {str(path): file_digest(str(path)) for path in beside},
         "site": asked.site or "",
         "skip": asked.skip,
         "rotor speed": asked.rotor_speed or 0.0,

@@ -57,7 +57,8 @@ class TransientRequest:
         typer.Option(
             "--loads",
             metavar="FILES",
-            help="Histories of operation: a file (.out, .outb of OpenFAST, or .csv), a folder, or "
+            help="Histories of operation: a file (.out, .outb, .csv, or of other programs), a "
+            "folder, or "
             "a pattern in quotes, as in 'outputs/*.outb'. May be repeated.",
         ),
     ] = None

@@ -15,7 +15,7 @@ from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress
-from fe_drivetrain.common.provenance import file_digest, program_hash
+from fe_drivetrain.common.provenance import program_hash
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.entrance import Entrance
 from fe_drivetrain.shafts.response.entering import at_front
@@ -31,6 +31,7 @@ from fe_drivetrain.turbine_loads.hub_loads.channels import MOMENT_UNITS, existin
 from fe_drivetrain.turbine_loads.hub_loads.csv_columns import csv_channels
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
 from fe_drivetrain.turbine_loads.hub_loads.recorded import SPEED_UNITS, read_recorded
+from fe_drivetrain.turbine_loads.hub_loads.table_kinds import history_digest
 
 TORQUE = 3
 """Number of Mx among the loads of the hub."""
@@ -298,7 +299,7 @@ def file_spectrum(report: Progress, file: Path, reading: Reading, resume: bool) 
     report(f"{file.stem}: torque spectrum")
     content = {
         "code": program_hash(),
-        "file": file_digest(str(file)),
+        "file": history_digest(file),
         "mapping": reading.options.names.content(),
         "reading": reading.content,
     }

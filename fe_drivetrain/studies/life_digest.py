@@ -19,7 +19,7 @@ from fe_drivetrain.common.arrays import Floats, chunks
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
-from fe_drivetrain.common.provenance import file_digest, program_hash
+from fe_drivetrain.common.provenance import program_hash
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.entrance import AT_HUB, Entrance
 from fe_drivetrain.drivetrain_file.scene import Scene
@@ -32,6 +32,7 @@ from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.turbine_loads.hub_loads.histories import MIN_SAMPLES
 from fe_drivetrain.turbine_loads.hub_loads.point_loads import PointLoads
 from fe_drivetrain.turbine_loads.hub_loads.recorded import Recorded, read_recorded
+from fe_drivetrain.turbine_loads.hub_loads.table_kinds import history_digest
 from fe_drivetrain.turbine_loads.hub_loads.turbines import vertical_forces
 
 WINDOWS = 60
@@ -147,7 +148,7 @@ def content(
     """
     return {
         "code": program_hash(),
-        "file": file_digest(str(file)),
+        "file": history_digest(file),
         "bearing": one.name,
         "rated": repr(one.rated),
         "rollers": {name: repr(b) for name, b in one.path.bearings.items()},

@@ -71,6 +71,7 @@ def left_out(found: LoadTotals, with_reactions: bool) -> list[str]:
             f"{_where_absent(found)}, so not known rather than zero. Left out: "
             f"{'; '.join(['their statistics, cycles and spectra', *without])}."
         )
+        said += [f"{why[0].upper()}{why[1:]}." for why in _why_left_out(found)]
     elif with_reactions and shaft:
         said.append(
             f"Bearing reactions are left out: they need the rotor's torque, and Mx is that of the "
@@ -82,6 +83,12 @@ def left_out(found: LoadTotals, with_reactions: bool) -> list[str]:
             "a mapping makes it the rotor's torque, without losses and inertia between."
         )
     return said
+
+
+def _why_left_out(found: LoadTotals) -> list[str]:
+    """Why channels that files have are not read, each reason once."""
+    parts = (part for read in found.files.channels for part in read.split("; "))
+    return list(dict.fromkeys(part for part in parts if part.startswith("left out: ")))
 
 
 def _where_absent(found: LoadTotals) -> str:

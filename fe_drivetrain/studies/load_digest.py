@@ -12,7 +12,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError, require_known
-from fe_drivetrain.common.provenance import file_digest, program_hash
+from fe_drivetrain.common.provenance import program_hash
 from fe_drivetrain.studies.history_options import HistoryOptions, require_between
 from fe_drivetrain.studies.load_planes import PLANES, PlaneDigest, plane_digest
 from fe_drivetrain.studies.unused import own_speeds
@@ -37,6 +37,7 @@ from fe_drivetrain.turbine_loads.histories.windows import Windows, window_statis
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
 from fe_drivetrain.turbine_loads.hub_loads.recorded import Recorded
 from fe_drivetrain.turbine_loads.hub_loads.sampling import Steps, evenly
+from fe_drivetrain.turbine_loads.hub_loads.table_kinds import history_digest
 
 LOADS = (*FORCES, "radial force", "bending moment")
 """Channels that are counted; the last two are sizes across the shaft."""
@@ -131,7 +132,7 @@ class LoadOptions(HistoryOptions):
         """All that the digest of a file depends on: what is in the file counts, not its name."""
         return {
             "code": program_hash(),
-            "file": file_digest(str(file)),
+            "file": history_digest(file),
             "mapping": self.names.content(),
             "slopes": [float(m) for m in self.slopes],
             "ultimate": dict(self.ultimate),

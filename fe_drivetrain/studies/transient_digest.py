@@ -13,7 +13,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress
-from fe_drivetrain.common.provenance import file_digest, program_hash
+from fe_drivetrain.common.provenance import program_hash
 from fe_drivetrain.dynamics.bodies.advice import Rung
 from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.dynamics.time.machine_channels import Channels
@@ -25,6 +25,7 @@ from fe_drivetrain.turbine_loads.histories.classes import Classes
 from fe_drivetrain.turbine_loads.histories.damage import FREQUENCY, SLOPES
 from fe_drivetrain.turbine_loads.histories.farm import Counting, Piece, piece
 from fe_drivetrain.turbine_loads.hub_loads.drive_history import DriveHistory, read_drive
+from fe_drivetrain.turbine_loads.hub_loads.table_kinds import history_digest
 
 CLASSES = 128
 """Classes of cycles and levels up to the rated value of a channel, at least."""
@@ -312,7 +313,7 @@ def _content(
     return {
         "of": "a drivetrain in time",
         "code": program_hash(),
-        "file": file_digest(str(file)),
+        "file": history_digest(file),
         "drivetrain": drivetrain_hash(machine),
         "level": rung.level.value,
         "gives": _plain(rung.flexible),

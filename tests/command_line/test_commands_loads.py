@@ -480,5 +480,5 @@ def test_loads_under_other_names_are_read(tmp_path: Path) -> None:
     twice.write_text(file.read_text().replace("f [N m]", "f [N m],a [kN]").replace("\n", ",9\n"))
     assert read_recorded(twice, mapped).history.loads[1, 0] == 1e3  # the first of that name
     file.write_text(file.read_text().replace("\n3,3", "\n3,three"))
-    with pytest.raises(InputError, match="'three' to float64 at row 3, column 2"):
+    with pytest.raises(InputError, match="line 5, column a: 'three' is not a number: correct it"):
         read_recorded(file, mapped)

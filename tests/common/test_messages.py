@@ -58,10 +58,10 @@ def test_files_that_cannot_be_read_say_what_to_do(tmp_path):
 
 def test_files_of_loads_that_cannot_be_read_say_what_to_do(tmp_path):
     table = tmp_path / "a.csv"
-    table.write_bytes(f"{HEADER}\n0,1,2,3,4,5,6\n# M\xfchle\n".encode("latin-1"))
+    table.write_bytes(f"{HEADER}\n0,1,2,3,4,5,6\n# M\xfch\0le\n".encode("latin-1"))
     mapped = ChannelMap(channels={"Fx": "Fx"})
     for path, says in (
-        (table, "it is not UTF-8 text: save it as UTF-8 CSV"),
+        (table, "it is no text: save it as CSV in UTF-8"),
         (tmp_path / "none.csv", "there is no such file: check the path"),
         (tmp_path / f"{'a' * 300}.csv", "File name too long: give another file"),
     ):
@@ -110,12 +110,13 @@ def test_nothing_is_guessed_of_what_is_like_no_case():
 @pytest.mark.parametrize(
     ("header", "row", "says"),
     [
-        (HEADER.replace(",", ";"), "0;1;2;3;4;5;6", "separated by semicolons"),
         (HEADER, "0,0,1,5,2,0,3,0,4,0,5,0,6,0", "as decimal commas make"),
-        (HEADER, '"0,5",1,2,3,4,5,6', "'0,5' has a decimal comma"),
+        (HEADER, '0.5,"1,25",2,3,4,5,6', "line 2, column Fx: '1,25' has a decimal comma, where o"),
+        (HEADER, '"0,5",1.5,2,3,4,5,6', "line 2, column Fx: '1.5' has a decimal point, where oth"),
+        (HEADER, '0,"1,250",2,3,4,5,6', "column Fx: '1,250' may be 1.250 or 1250: write decimals"),
     ],
 )
-def test_semicolons_and_decimal_commas_are_named(tmp_path, header, row, says):
+def test_decimal_commas_that_cannot_be_read_are_named(tmp_path, header, row, says):
     table = tmp_path / "loads.csv"
     table.write_text(f"{header}\n{row}\n")
     with pytest.raises(InputError, match=says):

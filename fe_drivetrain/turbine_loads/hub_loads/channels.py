@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -22,13 +22,20 @@ _MAX_BYTES = 8_000_000_000  # of one file of loads or wind, which memory holds w
 class Channel:
     """One column of a file: its name there, its unit there, its samples (n,) as written.
 
-    A note says how they were read where they are not numbers there.
+    A note says how they were read where they are not numbers there; rows are the line of each
+    sample in a table.
     """
 
     name: str
     unit: str
     values: Floats
     note: str = ""
+    rows: Sequence[int] | None = None
+
+    @property
+    def invalid(self) -> bool:
+        """Whether OpenFAST did not compute it: it writes INVALID for its unit, and zeros."""
+        return self.unit.upper() == "INVALID"
 
 
 def parse_number(text: str) -> float:
@@ -45,6 +52,17 @@ TIME_UNITS = {"s": 1.0, "sec": 1.0, "ms": 1e-3}
 ANGLE_UNITS = {"deg": np.pi / 180.0, "rad": 1.0}
 FORCE_UNITS = {"N": 1.0, "kN": 1e3, "MN": 1e6}
 MOMENT_UNITS = {"Nm": 1.0, "kNm": 1e3, "MNm": 1e6}
+
+_SPELLINGS = {
+    **dict.fromkeys(("sec", "second", "seconds", "Sekunden", "Sek"), "s"),
+    **dict.fromkeys(("m/sec", "mps", "ms^1", "ms1"), "m/s"),
+    **dict.fromkeys(("rad/sec", "rads^1", "rads1"), "rad/s"),
+    "deg/sec": "deg/s",
+    **dict.fromkeys(("RPM", "1/min", "U/min", "rev/min", "r/min", "min^1", "min1", "Upm"), "rpm"),
+    **dict.fromkeys(("degrees", "degree", "Grad", "\u00b0"), "deg"),
+    **dict.fromkeys(("radians", "radian"), "rad"),
+}
+"""Other ways to write a unit, as `_plain` has them."""
 
 
 def in_si(source: str, channel: Channel, units: Mapping[str, float]) -> Floats:
@@ -69,6 +87,7 @@ def in_si(source: str, channel: Channel, units: Mapping[str, float]) -> Floats:
         The unit is another.
     """
     unit = _plain(channel.unit)
+    unit = unit if unit in units else _SPELLINGS.get(unit, unit)
     if unit not in units:
         raise InputError(
             f"hub loads '{source}': channel {channel.name} has the unit '{channel.unit}', not one "
@@ -89,6 +108,13 @@ def is_load_unit(title: str) -> bool:
     return unit is not None and _plain(unit[1]) in FORCE_UNITS | MOMENT_UNITS
 
 
+def is_unit(text: str) -> bool:
+    """Whether a word is a unit of time, angle, speed, force or moment."""
+    known = {*TIME_UNITS, *ANGLE_UNITS, *FORCE_UNITS, *MOMENT_UNITS, *_SPELLINGS.values()}
+    unit = _plain(text)
+    return _SPELLINGS.get(unit, unit) in known
+
+
 def _plain(unit: str) -> str:
     # "N m", "N-m", "N.m", "N*m" and "N·m" are one unit; upper and lower case are not (mN, MN).
     return re.sub(r"[\s·⋅*.\-]", "", unit)
@@ -96,7 +122,7 @@ def _plain(unit: str) -> str:
 
 def not_utf8(kind: str, file: Path) -> InputError:
     """The sentence about a table that is not text."""
-    return InputError(f"{kind} '{file}': it is not UTF-8 text: save it as UTF-8 CSV")
+    return InputError(f"{kind} '{file}': it is no text: save it as CSV in UTF-8")
 
 
 def existing_file(path: str | os.PathLike[str], kind: str = "hub loads") -> Path:

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import csv
 import re
 from collections.abc import Collection
 from pathlib import Path
 
 import numpy as np
 
-from fe_drivetrain.common.csv_cells import cell_as_given
-from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.turbine_loads.hub_loads.channels import Channel, not_utf8
+from fe_drivetrain.turbine_loads.hub_loads.channels import Channel
 from fe_drivetrain.turbine_loads.hub_loads.csv_table import is_of_point
-from fe_drivetrain.turbine_loads.hub_loads.stamps import TimeColumn
+from fe_drivetrain.turbine_loads.hub_loads.table_kinds import history_table
 
 
 def csv_channels(
@@ -28,7 +25,7 @@ def csv_channels(
     Parameters
     ----------
     file : Path
-        A table with a header like ``time [s],thrust [kN]``; lines with # before it are left out.
+        A table with a header like ``time [s],thrust [kN]``, of any kind: see `history_table`.
     wanted : collection of str
         Names in lower case; other columns have no values, so that a large table is read in the
         memory of what is used.
@@ -44,12 +41,11 @@ def csv_channels(
     InputError
         A cell of a wanted column is not a number.
     """
-    before, titles = table_header(file)
+    table = history_table(file, "table")
     found: dict[str, Channel] = {}
     places: dict[str, int] = {}
-    stamps: dict[str, TimeColumn] = {}
     bare = {name.lower() for name in units}.union(times)
-    for place, title in enumerate(titles):
+    for place, title in enumerate(table.titles):
         match = re.fullmatch(r"\s*(.+?)\s*[\[(]\s*(.*?)\s*[\])]\s*", title)
         if match is None and title.strip().lower() in bare:
             match = re.fullmatch(r"\s*(.+?)()\s*", title)
@@ -57,53 +53,12 @@ def csv_channels(
             found[match[1].lower()] = Channel(match[1], match[2], np.zeros(0))
             if match[1].lower() in wanted or (points and is_of_point(match[1])):
                 places[match[1].lower()] = place
-                if match[1].lower() in times:
-                    stamps[match[1].lower()] = TimeColumn()
     if not places:
         return found
-    try:
-        values = np.loadtxt(
-            file,
-            delimiter=",",
-            skiprows=before,
-            usecols=list(places.values()),
-            converters={places[name]: read for name, read in stamps.items()} or None,
-            ndmin=2,
-            encoding="utf-8-sig",
-        )
-    except UnicodeDecodeError as error:
-        raise not_utf8("table", file) from error
-    except ValueError as error:
-        raise InputError(
-            f"table '{file}': {error}, counted below the header: correct the cell, or remove "
-            "the line"
-        ) from error
-    for name, column in zip(places, values.T, strict=True):
-        note = stamps[name].words if name in stamps else ""
-        found[name] = Channel(found[name].name, "s" if note else found[name].unit, column, note)
+    clocks = [place for name, place in places.items() if name in times]
+    columns = table.columns(list(places.values()), clocks)
+    for name, place in places.items():
+        note = columns.words if place in clocks else ""
+        unit = "s" if note else found[name].unit
+        found[name] = Channel(found[name].name, unit, columns.values[place], note, columns.rows)
     return found
-
-
-def table_header(file: Path) -> tuple[int, list[str]]:
-    """The line of a table's header, from 1, and its titles.
-
-    Parameters
-    ----------
-    file : Path
-        The table.
-
-    Raises
-    ------
-    InputError
-        It is not text.
-    """
-    before, titles = 0, ""
-    try:
-        with file.open(encoding="utf-8-sig") as stream:
-            for before, line in enumerate(stream, 1):  # noqa: B007
-                if line.strip() and not line.startswith("#"):
-                    titles = line
-                    break
-    except UnicodeDecodeError as error:
-        raise not_utf8("table", file) from error
-    return before, [cell_as_given(title.strip()) for title in next(csv.reader([titles]), [])]

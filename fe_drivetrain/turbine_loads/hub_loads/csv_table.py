@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import os
 import re
-from array import array
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
-from fe_drivetrain.common.csv_cells import cell_as_given, comment_as_given, comment_line, table_row
+from fe_drivetrain.common.csv_cells import comment_line, table_row
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
-from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import HIGH_SPEED_TORQUE
 from fe_drivetrain.turbine_loads.hub_loads.channels import (
     FORCE_UNITS,
@@ -28,8 +24,6 @@ from fe_drivetrain.turbine_loads.hub_loads.channels import (
     Channel,
     existing_file,
     in_si,
-    not_utf8,
-    parse_number,
     without_unit,
 )
 from fe_drivetrain.turbine_loads.hub_loads.high_speed import at_rotor
@@ -41,7 +35,9 @@ from fe_drivetrain.turbine_loads.hub_loads.histories import (
     LoadHistory,
     require_sound,
 )
-from fe_drivetrain.turbine_loads.hub_loads.stamps import EXAMPLE, TimeColumn
+from fe_drivetrain.turbine_loads.hub_loads.history_table import HistoryTable
+from fe_drivetrain.turbine_loads.hub_loads.stamps import EXAMPLE
+from fe_drivetrain.turbine_loads.hub_loads.table_kinds import history_table
 from fe_drivetrain.turbine_loads.hub_loads.table_names import HUB, named_columns
 
 _CSV_COLUMNS = ("time", *FORCES)
@@ -52,12 +48,16 @@ _CSV_EXAMPLE = "time [s],Fx [N],Fy [N],Fz [N],Mx [N m],My [N m],Mz [N m]"
 
 
 def read_csv(
-    path: str | os.PathLike[str], measured: bool = False, gearbox_ratio: float | None = None
+    path: str | os.PathLike[str],
+    measured: bool = False,
+    gearbox_ratio: float | None = None,
+    units: Mapping[str, str] | None = None,
 ) -> LoadHistory:
-    """Read hub loads from a table with named columns and their units in the header.
+    """Read hub loads from a table with named columns and their units in the header, or below it.
 
     The header is like ``time [s],Fx [kN],...,Mz [kN m]``, columns in any order, others ignored;
-    other names that are known are in `TABLE_NAMES`. Time may be date-times.
+    other names that are known are in `TABLE_NAMES`. Time may be date-times. Which kinds of files
+    are tables: `history_table`.
     Columns like ``brake.Fz [kN]`` are loads at another point of the shaft; those that a point does
     not have are zero.
     Lines ``# key = value`` before it become the attributes; ``# moments about = 0.7`` is x [m] of
@@ -71,6 +71,8 @@ def read_csv(
         Take what components there are, at whatever times.
     gearbox_ratio : float, optional
         Makes the rotor's torque of that of the high-speed shaft, where the table has that alone.
+    units : mapping, optional
+        Units of columns, by their names in the file, which go before those of the file.
 
     Raises
     ------
@@ -78,17 +80,9 @@ def read_csv(
         If the file is missing, a column or its unit is missing or unknown, a cell is not a number,
         or the samples are unsound.
     """
-    file = existing_file(path)
-    attributes: dict[str, Attribute] = {}
-    try:
-        with file.open(encoding="utf-8-sig") as stream:
-            table = _read_table(file, stream, attributes, measured, bool(measured or gearbox_ratio))
-    except UnicodeDecodeError as error:
-        raise not_utf8("hub loads", file) from error
-    except csv.Error as error:
-        raise InputError(f"hub loads '{file}': {error}; correct the table") from error
-
-    source, channels = str(file), table.channels
+    table = history_table(existing_file(path))
+    source = str(table.file)
+    channels, unread = _read_table(table, measured, bool(measured or gearbox_ratio), units or {})
     torque = channels.pop(HIGH_SPEED_TORQUE, None)
     if torque is not None:
         channels["Mx"] = torque
@@ -103,21 +97,23 @@ def read_csv(
     columns = dict(loads)
     for point, values in at.items():
         columns |= {f"{point}.{c}": v for c, v in zip(FORCES, values.T, strict=True)}
-    require_sound(f"hub loads '{source}'", time, columns, table.rows, even=not measured)
+    rows = channels["time"].rows
+    require_sound(f"hub loads '{source}'", time, columns, rows, even=not measured)
     read = ", ".join(_as_read(name, channels[name]) for name in (*loads, *others))
-    origin: dict[str, Attribute] = {"source": file.name}
+    attributes = {key: _number_or_text(value) for key, value in table.facts.items()}
+    origin: dict[str, Attribute] = {"source": table.file.name}
     loads, where = at_rotor(source, loads, torque, gearbox_ratio)
-    read = "; ".join(filter(None, (read, where.words, table.times)))
+    read = "; ".join(filter(None, (read, where.words, channels["time"].note)))
     about = _about(attributes)
     origin |= {"channels": f"{read}; signs as in the file, nothing turned", **where.attributes}
     missing = np.full(len(time), np.nan)
     return LoadHistory(
-        file.stem,
+        table.file.stem,
         time,
         np.column_stack([loads.get(name, missing) for name in FORCES]),
         origin | attributes,
         at,
-        table.unread,
+        unread,
         about,
         measured,
     )
@@ -165,92 +161,35 @@ def point_loads(source: str, channels: Iterable[Channel]) -> dict[str, Floats]:
     return at
 
 
-class _Table(NamedTuple):
-    """Columns that are read, the line of each row, titles of other columns, how times were read."""
-
-    channels: dict[str, Channel]
-    rows: Sequence[int]
-    unread: tuple[str, ...]
-    times: str
-
-
 def _read_table(
-    file: Path,
-    stream: Iterable[str],
-    attributes: dict[str, Attribute],
-    measured: bool,
-    high_speed: bool,
-) -> _Table:
-    """Columns of a table, in the memory of the numbers that are read.
+    table: HistoryTable, measured: bool, high_speed: bool, units: Mapping[str, str]
+) -> tuple[dict[str, Channel], tuple[str, ...]]:
+    """Columns of a table that are read, by what they are, and titles of the others.
 
     With `high_speed` the torque of that shaft stands for Mx where there is no other.
     """
-    rows = array("q")
-
-    def kept() -> Iterator[str]:
-        for number, line in enumerate(stream, start=1):
-            if line.startswith("#"):
-                key, equals, value = comment_as_given(line[1:]).partition("=")
-                if equals:
-                    attributes[key.strip()] = _number_or_text(value.strip())
-            elif line.strip():
-                rows.append(number)
-                yield line
-
-    table = csv.reader(kept())
-    header = [cell_as_given(title) for title in next(table, [])]
-    if not header:
-        raise InputError(f"hub loads '{file}': empty; begin with the header '{_CSV_EXAMPLE}'")
-    if len(header) == 1 and ";" in header[0]:
-        raise InputError(
-            f"hub loads '{file}': columns are separated by semicolons but must be by commas, and "
-            "decimals must have a point: export the table so"
-        )
-    places = _csv_places(file, header)
+    titles, file = table.titles, table.file
+    own = {name.lower(): unit for name, unit in units.items()}
+    named = [own.get(without_unit(title).lower()) for title in titles]
+    given = [f"{without_unit(t)} [{u}]" if u else t for t, u in zip(titles, named, strict=True)]
+    places = _csv_places(file, given)
+    if not table.frame_known:
+        places = {name: place for name, place in places.items() if name == "time"}
     if "Mx" in places or not high_speed:
         places.pop(HIGH_SPEED_TORQUE, None)
-    _require_columns(file, places, measured)
-    del rows[:]
-    columns = {name: array("d") for name in places}
-    stamps = TimeColumn()
-    for row in table:
-        # more cells than columns: decimal commas would shift every number into another column
-        if len(row) > len(header) and any(cell.strip() for cell in row[len(header) :]):
-            raise InputError(
-                f"hub loads '{file}': line {rows[-1]} has {len(row)} values for {len(header)} "
-                "columns, as decimal commas make: write decimals with a point, and one value for "
-                "each column"
-            )
-        for name, (place, _) in places.items():
-            text = row[place].strip() if place < len(row) else ""
-            try:
-                columns[name].append(stamps(text) if name == "time" else parse_number(text))
-            except ValueError as error:
-                raise _bad_cell(file, rows[-1], name, text) from error
+    _require_columns(table, places, measured)
+    time = places["time"][0]
+    found = table.columns([place for place, _ in places.values()], [time])
     channels = {
-        name: Channel(_title(name, header[place]), unit, np.array(columns[name]))
+        name: Channel(_title(name, titles[place]), unit, found.values[place])
         for name, (place, unit) in places.items()
     }
-    if stamps.first is not None:
-        channels["time"] = replace(channels["time"], unit="s")
-    elif not channels["time"].unit:
-        raise _no_unit(file, header[places["time"][0]], "time")
+    unit = "s" if found.words else channels["time"].unit
+    if not unit:
+        raise _no_unit(file, titles[time], "time")
+    channels["time"] = replace(channels["time"], unit=unit, note=found.words, rows=found.rows)
     taken = {place for place, _ in places.values()}
-    unread = tuple(title.strip() for k, title in enumerate(header) if k not in taken)
-    return _Table(channels, rows, unread, stamps.words)
-
-
-def _bad_cell(file: Path, line: int, name: str, text: str) -> InputError:
-    """The sentence about a cell that is not what its column holds."""
-    place = f"hub loads '{file}': line {line}, column {name}: {shown(text)}"
-    if re.fullmatch(r"[-+]?\d+,\d*(e[-+]?\d+)?", text, re.IGNORECASE):
-        return InputError(f"{place} has a decimal comma: write decimals with a point")
-    if name == "time":
-        return InputError(
-            f"{place} is neither a number nor a date-time like {EXAMPLE}, or not in the form of "
-            "the first one: write all times in one form"
-        )
-    return InputError(f"{place} is not a number; correct it or remove the line and all after it")
+    return channels, tuple(title.strip() for k, title in enumerate(titles) if k not in taken)
 
 
 def write_hub_loads(
@@ -333,8 +272,9 @@ def _no_unit(file: Path, title: str, name: str) -> InputError:
     )
 
 
-def _require_columns(file: Path, columns: Collection[str], measured: bool) -> None:
+def _require_columns(table: HistoryTable, columns: Collection[str], measured: bool) -> None:
     """Refuse a table without time, or without the components that are needed."""
+    file, advice = table.file, table.advice
     torque = {"Mx"} if HIGH_SPEED_TORQUE in columns else set()
     missing = [name for name in _CSV_COLUMNS if name not in torque.union(columns)]
     if measured:
@@ -342,14 +282,16 @@ def _require_columns(file: Path, columns: Collection[str], measured: bool) -> No
             raise InputError(
                 f"hub loads '{file}': no column time; give one, like 'time [s]' or of "
                 f"date-times like {EXAMPLE}, or map yours, as in "
-                "`ChannelMap(channels={'time': 'Timestamp'})`"
+                f"`ChannelMap(channels={{'time': 'Timestamp'}})`{advice}"
             )
         if set(FORCES) <= set(missing):
             raise InputError(
                 f"hub loads '{file}': no column of a load; name one or more of "
                 f"{', '.join(FORCES)}, like 'Mx [kN m]', or map yours, as in "
-                "`ChannelMap(channels={'Mx': 'Torque'})`"
+                f"`ChannelMap(channels={{'Mx': 'Torque'}})`{advice}"
             )
+    elif missing and advice:
+        raise InputError(f"hub loads '{file}': no column {', '.join(missing)}{advice}; {NEED_ALL}")
     elif missing:
         what = f"; {NEED_ALL}" if set(missing) & set(FORCES) else ""
         raise InputError(

@@ -18,6 +18,7 @@ from fe_drivetrain.turbine_loads.hub_loads.csv_columns import csv_channels
 from fe_drivetrain.turbine_loads.hub_loads.histories import require_all_loads, require_even
 from fe_drivetrain.turbine_loads.hub_loads.openfast_output import openfast_channels
 from fe_drivetrain.turbine_loads.hub_loads.recorded import OWN_NAMES, SPEED_UNITS, read_recorded
+from fe_drivetrain.turbine_loads.hub_loads.table_kinds import is_table
 
 TORQUE, SPEED = "GenTq", "GenSpeed"
 """Names of the generator's torque and speed in files of OpenFAST, and in tables."""
@@ -80,7 +81,7 @@ def read_drive(path: Path, mapping: ChannelMap = OWN_NAMES, skip: float = 0.0) -
     Parameters
     ----------
     path : Path
-        A .out or .outb of OpenFAST, or a .csv.
+        A .out or .outb of OpenFAST, or a table: see `history_table`.
     mapping : ChannelMap
         How the file calls its channels, and their frame and origin.
     skip : float
@@ -91,8 +92,7 @@ def read_drive(path: Path, mapping: ChannelMap = OWN_NAMES, skip: float = 0.0) -
     InputError
         The file cannot be read, or has no torque.
     """
-    table = path.suffix.lower() == ".csv"
-    there = csv_channels(path, ()) if table else openfast_channels(path, ())
+    there = csv_channels(path, ()) if is_table(path) else openfast_channels(path, ())
     also = [name for name in (TORQUE, SPEED) if name.lower() in there]
     recorded = read_recorded(path, mapping, skip, also, measured=True)
     beside = dict(zip(also, recorded.others.values(), strict=True))

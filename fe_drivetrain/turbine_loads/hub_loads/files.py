@@ -23,13 +23,19 @@ from fe_drivetrain.turbine_loads.hub_loads.histories import (
     require_variation,
 )
 from fe_drivetrain.turbine_loads.hub_loads.openfast import LOAD_CHANNELS, read_openfast
+from fe_drivetrain.turbine_loads.hub_loads.table_kinds import (
+    OPENFAST,
+    is_found,
+    is_table,
+    of_one_run,
+    require_kind,
+)
 
-SUFFIXES = (".out", ".outb", ".csv")
-_OPENFAST = (".out", ".outb")
+_USUAL = (*OPENFAST, ".csv")  # what is looked for in a folder first
 
 
 def read_hub_loads(path: str | os.PathLike[str], skip: float = 0.0) -> LoadHistory:
-    """Read a history, its format determined by the suffix: .out or .outb (OpenFAST), or .csv.
+    """Read a history, of .out or .outb (OpenFAST), or a table of a kind of `history_table`.
 
     Parameters
     ----------
@@ -45,13 +51,8 @@ def read_hub_loads(path: str | os.PathLike[str], skip: float = 0.0) -> LoadHisto
         is left of it.
     """
     file = Path(path)
-    suffix = file.suffix.lower()
-    if suffix not in SUFFIXES:
-        raise InputError(
-            f"hub loads '{file}': the suffix '{file.suffix}' is not one of .out, .outb (OpenFAST) "
-            "and .csv; convert the file or rename it"
-        )
-    history = read_csv(file) if suffix == ".csv" else read_openfast(file)
+    require_kind(file)
+    history = read_csv(file) if is_table(file) else read_openfast(file)
     if skip:
         first, last = float(history.time[0]), float(history.time[-1])
         if (history.time >= first + skip).sum() < MIN_SAMPLES:
@@ -118,7 +119,8 @@ def hub_load_files(pattern: str) -> list[Path]:
     Parameters
     ----------
     pattern : str
-        A file; a folder, for the .out, .outb and .csv files in it; or a pattern with ``*``, ``?``
+        A file; a folder, for the .out, .outb and .csv files in it, or for histories of other
+        kinds where it has none of these; or a pattern with ``*``, ``?``
         or ``[...]`` in any part, and ``**`` for folders of any depth.
 
     Raises
@@ -136,28 +138,52 @@ def hub_load_files(pattern: str) -> list[Path]:
     files = [
         file
         for place in found
-        for file in (sorted(place.iterdir()) if place.is_dir() else [place])
-        if file.suffix.lower() in SUFFIXES and file.is_file()
+        for file in (_in_folder(place) if place.is_dir() else [place])
+        if is_found(file)
     ]
-    files = list(dict.fromkeys(files))
+    files = _usual(list(dict.fromkeys(files)))
     if not files:
-        raise InputError(f"loads = {pattern!r}: no {', '.join(SUFFIXES)} file is there")
+        raise InputError(
+            f"loads = {pattern!r}: no {', '.join(_USUAL)} file is there, nor a history of another "
+            "kind"
+        )
     _check_runs(files)
     return files
+
+
+def _in_folder(folder: Path) -> list[Path]:
+    """Histories in a folder; of Bladed the project, and not each of its groups."""
+    return [file for file in sorted(folder.iterdir()) if ".%" not in file.suffix]
+
+
+def _usual(files: Sequence[Path]) -> list[Path]:
+    """Files of the usual kinds; those of others in folders that have none of these.
+
+    The project of a run of Bladed stands for its groups.
+    """
+    with_usual = {file.parent for file in files if file.suffix.lower() in _USUAL}
+    projects = {file.with_suffix("") for file in files if file.suffix.lower() == ".$pj"}
+    groups = {f for f in files if ".%" in f.suffix and f.with_suffix("") in projects}
+    others = {f for f in files if f.suffix.lower() not in _USUAL and f.parent in with_usual}
+    return [file for file in files if file not in groups | others]
 
 
 def _check_runs(files: Sequence[Path]) -> None:
     """Refuse both output files of one run: its loads would count twice."""
     runs: dict[Path, Path] = {}
     for file in files:
-        if file.suffix.lower() in _OPENFAST:
+        if of_one_run(file):
             other = runs.setdefault(file.with_suffix("").resolve(), file)
-            if other is not file:
+            if other.resolve() != file.resolve():
                 raise InputError(
-                    f"loads: {other} and {file.name} are two files of one OpenFAST "
+                    f"loads: {other} and {file.name} are two files of one {_program(file)} "
                     "run, which would count twice: choose one kind, as in "
                     f"loads='{file.parent / ('*' + file.suffix)}'"
                 )
+
+
+def _program(file: Path) -> str:
+    return "OpenFAST" if file.suffix.lower() in OPENFAST else "Bladed"
 
 
 def require_points(histories: Sequence[LoadHistory], points: Sequence[str]) -> None:

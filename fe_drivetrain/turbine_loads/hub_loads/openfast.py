@@ -157,7 +157,7 @@ def loads_from_channels(
 
     seconds = in_si(source, time, TIME_UNITS)
     columns = {name: one.values for name, one in chosen.used.items() if one is not time}
-    require_sound(f"hub loads '{source}'", seconds, columns, even=not measured)
+    require_sound(f"hub loads '{source}'", seconds, columns, time.rows, even=not measured)
 
     psi = np.zeros_like(seconds)
     if azimuth is not None:
@@ -261,9 +261,13 @@ class _Chosen:
     """Channels of a file that hub loads are read from, chosen by what they are for."""
 
     def __init__(self, source: str, channels: Mapping[str, Channel], measured: bool) -> None:
-        self._source, self._channels, self._measured = source, channels, measured
+        self._source, self._measured = source, measured
+        self._channels = {key: channel for key, channel in channels.items() if not channel.invalid}
         self._missing: list[tuple[str, str]] = []
         self.left_out: list[str] = []
+        invalid = [c.name for key, c in channels.items() if c.invalid and key in LOAD_CHANNELS]
+        if invalid:
+            self.left_out.append(f"not read, since INVALID in the file: {', '.join(invalid)}")
         self.used: dict[str, Channel] = {}
 
     def first(self, names: Sequence[str]) -> Channel | None:
@@ -342,8 +346,8 @@ class _Chosen:
             names = ", ".join(channel.name for channel in found.channels)
             self._cannot(
                 f"{names.replace(', ', ' and ')} are moments at the strain gage, not at the hub",
-                "add LSSTipMys and LSSTipMzs to OutList, or give gage_distance (ShftGagL of the "
-                "ElastoDyn file; moments_at of a mapping)",
+                "add LSSTipMys and LSSTipMzs to OutList, or give moments_at in `ChannelMap`, which "
+                "is ShftGagL of the ElastoDyn file [m]",
             )
             return _Pair(None, None), False
         return found, True

@@ -9,26 +9,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection
-from itertools import islice
 from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.strict_yaml import shown
-from fe_drivetrain.turbine_loads.hub_loads.channels import Channel, parse_number
+from fe_drivetrain.turbine_loads.hub_loads.channels import Channel
+from fe_drivetrain.turbine_loads.hub_loads.openfast_text import MoreRunsError, decoded, text_columns
 
 _WITH_TIME, _UNPACKED, _LONG_NAMES = 1, 3, 4
-_HEADER_LINES, _NAME_LINE = 8, 6
 _MAX_HEADER = 12  # bytes of a binary file up to its number of samples
 _BLOCK = 1 << 21  # values that are unpacked at once
-
-
-class _MoreRunsError(ValueError):
-    """A file has more than one run."""
 
 
 def openfast_channels(file: Path, wanted: Collection[str] | None = None) -> dict[str, Channel]:
@@ -53,14 +46,14 @@ def openfast_channels(file: Path, wanted: Collection[str] | None = None) -> dict
         if file.suffix.lower() == ".outb":
             names, units, values = _binary(file, wanted)
         else:
-            names, units, values = _text(file, wanted)
-    except _MoreRunsError as error:
+            names, units, values = text_columns(file, lambda found: _chosen(found, wanted))
+    except MoreRunsError as error:
         raise InputError(f"hub loads '{file}': {error}") from error
     except (OSError, ValueError, IndexError, OverflowError) as error:
-        where = _first_bad_cell(file) or f"it cannot be read as OpenFAST output ({error})"
-        raise InputError(f"hub loads '{file}': {where}; run OpenFAST again") from error
-    if not any(values.shape):
-        raise InputError(f"hub loads '{file}': it has no samples; run OpenFAST again")
+        raise InputError(
+            f"hub loads '{file}': it cannot be read as OpenFAST output ({error}); run OpenFAST "
+            "again"
+        ) from error
     by_name: dict[str, Channel] = {}
     places = {name: place for place, name in enumerate(_chosen(names, wanted))}
     for place, (name, unit) in enumerate(zip(names, units, strict=True)):
@@ -126,7 +119,7 @@ def _binary(
             part = _numbers(stream, kind.str, count * channels).reshape(count, channels)
             values[start : start + count] = (part[:, columns] - offset[columns]) / scale[columns]
         if _begins_a_run(stream.read(_MAX_HEADER), size):
-            raise _MoreRunsError(
+            raise MoreRunsError(
                 f"a second run begins after the {samples} samples of the first: give each run a "
                 "file of its own"
             )
@@ -156,62 +149,4 @@ def _numbers(stream: BinaryIO, kind: str, count: int) -> NDArray[np.generic]:
 
 def _texts(stream: BinaryIO, count: int, length: int) -> list[str]:
     block = stream.read(count * length)
-    return [_decoded(block[length * k : length * (k + 1)]).strip(" \0") for k in range(count)]
-
-
-def _decoded(text: bytes) -> str:
-    try:
-        return text.decode()
-    except UnicodeDecodeError:
-        return text.decode("latin-1")
-
-
-def _text(file: Path, wanted: Collection[str] | None) -> tuple[list[str], list[str], Floats]:
-    """Names, units and values (samples, chosen) of a .out, time first."""
-    with file.open("rb") as stream:
-        header = [_decoded(line) for line in islice(stream, _HEADER_LINES)]
-        names = header[_NAME_LINE].split() if len(header) > _NAME_LINE else []
-        for number, line in enumerate(stream, start=_HEADER_LINES + 1):
-            if names and _decoded(line).split()[:2] == names[:2]:
-                raise _MoreRunsError(
-                    f"line {number} has the names of channels again, where a second run begins: "
-                    "give each run a file of its own"
-                )
-            if re.search(rb"[_\x80-\xff]", line):
-                raise ValueError("a cell is not a number")
-    if len(header) < _HEADER_LINES:
-        raise ValueError(f"it has {len(header)} lines")
-    names, units = header[_NAME_LINE].split(), header[_NAME_LINE + 1].split()
-    if len(names) != len(units):
-        raise ValueError(f"it has {len(names)} names of channels and {len(units)} units")
-    with file.open("rb") as stream:
-        lines = sum(1 for _ in islice(stream, _HEADER_LINES, None))
-    if not lines:
-        return names, [], np.zeros((0, 0))
-    values = np.loadtxt(file, skiprows=_HEADER_LINES, ndmin=2, comments=None, encoding="latin-1")
-    if values.shape[1] != len(names):
-        raise ValueError(f"it has {values.shape[1]} columns and {len(names)} names of channels")
-    return names, [unit.strip("()") for unit in units], values[:, _chosen(names, wanted)]
-
-
-def _first_bad_cell(file: Path) -> str | None:
-    """What is wrong with the first unreadable line of a text output file, or None."""
-    if file.suffix.lower() != ".out":
-        return None
-    try:
-        lines = file.read_text("latin-1").splitlines()
-    except OSError:
-        return None
-    if len(lines) <= _HEADER_LINES:
-        return f"it has {len(lines)} lines and no samples"
-    names = lines[_NAME_LINE].split()
-    for number, line in enumerate(lines[_HEADER_LINES:], start=_HEADER_LINES + 1):
-        cells = line.split()
-        if len(cells) != len(names):
-            return f"line {number} has {len(cells)} values for {len(names)} channels"
-        for name, cell in zip(names, cells, strict=True):
-            try:
-                parse_number(cell)
-            except ValueError:
-                return f"line {number}, channel {name}: {shown(cell)} is not a number"
-    return None
+    return [decoded(block[length * k : length * (k + 1)]).strip(" \0") for k in range(count)]

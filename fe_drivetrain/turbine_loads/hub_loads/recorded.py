@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -25,9 +25,9 @@ from fe_drivetrain.turbine_loads.hub_loads.channels import (
     in_si,
     without_unit,
 )
-from fe_drivetrain.turbine_loads.hub_loads.csv_columns import csv_channels, table_header
+from fe_drivetrain.turbine_loads.hub_loads.csv_columns import csv_channels
 from fe_drivetrain.turbine_loads.hub_loads.csv_table import is_of_point, point_loads, read_csv
-from fe_drivetrain.turbine_loads.hub_loads.files import SUFFIXES, files_of_patterns
+from fe_drivetrain.turbine_loads.hub_loads.files import files_of_patterns
 from fe_drivetrain.turbine_loads.hub_loads.histories import (
     MIN_SAMPLES,
     LoadHistory,
@@ -42,18 +42,25 @@ from fe_drivetrain.turbine_loads.hub_loads.openfast import (
 )
 from fe_drivetrain.turbine_loads.hub_loads.openfast_output import openfast_channels
 from fe_drivetrain.turbine_loads.hub_loads.point_loads import moved_moments
+from fe_drivetrain.turbine_loads.hub_loads.table_kinds import history_table, is_table, require_kind
 from fe_drivetrain.turbine_loads.hub_loads.table_names import HUB, TABLE_NAMES, named_columns
 
 SPEED_UNITS = {"rad/s": 1.0, "rpm": np.pi / 30.0, "deg/s": np.pi / 180.0}
 WIND_UNITS = {"m/s": 1.0}
 
 KNOWN = {
-    "rotor speed": ("rotor speed", "RotSpeed", "LSSTipVxa", "LSSTipVxs", "LSSTipV"),
-    "wind speed": ("wind speed", "RtVAvgxh", "WindHubVelX", "Wind1VelX", "HorWindV", "WindVxi"),
+    "rotor speed": (
+        *("rotor speed", "RotSpeed", "LSSTipVxa", "LSSTipVxs", "LSSTipV"),
+        *("Rotordrehzahl", "Rotor-Drehzahl", "Omega"),
+    ),
+    "wind speed": (
+        *("wind speed", "RtVAvgxh", "WindHubVelX", "Wind1VelX", "HorWindV", "WindVxi"),
+        *("Windgeschwindigkeit", "Hub wind speed magnitude"),
+    ),
 }
 """Channels beside the loads, and by which names files have them, the best first."""
 
-_GENERATOR_SPEEDS = ("generator speed", "GenSpeed", "HSS speed")
+_GENERATOR_SPEEDS = ("generator speed", "GenSpeed", "HSS speed", "Generatordrehzahl")
 
 _NOTHING_TURNED = ", nothing turned"
 
@@ -131,7 +138,7 @@ def read_recorded(
     Parameters
     ----------
     path : Path
-        A .out or .outb of OpenFAST, or a .csv.
+        A .out or .outb of OpenFAST, or a table: see `history_table`.
     mapping : ChannelMap
         How the file calls its channels, and their frame and origin.
     skip : float
@@ -147,39 +154,36 @@ def read_recorded(
         The file cannot be read, or has no channel of a name.
     """
     file = existing_file(path)
-    suffix = file.suffix.lower()
-    if suffix not in SUFFIXES:
-        raise InputError(
-            f"hub loads '{file}': the suffix '{file.suffix}' is not one of {', '.join(SUFFIXES)}; "
-            "convert the file or rename it"
-        )
-    is_table, loads_mapped = suffix == ".csv", mapping.loads_mapped
-    wanted = _wanted(mapping, also, is_table)
+    require_kind(file)
+    table, loads_mapped = is_table(file), mapping.loads_mapped
+    wanted = _wanted(mapping, also, table)
     channels = (
         csv_channels(file, wanted, mapping.units, bool(loads_mapped), _times(mapping))
-        if is_table
+        if table
         else openfast_channels(file, wanted | LOAD_CHANNELS)
     )
     for name in mapping.units:
         _named(file, channels, name, why="the mapping states its unit")
     units = {name.lower(): unit for name, unit in mapping.units.items()}
     channels = {n: replace(c, unit=units.get(n, c.unit)) for n, c in channels.items()}
+    valid = {name: channel for name, channel in channels.items() if not channel.invalid}
     named = {name: _named(file, channels, *mapping.column(name)) for name in mapping.channels}
     further = [_named(file, channels, name) for name in also]
-    azimuth = _azimuth(file, channels, named) if is_table and mapping.rotating else None
-    if is_table and not loads_mapped:
-        history = read_csv(file, measured, mapping.gearbox_ratio)
+    azimuth = _azimuth(file, valid, named) if table and mapping.rotating else None
+    if table and not loads_mapped:
+        history = read_csv(file, measured, mapping.gearbox_ratio, mapping.units)
         if azimuth is not None:
             history = _turned_back(history, azimuth, mapping)
     else:
         history = _of_channels(file, channels, named, mapping, measured)
-        if is_table:
+        if table:
             history = _with_points(file, history, channels, mapping, azimuth)
-    history = _at_hub(history, mapping, own_names=not (is_table or loads_mapped))
+    history = _at_hub(history, mapping, own_names=not (table or loads_mapped))
     unread = [t for t in history.unread if without_unit(t).lower() not in wanted]
     history = replace(history, unread=tuple(unread))
-    history, named = _with_ratio(history, channels, named, mapping.gearbox_ratio)
-    beside = _beside_loads(file, history, channels, named)
+    history, named = _with_ratio(history, valid, named, mapping.gearbox_ratio)
+    beside = _beside_loads(file, history, valid, named)
+    history = _with_invalid(history, (c for n, c in channels.items() if n in wanted))
     others = {f"{c.name} [{c.unit.strip('()')}]": c.values for c in further}
     require_sound(f"hub loads '{file}'", history.time, others, even=not measured)
     kept = history.time >= history.time[0] + skip
@@ -197,15 +201,15 @@ def read_recorded(
     )
 
 
-def _wanted(mapping: ChannelMap, also: Sequence[str], is_table: bool) -> set[str]:
+def _wanted(mapping: ChannelMap, also: Sequence[str], table: bool) -> set[str]:
     """Names in lower case of channels that are looked for, beside OpenFAST's loads."""
     known = (*KNOWN.values(), _GENERATOR_SPEEDS)
     beside_loads = [n.lower() for names in known for n in names]
     wanted = {*beside_loads, *(mapping.column(name)[0].lower() for name in mapping.channels)}
     wanted |= {name.lower() for name in also}
-    if is_table and mapping.rotating:
+    if table and mapping.rotating:
         wanted |= {name.lower() for name in AZIMUTH}
-    if is_table and mapping.loads_mapped:
+    if table and mapping.loads_mapped:
         wanted |= {name.lower() for name in LOAD_NAMES} | LOAD_CHANNELS
         wanted |= {name for names in TABLE_NAMES.values() for name in names}
         wanted |= {f"{HUB}{name.lower()}" for name in FORCES}
@@ -234,6 +238,15 @@ def _beside_loads(
             found = {channel.name: beside[name]}
             require_sound(f"hub loads '{file}'", history.time, found, even=not history.measured)
     return beside
+
+
+def _with_invalid(history: LoadHistory, beside: Iterable[Channel]) -> LoadHistory:
+    """A history that states which channels beside the loads OpenFAST did not compute."""
+    names = [channel.name for channel in beside if channel.invalid]
+    if not names:
+        return history
+    read = f"{_read_of(history)}; not read, since INVALID in the file: {', '.join(names)}"
+    return replace(history, attributes={**history.attributes, "channels": read})
 
 
 def _with_ratio(
@@ -287,11 +300,12 @@ def _of_channels(
     measured: bool,
 ) -> LoadHistory:
     """Loads of OpenFAST's channels, or of those that are mapped in their place."""
-    if file.suffix.lower() == ".csv":  # the columns of a table, but for those that are mapped
+    if is_table(file):  # the columns of a table, but for those that are mapped
         taken = {mapping.column(name)[0].lower() for name in mapping.channels}
         own = [(key, channel) for key, channel in channels.items() if key not in taken]
         known = named_columns(str(file), [key for key, _ in own], mapping.channels)
-        shared = {name: own[k][1] for k, name in known.items()}
+        ours = history_table(file).frame_known
+        shared = {name: own[k][1] for k, name in known.items() if ours or name == "time"}
         azimuth = {"azimuth": channels["azimuth"]} if "azimuth" in channels else {}
         named = {**azimuth, **shared, **named}
     channels = dict(channels)
@@ -323,7 +337,7 @@ def _with_points(
     taken = {mapping.column(name)[0].lower() for name in mapping.channels}
     own = [c for key, c in channels.items() if key not in taken and is_of_point(c.name)]
     read_ones = {c.name for c in own}
-    unread = (title for title in table_header(file)[1] if without_unit(title) not in read_ones)
+    unread = (title for title in history_table(file).titles if without_unit(title) not in read_ones)
     history = replace(history, unread=tuple(unread))
     if not own:
         return history
@@ -431,6 +445,11 @@ def _named(
         raise InputError(
             f"hub loads '{file}': there is no channel '{column}'{though}; it has {names}"
             + (" and others" if len(channels) > 12 else "")
+        )
+    if found.invalid:
+        raise InputError(
+            f"hub loads '{file}': channel {found.name} is INVALID, which OpenFAST writes of a "
+            "channel that the model does not have: name another, or correct OutList"
         )
     if sign > 0.0:
         return found

@@ -12,10 +12,20 @@ HUB = "hub."
 """May stand before a component, as it does before those of a load point its name."""
 
 TABLE_NAMES: dict[str, tuple[str, ...]] = {
-    "time": ("timestamp", "time stamp", "datetime", "date-time"),
-    **dict.fromkeys(FORCES, ()),
-    "Mx": ("torque", "rotor torque", "rottorq", "lsshfttq"),
-    HIGH_SPEED_TORQUE: ("hss torque", "generator torque", "gentq", "hsshfttq"),
+    "time": (
+        *("timestamp", "time stamp", "datetime", "date-time", "zeit", "zeitstempel", "zeitpunkt"),
+        *("datum", "uhrzeit", "datum/uhrzeit", "datum uhrzeit", "datum und uhrzeit"),
+    ),
+    **{name: (f"stationary hub {name.lower()}",) for name in FORCES},
+    "Mx": (
+        "stationary hub mx",
+        *("torque", "rotor torque", "rottorq", "lsshfttq"),
+        *("drehmoment", "rotormoment", "rotordrehmoment"),
+    ),
+    HIGH_SPEED_TORQUE: (
+        *("hss torque", "generator torque", "gentq", "hsshfttq"),
+        *("generatormoment", "generatordrehmoment"),
+    ),
 }
 """Other names of a column, in lower case, where none has its own name."""
 
