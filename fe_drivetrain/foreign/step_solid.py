@@ -1,6 +1,6 @@
-"""A STEP file's solids in the open gmsh model, in mm: healed, glued, described and picked.
+"""Solids of a STEP, IGES or BREP file in the open gmsh model, in mm.
 
-This runs in a process of its own, see `reading`; it imports little else than gmsh and numpy.
+They are healed, glued, described and picked. This runs in a process of its own, see `reading`; it imports little else than gmsh and numpy.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ _MAX_FACES = 20_000
 _MIN_VOLUME = 1e-9  # of the cube of its size
 _FARTHEST = 1e9  # any number of a place, in the file's unit
 _ALIGNED = 1e-6  # sine of the angle between directions that are the same
+_FORMATS = {".igs": "IGES", ".iges": "IGES", ".brep": "BREP"}
 SAME = 1e-6  # of a solid's size: places that are the same
 _SURFACES = {  # as STEP and gmsh call them
     "PLANE": "Plane",
@@ -152,9 +153,10 @@ def _read(path: str) -> None:
     try:
         gmsh.model.occ.importShapes(path)
     except Exception as error:
+        kind = _FORMATS.get(Path(path).suffix.lower(), "STEP")
         raise InputError(
-            f"{Path(path).name} cannot be read as STEP ({reason(error)}): export it again, whole, "
-            "as AP214 or AP242"
+            f"{Path(path).name} cannot be read as {kind} ({reason(error)}): export it again, whole"
+            f"{', as AP214 or AP242' * (kind == 'STEP')}"
         ) from None
     gmsh.model.occ.synchronize()
 
