@@ -241,7 +241,11 @@ class ForeignFile(Part):
         if not self.file.lower().endswith(allowed):
             raise InputError(
                 f"the file {self.file} of {self.what()} must end in {' or '.join(allowed)}: give "
-                + ("a mesh under 'mesh'" if self.step is None else "a STEP, IGES or BREP file under 'step'")
+                + (
+                    "a mesh under 'mesh'"
+                    if self.step is None
+                    else "a STEP, IGES or BREP file under 'step'"
+                )
             )
         if self.step is None and self.unit is None:
             raise InputError(

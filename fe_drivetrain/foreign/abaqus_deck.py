@@ -190,7 +190,10 @@ class _Deck:
                 sets.add(label, entry._replace(span=self._range(line, text), line=line))
         else:
             members = [
-                self._member(cell, line) for line, text in card.data for cell in fields(text) if cell
+                self._member(cell, line)
+                for line, text in card.data
+                for cell in fields(text)
+                if cell
             ]
             sets.add(label, entry._replace(members=tuple(members)))
 

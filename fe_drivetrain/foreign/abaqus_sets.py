@@ -174,7 +174,9 @@ class _Flat:
                 found.node_sets[label] = self._members(key, own, False, ())
             for label, own in self._labels(scope, scope.cell_sets):
                 rows = self._members(key, own, True, ())
-                found.cell_sets[label] = {k: rows[rows[:, 0] == k, 1] for k in np.unique(rows[:, 0])}
+                found.cell_sets[label] = {
+                    k: rows[rows[:, 0] == k, 1] for k in np.unique(rows[:, 0])
+                }
         self._surfaces(found)
         return found
 
@@ -268,9 +270,7 @@ class _Flat:
                 found.append(self._members(there, inner, cells, (*within, key)))
         return np.unique(np.concatenate(found), axis=0)
 
-    def _named(
-        self, home: str, scope: str, label: str, cells: bool, line: int
-    ) -> tuple[str, str]:
+    def _named(self, home: str, scope: str, label: str, cells: bool, line: int) -> tuple[str, str]:
         """Scope and key of a set that another names, which may be that of an instance."""
         inner = label.upper()
         instance, _, rest = inner.partition(".")

@@ -85,7 +85,9 @@ def _fill(path: str) -> None:
     surfaces = [tag for _, tag in gmsh.model.getEntities(2)]
     name = Path(path).name
     open_edges = _open_edges()
-    if open_edges or not surfaces:
+    if not surfaces:
+        raise InputError(f"{name} holds no triangles: write it again, whole")
+    if open_edges:
         raise InputError(
             f"{name} is a surface of which {open_edges} edges belong to one triangle alone or to "
             "more than two: close it in the CAD program, or write the solid as STEP"

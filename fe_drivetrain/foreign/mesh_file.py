@@ -125,6 +125,8 @@ def _by_meshio(path: str) -> RawMesh:
 def _positions(name: str, mesh: RawMesh) -> Any:
     """Positions (n, 3) of the nodes."""
     points = np.asarray(mesh.points, dtype=float)
+    if not len(points):
+        raise InputError(f"{name} holds no nodes: write it again, whole, as the mesh of a solid")
     if points.ndim != 2 or points.shape[1] != 3 or not 4 <= len(points) <= MAX_NODES:
         raise InputError(
             f"{name} has nodes of shape {points.shape} but must have x, y and z of at most "
