@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import io
-import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from importlib import import_module
 from typing import Any
 
@@ -36,15 +32,3 @@ def pynastran(module: str) -> Any:
     finally:
         for name in missing:
             del vars(np)[name]
-
-
-@contextmanager
-def quietly() -> Iterator[None]:
-    """Keep to itself what pyNastran prints of a card that it cannot read, before it raises."""
-    with (
-        warnings.catch_warnings(),
-        redirect_stdout(io.StringIO()),
-        redirect_stderr(io.StringIO()),
-    ):
-        warnings.simplefilter("ignore")
-        yield
