@@ -41,7 +41,7 @@ FORMATS: dict[str, Format] = {
         Format("mtx-mass", ".mtx", "Matrix Market readers: the mass", "matrix_market_mass"),
         Format("hdf5", ".h5", "HDF5 readers", "hdf5", extra="hdf5"),
         Format("dmig", ".bdf", "Nastran, as bulk data: GRID, DMIG", "dmig", 10),
-        Format("op4", ".op4", "Nastran INPUTT4, as text", "op4", extra="nastran"),
+        Format("op4", ".op4", "Nastran INPUTT4, as text", "op4"),
         Format("calculix", ".inp", "CalculiX: springs and equations", "calculix_springs", 11),
         Format("extptfm", ".dat", "OpenFAST 5, ExtPtfm superelement", "extptfm"),
         Format("subdyn", ".dat", "OpenFAST 5, SubDyn spring element: one point", "subdyn"),

@@ -1,6 +1,6 @@
-"""Solids of a STEP, IGES or BREP file in the open gmsh model, in mm.
+"""Solids of a STEP, IGES or BREP file in the open gmsh model, in mm: healed, glued and described.
 
-They are healed, glued, described and picked. This runs in a process of its own, see `reading`; it imports little else than gmsh and numpy.
+This runs in a process of its own, see `reading`; it imports little else than gmsh and numpy.
 """
 
 from __future__ import annotations

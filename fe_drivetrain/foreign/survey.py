@@ -1,4 +1,4 @@
-"""Contents of a file of solids or a mesh: what a user looks at first, to pick a seat and held faces."""
+"""Contents of a file of solids or a mesh: what a user looks at, to pick a seat and held faces."""
 
 from __future__ import annotations
 

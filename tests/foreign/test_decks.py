@@ -216,7 +216,9 @@ def test_a_set_that_holds_no_face_is_not_among_those_to_choose(tmp_path):
     part = ForeignFile(mesh=deck(tmp_path, CUBE + more), unit="m")
     _, surface = body_of_mesh(part)
     assert len(surface.picked(Pick(label="BASE"), "held face")) == 2
-    with pytest.raises(InputError, match="set 'NONE' for the held face is empty.*of REF, BASE, or"):
+    with pytest.raises(
+        InputError, match=r"set 'NONE' for the held face is empty.*of REF, BASE, or"
+    ):
         surface.picked(Pick(label="NONE"), "held face")
     with pytest.raises(InputError, match="set 'REF' for the held face holds no whole face"):
         surface.picked(Pick(label="REF"), "held face")

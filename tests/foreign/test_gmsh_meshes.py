@@ -136,7 +136,7 @@ def test_no_command_of_a_script_is_run(folder, tmp_path):
     (tmp_path / "script.msh").write_text(script)
     (tmp_path / "beside.msh").write_bytes((folder / "v41.msh").read_bytes())
     (tmp_path / "beside.msh.opt").write_text(script)
-    with pytest.raises(InputError, match="script.msh is no mesh of gmsh: it must begin with"):
+    with pytest.raises(InputError, match=r"script\.msh is no mesh of gmsh: it must begin with"):
         read(str(tmp_path / "script.msh"))
     assert len(read(str(tmp_path / "beside.msh"))["cells"]) == 24
     gmsh_runs = "import gmsh, sys; gmsh.initialize(argv=[]); gmsh.open(sys.argv[1])"

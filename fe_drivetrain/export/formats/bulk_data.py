@@ -84,7 +84,7 @@ def bulk_data(text: str) -> BulkData:
     return found
 
 
-# --- fields ----------------------------------------------------------------------------------------
+# --- fields --------------------------------------------------------------------------
 
 
 def _entries(text: str, found: BulkData) -> Iterator[Entry]:
@@ -152,7 +152,7 @@ def _real(entry: Entry, k: int) -> float:
     return float(f"{parts[1]}e{parts[2] or parts[3] or 0}")
 
 
-# --- points ----------------------------------------------------------------------------------------
+# --- points --------------------------------------------------------------------------
 
 
 def _systems(entries: dict[str, list[Entry]]) -> dict[int, tuple[Floats, Floats]]:
@@ -241,7 +241,7 @@ def _listed(entry: Entry, cells: list[str]) -> list[int]:
     return [_integer(own, k) for k in range(len(filled))]
 
 
-# --- matrices --------------------------------------------------------------------------------------
+# --- matrices --------------------------------------------------------------------------
 
 
 def _matrices(entries: list[Entry]) -> dict[str, Matrix]:

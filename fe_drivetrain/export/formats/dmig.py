@@ -152,9 +152,7 @@ def _matrix_lines(name: str, matrix: Floats) -> Iterator[str]:
             yield f"{'*':<8}{i // 6 + 1:>16}{i % 6 + 1:>16}{value:>16}{'':16}"
 
 
-def _matrices(
-    path: Path, found: BulkData, entries: dict[str, str]
-) -> tuple[Floats, Floats | None]:
+def _matrices(path: Path, found: BulkData, entries: dict[str, str]) -> tuple[Floats, Floats | None]:
     matrices: dict[str, Floats] = {}
     freedoms = [(grid, c) for grid in sorted(found.places) for c in range(1, 7)]
     for letter, kind in _KINDS.items():

@@ -1,4 +1,4 @@
-"""pyNastran, where it is installed."""
+"""pyNastran, where it is installed: a second reader of what is written here."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def pynastran(module: str) -> Any:
         return import_module(f"pyNastran.{module}")
     except (ImportError, AttributeError) as error:
         raise MissingToolError(
-            f"Nastran files need pyNastran, which cannot be loaded ({error}): install it with pip "
+            f"this needs pyNastran, which cannot be loaded ({error}): install it with pip "
             'install "fe-drivetrain[nastran]"'
         ) from error
     finally:

@@ -5,10 +5,12 @@ The format has room for matrices alone: names, source, uncertainty and supports 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
+from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.export.formats.dmig import places_of
 from fe_drivetrain.export.formats.labelled_matrices import (
@@ -17,28 +19,37 @@ from fe_drivetrain.export.formats.labelled_matrices import (
     Naming,
     superelement_of,
 )
-from fe_drivetrain.export.formats.nastran import pynastran
 from fe_drivetrain.export.formats.op4_records import matrices_of
 from fe_drivetrain.export.superelement import ALLOWED, Superelement
 
-_SYMMETRIC, _RECTANGULAR = 6, 2
+_SYMMETRIC, _RECTANGULAR, _DOUBLE = 6, 2, 2
 _STIFFNESS, _MASS, _POSITIONS = "KGG", "MGG", "XYZ"
 
 
 def write(path: Path, element: Superelement) -> None:
-    """Write matrices and positions; numbers keep every digit.
-
-    Raises
-    ------
-    MissingToolError
-        pyNastran is not installed.
-    """
+    """Write matrices and positions; numbers keep every digit."""
     matrices = {_STIFFNESS: (_SYMMETRIC, 0.5 * (element.stiffness + element.stiffness.T))}
     if element.mass is not None:
         matrices[_MASS] = (_SYMMETRIC, 0.5 * (element.mass + element.mass.T))
     matrices[_POSITIONS] = (_RECTANGULAR, np.asarray(element.positions, dtype=float))
-    op4 = pynastran("op4.op4").OP4(debug=False)
-    op4.write_op4(str(path), matrices, list(matrices), precision="double", is_binary=False)
+    lines = (line for name, (form, m) in matrices.items() for line in _lines(name, form, m))
+    path.write_text("".join(f"{line}\n" for line in lines), encoding="ascii")
+
+
+def _lines(name: str, form: int, matrix: Floats) -> Iterator[str]:
+    """A dense matrix of double precision as text, three numbers a line."""
+    rows, columns = matrix.shape
+    yield f"{columns:8}{rows:8}{form:8}{_DOUBLE:8}{name:<8}1P,3E23.16"
+    for k, column in enumerate(matrix.T.tolist(), 1):
+        yield f"{k:8}{1:8}{rows:8}"
+        yield from _in_threes(column)
+    yield f"{columns + 1:8}{1:8}{1:8}"
+    yield from _in_threes([1.0])
+
+
+def _in_threes(values: list[float]) -> Iterator[str]:
+    for k in range(0, len(values), 3):
+        yield "".join(f"{value:23.16E}" for value in values[k : k + 3])
 
 
 def read(path: Path, naming: Naming = TAKEN_AS_IT_IS) -> Superelement:

@@ -126,7 +126,7 @@ def _string(head: _Head, words: list[int]) -> tuple[int, int]:
     return row, length // head.words
 
 
-# --- text ------------------------------------------------------------------------------------------
+# --- text --------------------------------------------------------------------------
 
 
 def _text(content: bytes) -> Iterator[tuple[_Head, Floats]]:
@@ -190,7 +190,7 @@ def _numbers(lines: Iterator[str], count: int, per_line: int, width: int) -> Flo
     return np.array(found)
 
 
-# --- binary ----------------------------------------------------------------------------------------
+# --- binary --------------------------------------------------------------------------
 
 
 class _Records:
