@@ -109,7 +109,7 @@ def read_superelement(
     else:
         raise InputError(
             f"{path} names its points and matrices itself: leave out "
-            f"{', '.join(argument(name) for name in naming.given)}"
+            f"{', '.join(argument(name, value) for name, value in naming.given.items())}"
         )
     assert isinstance(found, Superelement)
     return found

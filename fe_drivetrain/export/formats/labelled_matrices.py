@@ -55,19 +55,19 @@ class Naming:
         Points that are kept, in the order that is wanted: "hub=101" by the number of a point,
         "hub=0,0,1.5" by the position of the next six rows, "hub=101,0,0,1.5" by both. Without any,
         all points of six degrees of freedom are kept.
-    stiffness, mass : str
+    stiffness_name, mass_name : str
         Names of the matrices, where the file has several.
     grids : str
         Bulk data with the points of a file that has none.
-    unit : str
+    units : str
         "m" for metres, newtons and kilograms; "mm" for millimetres, newtons and tonnes.
     """
 
     points: tuple[str, ...] = ()
-    stiffness: str = ""
-    mass: str = ""
+    stiffness_name: str = ""
+    mass_name: str = ""
     grids: str = ""
-    unit: str = "m"
+    units: str = "m"
 
     @property
     def says_nothing(self) -> bool:
@@ -75,9 +75,12 @@ class Naming:
         return self == Naming()
 
     @property
-    def given(self) -> list[str]:
-        """Names of what is said."""
-        return [key for key, value in vars(Naming()).items() if getattr(self, key) != value]
+    def given(self) -> dict[str, str | list[str]]:
+        """What is said, by name."""
+        said = {
+            k: getattr(self, k) for k, usual in vars(Naming()).items() if vars(self)[k] != usual
+        }
+        return {k: list(value) if k == "points" else value for k, value in said.items()}
 
 
 TAKEN_AS_IT_IS = Naming()
@@ -123,17 +126,17 @@ def superelement_of(
         Something is left open, is not in the file, or is no superelement.
     """
     try:
-        if naming.unit not in UNITS:
+        if naming.units not in UNITS:
             raise InputError(
-                f"{argument('unit', naming.unit)} must be one of {', '.join(UNITS)}: correct it"
+                f"{argument('units', naming.units)} must be one of {', '.join(UNITS)}: correct it"
             )
-        K = _chosen("stiffness", naming.stiffness or stated[0], matrices)
-        M = _chosen("mass", naming.mass or stated[1], matrices)
+        K = _chosen("stiffness", naming.stiffness_name or stated[0], matrices)
+        M = _chosen("mass", naming.mass_name or stated[1], matrices)
         assert K is not None
         points = [_point(text) for text in naming.points]
         K = Matrix(_freedoms(K, points), K.values)
         mass = None if M is None else _in_order(Matrix(_freedoms(M, points), M.values), K.freedoms)
-        return _assembled(K, mass, places, points, naming.unit)
+        return _assembled(K, mass, places, points, naming.units)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
 
@@ -154,7 +157,7 @@ def _chosen(kind: str, name: str, matrices: Mapping[str, Matrix]) -> Matrix | No
     if kind == "mass" and not found:
         return None
     raise InputError(
-        f"it has {len(found)} matrices that may be its {kind}: name one by {argument(kind)}, of "
+        f"it has {len(found)} matrices that may be its {kind}: name one by {argument(f'{kind}_name')}, of "
         f"{names}"
     )
 
