@@ -1,4 +1,4 @@
-"""The command ``part``: what is in a file of solids or a mesh, before a scene takes it as a housing."""
+"""The command ``part``: what is in a file of a part, before a scene takes it as a housing."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ def part_command(
         typer.Argument(
             metavar="FILE",
             help="Solids (.step, .stp, .igs, .iges, .brep), mesh (.msh, .inp, .vtu, .unv, .med, "
-            ".stl), or superelement (.json, .csv, .h5; .bdf, .pch, .op4 of others, too).",
+            ".stl), or superelement (.json, .csv, .h5; .bdf, .pch, .op4, .mtx, .matrix "
+            "of others, too).",
         ),
     ],
     bore: Annotated[
@@ -42,8 +43,9 @@ def part_command(
             "--point",
             metavar="NAME=WHERE",
             help="Point of another program's matrices that is kept: hub=101 by its number, "
-            "hub=0,0,1.5 by its position, in the order of the rows, or hub=101,0,0,1.5 by both. "
-            "May be repeated; all others are condensed.",
+            "hub=0,0,1.5 by its position, in the order of the rows, hub=101,0,0,1.5 by both, or "
+            "hub=101+102,... where the node 102 has its rotations as motions (CalculiX). May be "
+            "repeated; all others are condensed.",
         ),
     ] = None,
     stiffness: Annotated[

@@ -51,6 +51,10 @@ FORMATS: dict[str, Format] = {
 }
 
 
+READ_ALONE = {"substructure": "substructure", "harwell-boeing": "harwell_boeing"}
+"""Modules of formats of other programs, which nothing is written in."""
+
+
 def write_superelement(
     path: str | Path, element: Superelement, format: str, overwrite: bool = False
 ) -> None:
@@ -90,7 +94,7 @@ def read_superelement(
     path : str or Path
         The file.
     format : str
-        A name of `FORMATS`.
+        A name of `FORMATS` or `READ_ALONE`.
     naming : Naming
         What a file of another program leaves open.
 
@@ -123,13 +127,15 @@ def format_module(format: str) -> ModuleType:
     InputError
         The format is unknown.
     """
-    if format not in FORMATS:
+    modules = {name: one.module for name, one in FORMATS.items()} | READ_ALONE
+    if format not in modules:
         raise InputError(f"format {format!r} is unknown: use one of {', '.join(FORMATS)}")
-    return import_module(f"fe_drivetrain.export.formats.{FORMATS[format].module}")
+    return import_module(f"fe_drivetrain.export.formats.{modules[format]}")
 
 
 def _function(format: str, name: str) -> Callable[..., object]:
     module = format_module(format)
     if not hasattr(module, name):
-        raise InputError(f"format {format!r} can be written only: read another one back")
+        only, instead = ("read", "write") if name == "write" else ("written", "read back")
+        raise InputError(f"format {format!r} can be {only} only: {instead} another one")
     return getattr(module, name)  # type: ignore[no-any-return]

@@ -36,6 +36,8 @@ SUPERELEMENTS = {
     ".bdf": "dmig",
     ".pch": "dmig",
     ".op4": "op4",
+    ".mtx": "substructure",
+    ".matrix": "harwell-boeing",
 }
 """Format of a superelement by the ending of its file."""
 
@@ -89,7 +91,7 @@ def part(
     ----------
     file : Path
         Solids (.step, .stp, .igs, .iges, .brep), mesh (.msh, .inp, .vtu, .unv, .med, .stl), or
-        superelement (.json, .csv, .h5, .bdf, .pch, .op4).
+        superelement (.json, .csv, .h5, .bdf, .pch, .op4, .mtx, .matrix).
     bore : str
         Point in the middle of a superelement's bore; may be left out where it has but one point.
     held : sequence of str

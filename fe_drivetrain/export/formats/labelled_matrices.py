@@ -26,6 +26,7 @@ Freedom = tuple[int, int]
 
 _SINGULAR = 1e13  # condition of a stiffness with a unit diagonal
 _POINT = re.compile(r"([A-Za-z]\w*)=(.+)", re.ASCII)
+_NUMBERED = re.compile(r"(\d{1,9})(?:\+(\d{1,9}))?", re.ASCII)
 _SETS = ("GG", "AA", "XX", "AAX")  # of degrees of freedom, as Nastran names its matrices
 #: Length of a file's unit [m], and its mass [kg]: forces are in newtons.
 UNITS = {"m": (1.0, 1.0), "mm": (1e-3, 1e3)}
@@ -53,8 +54,9 @@ class Naming:
     ----------
     points : tuple of str
         Points that are kept, in the order that is wanted: "hub=101" by the number of a point,
-        "hub=0,0,1.5" by the position of the next six rows, "hub=101,0,0,1.5" by both. Without any,
-        all points of six degrees of freedom are kept.
+        "hub=0,0,1.5" by the position of the next six rows, "hub=101,0,0,1.5" by both; and
+        "hub=101+102,0,0,1.5" where the rotations are the motions of a second node, as those of a
+        rigid body in CalculiX. Without any, all points of six degrees of freedom are kept.
     stiffness_name, mass_name : str
         Names of the matrices, where the file has several.
     grids : str
@@ -90,6 +92,7 @@ TAKEN_AS_IT_IS = Naming()
 class _Point(NamedTuple):
     name: str
     number: int | None
+    turning: int | None
     position: Floats | None
 
 
@@ -157,8 +160,8 @@ def _chosen(kind: str, name: str, matrices: Mapping[str, Matrix]) -> Matrix | No
     if kind == "mass" and not found:
         return None
     raise InputError(
-        f"it has {len(found)} matrices that may be its {kind}: name one by {argument(f'{kind}_name')}, of "
-        f"{names}"
+        f"it has {len(found)} matrices that may be its {kind}: name one by "
+        f"{argument(f'{kind}_name')}, of {names}"
     )
 
 
@@ -168,18 +171,23 @@ def _point(text: str) -> _Point:
     try:
         if parts is None:
             raise ValueError
-        numbers = [float(value) for value in parts[2].split(",")]
-        if not np.isfinite(numbers).all() or len(numbers) not in (1, 3, 4):
-            raise ValueError
-        whole = int(numbers[0]) if len(numbers) != 3 else None
-        if whole is not None and (whole != numbers[0] or whole < 1):
+        cells = [cell.strip() for cell in parts[2].split(",")]
+        numbered = _NUMBERED.fullmatch(cells[0]) if len(cells) in (1, 4) else None
+        place = np.array([float(cell) for cell in cells[numbered is not None :]])
+        if place.size not in (0, 3) or not np.isfinite(place).all():
             raise ValueError
     except ValueError:
         raise InputError(
             f"{argument('points', [text])} must be as in 'hub=101' (number of a point), "
             "'hub=0,0,1.5' (its position) or 'hub=101,0,0,1.5' (both): correct it"
         ) from None
-    return _Point(parts[1], whole, np.array(numbers[-3:]) if len(numbers) > 1 else None)
+    number, turning = (None, None) if numbered is None else (numbered[1], numbered[2])
+    return _Point(
+        parts[1],
+        None if number is None else int(number),
+        None if turning is None else int(turning),
+        place if place.size else None,
+    )
 
 
 def _freedoms(matrix: Matrix, points: Sequence[_Point]) -> list[Freedom]:
@@ -233,7 +241,7 @@ def _assembled(
     at = {freedom: k for k, freedom in enumerate(K.freedoms)}
     if not points:
         whole = sorted({n for n, c in K.freedoms if c and all((n, d) in at for d in range(1, 7))})
-        points = [_Point(f"grid_{n}", n, None) for n in whole if n in places]
+        points = [_Point(f"grid_{n}", n, None, None) for n in whole if n in places]
     if not points:
         raise InputError(
             "none of its points has a position and six degrees of freedom: give "
@@ -242,15 +250,17 @@ def _assembled(
     kept, positions, turns = [], [], np.zeros((6 * len(points),) * 2)
     for k, point in enumerate(points):
         number = k + 1 if point.number is None else point.number
-        lost = [c for c in range(1, 7) if (number, c) not in at]
-        if lost:
+        six = [(number, c) for c in range(1, 7)]
+        if point.turning is not None:
+            six[3:] = [(point.turning, c) for c in range(1, 4)]
+        if lost := [freedom for freedom in six if freedom not in at]:
             raise InputError(
-                f"its stiffness has no component {lost[0]} of the point {point.name} "
-                f"({number}), which must have all six: name another point"
+                f"its stiffness has no component {lost[0][1]} of the point {point.name} "
+                f"({lost[0][0]}), which must have all six: name another point"
             )
         position, axes = _placed(point, number, places)
         positions.append(position)
-        kept += [at[number, c] for c in range(1, 7)]
+        kept += [at[freedom] for freedom in six]
         for first in (6 * k, 6 * k + 3):
             turns[first : first + 3, first : first + 3] = axes
     condensed = _condensed(K.values, mass, np.array(kept))
