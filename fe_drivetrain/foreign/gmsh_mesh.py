@@ -49,15 +49,18 @@ def read_by_gmsh(path: str) -> RawMesh:
         link.symlink_to(Path(path).resolve())
         try:
             gmsh.open(str(link))
+            said = [line for line in gmsh.logger.get()[before:] if line.startswith("Error")]
+            if said:
+                raise _unread(path, said[0].partition(":")[2].strip())
+            if Path(path).suffix.lower() in _SURFACES:
+                _fill(path)
+            return _found()
+        except UnicodeDecodeError:  # of a message that quotes the file
+            raise _unread(path, "its text is not UTF-8") from None
         except Exception as error:
             if type(error) is not Exception:  # gmsh reports its own failures as bare ones
                 raise
             raise _unread(path, reason(error)) from None
-        if said := [line for line in gmsh.logger.get()[before:] if line.startswith("Error")]:
-            raise _unread(path, said[0].partition(":")[2].strip())
-        if Path(path).suffix.lower() in _SURFACES:
-            _fill(path)
-        return _found()
 
 
 def _refuse_scripts(path: str) -> None:
@@ -137,9 +140,16 @@ def _found() -> RawMesh:
             block = len(found.blocks)
             found.blocks.append((kind, rows[:, _TO_VTK.get(kind, slice(None))]))
             for group in groups:
-                label = gmsh.model.getPhysicalName(dim, group).strip() or str(group)
-                found.cell_sets.setdefault(label, {})[block] = np.arange(len(rows))
+                found.cell_sets.setdefault(_label(dim, group), {})[block] = np.arange(len(rows))
     return found
+
+
+def _label(dim: int, group: int) -> str:
+    """Name of a physical group; its number where it has none, or none in UTF-8."""
+    try:
+        return gmsh.model.getPhysicalName(dim, group).strip() or str(group)
+    except UnicodeDecodeError:
+        return str(group)
 
 
 def _rows(nodes: Any, known: Any) -> Any:

@@ -138,7 +138,7 @@ def _positions(name: str, mesh: RawMesh) -> Any:
 def _solid_blocks(name: str, mesh: RawMesh) -> list[int]:
     """Numbers of the blocks of tetrahedra, beside which there are faces and edges alone."""
     others = {kind for kind, _ in mesh.blocks if kind not in (*_SOLIDS, *_LINES, *_TRIANGLES)}
-    solids = [k for k, (kind, _) in enumerate(mesh.blocks) if kind in _SOLIDS]
+    solids = [k for k, (kind, nodes) in enumerate(mesh.blocks) if kind in _SOLIDS and len(nodes)]
     if others or not solids:
         raise InputError(
             f"{name} has elements of kind {', '.join(sorted(others)) or 'none'} but must have "

@@ -119,7 +119,7 @@ def part(
     survey, element, housing = None, None, None
     naming = Naming(tuple(points), stiffness_name, mass_name, grids, units)
     if file.suffix.lower() not in SUPERELEMENTS:
-        _refuse_points(file, {"bore": bore, "held": list(held)} | naming.given)
+        _refuse_points(file, {"bore": bore, "held": list(held), **naming.given})
     with steps.step("read"):
         if file.suffix.lower() in SUPERELEMENTS:
             element = read_limited(file, SUPERELEMENTS[file.suffix.lower()], naming=naming)

@@ -170,6 +170,7 @@ def test_instances_are_placed_copies_with_sets_of_their_own(tmp_path):
         (f"{PART}*INSTANCE, NAME=x, PART=P\n0\n1, 2\n", "turned by 2 numbers but must be by 7"),
         ("", "holds no nodes"),
         (NODES, "elements of kind none but must have tetrahedra"),
+        (f"{NODES}*ELEMENT, TYPE=C3D4\n", "elements of kind none but must have tetrahedra"),
         (
             "*NODE\n1, 0, 0, 1e300\n2,1,0,0\n3,0,1,0\n4,0,0,1\n*ELEMENT,TYPE=C3D4\n1,1,2,3,4\n",
             "but",

@@ -130,6 +130,12 @@ def test_what_is_cut_off_is_refused(folder, tmp_path, name):
         read(str(path))
 
 
+def test_a_label_that_is_not_utf_8_goes_by_its_number(folder, tmp_path):
+    content = (folder / "v41.msh").read_bytes()
+    (tmp_path / "a.msh").write_bytes(content.replace(b'"block"', b'"Geh\xe4use"'))
+    assert len(read(str(tmp_path / "a.msh"))["solid 1"]) == 24
+
+
 def test_no_command_of_a_script_is_run(folder, tmp_path):
     """gmsh takes a file that is no mesh as a script of its own, and FILE.opt beside any file."""
     script = f'SystemCall "touch {tmp_path / "run"}";\n'

@@ -117,12 +117,11 @@ def _entries(text: str, found: BulkData) -> Iterator[Entry]:
 def _fields(line: str) -> tuple[str, list[str]]:
     """The first field, and those of data: eight of a line, or four in large fields."""
     if "," in line:
-        first, *rest = (cell.strip() for cell in line.split(","))
-        count = 4 if "*" in first else 8
-        return first, (rest[:count] + [""] * count)[:count]
+        cells = [cell.strip() for cell in line.split(",")]
+        count = 4 if "*" in cells[0] else 8
+        return cells[0], [*cells[1 : 1 + count], *[""] * count][:count]
     first = line[:8].strip()
-    large = "*" in first
-    width, count = (16, 4) if large else (8, 8)
+    width, count = (16, 4) if "*" in first else (8, 8)
     rest = line[8:].ljust(width * count)
     return first, [rest[width * k : width * (k + 1)].strip() for k in range(count)]
 
