@@ -10,6 +10,7 @@ import pytest
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.elasticity.mesh.measures import mass_moments
 from fe_drivetrain.foreign.mesh_file import read
+from fe_drivetrain.foreign.reading import read_in_process
 from fe_drivetrain.foreign.step_solid import opened
 from fe_drivetrain.foreign.survey import surveyed
 from fe_drivetrain.geometry import gmsh_session
@@ -115,6 +116,29 @@ def test_solids_of_other_forms_than_step_are_read_in_mm(folder, name):
     assert found["after"]["solids"] == 1
     assert found["after"]["volume"] == pytest.approx(1.0, rel=1e-9)
     assert [face["kind"] for face in found["faces"]] == ["Plane"] * 6
+
+
+@pytest.mark.parametrize(
+    ("name", "kept", "words"),
+    [
+        ("a.igs", lambda t: t[: len(t) // 2], r"a.igs cannot be read as IGES \(its line \d+ "),
+        ("a.igs", lambda t: t.replace("108,-1.,", "108,-1.E99,", 1), "line"),
+        ("a.brep", lambda t: t[: len(t) // 2], r"a.brep cannot be read as BREP \(it has "),
+        ("a.brep", lambda t: t[40:], r"has no head of CASCADE Topology"),
+    ],
+)
+def test_damaged_solids_are_refused_before_their_reader_hangs(folder, tmp_path, name, kept, words):
+    (tmp_path / name).write_text(kept((folder / name).read_text()))
+    with gmsh_session(), pytest.raises(InputError, match=words):
+        opened(str(tmp_path / name))
+
+
+def test_a_reader_that_does_not_end_is_ended(folder, tmp_path):
+    path = tmp_path / "a.brep"
+    text = (folder / "a.brep").read_text()
+    path.write_text(text.replace("1e-07 1 1 0", "1e-07 1 x 0", 1))
+    with pytest.raises(InputError, match=r"a.brep makes its reader go on without end"):
+        read_in_process("look", path, {"smallest_detail": 0.0})
 
 
 def test_a_survey_names_the_solid_of_another_form(folder):
