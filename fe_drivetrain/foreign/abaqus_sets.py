@@ -108,10 +108,8 @@ class _Numbered:
 
     Parameters
     ----------
-    scopes : list of str
-        Names of the scopes, in capitals.
-    sections : dict
-        Numbers and rows of each section by scope.
+    found : dict
+        Numbers, ascending, and their rows by the name of the scope in capitals.
     """
 
     def __init__(self, found: dict[str, tuple[Any, Any]]) -> None:

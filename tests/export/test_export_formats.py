@@ -14,6 +14,7 @@ from scipy.linalg import eigh
 from test_superelement import random_element
 
 from fe_drivetrain import export
+from fe_drivetrain.cases.export import second_reader
 from fe_drivetrain.cases.export.calculix_runs import (
     compliance_by_calculix,
     frequencies_by_calculix,
@@ -24,7 +25,6 @@ from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.export.calculix_results import ROUNDING, read_dat
-from fe_drivetrain.export.formats import nastran
 from fe_drivetrain.export.formats.calculix_springs import model_lines, squares
 from fe_drivetrain.export.formats.dmig import double
 from fe_drivetrain.export.formats.statement import comment_lines, commented, statement
@@ -284,7 +284,7 @@ def test_sixteen_characters_keep_ten_digits(value: float) -> None:
 
 def dmig_by_pynastran(path: Path) -> tuple[dict[str, Floats], Floats]:
     """Matrices with six degrees of freedom of each grid in order, and positions."""
-    model = nastran.pynastran("bdf.bdf").BDF(debug=None)
+    model = second_reader.pynastran("bdf.bdf").BDF(debug=None)
     model.read_bdf(str(path), punch=True, xref=False)
     found = {}
     for name, matrix in model.dmig.items():
@@ -435,7 +435,7 @@ def test_op4_tells_the_free_from_the_supported(tmp_path: Path, shaft: Supereleme
 
 @pytest.mark.needs("pyNastran")
 def test_pynastran_reads_op4(tmp_path: Path, shaft: Superelement) -> None:
-    op4 = nastran.pynastran("op4.op4").OP4(debug=False)
+    op4 = second_reader.pynastran("op4.op4").OP4(debug=False)
     found = op4.read_op4(str(written(tmp_path, shaft, "op4")))
     assert (found["KGG"].data == 0.5 * (shaft.stiffness + shaft.stiffness.T)).all()
     assert (found["MGG"].data == shaft.mass).all()
@@ -446,9 +446,9 @@ def test_an_absent_pynastran_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     def absent(name: str) -> object:
         raise ImportError(name)
 
-    monkeypatch.setattr(nastran, "import_module", absent)
+    monkeypatch.setattr(second_reader, "import_module", absent)
     with pytest.raises(MissingToolError, match=r'pip install "fe-drivetrain\[nastran\]"'):
-        nastran.pynastran("op4.op4")
+        second_reader.pynastran("op4.op4")
 
 
 # --- CalculiX -----------------------------------------------------------------------------------
