@@ -198,6 +198,7 @@ def test_modes_of_craig_and_bampton_and_further_points_are_condensed(tmp_path: P
         (deck().replace("GRID,3,,-2.0", "GRID,3,,-2000."), {}, "position of bore is .*give metres"),
         ("INCLUDE 'more.bdf'\n" + deck(), {}, "line 1: it includes another file"),
         (deck(stiffness=-STIFFNESS), {}, "negative eigenvalue"),
+        (deck(stiffness=1e295 * STIFFNESS), {}, r"must be finite, at most 1e\+30"),
         ("", {}, "no square DMIG"),
     ],
 )

@@ -100,5 +100,6 @@ def _filled(
     matrix = np.zeros((size, size))
     matrix[rows, columns] = values
     if kind == "RSA" and (np.tril(matrix, -1).any() != np.triu(matrix, 1).any()):
-        return matrix + matrix.T - np.diag(np.diag(matrix))
+        with np.errstate(all="ignore"):
+            return matrix + matrix.T - np.diag(np.diag(matrix))
     return matrix

@@ -19,7 +19,7 @@ from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
-from fe_drivetrain.export.superelement import RIGID, Superelement
+from fe_drivetrain.export.superelement import LARGEST, RIGID, Superelement
 
 Freedom = tuple[int, int]
 """Number of a point, and its component: 1 to 6 as in `MOTIONS`, or 0 of a scalar one."""
@@ -151,18 +151,24 @@ def _chosen(kind: str, name: str, matrices: Mapping[str, Matrix]) -> Matrix | No
     if name:
         if name.upper() not in square:
             raise InputError(f"it has no {kind} {name!r}: name one of {names}")
-        return square[name.upper()]
+        return _bounded(kind, square[name.upper()])
     letter = {"stiffness": "K", "mass": "M"}[kind]
     found = [n for n in square if n.upper() in {letter + of for of in _SETS}]
     found = found or [n for n in square if n.upper().startswith(letter)]
     if len(found) == 1:
-        return square[found[0]]
+        return _bounded(kind, square[found[0]])
     if kind == "mass" and not found:
         return None
     raise InputError(
         f"it has {len(found)} matrices that may be its {kind}: name one by "
         f"{argument(f'{kind}_name')}, of {names}"
     )
+
+
+def _bounded(kind: str, matrix: Matrix) -> Matrix:
+    if not (np.abs(matrix.values) <= LARGEST).all():
+        raise InputError(f"its {kind} must be finite, at most {LARGEST:g}: write it again")
+    return matrix
 
 
 def _point(text: str) -> _Point:

@@ -92,7 +92,8 @@ def _whole(head: _Head, matrix: Floats) -> Floats:
     """The matrix, of a symmetric one with the triangle that is left out."""
     upper = not np.tril(matrix, -1).any()
     if head.form == 6 and head.rows == head.columns and (upper or not np.triu(matrix, 1).any()):
-        return matrix + matrix.T - np.diag(np.diag(matrix))
+        with np.errstate(all="ignore"):
+            return matrix + matrix.T - np.diag(np.diag(matrix))
     return matrix
 
 
