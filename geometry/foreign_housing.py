@@ -21,8 +21,8 @@ Vector = tuple[float, float, float]
 UNITS = {"mm": 1e-3, "m": 1.0, "in": 0.0254}
 """Metres in what a file's lengths may be in."""
 
-STEP_ENDINGS = (".step", ".stp")
-MESH_ENDINGS = (".msh", ".vtu", ".inp")
+SOLID_ENDINGS = (".step", ".stp", ".igs", ".iges", ".brep")
+MESH_ENDINGS = (".msh", ".vtu", ".inp", ".unv", ".med", ".stl")
 
 MAX_PRELOAD = 1e9
 """Maximum preload of a bolt [N]."""
@@ -218,7 +218,7 @@ class ForeignFile(Part):
     step: str | None = Field(default=None, min_length=1, max_length=1000)
     mesh: str | None = Field(default=None, min_length=1, max_length=1000)
     unit: Literal["mm", "m", "in"] | None = Field(
-        default=None, description="unit of the file's lengths; mm for STEP where left out"
+        default=None, description="unit of the file's lengths; mm of a solid where left out"
     )
     part: str | None = Field(
         default=None, min_length=1, description="name of one solid, where a file has several"
@@ -237,11 +237,15 @@ class ForeignFile(Part):
                 + ("neither step nor mesh" if self.step is None else "both step and mesh")
                 + " but must have one of the two: name one file"
             )
-        allowed = MESH_ENDINGS if self.step is None else STEP_ENDINGS
+        allowed = MESH_ENDINGS if self.step is None else SOLID_ENDINGS
         if not self.file.lower().endswith(allowed):
             raise InputError(
                 f"the file {self.file} of {self.what()} must end in {' or '.join(allowed)}: give "
-                + ("a mesh under 'mesh'" if self.step is None else "a STEP file under 'step'")
+                + (
+                    "a mesh under 'mesh'"
+                    if self.step is None
+                    else "a STEP, IGES or BREP file under 'step'"
+                )
             )
         if self.step is None and self.unit is None:
             raise InputError(

@@ -5,8 +5,8 @@ import numpy as np
 from fe_drivetrain import export
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.export.samples import frequencies, matrices, samples, show
+from fe_drivetrain.cases.export.second_reader import pynastran
 from fe_drivetrain.common import max_difference, scratch_folder
-from fe_drivetrain.export import pynastran
 from fe_drivetrain.report import bars
 from fe_drivetrain.report.number_text import difference_text, formatted
 from fe_drivetrain.report.suite import Page, Record, Run, Target, column, grouped

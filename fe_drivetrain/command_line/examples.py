@@ -73,7 +73,11 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
         "nrel_750kw --what turning --level rigid --format json --out system.json",
         "--list",
     ),
-    "part": ("housing.step --picture faces.png", "housing.csv --bore bore"),
+    "part": (
+        "housing.step --picture faces.png",
+        "housing.csv --bore bore",
+        "housing.bdf --point bore=101 --units mm",
+    ),
 }
 """Arguments and options by command."""
 

@@ -1,4 +1,4 @@
-"""The command ``part``: what is in a STEP or mesh file, before a scene takes it as a housing."""
+"""The command ``part``: what is in a file of a part, before a scene takes it as a housing."""
 
 from __future__ import annotations
 
@@ -25,8 +25,9 @@ def part_command(
         Path,
         typer.Argument(
             metavar="FILE",
-            help="STEP (.step, .stp), mesh (.msh, .vtu, .inp), or superelement (.json, .csv, .bdf, "
-            ".op4, .h5) as fe-drivetrain export writes it.",
+            help="Solids (.step, .stp, .igs, .iges, .brep), mesh (.msh, .inp, .vtu, .unv, .med, "
+            ".stl), or superelement (.json, .csv, .h5; .bdf, .pch, .op4, .mtx, .matrix "
+            "of others, too).",
         ),
     ],
     bore: Annotated[
@@ -36,6 +37,40 @@ def part_command(
         str,
         typer.Option("--held", help="Of a superelement: points on the ground, as in left,right."),
     ] = "",
+    point: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--point",
+            metavar="NAME=WHERE",
+            help="Point of another program's matrices that is kept: hub=101 by its number, "
+            "hub=0,0,1.5 by its position, in the order of the rows, hub=101,0,0,1.5 by both, or "
+            "hub=101+102,... where the node 102 has its rotations as motions (CalculiX). May be "
+            "repeated; all others are condensed.",
+        ),
+    ] = None,
+    stiffness: Annotated[
+        str,
+        typer.Option(
+            "--stiffness", metavar="NAME", help="The matrix that is the stiffness, of several."
+        ),
+    ] = "",
+    mass: Annotated[
+        str, typer.Option("--mass", metavar="NAME", help="The matrix that is the mass, of several.")
+    ] = "",
+    grids: Annotated[
+        str,
+        typer.Option(
+            "--grids", metavar="FILE", help="Bulk data with the points of an OUTPUT4 file."
+        ),
+    ] = "",
+    units: Annotated[
+        str,
+        typer.Option(
+            "--units",
+            metavar="m|mm",
+            help="Of another program's matrices: m, N and kg, or mm, N and t.",
+        ),
+    ] = "m",
     picture: Annotated[
         Path | None,
         typer.Option("--picture", metavar="PNG", help="Write a picture with the names of faces."),
@@ -44,7 +79,7 @@ def part_command(
         bool, typer.Option("--overwrite", help="With --picture: replace an existing file.")
     ] = False,
 ) -> None:
-    """Show what is in a STEP or mesh file: volume, bores that may be seats, planes, labels.
+    """Show what is in a file of solids or a mesh: volume, bores that may be seats, planes, labels.
 
     The last lines are a housing for a scene, with the widest bore as its seat. Of a superelement
     they are its stiffness at the bore.
@@ -57,12 +92,21 @@ def part_command(
             raise InputError("--overwrite is for the file of --picture: give --picture PNG, too")
         if picture is not None and file.suffix.lower() in SUPERELEMENTS:
             raise InputError(
-                f"--picture {picture} is of a STEP or mesh file, and {file} is a superelement, "
+                f"--picture {picture} is of solids or a mesh, and {file} is a superelement, "
                 "which has no faces: leave --picture out"
             )
         if picture is not None:
             _check_picture(picture, overwrite)
-        result = part(file, bore, [point for point in held.split(",") if point])
+        result = part(
+            file,
+            bore,
+            [name for name in held.split(",") if name],
+            points=point or (),
+            stiffness_name=stiffness,
+            mass_name=mass,
+            grids=grids,
+            units=units,
+        )
         drawn = result.survey is not None and picture is not None and _draw(result.survey, picture)
         if wants_json():
             write_json(result_with_options(result).to_dict())

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from importlib import import_module
+from inspect import signature
 from pathlib import Path
 from types import ModuleType
 from typing import NamedTuple
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.common.reading import require_readable
+from fe_drivetrain.export.formats.labelled_matrices import TAKEN_AS_IT_IS, Naming
 from fe_drivetrain.export.superelement import Superelement
 
 
@@ -37,8 +40,8 @@ FORMATS: dict[str, Format] = {
         Format("mtx", ".mtx", "Matrix Market readers: the stiffness", "matrix_market"),
         Format("mtx-mass", ".mtx", "Matrix Market readers: the mass", "matrix_market_mass"),
         Format("hdf5", ".h5", "HDF5 readers", "hdf5", extra="hdf5"),
-        Format("dmig", ".bdf", "Nastran, as bulk data: GRID, DMIG", "dmig", 10, "nastran"),
-        Format("op4", ".op4", "Nastran INPUTT4, as text", "op4", extra="nastran"),
+        Format("dmig", ".bdf", "Nastran, as bulk data: GRID, DMIG", "dmig", 10),
+        Format("op4", ".op4", "Nastran INPUTT4, as text", "op4"),
         Format("calculix", ".inp", "CalculiX: springs and equations", "calculix_springs", 11),
         Format("extptfm", ".dat", "OpenFAST 5, ExtPtfm superelement", "extptfm"),
         Format("subdyn", ".dat", "OpenFAST 5, SubDyn spring element: one point", "subdyn"),
@@ -46,6 +49,10 @@ FORMATS: dict[str, Format] = {
         Format("simpack", ".subvar", "SIMPACK substitution variables", "simpack"),
     )
 }
+
+
+READ_ALONE = {"substructure": "substructure", "harwell-boeing": "harwell_boeing"}
+"""Modules of formats of other programs, which nothing is written in."""
 
 
 def write_superelement(
@@ -77,18 +84,37 @@ def write_superelement(
         writer(unfinished, element)
 
 
-def read_superelement(path: str | Path, format: str) -> Superelement:
-    """Read a superelement back.
+def read_superelement(
+    path: str | Path, format: str, naming: Naming = TAKEN_AS_IT_IS
+) -> Superelement:
+    """Read a superelement back, or one of another program.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    format : str
+        A name of `FORMATS` or `READ_ALONE`.
+    naming : Naming
+        What a file of another program leaves open.
 
     Raises
     ------
     InputError
-        The format is unknown or cannot be read back, or the file cannot be read, is too large, or
-        is not of that format.
+        The format is unknown or cannot be read back, or the file cannot be read, is too large, is
+        not of that format, or says itself what is named.
     """
     reader = _function(format, "read")
     require_readable(path, "superelement")
-    found = reader(Path(path))
+    if naming.says_nothing:
+        found = reader(Path(path))
+    elif "naming" in signature(reader).parameters:
+        found = reader(Path(path), naming)
+    else:
+        raise InputError(
+            f"{path} names its points and matrices itself: leave out "
+            f"{', '.join(argument(name, value) for name, value in naming.given.items())}"
+        )
     assert isinstance(found, Superelement)
     return found
 
@@ -101,13 +127,15 @@ def format_module(format: str) -> ModuleType:
     InputError
         The format is unknown.
     """
-    if format not in FORMATS:
+    modules = {name: one.module for name, one in FORMATS.items()} | READ_ALONE
+    if format not in modules:
         raise InputError(f"format {format!r} is unknown: use one of {', '.join(FORMATS)}")
-    return import_module(f"fe_drivetrain.export.formats.{FORMATS[format].module}")
+    return import_module(f"fe_drivetrain.export.formats.{modules[format]}")
 
 
 def _function(format: str, name: str) -> Callable[..., object]:
     module = format_module(format)
     if not hasattr(module, name):
-        raise InputError(f"format {format!r} can be written only: read another one back")
+        only, instead = ("read", "write") if name == "write" else ("written", "read back")
+        raise InputError(f"format {format!r} can be {only} only: {instead} another one")
     return getattr(module, name)  # type: ignore[no-any-return]

@@ -31,6 +31,9 @@ ALLOWED = 1e-9
 #: in another unit leave none of the first.
 RIGID = 1e-6
 
+#: Any term of a matrix [N/m, kg and their like]: products of larger ones overflow.
+LARGEST = 1e30
+
 #: Any coordinate of a point [m]: no drivetrain is that long.
 FARTHEST = 100.0
 
@@ -152,10 +155,11 @@ class Superelement:
         for kind, matrix in (("stiffness", self.stiffness), ("mass", self.mass)):
             if matrix is None:
                 continue
-            if np.shape(matrix) != (6 * n, 6 * n) or not np.isfinite(matrix).all():
+            if np.shape(matrix) != (6 * n, 6 * n) or not (np.abs(matrix) <= LARGEST).all():
                 raise InputError(
                     f"superelement {self.name!r}: its {kind} of shape {np.shape(matrix)} must be "
-                    f"({6 * n}, {6 * n}) and finite: six degrees of freedom for each of {n} points"
+                    f"({6 * n}, {6 * n}) and finite, at most {LARGEST:g}: six degrees of freedom "
+                    f"for each of {n} points"
                 )
             asymmetry, least = symmetry_error(matrix), min_eigenvalue(matrix)
             if asymmetry > ALLOWED or least < -ALLOWED:

@@ -262,7 +262,7 @@ def body_of_mesh(source: ForeignFile) -> tuple[Mesh, Surface]:
     numbered = {
         key: renewed.number[value]
         for key, value in found.items()
-        if key.startswith(("face ", "nodes "))
+        if key.startswith(("face ", "nodes ", "empty "))
     }
     return body, Surface(name, points, boundary(body), numbered)
 

@@ -1,5 +1,6 @@
-"""A mesh file of another program (.msh, .vtu, .inp) as plain arrays, read by meshio.
+"""A mesh file of another program as plain arrays, judged before anything is made of it.
 
+Decks of Abaqus and CalculiX (.inp) are read by `abaqus_deck`, .vtu by meshio, all else by gmsh.
 This runs in a process of its own, see `reading`.
 """
 
@@ -7,7 +8,6 @@ from __future__ import annotations
 
 import contextlib
 import io
-import re
 import warnings
 from pathlib import Path
 from typing import Any
@@ -15,76 +15,118 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.foreign.overlaps import refuse_overlaps
+from fe_drivetrain.foreign.raw_mesh import RawMesh
 
 MAX_NODES = 3_000_000
 _FARTHEST = 1e9  # any coordinate, in the file's unit
-_FORMATS = {".msh": "gmsh", ".vtu": "vtu", ".inp": "abaqus"}
 # as TETRAHEDRON_EDGES of `elasticity.mesh.shapes`, which would bring scikit-fem into this short
 # process
 _EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
+_SOLIDS = ("tetra", "tetra10")
 _TRIANGLES = ("triangle", "triangle6")
+_LINES = ("vertex", "line", "line3")
 
 
 def read(path: str) -> dict[str, Any]:
     """Nodes, tetrahedra of ten nodes, and labelled sets of tetrahedra, triangles and nodes.
 
-    Tetrahedra of four nodes get straight edges. Returns "points" (n, 3), "cells" (ne, 10), and for
-    each label "solid LABEL" (cells), "face LABEL" (k, 3) corners, or "nodes LABEL".
+    Tetrahedra of four nodes get straight edges. Returns "points" (n, 3), "cells" (ne, 10), "beside"
+    (what is left out, in words), and for each label "solid LABEL" (cells), "face LABEL" (k, 3)
+    corners, "nodes LABEL", or "empty LABEL" of a set without members.
     """
     name, mesh = Path(path).name, _opened(path)
     points = _positions(name, mesh)
     solids = _solid_blocks(name, mesh)
-    blocks = [np.asarray(block.data, dtype=np.int64) for block in mesh.cells]
+    blocks = [np.asarray(nodes, dtype=np.int64) for _, nodes in mesh.blocks]
     _refuse_unknown_nodes(name, points, blocks)
-    kinds = {mesh.cells[k].type for k in solids}
-    if len(kinds) > 1:
+    if len({mesh.blocks[k][0] for k in solids}) > 1:
         raise InputError(f"{name} has tetrahedra of 4 and of 10 nodes: mesh all of it with 10")
     _refuse_lost_nodes(name, points, np.unique(np.concatenate([blocks[k].ravel() for k in solids])))
-    first = np.cumsum([0, *(len(blocks[k]) for k in solids)])
     cells = np.concatenate([blocks[k] for k in solids])
-    _refuse_doubles(name, points, cells)
+    refuse_overlaps(name, points, cells)
+    found = _labelled(mesh, solids, blocks)
     linear = cells.shape[1] == 4
-    found: dict[str, Any] = {}
-    for label, members in _sets(mesh).items():
-        in_solids = [first[i] + members[k] for i, k in enumerate(solids) if k in members]
-        flat = [blocks[k][members[k]][:, :3] for k in members if mesh.cells[k].type in _TRIANGLES]
-        if any(len(m) for m in in_solids):
-            found[f"solid {label}"] = np.concatenate(in_solids)
-        if any(len(m) for m in flat):
-            found[f"face {label}"] = np.concatenate(flat)
-    for label, nodes in (mesh.point_sets or {}).items():
-        found[f"nodes {label}"] = np.asarray(nodes, dtype=np.int64).ravel()
     if linear:
         points, cells = _with_middles(points, cells)
-    return {"points": points, "cells": cells, "linear": np.array(linear), **found}
+    beside = ", ".join(f"{count} of {kind}" for kind, count in sorted(mesh.left_out.items()))
+    return {
+        "points": points,
+        "cells": cells,
+        "linear": np.array(linear),
+        "beside": np.array(beside),
+        **found,
+    }
 
 
-def _opened(path: str) -> Any:
-    """The mesh as meshio has it."""
+def _labelled(mesh: RawMesh, solids: list[int], blocks: list[Any]) -> dict[str, Any]:
+    """Sets by what they are of and their labels, see `read`."""
+    first = dict(zip(solids, np.cumsum([0, *(len(blocks[k]) for k in solids)]), strict=False))
+    found: dict[str, Any] = {}
+    faces = {label: [corners] for label, corners in mesh.faces.items()}
+    for label, members in mesh.cell_sets.items():
+        in_solids = [first[k] + members[k] for k in solids if k in members]
+        flat = [blocks[k][members[k]][:, :3] for k in members if mesh.blocks[k][0] in _TRIANGLES]
+        if any(len(m) for m in in_solids):
+            found[f"solid {label}"] = np.concatenate(in_solids)
+        faces.setdefault(label, []).extend(m for m in flat if len(m))
+    found |= {f"face {label}": np.concatenate(parts) for label, parts in faces.items() if parts}
+    for label, nodes in mesh.node_sets.items():
+        if len(nodes):
+            found[f"nodes {label}"] = np.asarray(nodes, dtype=np.int64).ravel()
+    there = {key.partition(" ")[2] for key in found}
+    for label in (*mesh.cell_sets, *mesh.node_sets):
+        if label not in there:
+            found[f"empty {label}"] = np.zeros(0, dtype=np.int64)
+    return found
+
+
+def _opened(path: str) -> RawMesh:
+    """The mesh as the reader of its kind has it."""
+    suffix = Path(path).suffix.lower()
+    if suffix == ".inp":
+        from fe_drivetrain.foreign.abaqus_deck import read_deck
+
+        return read_deck(path)
+    if suffix == ".vtu":
+        return _by_meshio(path)
+    from fe_drivetrain.foreign.gmsh_mesh import read_by_gmsh
+
+    return read_by_gmsh(path)
+
+
+def _by_meshio(path: str) -> RawMesh:
+    """The mesh of a .vtu file."""
     import meshio
 
-    file = Path(path)
-    name, suffix = file.name, file.suffix.lower()
-    if suffix == ".inp" and re.search(rb"(?im)^\*include\b", file.read_bytes()):
-        raise InputError(f"{name} includes other files: write the mesh into one file")
+    said, name = io.StringIO(), Path(path).name
     try:
-        with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
+        with (
+            warnings.catch_warnings(),
+            contextlib.redirect_stdout(said),
+            contextlib.redirect_stderr(io.StringIO()),
+        ):
             warnings.simplefilter("ignore")
-            return meshio.read(path, file_format=_FORMATS[suffix])
+            mesh = meshio.read(path, file_format="vtu")
     except MemoryError:
         raise
     except (Exception, SystemExit) as error:
-        said = "" if isinstance(error, SystemExit) else " ".join(str(error).split())
-        reason = said[:150].rstrip(".") or "it is damaged, or no such file"
+        # meshio prints what is wrong, and then ends the program
+        words = said.getvalue() if isinstance(error, SystemExit) else str(error)
+        reason = " ".join(words.split())[:200].rstrip(".") or type(error).__name__
         raise InputError(
-            f"{name} cannot be read as a mesh ({reason}): write it again, whole, as "
-            f"{_FORMATS[suffix]}"
+            f"{name} cannot be read as a mesh ({reason}): write it again, whole"
         ) from None
+    blocks = [(block.type, block.data) for block in mesh.cells]
+    nodes = {label: np.asarray(some).ravel() for label, some in (mesh.point_sets or {}).items()}
+    return RawMesh(mesh.points, blocks, _sets(mesh), nodes)
 
 
-def _positions(name: str, mesh: Any) -> Any:
+def _positions(name: str, mesh: RawMesh) -> Any:
     """Positions (n, 3) of the nodes."""
     points = np.asarray(mesh.points, dtype=float)
+    if not len(points):
+        raise InputError(f"{name} holds no nodes: write it again, whole, as the mesh of a solid")
     if points.ndim != 2 or points.shape[1] != 3 or not 4 <= len(points) <= MAX_NODES:
         raise InputError(
             f"{name} has nodes of shape {points.shape} but must have x, y and z of at most "
@@ -93,14 +135,10 @@ def _positions(name: str, mesh: Any) -> Any:
     return points
 
 
-def _solid_blocks(name: str, mesh: Any) -> list[int]:
+def _solid_blocks(name: str, mesh: RawMesh) -> list[int]:
     """Numbers of the blocks of tetrahedra, beside which there are faces and edges alone."""
-    others = {
-        block.type
-        for block in mesh.cells
-        if block.type not in ("tetra", "tetra10", "vertex", "line", "line3", *_TRIANGLES)
-    }
-    solids = [k for k, block in enumerate(mesh.cells) if block.type in ("tetra", "tetra10")]
+    others = {kind for kind, _ in mesh.blocks if kind not in (*_SOLIDS, *_LINES, *_TRIANGLES)}
+    solids = [k for k, (kind, nodes) in enumerate(mesh.blocks) if kind in _SOLIDS and len(nodes)]
     if others or not solids:
         raise InputError(
             f"{name} has elements of kind {', '.join(sorted(others)) or 'none'} but must have "
@@ -135,40 +173,14 @@ def _refuse_lost_nodes(name: str, points: Any, used: Any) -> None:
         )
 
 
-def _refuse_doubles(name: str, points: Any, cells: Any) -> None:
-    """Refuse elements that stand on the corners of others."""
-    corners = np.sort(cells[:, :4], axis=1)
-    _, at, count = np.unique(corners, axis=0, return_index=True, return_counts=True)
-    if (count > 1).any():
-        first = int(at[count > 1].min())
-        x, y, z = points[cells[first, :4]].mean(axis=0)
-        raise InputError(
-            f"{name}: {int((count - 1).sum())} of its {len(cells)} elements stand where another "
-            f"does, the first near ({x:.4g}, {y:.4g}, {z:.4g}): leave out the doubles"
-        )
-
-
 def _sets(mesh: Any) -> dict[str, dict[int, Any]]:
-    """Members of each labelled set by block: physical groups of gmsh, sets of others."""
+    """Members of each labelled set of meshio by block: its sets, and whole numbers of cells."""
     found: dict[str, dict[int, Any]] = {}
-    names = {
-        (int(dim), int(tag)): str(label) for label, (tag, dim) in (mesh.field_data or {}).items()
-    }
-    tags = (mesh.cell_data or {}).get("gmsh:physical", [])
-    for k, values in enumerate(tags):
-        dim = 3 if mesh.cells[k].type.startswith("tetra") else 2
-        for tag in np.unique(values):
-            label = names.get((dim, int(tag)), str(int(tag)))
-            found.setdefault(label, {})[k] = np.flatnonzero(np.asarray(values) == tag)
     for label, members in (mesh.cell_sets or {}).items():
-        if label.startswith("gmsh:"):
-            continue
         for k, some in enumerate(members):
             if some is not None and len(some):
                 found.setdefault(label, {})[k] = np.asarray(some, dtype=np.int64)
     for label, values in (mesh.cell_data or {}).items():
-        if label in ("gmsh:physical", "gmsh:geometrical"):
-            continue
         for k, value in enumerate(values):
             value = np.asarray(value)
             if value.ndim == 1 and value.dtype.kind in "iu" and len(np.unique(value)) <= 1000:

@@ -31,7 +31,8 @@ class Surface:
     facets : Ints
         Facets (k, 6) of the outside, turned outward.
     sets : Mapping[str, NDArray]
-        Sets of the file: "face LABEL" (m, 3) corners and "nodes LABEL".
+        Sets of the file: "face LABEL" (m, 3) corners, "nodes LABEL", and "empty LABEL" of those
+        without members.
     """
 
     def __init__(
@@ -70,6 +71,11 @@ class Surface:
         else:
             assert pick.point is not None
             found = self._smooth(np.array(pick.point))
+        if not found.any() and pick.label is not None:
+            raise InputError(
+                f"{self.name}: the set {pick.label!r} for the {what} holds no whole face of the "
+                f"outside: use one of {self.labels()}, or pick by a plane, a cylinder or a point"
+            )
         if not found.any():
             raise InputError(
                 f"{self.name}: there is no face for the {what} with {pick.words()}: correct it "
@@ -92,6 +98,11 @@ class Surface:
             return are_among(self.facets, corners, len(self.points))
         if (nodes := self.sets.get(f"nodes {label}")) is not None:
             return np.asarray(np.isin(self.facets[:, :3], nodes).all(axis=1), dtype=np.bool_)
+        if f"empty {label}" in self.sets:
+            raise InputError(
+                f"{self.name}: the set {label!r} for the {what} is empty: give it members, use one "
+                f"of {self.labels()}, or pick by a plane, a cylinder or a point"
+            )
         raise InputError(
             f"{self.name}: there is no face {label!r} for the {what}: use one of {self.labels()}, "
             "or pick by a plane, a cylinder or a point"

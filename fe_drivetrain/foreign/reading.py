@@ -128,6 +128,8 @@ def _check_file(file: Path, limits: Limits) -> None:
 def _ended(file: Path, status: int, limits: Limits) -> str:
     if status in (-getattr(signal, "SIGXCPU", 24), -getattr(signal, "SIGKILL", 9)):
         what = f"takes more than {limits.seconds} s of processor time"
+    elif status == -getattr(signal, "SIGPROF", 27):
+        what = "makes its reader go on without end, for it is damaged or cut off"
     elif status == 3:
         what = f"takes more than {limits.memory / 1e9:g} GB of memory"
     elif status in (-getattr(signal, "SIGXFSZ", 25),):

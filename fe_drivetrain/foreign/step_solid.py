@@ -1,4 +1,4 @@
-"""A STEP file's solids in the open gmsh model, in mm: healed, glued, described and picked.
+"""Solids of a STEP, IGES or BREP file in the open gmsh model, in mm: healed, glued and described.
 
 This runs in a process of its own, see `reading`; it imports little else than gmsh and numpy.
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,9 @@ import gmsh
 import numpy as np
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.foreign.brep_text import in_time, refuse_cut_off
 from fe_drivetrain.foreign.face_messages import nearly
+from fe_drivetrain.foreign.iges_lines import refuse_damaged
 from fe_drivetrain.foreign.step_fit import area_and_middle, recognised
 from fe_drivetrain.foreign.step_heal import counted, free_edges, heal, reason, sewn
 from fe_drivetrain.foreign.step_solids import MAX_SOLIDS, glue, keep, outside, solids
@@ -24,6 +27,8 @@ _MAX_FACES = 20_000
 _MIN_VOLUME = 1e-9  # of the cube of its size
 _FARTHEST = 1e9  # any number of a place, in the file's unit
 _ALIGNED = 1e-6  # sine of the angle between directions that are the same
+_FORMATS = {".igs": "IGES", ".iges": "IGES", ".brep": "BREP"}
+_CHECKS = {"IGES": refuse_damaged, "BREP": refuse_cut_off}
 SAME = 1e-6  # of a solid's size: places that are the same
 _SURFACES = {  # as STEP and gmsh call them
     "PLANE": "Plane",
@@ -55,6 +60,17 @@ def opened(
     known : Mapping[str, Any] or None
         Value "healed" of an earlier result for the same file, detail and part.
     """
+    try:
+        return _opened(path, smallest_detail, part, known)
+    except Exception as error:
+        if type(error) is not Exception:  # gmsh reports its own failures as bare ones
+            raise
+        raise _unread(path, error) from None
+
+
+def _opened(
+    path: str, smallest_detail: float, part: str | None, known: Mapping[str, Any] | None
+) -> dict[str, Any]:
     name = Path(path).name
     for option in ("FixDegenerated", "FixSmallEdges", "FixSmallFaces", "SewFaces", "MakeSolids"):
         gmsh.option.setNumber(f"Geometry.OCC{option}", 0)
@@ -149,14 +165,21 @@ def _named_faces(
 
 def _read(path: str) -> None:
     """Put what is in the file into the open model."""
+    limited = in_time(path) if Path(path).suffix.lower() in _FORMATS else nullcontext()
     try:
-        gmsh.model.occ.importShapes(path)
+        with limited:
+            gmsh.model.occ.importShapes(path)
     except Exception as error:
-        raise InputError(
-            f"{Path(path).name} cannot be read as STEP ({reason(error)}): export it again, whole, "
-            "as AP214 or AP242"
-        ) from None
+        raise _unread(path, error) from None
     gmsh.model.occ.synchronize()
+
+
+def _unread(path: str, error: Exception) -> InputError:
+    kind = _FORMATS.get(Path(path).suffix.lower(), "STEP")
+    return InputError(
+        f"{Path(path).name} cannot be read as {kind} ({reason(error)}): export it again, whole"
+        f"{', as AP214 or AP242' * (kind == 'STEP')}"
+    )
 
 
 def _refuse_many_faces(name: str, faces: int) -> None:
@@ -169,6 +192,9 @@ def _refuse_many_faces(name: str, faces: int) -> None:
 
 def _refuse_odd_numbers(path: str) -> None:
     """Refuse places that are no numbers or far away: the reader of STEP files hangs on them."""
+    if check := _CHECKS.get(_FORMATS.get(Path(path).suffix.lower(), "")):
+        check(path)
+        return
     text = Path(path).read_text("latin-1")
     for number, values in re.findall(
         r"#(\d+)\s*=\s*(?:CARTESIAN_POINT|DIRECTION)\s*\(\s*'[^']*'\s*,\s*\(([^()]*)\)", text

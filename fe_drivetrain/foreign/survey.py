@@ -1,4 +1,4 @@
-"""Contents of a STEP or mesh file: what a user looks at first, to pick a seat and held faces."""
+"""Contents of a file of solids or a mesh: what a user looks at, to pick a seat and held faces."""
 
 from __future__ import annotations
 
@@ -20,9 +20,15 @@ from fe_drivetrain.foreign.holes import Cylinder, cylinders, planes
 from fe_drivetrain.foreign.known_healing import read_step
 from fe_drivetrain.foreign.picking import Surface
 from fe_drivetrain.foreign.reading import read_in_process
-from fe_drivetrain.geometry.foreign_housing import MESH_ENDINGS, STEP_ENDINGS
+from fe_drivetrain.geometry.foreign_housing import MESH_ENDINGS, SOLID_ENDINGS
 
 _MAX_ROWS = 24
+_SETS = (
+    ("solids", "solid "),
+    ("faces", "face "),
+    ("sets of nodes", "nodes "),
+    ("empty sets", "empty "),
+)
 _TURNS = {0: "", 1: "rotate: [0, 0, -90]", 2: "rotate: [0, 90, 0]"}  # of an axis to x
 
 
@@ -138,7 +144,7 @@ def surveyed(path: str | Path) -> Survey:
     Parameters
     ----------
     path : str or Path
-        Ending in .step, .stp, .msh, .vtu or .inp.
+        A STEP or mesh file, see `SOLID_ENDINGS` and `MESH_ENDINGS`.
 
     Returns
     -------
@@ -150,12 +156,13 @@ def surveyed(path: str | Path) -> Survey:
         It has another ending, or cannot be read.
     """
     ending = Path(path).suffix.lower()
-    if ending in STEP_ENDINGS:
+    if ending in SOLID_ENDINGS:
         return _of_step(Path(path))
     if ending in MESH_ENDINGS:
         return _of_mesh(Path(path))
     raise InputError(
-        f"{path} must end in {', '.join((*STEP_ENDINGS, *MESH_ENDINGS))}: give a STEP or mesh file"
+        f"{path} must end in {', '.join((*SOLID_ENDINGS, *MESH_ENDINGS))}: give a file of solids "
+        "or a mesh"
     )
 
 
@@ -357,13 +364,16 @@ def _of_mesh(path: Path) -> Survey:
         f"volume {'unknown' if volume is None else f'{volume:.6g}'}, in the file's unit",
         f"worst scaled Jacobian: {worst:.3g}" + (": elements fold over" if worst <= 0 else ""),
     ]
+    if beside := str(found["beside"]):
+        lines.append(f"left out, as it carries nothing in a housing: {beside}")
     surface = Surface(path.name, points, outside, {})
     round_faces, flat = (cylinders(surface), planes(surface)) if sound else ([], [])
     lines += [*_cylinder_lines(round_faces), *_flat_lines(flat), ""]
-    for what, prefix in (("solids", "solid "), ("faces", "face "), ("sets of nodes", "nodes ")):
+    for what, prefix in _SETS:
         names = sorted(key.removeprefix(prefix) for key in found if key.startswith(prefix))
         more = f" and {len(names) - _MAX_ROWS} more" if len(names) > _MAX_ROWS else ""
-        lines.append(f"{what} by label: {', '.join(names[:_MAX_ROWS]) or 'none'}{more}")
+        if names or prefix != "empty ":
+            lines.append(f"{what} by label: {', '.join(names[:_MAX_ROWS]) or 'none'}{more}")
     bores, faces = _bores_of(round_faces), _planes_of(flat)
     marks = [
         Mark(bore.name, bore.centre, _triple(one.length / 2 * one.axis))

@@ -1,4 +1,4 @@
-"""What is in a user's part: bores and planes of STEP or mesh files, stiffness of superelements."""
+"""What is in a user's part: bores and planes of solids or meshes, stiffness of superelements."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.export.condensed_housing import condensed_housing
+from fe_drivetrain.export.formats.labelled_matrices import Naming
 from fe_drivetrain.export.limited_reading import read_limited
 from fe_drivetrain.export.superelement import Superelement
 from fe_drivetrain.foreign.survey import Survey, surveyed
@@ -28,7 +29,16 @@ from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.shown_units import in_large_unit
 
-SUPERELEMENTS = {".json": "json", ".csv": "csv", ".bdf": "dmig", ".op4": "op4", ".h5": "hdf5"}
+SUPERELEMENTS = {
+    ".json": "json",
+    ".csv": "csv",
+    ".h5": "hdf5",
+    ".bdf": "dmig",
+    ".pch": "dmig",
+    ".op4": "op4",
+    ".mtx": "substructure",
+    ".matrix": "harwell-boeing",
+}
 """Format of a superelement by the ending of its file."""
 
 
@@ -39,7 +49,7 @@ class PartResult(Result):
     Attributes
     ----------
     survey : Survey or None
-        Volume, bores and planes of a STEP or mesh file; its surface is not part of the JSON.
+        Volume, bores and planes of solids or a mesh; its surface is not part of the JSON.
     element : Superelement or None
         The superelement of another file.
     housing : CondensedHousing or None
@@ -64,18 +74,37 @@ class PartResult(Result):
 
 
 def part(
-    file: Path, bore: str = "", held: Sequence[str] = (), *, report: Progress = silent
+    file: Path,
+    bore: str = "",
+    held: Sequence[str] = (),
+    *,
+    points: Sequence[str] = (),
+    stiffness_name: str = "",
+    mass_name: str = "",
+    grids: str = "",
+    units: str = "m",
+    report: Progress = silent,
 ) -> PartResult:
     """Find what is in a file of a part: what a scene may pick of it, or its stiffness.
 
     Parameters
     ----------
     file : Path
-        STEP (.step, .stp), mesh (.msh, .vtu, .inp), or superelement (.json, .csv, .bdf, .op4, .h5).
+        Solids (.step, .stp, .igs, .iges, .brep), mesh (.msh, .inp, .vtu, .unv, .med, .stl), or
+        superelement (.json, .csv, .h5, .bdf, .pch, .op4, .mtx, .matrix).
     bore : str
         Point in the middle of a superelement's bore; may be left out where it has but one point.
     held : sequence of str
         Points of a superelement that stand on the ground.
+    points : sequence of str
+        Points of another program's matrices that are kept: "hub=101" by its number, "hub=0,0,1.5"
+        by its position, in the order of the rows, or "hub=101,0,0,1.5" by both.
+    stiffness_name, mass_name : str
+        Names of the matrices, where the file has several that may be meant.
+    grids : str
+        Nastran bulk data with the points of an OUTPUT4 file.
+    units : str
+        Units of another program's matrices: "m" for m, N and kg, or "mm" for mm, N and t.
     report : Progress
         Called with the name of each step as it begins.
 
@@ -88,11 +117,12 @@ def part(
     found, steps = Findings(), Steps(report)
     found.seed = None
     survey, element, housing = None, None, None
+    naming = Naming(tuple(points), stiffness_name, mass_name, grids, units)
     if file.suffix.lower() not in SUPERELEMENTS:
-        _refuse_points(file, {"bore": bore, "held": list(held)})
+        _refuse_points(file, {"bore": bore, "held": list(held), **naming.given})
     with steps.step("read"):
         if file.suffix.lower() in SUPERELEMENTS:
-            element = read_limited(file, SUPERELEMENTS[file.suffix.lower()])
+            element = read_limited(file, SUPERELEMENTS[file.suffix.lower()], naming=naming)
             housing = condensed_housing(element, bore, held)
         else:
             survey = surveyed(file)
@@ -104,16 +134,17 @@ def part(
         survey=survey,
         element=element,
         housing=housing,
-        **found.frozen(steps.times, file=file.name, bore=bore, held=list(held)),
+        **found.frozen(steps.times, file=file.name, bore=bore, held=list(held), **naming.given),
     )
 
 
-def _refuse_points(file: Path, given: Mapping[str, str | list[str]]) -> None:
+def _refuse_points(file: Path, given: Mapping[str, object]) -> None:
     """Refuse points of a file that is no superelement, and so has none."""
     for name, value in given.items():
         if value:
+            names = "names points" if name in ("bore", "held", "points") else "is of matrices"
             raise InputError(
-                f"{argument(name, value)} names points of a superelement, and {file} is none: "
+                f"{argument(name, value)} {names} of a superelement, and {file} is none: "
                 f"leave {argument(name)} out, or give a file that ends in "
                 f"{', '.join(SUPERELEMENTS)}"
             )

@@ -14,6 +14,7 @@ from scipy.linalg import eigh
 from test_superelement import random_element
 
 from fe_drivetrain import export
+from fe_drivetrain.cases.export import second_reader
 from fe_drivetrain.cases.export.calculix_runs import (
     compliance_by_calculix,
     frequencies_by_calculix,
@@ -24,7 +25,6 @@ from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.export.calculix_results import ROUNDING, read_dat
-from fe_drivetrain.export.formats import nastran
 from fe_drivetrain.export.formats.calculix_springs import model_lines, squares
 from fe_drivetrain.export.formats.dmig import double
 from fe_drivetrain.export.formats.statement import comment_lines, commented, statement
@@ -103,8 +103,8 @@ def test_a_statement_survives_as_comments(mark: str) -> None:
         "csv",
         "mtx",
         "calculix",
-        pytest.param("op4", marks=pytest.mark.needs("pyNastran")),
-        pytest.param("dmig", marks=pytest.mark.needs("pyNastran")),
+        "op4",
+        "dmig",
     ],
 )
 def test_a_damaged_file_is_read_or_refused(
@@ -284,7 +284,7 @@ def test_sixteen_characters_keep_ten_digits(value: float) -> None:
 
 def dmig_by_pynastran(path: Path) -> tuple[dict[str, Floats], Floats]:
     """Matrices with six degrees of freedom of each grid in order, and positions."""
-    model = nastran.pynastran("bdf.bdf").BDF(debug=None)
+    model = second_reader.pynastran("bdf.bdf").BDF(debug=None)
     model.read_bdf(str(path), punch=True, xref=False)
     found = {}
     for name, matrix in model.dmig.items():
@@ -378,9 +378,8 @@ def test_one_triangle_of_a_symmetric_dmig_is_the_whole_matrix(tmp_path: Path) ->
     assert (mine.mass == theirs.mass).all()
 
 
-@pytest.mark.needs("pyNastran")
 def test_columns_of_a_dmig_may_stand_in_any_order(tmp_path: Path) -> None:
-    """pyNastran numbers degrees of freedom as they come up."""
+    """They are known by their numbers."""
     element = moderate_element(2)
     path = written(tmp_path, element, "dmig")
     text = path.read_text().splitlines()
@@ -393,7 +392,6 @@ def test_columns_of_a_dmig_may_stand_in_any_order(tmp_path: Path) -> None:
     assert difference(export.read_superelement(path, "dmig").stiffness, element.stiffness) < 1e-9
 
 
-@pytest.mark.needs("pyNastran")
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
@@ -414,7 +412,7 @@ def test_a_wrong_dmig_gets_one_sentence(tmp_path: Path, old: str, new: str, mess
     assert str(path) in str(caught.value)
 
 
-@pytest.mark.needs("pyyeti", "pyNastran")
+@pytest.mark.needs("pyyeti")
 def test_pyyeti_reads_dmig_and_op4(tmp_path: Path, shaft: Superelement) -> None:
     """A second reader, that knows nothing of the first."""
     from pyyeti.nastran import bulk, op4
@@ -429,21 +427,28 @@ def test_pyyeti_reads_dmig_and_op4(tmp_path: Path, shaft: Superelement) -> None:
     assert (matrices["xyz"] == shaft.positions).all()
 
 
-@pytest.mark.needs("pyNastran")
 def test_op4_tells_the_free_from_the_supported(tmp_path: Path, shaft: Superelement) -> None:
     assert not export.read_superelement(written(tmp_path, shaft, "op4"), "op4").supported
     (tmp_path / "op4.op4").unlink()
     assert export.read_superelement(written(tmp_path, moderate_element(2), "op4"), "op4").supported
 
 
-def test_an_absent_pynastran_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+@pytest.mark.needs("pyNastran")
+def test_pynastran_reads_op4(tmp_path: Path, shaft: Superelement) -> None:
+    op4 = second_reader.pynastran("op4.op4").OP4(debug=False)
+    found = op4.read_op4(str(written(tmp_path, shaft, "op4")))
+    assert (found["KGG"].data == 0.5 * (shaft.stiffness + shaft.stiffness.T)).all()
+    assert (found["MGG"].data == shaft.mass).all()
+    assert (found["XYZ"].data == shaft.positions).all()
+
+
+def test_an_absent_pynastran_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     def absent(name: str) -> object:
         raise ImportError(name)
 
-    monkeypatch.setattr(nastran, "import_module", absent)
+    monkeypatch.setattr(second_reader, "import_module", absent)
     with pytest.raises(MissingToolError, match=r'pip install "fe-drivetrain\[nastran\]"'):
-        export.write_superelement(tmp_path / "a.op4", random_element(0), "op4")
-    assert not list(tmp_path.iterdir())
+        second_reader.pynastran("op4.op4")
 
 
 # --- CalculiX -----------------------------------------------------------------------------------

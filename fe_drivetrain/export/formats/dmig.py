@@ -10,13 +10,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.export.formats.nastran import pynastran, quietly
+from fe_drivetrain.export.formats.bulk_data import BulkData, bulk_data
+from fe_drivetrain.export.formats.labelled_matrices import (
+    TAKEN_AS_IT_IS,
+    Naming,
+    superelement_of,
+)
 from fe_drivetrain.export.formats.statement import (
     comment_lines,
     commented,
@@ -37,35 +42,68 @@ def write(path: Path, element: Superelement) -> None:
     path.write_bytes(lines.encode("ascii", "replace"))
 
 
-def read(path: Path) -> Superelement:
-    """Read such a file by pyNastran: matrices from DMIG, positions from GRID.
+def read(path: Path, naming: Naming = TAKEN_AS_IT_IS) -> Superelement:
+    """Read GRID and DMIG, those of a file that was written here or of another program.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    naming : Naming
+        What it leaves open; the comments of a file that was written here say all.
 
     Raises
     ------
     InputError
-        The file is no bulk data, is cut off, or its comments are not a superelement's.
-    MissingToolError
-        pyNastran is not installed.
+        The file is no bulk data, is cut off, leaves something open, or is no superelement's.
     """
-    bdf = pynastran("bdf.bdf")
-    entries = commented(text_of(path, "Nastran bulk data").splitlines(), "$")
-    if _END not in entries:
+    text = text_of(path, "Nastran bulk data")
+    entries = commented(text.splitlines(), "$")
+    ours = "superelement" in entries and naming.says_nothing
+    if ours and _END not in entries:
         raise InputError(f"{path} is no superelement in Nastran bulk data, or is cut off")
-    model = bdf.BDF(debug=None)
     try:
-        with quietly():
-            model.read_bdf(str(path), punch=True, xref=False, validate=False)
-    # whatever a card that cannot be read makes pyNastran raise
-    except Exception as error:
-        raise InputError(f"{path} is no Nastran bulk data: {error}") from error
-    numbers = list(range(1, len(model.nodes) + 1))
-    if sorted(model.nodes) != numbers:
+        found = bulk_data(text)
+    except InputError as error:
+        raise InputError(f"{path} is no Nastran bulk data: {error}") from None
+    if not found.matrices:
+        raise InputError(
+            f"{path} is no superelement in Nastran bulk data: it has no square DMIG entries, or is "
+            "cut off"
+        )
+    if ours:
+        return _of_statement(path, entries, found)
+    places = {**found.places, **places_of(naming).places}
+    stated = (found.stiffness, found.mass)
+    return superelement_of(path, found.matrices, places, naming, stated)
+
+
+def places_of(naming: Naming) -> BulkData:
+    """Points in the bulk data that a user gives beside a file; none where there is none.
+
+    Raises
+    ------
+    InputError
+        It cannot be read, or is no bulk data.
+    """
+    if not naming.grids:
+        return BulkData()
+    try:
+        return bulk_data(text_of(Path(naming.grids), "Nastran bulk data"))
+    except InputError as error:
+        raise InputError(f"{argument('grids', naming.grids)}: {error}") from None
+
+
+def _of_statement(path: Path, entries: dict[str, str], found: BulkData) -> Superelement:
+    """The superelement that comments state, with the matrices and points of the cards."""
+    numbers = list(range(1, len(found.places) + 1))
+    if sorted(found.places) != numbers:
         raise InputError(f"{path}: its GRID entries must be numbered from 1, as its points are")
-    found = element_of(path, entries, *_matrices(path, model, entries))
-    grids = np.array([model.nodes[number].xyz for number in numbers])
-    if not np.allclose(grids, found.positions, rtol=1e-9, atol=1e-9):
+    element = element_of(path, entries, *_matrices(path, found, entries))
+    grids = np.array([found.places[number].position for number in numbers])
+    if not np.allclose(grids, element.positions, rtol=1e-9, atol=1e-9):
         raise InputError(f"{path}: its GRID entries are not at the points that its comments name")
-    return found
+    return element
 
 
 def double(value: float) -> str:
@@ -114,21 +152,16 @@ def _matrix_lines(name: str, matrix: Floats) -> Iterator[str]:
             yield f"{'*':<8}{i // 6 + 1:>16}{i % 6 + 1:>16}{value:>16}{'':16}"
 
 
-def _matrices(path: Path, model: Any, entries: dict[str, str]) -> tuple[Floats, Floats | None]:
-    found: dict[str, Floats] = {}
-    size = 6 * len(model.nodes)
-    for letter in _KINDS:
+def _matrices(path: Path, found: BulkData, entries: dict[str, str]) -> tuple[Floats, Floats | None]:
+    matrices: dict[str, Floats] = {}
+    freedoms = [(grid, c) for grid in sorted(found.places) for c in range(1, 7)]
+    for letter, kind in _KINDS.items():
         name = entries.get(f"matrix {letter}", "")
-        if name not in model.dmig:
+        if name not in found.matrices:
             if letter == "K" or name:
-                raise InputError(f"{path} has no DMIG {name!r}: it must hold its {_KINDS[letter]}")
+                raise InputError(f"{path} has no DMIG {name!r}: it must hold its {kind}")
             continue
-        values, rows, _ = model.dmig[name].get_matrix()
-        # pyNastran's order of degrees of freedom is that in which they come up
-        places = [6 * (grid - 1) + component - 1 for grid, component in map(tuple, rows.values())]
-        if sorted(places) != list(range(size)):
+        if found.matrices[name].freedoms != freedoms:
             raise InputError(f"{path}: DMIG {name} has not the six degrees of freedom of each GRID")
-        matrix = np.zeros((size, size))
-        matrix[np.ix_(places, places)] = values
-        found[letter] = matrix
-    return found["K"], found.get("M")
+        matrices[letter] = found.matrices[name].values
+    return matrices["K"], matrices.get("M")

@@ -181,7 +181,11 @@ def read(path: Path) -> Superelement:
     InputError
         The file is no JSON, or not of this schema.
     """
-    return element_of(read_content(path, SuperelementFile, "superelement in JSON"))
+    content = read_content(path, SuperelementFile, "superelement in JSON")
+    try:
+        return element_of(content)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
 
 
 def read_content(path: Path, kind: type[_Content], what: str) -> _Content:

@@ -1,11 +1,7 @@
-"""pyNastran, where it is installed."""
+"""pyNastran, where it is installed: a second reader of what is written here."""
 
 from __future__ import annotations
 
-import io
-import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from importlib import import_module
 from typing import Any
 
@@ -30,21 +26,9 @@ def pynastran(module: str) -> Any:
         return import_module(f"pyNastran.{module}")
     except (ImportError, AttributeError) as error:
         raise MissingToolError(
-            f"Nastran files need pyNastran, which cannot be loaded ({error}): install it with pip "
+            f"this needs pyNastran, which cannot be loaded ({error}): install it with pip "
             'install "fe-drivetrain[nastran]"'
         ) from error
     finally:
         for name in missing:
             del vars(np)[name]
-
-
-@contextmanager
-def quietly() -> Iterator[None]:
-    """Keep to itself what pyNastran prints of a card that it cannot read, before it raises."""
-    with (
-        warnings.catch_warnings(),
-        redirect_stdout(io.StringIO()),
-        redirect_stderr(io.StringIO()),
-    ):
-        warnings.simplefilter("ignore")
-        yield
