@@ -15,7 +15,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from fe_drivetrain.bearing_life.life.roller_damage import KINDS, LifeRules
+from fe_drivetrain.bearing_life.life.life_rules import LifeRules
+from fe_drivetrain.bearing_life.life.roller_damage import KINDS
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import mapped

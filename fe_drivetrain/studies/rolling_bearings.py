@@ -14,10 +14,10 @@ from fe_drivetrain.bearing.races import Races
 from fe_drivetrain.bearing_life.coupled.load_paths import PINNED, LoadPath
 from fe_drivetrain.bearing_life.coupled.of_scene import scene_body
 from fe_drivetrain.bearing_life.coupled.reaction_paths import ReactionPath
+from fe_drivetrain.bearing_life.life.life_rules import LifeRules
 from fe_drivetrain.bearing_life.life.lubricants import Lubricant
 from fe_drivetrain.bearing_life.life.rated import RatedBearing, rated_from_catalogue
 from fe_drivetrain.bearing_life.life.reference_life import Turning
-from fe_drivetrain.bearing_life.life.roller_damage import LifeRules
 from fe_drivetrain.bearing_life.life.roller_models import (
     RollerModel,
     flexible_rings,
